@@ -1,0 +1,1 @@
+"""Rigid-body motion, solved exactly where mathematics allows, on ROS 2."""

@@ -1,0 +1,89 @@
+"""Compilation of kernels: numba where it is installed, plain Python where it is not, and a cache that never lies.
+
+numba looks at the time stamp of one file only, so a cached caller would go on with the old body of a callee in another file. Here the cache
+folder is named by a hash of every source file of the package, of numba's version and of the processor: after any edit it is another folder.
+
+Kernels follow four rules, so that they mean the same with and without numba: scalars and small arrays only, functions of ``math`` only, no
+division by zero (plain Python would raise), no ``**`` (its rounding differs between the two).
+"""
+
+import hashlib
+import os
+import pathlib
+import platform
+import sys
+import tempfile
+
+try:
+    import numba
+except ImportError:
+    numba = None
+
+HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
+PACKAGE = pathlib.Path(__file__).resolve().parent
+
+
+def processor():
+    """Return the name and feature flags of the processor, on which compiled code and the bits of sin and cos depend."""
+    if HAVE_NUMBA:
+        from llvmlite import binding
+        return f'{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}'
+    return platform.processor() or platform.machine()
+
+
+def sources_key():
+    """Return a hash of all that compiled code depends on: the package's sources, Python's and numba's version, the processor."""
+    digest = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob('*.py')):
+        digest.update(str(path.relative_to(PACKAGE)).encode())
+        digest.update(path.read_bytes())
+    versions = (sys.version, numba.__version__ if numba else 'no numba', processor())
+    digest.update(repr(versions).encode())
+    return digest.hexdigest()[:16]
+
+
+def _cache_folder():
+    """Return a writable folder for this key, or None: the user's cache folder, else one under the temporary folder."""
+    home = os.environ.get('XDG_CACHE_HOME') or os.path.join(os.path.expanduser('~'), '.cache')
+    temporary = os.path.join(tempfile.gettempdir(), f'rigid_body_sim-{os.getuid()}')
+    for base in (os.path.join(home, 'rigid_body_sim'), temporary):
+        folder = pathlib.Path(base) / sources_key()
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            if os.access(folder, os.W_OK) and folder.stat().st_uid == os.getuid():
+                return folder
+        except OSError:
+            continue
+    return None
+
+
+CACHE_FOLDER = _cache_folder() if HAVE_NUMBA else None
+
+
+def _jit(function, **options):
+    if not HAVE_NUMBA:
+        return function
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(CACHE_FOLDER) if CACHE_FOLDER else ''
+    try:
+        return numba.njit(cache=CACHE_FOLDER is not None, error_model='numpy', nogil=True, **options)(function)
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def compiled(function):
+    """Compile a kernel at its first call, without any reordering of floating-point operations (no ``fastmath``)."""
+    return _jit(function)
+
+
+def compiled_inline(function):
+    """Compile a short kernel that is copied into its callers."""
+    return _jit(function, inline='always')
+
+
+def compiled_parallel(function):
+    """Compile a kernel whose ``parallel_range`` loops run on all cores."""
+    return _jit(function, parallel=True)
+
+
+parallel_range = numba.prange if HAVE_NUMBA else range
