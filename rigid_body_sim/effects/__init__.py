@@ -1,0 +1,3 @@
+"""Effects: anything but the constraint that acts on a body, one file each."""
+
+EFFECTS = {}
