@@ -1,0 +1,17 @@
+"""Fixtures of all tests."""
+
+import os
+
+import pytest
+import ros
+
+os.environ.update(ros.SETTINGS)
+
+
+@pytest.fixture
+def ros_domain(tmp_path, monkeypatch):
+    """Yield a ros.Domain for this test alone; this process is in it too, so ``rclpy.init()`` needs no argument."""
+    with ros.held_domain(tmp_path / 'ros_log') as domain:
+        monkeypatch.setenv('ROS_DOMAIN_ID', str(domain.id))
+        monkeypatch.setenv('ROS_LOG_DIR', domain.environment['ROS_LOG_DIR'])
+        yield domain

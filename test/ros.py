@@ -1,0 +1,73 @@
+"""What every test on real ROS needs: a domain of its own, and processes that never outlive the test.
+
+Domain ids 1 to 101: 0 is where a user's own nodes live, from 102 on the ports of a domain collide with ephemeral ones. A lock on a file
+holds an id for as long as its test runs, also against other test runs on the machine; the system releases it when the process dies.
+"""
+
+import contextlib
+import fcntl
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import typing
+
+FIRST_DOMAIN, LAST_DOMAIN = 1, 101
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# Read when rclpy and the message classes are imported, hence set for this process too, by conftest.py.
+SETTINGS = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_PYTHON_CHECK_FIELDS': '1'}
+
+
+class Domain(typing.NamedTuple):
+    """A domain id held by a test, and the environment in which its processes run."""
+
+    id: int
+    environment: dict
+
+    @contextlib.contextmanager
+    def process(self, *arguments, **options):
+        """Run ``python ARGUMENTS`` from the root of the source tree in this domain; yield the Popen, whose group is killed at the end.
+
+        Its output arrives as text in ``stdout`` and ``stderr`` unless ``options`` (of Popen) say otherwise.
+        """
+        options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'text': True, 'cwd': ROOT, 'env': self.environment, **options}
+        with subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **options) as process:
+            try:
+                yield process
+            finally:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+
+    def run(self, *arguments, timeout=60, **options):
+        """Run ``python ARGUMENTS`` to its end; return a CompletedProcess. After ``timeout`` seconds: TimeoutExpired, nothing left."""
+        with self.process(*arguments, **options) as process:
+            stdout, stderr = process.communicate(timeout=timeout)
+            return subprocess.CompletedProcess(process.args, process.returncode, stdout, stderr)
+
+
+@contextlib.contextmanager
+def held_domain(log_folder):
+    """Yield a Domain that nobody else who uses this function holds.
+
+    Raises
+    ------
+    RuntimeError
+        If all ids are held.
+    """
+    folder = pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-domains-{os.getuid()}'
+    folder.mkdir(exist_ok=True)
+    ids = list(range(FIRST_DOMAIN, LAST_DOMAIN + 1))
+    random.Random(os.getpid()).shuffle(ids)
+    for domain_id in ids:
+        with open(folder / str(domain_id), 'w') as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield Domain(domain_id, {**os.environ, **SETTINGS, 'ROS_DOMAIN_ID': str(domain_id), 'ROS_LOG_DIR': str(log_folder)})
+            return
+    raise RuntimeError(f'all domain ids from {FIRST_DOMAIN} to {LAST_DOMAIN} are in use by tests: wait for other test runs to end')

@@ -1,0 +1,62 @@
+"""The helper of the tests on ROS: no two share a domain, no process outlives its test."""
+
+import os
+import select
+import subprocess
+import sys
+
+import pytest
+import ros
+
+
+def test_two_tests_never_hold_one_domain(tmp_path):
+    with ros.held_domain(tmp_path) as first, ros.held_domain(tmp_path) as second:
+        assert first.id != second.id
+        assert {first.id, second.id} <= set(range(1, 102))
+
+
+def test_all_domains_held_is_said(tmp_path, monkeypatch):
+    with ros.held_domain(tmp_path) as domain:
+        monkeypatch.setattr(ros, 'FIRST_DOMAIN', domain.id)
+        monkeypatch.setattr(ros, 'LAST_DOMAIN', domain.id)
+        with pytest.raises(RuntimeError, match='all domain ids'), ros.held_domain(tmp_path):
+            pass
+
+
+def test_another_process_does_not_get_a_held_domain(tmp_path):
+    script = f"""
+import ros
+ros.FIRST_DOMAIN = ros.LAST_DOMAIN = int(input())
+try:
+    with ros.held_domain({str(tmp_path)!r}):
+        print('got it')
+except RuntimeError:
+    print('refused')
+"""
+    def asked(domain_id):
+        return subprocess.run([sys.executable, '-c', script], input=str(domain_id), capture_output=True, text=True, timeout=30,
+                              cwd=ros.ROOT / 'test', check=True).stdout.strip()
+
+    with ros.held_domain(tmp_path) as domain:
+        assert asked(domain.id) == 'refused'
+    assert asked(domain.id) == 'got it'
+
+
+def test_the_domain_reaches_this_process_and_its_children(ros_domain):
+    child = ros_domain.run('-c', 'import os; print(os.environ["ROS_DOMAIN_ID"], os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"])')
+    assert child.stdout.split() == [str(ros_domain.id), 'LOCALHOST']
+    assert os.environ['ROS_DOMAIN_ID'] == str(ros_domain.id)
+
+
+def test_grandchildren_do_not_outlive_the_test(ros_domain):
+    mine, theirs = os.pipe()
+    with ros_domain.process('-c', 'import subprocess; subprocess.run(["sleep", "60"], close_fds=False)', pass_fds=(theirs,)):
+        os.close(theirs)
+        assert not select.select([mine], [], [], 1.0)[0]     # open: child or grandchild lives
+    assert select.select([mine], [], [], 10.0)[0]            # end of file: nobody is left that could write
+    os.close(mine)
+
+
+def test_a_process_that_hangs_is_ended(ros_domain):
+    with pytest.raises(subprocess.TimeoutExpired):
+        ros_domain.run('-c', 'import time; time.sleep(60)', timeout=1)
