@@ -1,3 +1,10 @@
-"""Effects: anything but the constraint that acts on a body, one file each."""
+"""The table of effects: one file each, one line each. What an effect must offer is said in rigid_body_sim/effects/views.py."""
 
-EFFECTS = {}
+from rigid_body_sim.effects.drag import Drag
+from rigid_body_sim.effects.gravity import Gravity
+from rigid_body_sim.effects.internal_dissipation import InternalDissipation
+from rigid_body_sim.effects.sliding_friction import SlidingFriction
+from rigid_body_sim.effects.strike import Strike
+from rigid_body_sim.effects.torque import Torque
+
+EFFECTS = {effect.name: effect for effect in (Gravity, Torque, Strike, SlidingFriction, InternalDissipation, Drag)}
