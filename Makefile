@@ -1,0 +1,67 @@
+# Everything runs in .venv, which each target sets up first; needed are make and Python 3.11, 3.12 or 3.13 (make PYTHON=/path/to/python: that one).
+
+SCENE ?= tennis_racket
+RATE ?= 1000
+DURATION ?= 20
+
+# A ROS that is sourced in the shell hides the wheels of .venv or makes them load what they do not have.
+FOREIGN = PYTHONHOME PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
+    ROS_DISTRO ROS_VERSION ROS_PYTHON_VERSION _ROS_WHEELS_BOOTSTRAP_COMPLETE
+LEFT_BEHIND := $(strip $(foreach name,$(FOREIGN),$(if $($(name)),$(name))))
+ifneq ($(LEFT_BEHIND),)
+$(info Unset for this run, they belong to another installation: $(LEFT_BEHIND))
+endif
+unexport $(FOREIGN)
+export AMENT_PREFIX_PATH := $(CURDIR)/.venv
+
+PYTHON_VERSIONS = 3.12 3.13 3.11
+COLCON = .venv/bin/colcon --log-base .cache/colcon/log
+COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
+PYTEST = python -m pytest --numprocesses 2 --timeout 120 -m 'not installed'
+
+.PHONY: help run test lint package test-noble pins pins-noble clean
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
+
+run: .venv/run.stamp ## simulate SCENE (tennis_racket) at RATE (1000) Hz for DURATION (20) s: node, recording, report, figure
+	@.venv/bin/python -m rigid_body_sim run --scene $(SCENE) --rate $(RATE) --duration $(DURATION)
+
+test: lint package ## everything: ruff, colcon build and test of the package, pytest
+	.venv/bin/$(PYTEST)
+
+lint: .venv/test.stamp ## ruff
+	.venv/bin/ruff check .
+
+package: .venv/test.stamp ## colcon build, and colcon test of what was installed
+	$(COLCON) build --base-paths . $(COLCON_FOLDERS)
+	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
+	    --pytest-args -m installed --timeout 120
+
+test-noble: .venv-noble/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, without and with numba
+	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble .venv-noble/bin/$(PYTEST)
+	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble PYTHONPATH=.venv-noble/numba .venv-noble/bin/$(PYTEST)
+
+pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and test.in (with the oldest Python)
+	.venv/bin/python requirements/pin.py run
+	.venv/bin/python requirements/pin.py test
+
+pins-noble: .venv-noble/stamp ## requirements/noble.txt anew from noble.in
+	.venv-noble/bin/python requirements/pin.py noble
+
+clean: ## remove the environments and what was built; recordings stay
+	rm -rf .venv .venv-noble .cache
+
+.venv/run.stamp: requirements/run.txt requirements/make_venv.sh
+	@requirements/make_venv.sh .venv requirements/run.txt $(PYTHON_VERSIONS)
+	@touch $@
+
+.venv/test.stamp: requirements/test.txt .venv/run.stamp
+	@requirements/make_venv.sh .venv requirements/test.txt $(PYTHON_VERSIONS)
+	@touch $@
+
+.venv-noble/stamp: requirements/noble.txt requirements/noble-numba.txt requirements/make_venv.sh
+	@requirements/make_venv.sh .venv-noble requirements/noble.txt 3.12
+	@.venv-noble/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --upgrade --target .venv-noble/numba \
+	    -r requirements/noble-numba.txt
+	@touch $@
