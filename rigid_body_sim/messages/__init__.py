@@ -1,0 +1,1 @@
+"""ROS 2 messages without ROS: definitions as data, CDR by hand, whole columns of messages by numpy."""
