@@ -1,0 +1,42 @@
+"""Instants of ticks in integer nanoseconds: origin + ticks / rate, exact for any rate and any number of ticks.
+
+A rate is a double, hence a ratio of integers; with integers throughout, nothing drifts: the instant of tick k does not depend on the way
+there. Stamps are such instants, and so are the deadlines of the tick thread.
+"""
+
+import math
+from fractions import Fraction
+
+NANOSECONDS = 1_000_000_000
+
+
+class Timeline:
+    """Evenly spaced instants.
+
+    Parameters
+    ----------
+    origin : int
+        Instant of tick ``tick``, ns.
+    rate : float or Fraction
+        Ticks per second.
+    tick : int
+    """
+
+    __slots__ = ('_double_period', '_rate_numerator', 'origin', 'rate', 'tick')
+
+    def __init__(self, origin, rate, tick=0):
+        self.origin, self.rate, self.tick = origin, Fraction(rate), tick
+        self._rate_numerator = self.rate.numerator
+        self._double_period = 2 * NANOSECONDS * self.rate.denominator
+
+    def instant(self, tick):
+        """Return the instant of a tick, ns, rounded to the nearest."""
+        return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (2 * self._rate_numerator)
+
+    def ticks_in(self, seconds):
+        """Return the number of ticks after which at least `seconds` have passed (a float or Fraction, exact)."""
+        return math.ceil(Fraction(seconds) * self.rate)
+
+    def from_tick(self, tick, rate):
+        """Return the timeline that goes on from a tick of this one at another rate."""
+        return Timeline(self.instant(tick), rate, tick)
