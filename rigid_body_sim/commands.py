@@ -1,0 +1,14 @@
+"""The table of commands: `ros2 run rigid_body_sim NAME` and `python -m rigid_body_sim NAME` run the same functions.
+
+It is read by setup.py, so it imports nothing. Each function takes the list of arguments (default: those of the process) and returns the exit
+status: 0 good, 1 a check failed, 2 bad input.
+"""
+
+COMMANDS = {
+    'sim_node': ('rigid_body_sim.node.sim_node:main', 'run a scene as a ROS 2 node: topics, commands, recording'),
+    'simulate': ('rigid_body_sim.simulate:main', 'run a scene to a recording as fast as it goes'),
+    'analyze': ('rigid_body_sim.analysis.analyze:main', 'a recording to numbers and a figure'),
+    'recover': ('rigid_body_sim.recording.recover:main', 'make a cut recording whole'),
+    'export': ('rigid_body_sim.recording.export:main', 'a recording to CSV, Parquet or NumPy'),
+    'scenes': ('rigid_body_sim.list_scenes:main', 'list the scenes, their effects and the methods that can run them'),
+}

@@ -1,0 +1,198 @@
+"""What holds for every scene: energy and angular momentum of a state, and what an impulse does to it.
+
+The point of reference is the centre of mass of a free body and of a sphere on a table, the fixed point of a pivoted body, the axis of a hinged
+one. Symbols: M mass, c centre of mass from the body's origin (body axes), omega angular velocity (body axes), L angular momentum about the
+point of reference (world axes), g acceleration of gravity (along -z of the world).
+"""
+
+import numpy as np
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.rotations import rotate, rotate_back
+
+FREE, PIVOT, HINGE, TABLE = range(4)
+KINDS = {'free': FREE, 'pivot': PIVOT, 'hinge': HINGE, 'table': TABLE}
+
+# layout of the parameters
+KIND, MASS, CENTER, MOMENTS, AXES, GRAVITY, HINGE_AXIS, THROUGH, HINGE_MOMENT = 0, 1, 2, 5, 8, 12, 13, 16, 19
+PARAMETER_SIZE = 20
+
+# layout of what `diagnose` fills
+KINETIC, POTENTIAL, MOMENTUM = 0, 1, 2
+DIAGNOSIS_SIZE = 5
+
+# layout of what `apply_impulse` fills beside the state
+WORK, ANGULAR_IMPULSE, REACTION_FORCE, REACTION_COUPLE = 0, 1, 4, 7
+EXCHANGE_SIZE = 10
+
+
+def parameters(scene):
+    """Return the numbers of a scene that the kernels below take, shape (20,)."""
+    body, constraint = scene.body, scene.constraint
+    inertia = body.about_origin if constraint.kind == 'pivot' else body.about_center
+    gravity = scene.effect('gravity')
+    p = np.zeros(PARAMETER_SIZE)
+    p[KIND], p[MASS], p[CENTER:CENTER + 3] = KINDS[constraint.kind], body.mass, body.center_of_mass
+    p[MOMENTS:MOMENTS + 3], p[AXES:AXES + 4] = inertia.moments, inertia.axes
+    p[GRAVITY] = gravity.g if gravity else 0.0
+    p[HINGE_AXIS:HINGE_AXIS + 3], p[THROUGH:THROUGH + 3] = constraint.axis, constraint.through
+    p[HINGE_MOMENT] = moment_about_hinge(body, constraint) if constraint.kind == 'hinge' else 0.0
+    return p
+
+
+def moment_about_hinge(body, constraint):
+    """Return the moment of inertia about the hinge's axis: n . I n + M |n x (c - through)|^2, kg m^2."""
+    n, arm = np.array(constraint.axis), np.subtract(body.center_of_mass, constraint.through)
+    across = np.cross(n, arm)
+    return float(n @ body.about_center.matrix @ n + body.mass * (across @ across))
+
+
+@compiled
+def angular_momentum(p, omega_x, omega_y, omega_z):
+    """Return I omega in body axes, I about the point of reference."""
+    if p[KIND] == HINGE:
+        along = p[HINGE_MOMENT] * (p[HINGE_AXIS] * omega_x + p[HINGE_AXIS + 1] * omega_y + p[HINGE_AXIS + 2] * omega_z)
+        return along * p[HINGE_AXIS], along * p[HINGE_AXIS + 1], along * p[HINGE_AXIS + 2]
+    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
+    x, y, z = rotate_back(ax, ay, az, aw, omega_x, omega_y, omega_z)
+    return rotate(ax, ay, az, aw, p[MOMENTS] * x, p[MOMENTS + 1] * y, p[MOMENTS + 2] * z)
+
+
+@compiled
+def diagnose(p, state, out):
+    """Fill out with kinetic and potential energy (J) and L (world axes, kg m^2/s) of a state."""
+    qx, qy, qz, qw = state[1], state[2], state[3], state[4]
+    wx, wy, wz = state[5], state[6], state[7]
+    mx, my, mz = angular_momentum(p, wx, wy, wz)
+    kinetic = 0.5 * (mx * wx + my * wy + mz * wz)
+    cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
+    if p[KIND] == FREE or p[KIND] == TABLE:
+        ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
+        vx, vy, vz = state[11] + ux, state[12] + uy, state[13] + uz
+        kinetic += 0.5 * p[MASS] * (vx * vx + vy * vy + vz * vz)
+    potential = 0.0
+    if p[GRAVITY] != 0.0:
+        _, _, height = rotate(qx, qy, qz, qw, cx, cy, cz)
+        potential = p[MASS] * p[GRAVITY] * (state[10] + height)
+    out[KINETIC] = kinetic
+    out[POTENTIAL] = potential
+    out[MOMENTUM], out[MOMENTUM + 1], out[MOMENTUM + 2] = rotate(qx, qy, qz, qw, mx, my, mz)
+
+
+@compiled
+def diagnose_many(p, states, out):
+    """Fill out, shape (n, 5), for states of shape (n, 14)."""
+    for k in range(len(states)):
+        diagnose(p, states[k], out[k])
+
+
+@compiled
+def apply_impulse(p, state, force, couple, exchange):
+    """Change a state by an impulse: only the free directions move, the rest is reaction.
+
+    Parameters
+    ----------
+    state : array (14,)
+        Changed in place.
+    force : array (3,)
+        Impulse of force (N s) at the centre of mass, world axes.
+    couple : array (3,)
+        Impulse of torque (N m s), world axes.
+    exchange : array (10,)
+        Filled with the work done (J), the angular impulse about the point of reference (world axes), and the impulse of the reaction:
+        force (N s) and couple (N m s) at the fixed point, at `through` of a hinge, at the contact with the table.
+
+    Returns
+    -------
+    bool
+        False if there is a torque about an axis of zero moment; then nothing is changed.
+    """
+    kind = p[KIND]
+    qx, qy, qz, qw = state[1], state[2], state[3], state[4]
+    fx, fy, fz = rotate_back(qx, qy, qz, qw, force[0], force[1], force[2])
+    tx, ty, tz = rotate_back(qx, qy, qz, qw, couple[0], couple[1], couple[2])
+    rx, ry, rz = 0.0, 0.0, 0.0
+    if kind == PIVOT:
+        rx, ry, rz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
+    elif kind == HINGE:
+        rx, ry, rz = p[CENTER] - p[THROUGH], p[CENTER + 1] - p[THROUGH + 1], p[CENTER + 2] - p[THROUGH + 2]
+    tx, ty, tz = tx + ry * fz - rz * fy, ty + rz * fx - rx * fz, tz + rx * fy - ry * fx
+    if kind == HINGE:
+        nx, ny, nz = p[HINGE_AXIS], p[HINGE_AXIS + 1], p[HINGE_AXIS + 2]
+        free = nx * tx + ny * ty + nz * tz
+        dx, dy, dz = free / p[HINGE_MOMENT] * nx, free / p[HINGE_MOMENT] * ny, free / p[HINGE_MOMENT] * nz
+        gx, gy, gz = free * nx, free * ny, free * nz
+    else:
+        solvable, dx, dy, dz = _rate_of(p, tx, ty, tz)
+        if not solvable:
+            return False
+        gx, gy, gz = tx, ty, tz
+    # centre of mass before and after, relative to the point that the impulse leaves at rest or in the world
+    cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
+    wx, wy, wz = state[5] + 0.5 * dx, state[6] + 0.5 * dy, state[7] + 0.5 * dz    # mean of before and after
+    exchange[WORK] = gx * wx + gy * wy + gz * wz
+    for k in range(6):
+        exchange[REACTION_FORCE + k] = 0.0
+    state[5], state[6], state[7] = state[5] + dx, state[6] + dy, state[7] + dz
+    if kind == FREE or kind == TABLE:
+        jz = force[2] if kind == FREE else 0.0
+        ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
+        half = 0.5 / p[MASS]
+        exchange[WORK] += (force[0] * (state[11] + ux + half * force[0]) + force[1] * (state[12] + uy + half * force[1])
+                           + jz * (state[13] + uz + half * jz))
+        # the origin moves with the centre of mass, less what the change of rotation adds between them
+        ux, uy, uz = rotate(qx, qy, qz, qw, dy * cz - dz * cy, dz * cx - dx * cz, dx * cy - dy * cx)
+        state[11] += force[0] / p[MASS] - ux
+        state[12] += force[1] / p[MASS] - uy
+        state[13] += jz / p[MASS] - uz
+        exchange[REACTION_FORCE + 2] = jz - force[2]
+    else:
+        # the centre of mass gains dw x r: what the impulse does not supply of that comes from the bearing
+        ax, ay, az = rotate(qx, qy, qz, qw, dy * rz - dz * ry, dz * rx - dx * rz, dx * ry - dy * rx)
+        exchange[REACTION_FORCE] = p[MASS] * ax - force[0]
+        exchange[REACTION_FORCE + 1] = p[MASS] * ay - force[1]
+        exchange[REACTION_FORCE + 2] = p[MASS] * az - force[2]
+        if kind == HINGE:
+            _hinge_couple(p, state, dx, dy, dz, tx, ty, tz, rx, ry, rz, exchange)
+            ox, oy, oz = -p[THROUGH], -p[THROUGH + 1], -p[THROUGH + 2]
+            ux, uy, uz = rotate(qx, qy, qz, qw, dy * oz - dz * oy, dz * ox - dx * oz, dx * oy - dy * ox)
+            state[11], state[12], state[13] = state[11] + ux, state[12] + uy, state[13] + uz
+    exchange[ANGULAR_IMPULSE], exchange[ANGULAR_IMPULSE + 1], exchange[ANGULAR_IMPULSE + 2] = rotate(qx, qy, qz, qw, gx, gy, gz)
+    return True
+
+
+@compiled
+def _rate_of(p, mx, my, mz):
+    """Return (True, I^-1 m) in body axes, or False where m has a part along an axis of zero moment."""
+    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
+    along = rotate_back(ax, ay, az, aw, mx, my, mz)
+    slack = 4e-16 * (abs(mx) + abs(my) + abs(mz))
+    solvable = (_turns(p[MOMENTS], along[0], slack) and _turns(p[MOMENTS + 1], along[1], slack)
+                and _turns(p[MOMENTS + 2], along[2], slack))
+    x, y, z = rotate(ax, ay, az, aw, _quotient(along[0], p[MOMENTS]), _quotient(along[1], p[MOMENTS + 1]), _quotient(along[2], p[MOMENTS + 2]))
+    return solvable, x, y, z
+
+
+@compiled
+def _turns(moment, m, slack):
+    """Return whether a momentum m belongs to some rotation about an axis of that moment."""
+    return moment > 0.0 or abs(m) <= slack
+
+
+@compiled
+def _quotient(m, moment):
+    return m / moment if moment > 0.0 else 0.0
+
+
+@compiled
+def _hinge_couple(p, state, dx, dy, dz, tx, ty, tz, rx, ry, rz, exchange):
+    """Fill the impulse of the bearing's couple at `through`: change of the whole angular momentum there less the torque given."""
+    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
+    x, y, z = rotate_back(ax, ay, az, aw, dx, dy, dz)
+    lx, ly, lz = rotate(ax, ay, az, aw, p[MOMENTS] * x, p[MOMENTS + 1] * y, p[MOMENTS + 2] * z)
+    ux, uy, uz = dy * rz - dz * ry, dz * rx - dx * rz, dx * ry - dy * rx
+    lx += p[MASS] * (ry * uz - rz * uy)
+    ly += p[MASS] * (rz * ux - rx * uz)
+    lz += p[MASS] * (rx * uy - ry * ux)
+    cx, cy, cz = rotate(state[1], state[2], state[3], state[4], lx - tx, ly - ty, lz - tz)
+    exchange[REACTION_COUPLE], exchange[REACTION_COUPLE + 1], exchange[REACTION_COUPLE + 2] = cx, cy, cz

@@ -1,0 +1,314 @@
+"""Simulation: a scene in motion, tick by tick or at any times, with commands.
+
+    from rigid_body_sim import Simulation
+    simulation = Simulation('tennis_racket')
+    simulation.advance(1000)
+    print(simulation.state.angular_velocity)
+    print(simulation.states([10.0, 20.0, 5.0]).orientation)
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_body_sim import mechanics
+from rigid_body_sim.choice import choose
+from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, WORK
+from rigid_body_sim.rotations import rotate
+from rigid_body_sim.scenes import Scene, load_scene
+from rigid_body_sim.state import ORIENTATION, STATE_SIZE, State, States
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened: at which tick (the first one at or after it), when (s), what, and its numbers."""
+
+    tick: int
+    time: float
+    name: str
+    values: dict
+
+
+@dataclass(frozen=True)
+class _Span:
+    """A stretch of the motion that one solver covers, from its start to the next impulse, hold or strike.
+
+    `given` is what commands, strikes and effects have exchanged with the body up to the start: work (J), angular impulse about the point of
+    reference (world axes, N m s), dissipated energy (J).
+    """
+
+    time: float
+    solver: object
+    wrench: Wrench
+    strikes: int
+    given: np.ndarray
+
+
+class Simulation:
+    """A scene that runs.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A scene, the name of one that ships, or the path of a .yaml file.
+    integrator : str
+        A method of ``rigid_body_sim.integrators.METHODS``, ``exact`` or ``auto``.
+    accuracy : float
+        Error of the attitude (rad) that is asked for; closed forms give the round-off floor whatever is asked.
+    rate : float
+        Ticks per second, for :meth:`advance`.
+    step : float, optional
+        Fixed step of the method, s, instead of step control.
+
+    Attributes
+    ----------
+    tick : int
+        Ticks so far; it never falls, also across :meth:`reset`.
+    vector : array (14,)
+        The present state; it changes with the next call, so copy what you keep (or take :attr:`state`).
+    events : list of Event
+        What happened so far.
+
+    Raises
+    ------
+    BadInput
+        By name and value, before anything runs.
+    """
+
+    def __init__(self, scene, integrator='auto', accuracy=1e-12, rate=1000.0, step=None):
+        self.scene = scene if isinstance(scene, Scene) else load_scene(scene)
+        if not (math.isfinite(rate) and rate > 0.0):
+            raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
+        self.rate = float(rate)
+        self.choice = choose(self.scene, integrator, accuracy, step)
+        self.tick = 0
+        self.events = []
+        self.vector = np.empty(STATE_SIZE)
+        self._mechanics = mechanics.parameters(self.scene)
+        self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
+        self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
+        self._restart()
+
+    def _restart(self):
+        self._origin = self.tick
+        start = self.scene.initial.vector
+        mechanics.diagnose(self._mechanics, start, self._diagnosis)
+        self._initial = self._diagnosis.copy()
+        self._spans = [_Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
+        self._commands = None
+        self._arrive()
+
+    @property
+    def time(self):
+        """Simulated time since the start or the last reset, s: ticks over rate, never a sum."""
+        return (self.tick - self._origin) / self.rate
+
+    @property
+    def state(self):
+        """The present State."""
+        return State(self.vector.copy())
+
+    def advance(self, ticks=1):
+        """Go on by a number of ticks; events on the way are appended to `events`."""
+        before = self.time
+        self.tick += ticks
+        self._commands = None
+        self._arrive()
+        self._note_events(before)
+
+    def advance_through(self, ticks):
+        """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
+        times = np.arange(self.tick - self._origin + 1, self.tick - self._origin + ticks + 1) / self.rate
+        self._commands = None
+        states = self.states(times)
+        self.advance(ticks)
+        return states
+
+    def diagnose(self, states):
+        """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
+        out = np.empty((len(states), mechanics.DIAGNOSIS_SIZE))
+        mechanics.diagnose_many(self._mechanics, states.vector, out)
+        momentum = out[:, mechanics.MOMENTUM:]
+        squared = momentum[:, 0] * momentum[:, 0] + momentum[:, 1] * momentum[:, 1] + momentum[:, 2] * momentum[:, 2]
+        return out[:, mechanics.KINETIC] + out[:, mechanics.POTENTIAL], squared
+
+    def states(self, times):
+        """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
+
+        Raises
+        ------
+        BadInput
+            A time before the first one kept, or not finite.
+        """
+        times = np.ascontiguousarray(times, dtype=float).reshape(-1)
+        if len(times) and not (np.isfinite(times).all() and times.min() >= self._spans[0].time):
+            raise BadInput('states', f'got times from {times.min()!r} to {times.max()!r} s', f'finite times from {self._spans[0].time!r} s on')
+        spans = self._spans_until(times.max()) if len(times) else []
+        out = np.empty((len(times), STATE_SIZE))
+        if len(spans) == 1:
+            spans[0].solver.states(times, out)
+            return States(out)
+        place = np.searchsorted([span.time for span in spans], times, side='right') - 1
+        for k, span in enumerate(spans):
+            chosen = np.flatnonzero(place == k)
+            part = np.empty((len(chosen), STATE_SIZE))
+            span.solver.states(times[chosen], part)
+            out[chosen] = part
+        return States(out)
+
+    def impulse(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
+        """Strike the body at the present tick: an impulse of force (N s, at the centre of mass) and of torque (N m s).
+
+        Impulses of one tick are added before they act, so opposite ones cancel to the last bit.
+
+        Raises
+        ------
+        BadInput
+            Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
+        """
+        force, torque = self._in_world(force, torque, frame, 'impulse')
+        self._refuse_immovable(force, torque, 'impulse')
+        base, total_force, total_torque, wrench = self._present_commands()
+        self._apply(base, total_force + force, total_torque + torque, wrench)
+
+    def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
+        """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
+
+        The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
+        the axes turn with the body. The same errors as for :meth:`impulse`.
+        """
+        force_world, torque_world = self._in_world(force, torque, frame, 'wrench')
+        self._refuse_immovable(force_world, torque_world, 'wrench')
+        base, force_sum, torque_sum, held = self._present_commands()
+        wrench = Wrench(tuple(map(float, force)), tuple(map(float, torque)), frame, frame)
+        wrench = wrench if any(wrench.force) or any(wrench.torque) else Wrench()
+        if wrench != held:
+            self._apply(base, force_sum, torque_sum, wrench)
+
+    def release(self):
+        """Let go of the held wrench at the present tick."""
+        self.hold()
+
+    @property
+    def wrench(self):
+        """The Wrench that is held now; all zero if none is."""
+        return self._spans[-1].wrench
+
+    def reset(self):
+        """Put the state back to the scene's initial one, without commands; the tick counter goes on."""
+        self._restart()
+        self.events.append(Event(self.tick, self.time, 'reset', {}))
+
+    def forget_past(self):
+        """Drop what is needed for :meth:`states` before the present; a simulation that takes commands for days calls it now and then."""
+        if self._commands is None:
+            self._spans = self._spans_until(self.time)[-1:]
+
+    @property
+    def energy(self):
+        """Kinetic plus potential energy of the present state, J."""
+        return float(self._diagnose()[mechanics.KINETIC] + self._diagnosis[mechanics.POTENTIAL])
+
+    @property
+    def angular_momentum_squared(self):
+        """L . L about the point of reference (mechanics.py), (kg m^2/s)^2."""
+        x, y, z = self._diagnose()[mechanics.MOMENTUM:]
+        return float(x * x + y * y + z * z)
+
+    def ledger(self):
+        """Return the balance of energy (J) and angular momentum since the start or the last reset, as a dict of floats.
+
+        ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|, |potential|, |work|; ``momentum_residual``
+        is |L - L(0) - angular impulse| relative to the largest of the three.
+        """
+        kinetic, potential, *momentum = self._diagnose().tolist()
+        span = self._spans[-1]
+        given = span.given + span.solver.exchanged(self.time)
+        work, dissipated, impulse = given[WORK], given[DISSIPATED], given[ANGULAR_IMPULSE]
+        start = self._initial
+        left = math.fsum((kinetic, potential, dissipated, -start[mechanics.KINETIC], -start[mechanics.POTENTIAL], -work))
+        scale = max(kinetic, abs(potential), abs(work), start[mechanics.KINETIC], abs(start[mechanics.POTENTIAL]))
+        missing = np.linalg.norm(momentum - start[mechanics.MOMENTUM:] - impulse)
+        size = max(np.linalg.norm(momentum), np.linalg.norm(start[mechanics.MOMENTUM:]), np.linalg.norm(impulse))
+        return {'kinetic': kinetic, 'potential': potential, 'dissipated': float(dissipated), 'work': float(work),
+                'energy_residual': left / scale if scale > 0.0 else 0.0,
+                'angular_momentum_squared': self.angular_momentum_squared,
+                'momentum_residual': float(missing / size) if size > 0.0 else 0.0}
+
+    def _diagnose(self):
+        if self._diagnosed_tick != (self.tick, len(self._spans)):
+            mechanics.diagnose(self._mechanics, self.vector, self._diagnosis)
+            self._diagnosed_tick = (self.tick, len(self._spans))
+        return self._diagnosis
+
+    def _arrive(self):
+        """Evaluate the present state."""
+        time = self.time
+        self._spans = self._spans_until(time)
+        self._spans[-1].solver.state(time, self.vector)
+        self._diagnosed_tick = None
+
+    def _spans_until(self, time):
+        """Return the spans up to a time, with the scene's strikes on the way."""
+        spans = self._spans
+        last = spans[-1]
+        while last.strikes < len(self._strikes) and self._strikes[last.strikes].time <= time:
+            strike = self._strikes[last.strikes]
+            at = max(strike.time, last.time)
+            struck = np.empty(STATE_SIZE)
+            last.solver.state(at, struck)
+            force, couple = strike.as_impulse(self.scene.body, struck)
+            last = self._next_span(last, at, force, couple, last.wrench, last.strikes + 1)
+            spans = [*spans, last]
+        return spans
+
+    def _next_span(self, span, time, force, couple, wrench, strikes):
+        """Return the span that begins when an impulse (world axes) and a wrench act at the end of another one."""
+        start = np.empty(STATE_SIZE)
+        span.solver.state(time, start)
+        given = span.given + span.solver.exchanged(time)
+        if force.any() or couple.any():
+            exchange = np.empty(mechanics.EXCHANGE_SIZE)
+            mechanics.apply_impulse(self._mechanics, start, force, couple, exchange)
+            given[WORK] += exchange[mechanics.WORK]
+            given[ANGULAR_IMPULSE] += exchange[mechanics.ANGULAR_IMPULSE:mechanics.ANGULAR_IMPULSE + 3]
+        return _Span(time, self.choice.solver(start, wrench), wrench, strikes, given)
+
+    def _present_commands(self):
+        """Return what the commands of this tick start from: the span before them, and what they add up to so far."""
+        if self._commands is None:
+            nothing = np.zeros(3)
+            self._commands = len(self._spans), nothing, nothing, self._spans[-1].wrench
+        return self._commands
+
+    def _apply(self, base, force, torque, wrench):
+        """Begin a new span at the present tick, or none where the commands of the tick cancel."""
+        spans, before = self._spans, self.wrench
+        kept = spans[:base]
+        if force.any() or torque.any() or wrench != kept[-1].wrench:
+            kept = [*kept, self._next_span(kept[-1], self.time, force, torque, wrench, kept[-1].strikes)]
+        self._spans = kept
+        self._commands = base, force, torque, wrench
+        self._arrive()
+
+    def _refuse_immovable(self, force, torque, what):
+        if not mechanics.apply_impulse(self._mechanics, self.vector.copy(), force, torque, np.empty(mechanics.EXCHANGE_SIZE)):
+            raise BadInput(what, f'torque {torque.tolist()} (world axes) about an axis of zero moment',
+                           'leave that component 0: an axis without moment takes no angular momentum')
+
+    def _in_world(self, force, torque, frame, what):
+        """Return a command's force and torque in world axes, checked."""
+        if not self.scene.accepts_commands:
+            raise BadInput(what, f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
+        force, torque = np.array(force, dtype=float), np.array(torque, dtype=float)
+        if force.shape != (3,) or torque.shape != (3,) or not (np.isfinite(force).all() and np.isfinite(torque).all()):
+            raise BadInput(what, f'got force {force.tolist()}, torque {torque.tolist()}', 'three finite numbers each')
+        if frame not in ('world', 'body'):
+            raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
+        if frame == 'body':
+            q = self.vector[ORIENTATION]
+            force, torque = np.array(rotate(*q, *force)), np.array(rotate(*q, *torque))
+        return force, torque
