@@ -14,10 +14,10 @@ endif
 unexport $(FOREIGN)
 export AMENT_PREFIX_PATH := $(CURDIR)/.venv
 
-PYTHON_VERSIONS = 3.12 3.13 3.11
-COLCON = .venv/bin/colcon --log-base .cache/colcon/log
+PYTHON_VERSIONS = 3.11 3.12 3.13
+COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
-PYTEST = python -m pytest --numprocesses 2 --timeout 120 -m 'not installed'
+PYTEST = python -m pytest --numprocesses 2 --timeout 120 --ignore test/test_installed.py
 
 .PHONY: help run test lint package test-noble pins pins-noble clean
 
@@ -36,7 +36,7 @@ lint: .venv/test.stamp ## ruff
 package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) build --base-paths . $(COLCON_FOLDERS)
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
-	    --pytest-args -m installed --timeout 120
+	    --pytest-args test/test_installed.py --timeout 120
 
 test-noble: .venv-noble/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, without and with numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble .venv-noble/bin/$(PYTEST)
@@ -61,7 +61,8 @@ clean: ## remove the environments and what was built; recordings stay
 	@touch $@
 
 .venv-noble/stamp: requirements/noble.txt requirements/noble-numba.txt requirements/make_venv.sh
-	@requirements/make_venv.sh .venv-noble requirements/noble.txt 3.12
+	@requirements/make_venv.sh .venv-noble requirements/noble.txt 3.12 || \
+	    { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 	@.venv-noble/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --upgrade --target .venv-noble/numba \
 	    -r requirements/noble-numba.txt
 	@touch $@

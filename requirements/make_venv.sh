@@ -49,8 +49,8 @@ if ! right_version "$folder/bin/python"; then
             "$without_venv" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')) or name another one: make PYTHON=/path/to/python"
     fi
     if [ -z "$python" ]; then
-        fail "needs Python $(echo $versions | sed 's/ /, /g; s/\(.*\),/\1 or/'), found ${PYTHON:-python3} = $(
-            "${PYTHON:-python3}" -V 2>&1 | tail -n 1); install one or name it: make PYTHON=/path/to/python"
+        found=$("${PYTHON:-python3}" -V 2>/dev/null) && found="${PYTHON:-python3} = $found" || found="no ${PYTHON:-python3}"
+        fail "needs Python $(echo $versions | sed 's/ /, /g; s/\(.*\),/\1 or/'), found $found; install one or name it: make PYTHON=/path/to/python"
     fi
     "$python" -m venv --clear "$folder"
 fi

@@ -1,0 +1,124 @@
+"""What is installed, and what it needs, agrees with what is written: package.xml, setup.py, requirements/, config/, launch/."""
+
+import ast
+import importlib
+import pathlib
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+import pytest
+import yaml
+
+from rigid_body_sim.commands import COMMANDS
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / 'rigid_body_sim'
+SOURCES = sorted(PACKAGE.rglob('*.py'))
+
+# import name -> key of package.xml; without a key: optional, imported only where it is used and absent without harm
+KEYS = {
+    'yaml': 'python3-yaml', **{name: f'python3-{name}' for name in ('jsonschema', 'matplotlib', 'numpy', 'scipy', 'tqdm')},
+    **{name: name for name in (
+        'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'lifecycle_msgs', 'nav_msgs', 'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
+        'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
+}
+OPTIONAL = {'llvmlite', 'lz4', 'numba', 'zstandard'}
+
+
+def dependencies(tag):
+    """Return the keys under one tag of package.xml."""
+    return {element.text for element in xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot().iter(tag)}
+
+
+def imported(path):
+    """Return the names of the top-level packages that a file imports."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.partition('.')[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            names.add(node.module.partition('.')[0])
+    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'}
+
+
+def test_package_xml_names_what_is_imported_and_nothing_else():
+    used = set().union(*map(imported, SOURCES))
+    assert used <= set(KEYS) | OPTIONAL
+    needed = {KEYS[name] for name in used - OPTIONAL}
+    # ros2 launch runs launch/sim.launch.py
+    assert dependencies('exec_depend') == needed | {'launch', 'launch_ros', 'ros2launch'}
+
+
+def test_requirements_name_what_is_imported():
+    used = set().union(*map(imported, SOURCES))
+    named = (ROOT / 'requirements' / 'run.in').read_text().lower()
+    for name in used - set(KEYS) | {name for name in used if KEYS.get(name, '').startswith('python3-')}:
+        assert re.search(rf'^(py)?{name}==', named, re.MULTILINE) or name == 'llvmlite', name
+
+
+def test_every_folder_is_a_package_that_gets_installed():
+    for folder in {path.parent for path in SOURCES}:
+        assert (folder / '__init__.py').is_file(), folder
+
+
+def test_the_table_of_commands_needs_no_package():
+    code = 'import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.commands import COMMANDS; print(*COMMANDS)'
+    listed = subprocess.run([sys.executable, '-I', '-S', '-c', code, ROOT], capture_output=True, text=True, timeout=30, check=True).stdout
+    assert listed.split() == list(COMMANDS)
+
+
+def test_setup_makes_an_executable_of_every_command(tmp_path):
+    command = [sys.executable, 'setup.py', '-q', 'egg_info', '--egg-base', tmp_path]
+    subprocess.run(command, cwd=ROOT, check=True, timeout=60, capture_output=True)
+    [folder] = tmp_path.glob('*.egg-info')
+    lines = (folder / 'entry_points.txt').read_text().split('\n')
+    assert lines[0] == '[console_scripts]'
+    assert dict(line.split(' = ') for line in lines[1:] if line) == {name: target for name, (target, _) in COMMANDS.items()}
+    version = re.search(r'^Version: (.*)$', (folder / 'PKG-INFO').read_text(), re.MULTILINE).group(1)
+    assert version == xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot().findtext('version')
+
+
+def test_every_command_has_a_function_and_a_line_of_help():
+    for name, (target, about) in COMMANDS.items():
+        module, _, function = target.partition(':')
+        assert callable(getattr(importlib.import_module(module), function)), name
+        assert about and '\n' not in about, name
+
+
+def test_the_parameter_file_shows_every_parameter_with_its_default():
+    parameters = pytest.importorskip('rigid_body_sim.node.parameters', reason='no ROS here')
+    shown = yaml.safe_load((ROOT / 'config' / 'sim_node.yaml').read_text())['/**']['ros__parameters']
+    flat = {}
+    for name, value in shown.items():
+        flat |= {f'{name}.{inner}': part for inner, part in value.items()} if isinstance(value, dict) else {name: value}
+    defaults = {entry.name: list(entry.default) if isinstance(entry.default, tuple) else entry.default for entry in parameters.TABLE}
+    assert flat == defaults
+    assert {name: type(value) for name, value in flat.items()} == {name: type(value) for name, value in defaults.items()}
+
+
+def test_the_launch_file_compiles_and_describes_where_launch_is_installed():
+    path = ROOT / 'launch' / 'sim.launch.py'
+    code = compile(path.read_text(), path, 'exec')
+    pytest.importorskip('launch_ros', reason='launch is not on PyPI: loaded only on a ROS install')
+    names = {}
+    exec(code, names)
+    arguments = [argument.name for argument in names['generate_launch_description']().get_launch_arguments()]
+    assert arguments == ['scene', 'rate', 'params_file']
+
+
+@pytest.mark.parametrize('pins', ['run', 'test', 'noble', 'noble-numba'])
+def test_pins_are_exact_and_hold_what_is_asked_for(pins):
+    folder = ROOT / 'requirements'
+    lines = [line for line in (folder / f'{pins}.txt').read_text().splitlines() if not line.startswith('#')]
+    assert all(re.fullmatch(r'[\w.-]+==[\w.]+', line) for line in lines)
+    asked = folder / f'{pins}.in'
+    for line in asked.read_text().splitlines() if asked.exists() else ():
+        if line and line[0] not in '#-':
+            assert re.sub(r'\[.*\]', '', line) in lines
+
+
+def test_the_test_pins_are_the_run_pins_and_more():
+    run, test = (set((ROOT / 'requirements' / f'{name}.txt').read_text().splitlines()[1:]) for name in ('run', 'test'))
+    assert run < test
