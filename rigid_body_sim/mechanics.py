@@ -127,16 +127,17 @@ def apply_impulse(p, state, force, couple, exchange):
         if not solvable:
             return False
         gx, gy, gz = tx, ty, tz
-    # centre of mass before and after, relative to the point that the impulse leaves at rest or in the world
     cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
-    wx, wy, wz = state[5] + 0.5 * dx, state[6] + 0.5 * dy, state[7] + 0.5 * dz    # mean of before and after
+    ox, oy, oz = state[5], state[6], state[7]
+    # the work of an impulse goes with the mean of the velocities before and after
+    wx, wy, wz = ox + 0.5 * dx, oy + 0.5 * dy, oz + 0.5 * dz
     exchange[WORK] = gx * wx + gy * wy + gz * wz
     for k in range(6):
         exchange[REACTION_FORCE + k] = 0.0
-    state[5], state[6], state[7] = state[5] + dx, state[6] + dy, state[7] + dz
+    state[5], state[6], state[7] = ox + dx, oy + dy, oz + dz
     if kind == FREE or kind == TABLE:
         jz = force[2] if kind == FREE else 0.0
-        ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
+        ux, uy, uz = rotate(qx, qy, qz, qw, oy * cz - oz * cy, oz * cx - ox * cz, ox * cy - oy * cx)
         half = 0.5 / p[MASS]
         exchange[WORK] += (force[0] * (state[11] + ux + half * force[0]) + force[1] * (state[12] + uy + half * force[1])
                            + jz * (state[13] + uz + half * jz))
@@ -154,9 +155,9 @@ def apply_impulse(p, state, force, couple, exchange):
         exchange[REACTION_FORCE + 2] = p[MASS] * az - force[2]
         if kind == HINGE:
             _hinge_couple(p, state, dx, dy, dz, tx, ty, tz, rx, ry, rz, exchange)
-            ox, oy, oz = -p[THROUGH], -p[THROUGH + 1], -p[THROUGH + 2]
-            ux, uy, uz = rotate(qx, qy, qz, qw, dy * oz - dz * oy, dz * ox - dx * oz, dx * oy - dy * ox)
-            state[11], state[12], state[13] = state[11] + ux, state[12] + uy, state[13] + uz
+            hx, hy, hz = p[THROUGH], p[THROUGH + 1], p[THROUGH + 2]
+            ux, uy, uz = rotate(qx, qy, qz, qw, dy * hz - dz * hy, dz * hx - dx * hz, dx * hy - dy * hx)
+            state[11], state[12], state[13] = state[11] - ux, state[12] - uy, state[13] - uz
     exchange[ANGULAR_IMPULSE], exchange[ANGULAR_IMPULSE + 1], exchange[ANGULAR_IMPULSE + 2] = rotate(qx, qy, qz, qw, gx, gy, gz)
     return True
 
