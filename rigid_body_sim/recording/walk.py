@@ -1,0 +1,83 @@
+"""All messages of a chunk at once: where they are and what their heads say, as numpy arrays.
+
+A recording of a simulation repeats the same few messages tick after tick. So records are walked one by one only until a tick (the messages
+between one and the next of the same form) repeats itself; from there on whole runs are compared with it at once.
+"""
+
+import numpy as np
+
+from rigid_body_sim.recording import mcap_format
+
+HEADS = np.dtype(mcap_format.MESSAGE_FIELDS)
+_FORM = 11                      # opcode, length, channel: the bytes of a message that repeat
+_LONGEST_TICK = 64              # messages
+
+
+class Cut(ValueError):
+    """A record that does not end within the bytes there are. `whole`: the offset up to which all is complete; `found`: result of walk until there."""
+
+    def __init__(self, whole, found):
+        super().__init__(f'a record at byte {whole} that is not complete')
+        self.whole, self.found = whole, found
+
+
+def walk(records):
+    """Return (offsets, others) of records end to end: where each message begins, int64, and (opcode, begin, end) of other records' contents.
+
+    Raises Cut where a record makes no sense or does not end within them.
+    """
+    data, size = np.frombuffer(records, np.uint8), len(records)
+    unpack, head_size = mcap_format.HEAD.unpack_from, mcap_format.HEAD.size
+    found, others = [np.empty(0, np.int64)], []
+    forms, begins, position = {}, [], 0
+    while position < size:
+        opcode, length = unpack(records, position) if position + head_size <= size else (0, size)
+        end = position + head_size + length
+        if end > size or opcode == 0 or (opcode == mcap_format.MESSAGE and length < 22):
+            raise Cut(position, (np.concatenate([*found, np.array(begins, np.int64)]), others))
+        if opcode != mcap_format.MESSAGE:
+            others.append((opcode, position + head_size, end))
+            position = end
+            continue
+        form = records[position:position + _FORM]
+        first = forms.get(form)
+        if first is None and len(begins) < _LONGEST_TICK:
+            forms[form] = len(begins)
+            begins.append(position)
+            position = end
+            continue
+        tick = [] if first is None or others and others[-1][1] > begins[first] else begins[first:]
+        found.append(np.array(begins[:len(begins) - len(tick)], np.int64))
+        period = position - tick[0] if tick else 0
+        if tick and all(records[at:at + _FORM] == records[at + k * period:at + k * period + _FORM] for at in tick for k in (1, 2)):
+            run = _run(data, np.array(tick), period)
+            found.append(run.ravel())
+            position = tick[0] + len(run) * period
+        else:
+            found.append(np.array(tick, np.int64))
+        forms, begins = {}, []
+    return np.concatenate([*found, np.array(begins, np.int64)]), others
+
+
+def _run(data, tick, period):
+    """Return the offsets of all messages that repeat a tick's forms each `period` bytes, itself included: shape (ticks, messages)."""
+    columns = (tick - tick[0])[:, None] + np.arange(_FORM)
+    form = data[tick[0] + columns]
+    longest = (len(data) - int(tick[0])) // period
+    done, block = 0, 4
+    while done < longest:
+        begin, count = int(tick[0]) + done * period, min(block, longest - done)
+        rows = data[begin:begin + count * period].reshape(count, period)
+        same = (rows[:, columns] == form).all(axis=(1, 2))
+        if not same.all():
+            done += int(same.argmin())
+            break
+        done += count
+        block *= 2
+    return tick + period * np.arange(done)[:, None]
+
+
+def heads(records, offsets):
+    """Return the heads of messages as a structured array (dtype HEADS, without padding)."""
+    data = np.frombuffer(records, np.uint8)
+    return data[offsets[:, None] + np.arange(HEADS.itemsize)].view(HEADS)[:, 0]
