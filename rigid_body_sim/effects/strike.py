@@ -6,10 +6,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigid_body_sim.effects.impulse import struck
 from rigid_body_sim.effects.views import as_floats
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.rotations import rotate
 from rigid_body_sim.state import ORIENTATION
 
 VECTOR = {'type': 'array', 'items': {'type': 'number'}, 'minItems': 3, 'maxItems': 3}
@@ -52,17 +51,16 @@ class Strike:
         point = as_floats(mapping['point']) if 'point' in mapping else None
         return cls(impulse, point, height, float(mapping.get('time', 0.0)), frame)
 
-    @property
-    def breakpoints(self):
-        """The time of the blow, s."""
-        return (self.time,)
-
-    def apply(self, scene, vector):
-        """View `kick`: return the state just after the blow."""
+    def as_impulse(self, body, vector):
+        """Return the impulse of force (N s) at the centre of mass and of torque (N m s), both shape (3,) in world axes, for a state."""
         q = vector[ORIENTATION]
-        impulse = rotate(*q, *self.impulse) if self.frame == 'body' else self.impulse
-        point = self.point
+        force = np.array(rotate(*q, *self.impulse) if self.frame == 'body' else self.impulse)
         if self.height:
-            behind = math.sqrt(scene.body.radius * scene.body.radius - self.height * self.height) / np.linalg.norm(impulse)
-            point = rotate_back(*q, -behind * impulse[0], -behind * impulse[1], self.height)
-        return struck(scene, vector, impulse, (0.0, 0.0, 0.0), point)
+            size = np.linalg.norm(force)
+            behind = math.sqrt(body.radius * body.radius - self.height * self.height) / size if size > 0.0 else 0.0
+            lever = np.array([-behind * force[0], -behind * force[1], self.height])
+        elif self.point is None:
+            return force, np.zeros(3)
+        else:
+            lever = np.array(rotate(*q, *np.subtract(self.point, body.center_of_mass)))
+        return force, np.cross(lever, force)

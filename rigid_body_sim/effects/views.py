@@ -8,14 +8,14 @@ SCHEMA           JSON schema of its mapping there
 constraints      the constraints under which it may act
 repeatable       True if a scene may list it more than once
 from_scene       (mapping, body, constraint, where) -> effect; raises BadInput
-breakpoints      times (s) at which it jumps: a step ends there
+breakpoints      times (s) at which its values jump: a step ends there
 ================ ==================================================================================================================
 
 and the methods for views. One that an effect lacks is simply not defined; a method that needs it then cannot run the scene and says so.
 
 ================ ==================================================================================================================
 acting           (frame, time) -> tuple of Acting: the continuous right-hand side that holds just after `time` (view `rate`)
-apply            (scene, vector) -> vector: the jump at `time` (view `kick`)
+as_impulse       (body, vector) -> impulses of force and torque at its `time` (view `kick`)
 flow             (frame) -> Flow: what the effect does alone over a time h (view `flow`, for compositions)
 ================ ==================================================================================================================
 

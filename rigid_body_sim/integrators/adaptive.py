@@ -1,0 +1,81 @@
+"""Template: march with a Runge-Kutta method that chooses its own steps.
+
+A node is one point of the march: [time, next step, squared scales (3), unknowns, what their sums lost]. A step is accepted when its
+estimated error per second is below the tolerance, so that errors add up in proportion to time and not to the number of steps.
+"""
+
+import math
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.specialise import UNBOUND
+
+rate = UNBOUND
+settled = UNBOUND
+step = UNBOUND
+trial = UNBOUND
+load = UNBOUND
+put = UNBOUND
+load_scales = UNBOUND
+put_scales = UNBOUND
+SIZE = UNBOUND
+ORDER = UNBOUND
+
+TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
+SMALLEST = 2.0 ** -50    # of the time since 0: a step below that does not move the clock
+
+
+@compiled
+def march(p, control, node, following, target, end, limit):
+    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+
+    Parameters
+    ----------
+    control : array
+        [tolerance per second].
+    node, following : array
+        The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed.
+    end : float
+        The last node stands there exactly.
+    """
+    tolerance = control[0]
+    moved = 0
+    if following[TIME] > node[TIME]:
+        if target < following[TIME]:
+            return 0, True
+        node[:] = following
+        moved = 1
+    t, planned = node[TIME], node[STEP]
+    scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
+    good = True
+    while t < end:
+        k0 = rate(p, y)
+        h = planned
+        while True:
+            t1 = end if t + 1.1 * h >= end else t + h
+            y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
+            allowed = tolerance * (t1 - t)
+            if error <= 1e-9 * allowed:
+                factor = 10.0
+            elif error < math.inf:
+                factor = min(10.0, max(0.1, 0.9 * math.pow(allowed / error, 1.0 / (ORDER - 1))))
+            else:    # also not a number
+                factor = 0.1
+            h = (t1 - t) * factor
+            if error <= allowed:
+                break
+            if not h > SMALLEST * (abs(t) + h):
+                good = False
+                break
+        if not good or target < t1 or moved == limit:
+            following[TIME], following[STEP] = t1, h
+            put_scales(scales1, following, SCALES)
+            put(y1, following, VALUES)
+            put(settled(y1, c1), following, VALUES + SIZE)
+            break
+        t, planned, y, c, scales = t1, h, y1, settled(y1, c1), scales1
+        moved += 1
+    node[TIME], node[STEP] = t, planned
+    put_scales(scales, node, SCALES)
+    put(y, node, VALUES)
+    put(c, node, VALUES + SIZE)
+    return moved, good

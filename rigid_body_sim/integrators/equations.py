@@ -1,0 +1,172 @@
+"""The equations of motion of one scene: a template of this folder bound to the sums of what acts, and its numbers.
+
+What the scene does not list is not in the code.
+"""
+
+import numpy as np
+
+from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.exchange import EXCHANGE_SIZE
+from rigid_body_sim.integrators import euler, flying, hinged, turning
+from rigid_body_sim.mechanics import moment_about_hinge
+from rigid_body_sim.rotations import multiply, rotate
+from rigid_body_sim.specialise import specialise
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY
+
+STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
+
+
+class Equations:
+    """The equations of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    wrench : effects.wrench.Wrench, optional
+        Held command.
+    books : bool
+        Add the quadratures of the ledger: work of torques, forces and commands, heat, angular impulse about the point of reference (world
+        axes).
+
+    Attributes
+    ----------
+    kind : module
+        turning, flying or hinged: which unknowns there are.
+    kernels : module
+        `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``write(p, time, y, out)``.
+    breakpoints : tuple of floats
+        Times (s) at which the parameters jump.
+    acts : bool
+        Whether anything exchanges energy or angular momentum with the body.
+    """
+
+    def __init__(self, scene, wrench=None, books=False):
+        self.frame = Frame.of(scene.body, scene.constraint)
+        self._axis = scene.constraint.axis
+        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')] + ([wrench] if wrench else [])
+        self.breakpoints = tuple(sorted({time for actor in self._actors for time in getattr(actor, 'breakpoints', ())}))
+        acting = self._acting(-np.inf)
+        self.acts = bool(acting)
+        self.extra = EXCHANGE_SIZE if books else 0
+        if self.frame.kind == 'hinge':
+            self.kind, self._moment = hinged, moment_about_hinge(scene.body, scene.constraint)
+            if not self._moment > 0.0:
+                raise BadInput(f'{scene.name}: constraint.hinge', 'the moment of inertia about the axis is zero', 'move the axis')
+        else:
+            self.kind = flying if any(one.gives == 'force' for one in acting) else turning
+        calls = list(_calls(acting, hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED))
+        sources = {'booked': _booked(calls if books else None)}
+        if self.kind is hinged:
+            sources['torque'] = _torque(calls)
+        else:
+            sources |= {'omega_rate': _omega_rate(calls), 'axes_rate': _axes_rate(calls)}
+        if self.kind is flying:
+            sources['force'] = _force(calls)
+        self.kernels = specialise(self.kind, **sources)
+
+    def _acting(self, time):
+        return [one for actor in self._actors for one in actor.acting(self.frame, time)]
+
+    def start(self, vector):
+        """Return (fixed parameters, unknowns) of a start, a state vector (14)."""
+        frame, q, omega = self.frame, tuple(vector[ORIENTATION].tolist()), tuple(vector[ANGULAR_VELOCITY].tolist())
+        q_frame, omega_frame = multiply(*q, *frame.axes), frame.from_body(omega)
+        point = np.array(rotate(*q, *frame.point))
+        place = vector[POSITION] + point
+        drift = vector[VELOCITY] + rotate(*q, *np.cross(omega, frame.point))
+        fixed = np.zeros(euler.FIXED)
+        fixed[euler.AXES:euler.AXES + 4], fixed[euler.POINT:euler.POINT + 3] = frame.axes, frame.from_body(frame.point)
+        fixed[euler.START], fixed[euler.PLACE:euler.PLACE + 3], fixed[euler.MASS] = vector[TIME], place, frame.mass
+        if self.kind is hinged:
+            fixed[euler.INVERSE] = 1.0 / self._moment
+            return (*fixed, *self._axis, *q), (0.0, float(np.dot(self._axis, omega)))
+        moments = np.array(frame.moments)
+        heavy = moments > 0.0
+        fixed[euler.MOMENTS:euler.MOMENTS + 3] = moments
+        fixed[euler.INVERSE:euler.INVERSE + 3] = inverse = np.divide(1.0, moments, out=np.zeros(3), where=heavy)
+        differences = np.roll(moments, -1) - np.roll(moments, -2)
+        fixed[euler.EULER:euler.EULER + 3] = np.divide(differences, moments, out=np.zeros(3), where=inverse > 0.0)
+        omega_frame = tuple(float(w) if heavy[k] else 0.0 for k, w in enumerate(omega_frame))
+        if self.kind is flying:
+            return tuple(fixed), (*q_frame, *omega_frame, *place.tolist(), *drift.tolist())
+        fixed[euler.DRIFT:euler.DRIFT + 3] = drift if frame.kind == 'free' else 0.0
+        return tuple(fixed), (*q_frame, *omega_frame)
+
+    def parameters(self, fixed, time):
+        """Return the parameters that hold just after a time: the fixed ones of a start, then the values of all that acts."""
+        return np.array([*fixed, *(value for one in self._acting(time) for value in one.values)])
+
+
+class _Call:
+    """One thing that acts, as text: the line that calls its kernel, and the names of its three components."""
+
+    def __init__(self, acting, number, at):
+        module, _, self.function = acting.kernel.partition(':')
+        self.gives, self.books = acting.gives, acting.books
+        self.name = f'{self.function}_{module.rpartition(".")[2]}'
+        self.imported = f'from {module} import {self.function} as {self.name}'
+        values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
+        self.x, self.y, self.z = (f'{self.gives}{number}_{axis}' for axis in 'xyz')
+        self.lines = [f'    {self.x}, {self.y}, {self.z} = {self.name}({values}{STATE})']
+        if self.gives == 'turning':    # what keeps L = R m: the torque m x u
+            m = euler.MOMENTS
+            turns = self.x, self.y, self.z
+            self.x, self.y, self.z = (f'inner{number}_{axis}' for axis in 'xyz')
+            self.lines += [f'    m1, m2, m3 = p[{m}] * wx, p[{m + 1}] * wy, p[{m + 2}] * wz', f'    ux, uy, uz = {", ".join(turns)}',
+                           f'    {self.x}, {self.y}, {self.z} = m2 * uz - m3 * uy, m3 * ux - m1 * uz, m1 * uy - m2 * ux']
+
+
+def _calls(acting, at):
+    for number, one in enumerate(acting):
+        yield _Call(one, number, at)
+        at += len(one.values)
+
+
+def _kernel(name, calls, results):
+    """Return the source of a kernel that makes the calls and returns the results (expressions)."""
+    return '\n'.join([*sorted({call.imported for call in calls}), '', '', '@compiled', f'def {name}(p, {STATE}):',
+                      *(line for call in calls for line in call.lines), f'    return ({"".join(f"{result}, " for result in results)})', ''])
+
+
+def _sums(calls):
+    return [' + '.join(getattr(call, axis) for call in calls) or '0.0' for axis in 'xyz']
+
+
+def _torque(calls):
+    calls = [call for call in calls if call.gives != 'force']
+    return _kernel('torque', calls, _sums(calls))
+
+
+def _force(calls):
+    calls = [call for call in calls if call.gives == 'force']
+    return _kernel('force', calls, _sums(calls))
+
+
+def _omega_rate(calls):
+    """Euler's terms, with the torques' where there are any."""
+    calls = [call for call in calls if call.gives != 'force']
+    terms = [f'p[{euler.EULER + k}] * ({product})' for k, product in enumerate(('wy * wz', 'wz * wx', 'wx * wy'))]
+    if calls:
+        terms = [f'{term} + p[{euler.INVERSE + k}] * ({total})' for k, (term, total) in enumerate(zip(terms, _sums(calls), strict=True))]
+    return _kernel('omega_rate', calls, terms)
+
+
+def _axes_rate(calls):
+    """omega, with the extra turning rate of internal dissipation where there is one."""
+    calls = [call for call in calls if call.gives == 'turning']
+    return _kernel('axes_rate', calls, ('wx + ux', 'wy + uy', 'wz + uz') if calls else ('wx', 'wy', 'wz'))
+
+
+def _booked(calls):
+    """Power of what does work, minus the power of what makes heat, torque in world axes; nothing if the books are not kept."""
+    if calls is None:
+        return _kernel('booked', [], ())
+    power = {'work': [], 'heat': [], 'potential': []}
+    for call in calls:
+        velocity = ('vx', 'vy', 'vz') if call.gives == 'force' else ('wx', 'wy', 'wz')
+        power[call.books].append(' + '.join(f'{component} * {rate}' for component, rate in zip((call.x, call.y, call.z), velocity,
+        strict=True)))
+    torques = [call for call in calls if call.gives == 'torque']
+    return _kernel('booked', calls, (' + '.join(power['work']) or '0.0', f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0',
+                                     f'*rotate(qx, qy, qz, qw, {", ".join(_sums(torques))})'))

@@ -1,0 +1,48 @@
+"""Euler's equations in the frame of a scene (rigid_body_sim/effects/views.py), and the way from that frame to a state vector.
+
+Layout of the first parameters of every scene kind; the values of all that acts stand behind them.
+"""
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.rotations import multiply, normalised, rotate
+
+EULER, INVERSE, MOMENTS = 0, 3, 6          # (I2 - I3)/I1 ..., 1/I1 ..., I1 ...; the first two are 0 where the moment is 0
+AXES, POINT = 9, 13                        # quaternion, frame -> body; body origin -> point of reference, frame components
+START, PLACE, DRIFT = 16, 17, 20           # time, position and velocity of the point of reference at the start (world)
+MASS = 23
+FIXED = 24
+
+
+@compiled
+def euler(p, wx, wy, wz):
+    """Return omega' of a body left alone: ((I2 - I3)/I1) omega2 omega3 and so on in turn (notes, "Euler's equations")."""
+    return p[EULER] * (wy * wz), p[EULER + 1] * (wz * wx), p[EULER + 2] * (wx * wy)
+
+
+@compiled
+def attitude_rate(qx, qy, qz, qw, wx, wy, wz):
+    """Return q' = q omega / 2."""
+    hx, hy, hz = 0.5 * wx, 0.5 * wy, 0.5 * wz
+    return ((qw * hx + (qy * hz - qz * hy)), (qw * hy + (qz * hx - qx * hz)), (qw * hz + (qx * hy - qy * hx)),
+            -(qx * hx + (qy * hy + qz * hz)))
+
+
+@compiled
+def lost_norm(qx, qy, qz, qw):
+    """Return (1 - |q|^2)/2, what q must be stretched by to have norm 1 again, to second order."""
+    return 0.5 * ((1.0 - qw * qw - qz * qz) - qx * qx - qy * qy)
+
+
+@compiled
+def write_state(p, time, qx, qy, qz, qw, wx, wy, wz, x, y, z, vx, vy, vz, out):
+    """Fill out, the state vector, from q and omega of the frame and from position and velocity of the point of reference (world)."""
+    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
+    px, py, pz = p[POINT], p[POINT + 1], p[POINT + 2]
+    qx, qy, qz, qw = normalised(qx, qy, qz, qw)
+    out[0] = time
+    out[1], out[2], out[3], out[4] = multiply(qx, qy, qz, qw, -ax, -ay, -az, aw)
+    out[5], out[6], out[7] = rotate(ax, ay, az, aw, wx, wy, wz)
+    ux, uy, uz = rotate(qx, qy, qz, qw, px, py, pz)
+    out[8], out[9], out[10] = x - ux, y - uy, z - uz
+    ux, uy, uz = rotate(qx, qy, qz, qw, wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px)
+    out[11], out[12], out[13] = vx - ux, vy - uy, vz - uz

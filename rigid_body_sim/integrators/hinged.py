@@ -1,0 +1,53 @@
+"""Template: the equations of a body on a hinge: the angle phi (rad) since the start about the axis n (frame components), and phi'.
+
+    I phi'' = n . Gamma,    q = q0 (n sin(phi/2), cos(phi/2)),    omega = phi' n
+
+I is the moment about the axis, Gamma the torque about the hinge point; the rest of Gamma is the bearing's.
+"""
+
+import math
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.euler import FIXED, INVERSE, PLACE, write_state
+from rigid_body_sim.rotations import multiply, rotate  # noqa: F401 - rotate is for the bound sums
+from rigid_body_sim.specialise import UNBOUND
+
+torque = UNBOUND
+booked = UNBOUND
+
+UNKNOWNS = 2
+GROUPS = ((0, 1, True), (1, 2, False))
+AXIS, ATTITUDE = FIXED, FIXED + 3    # n; q0
+
+
+@compiled
+def attitude(p, phi):
+    """Return q at an angle."""
+    s, c = math.sin(0.5 * phi), math.cos(0.5 * phi)
+    return multiply(p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3], s * p[AXIS], s * p[AXIS + 1], s * p[AXIS + 2], c)
+
+
+@compiled
+def rate(p, y):
+    """Return the rates of the unknowns, then of the books."""
+    phi, speed = y[0], y[1]
+    nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
+    qx, qy, qz, qw = attitude(p, phi)
+    tx, ty, tz = torque(p, qx, qy, qz, qw, speed * nx, speed * ny, speed * nz, 0.0, 0.0, 0.0)
+    return (speed, p[INVERSE] * (nx * tx + ny * ty + nz * tz),
+            *booked(p, qx, qy, qz, qw, speed * nx, speed * ny, speed * nz, 0.0, 0.0, 0.0))
+
+
+@compiled
+def settled(y, c):
+    """Return c as it is: these unknowns keep no condition."""
+    return c
+
+
+@compiled
+def write(p, time, y, out):
+    """Fill out, the state vector."""
+    phi, speed = y[0], y[1]
+    qx, qy, qz, qw = attitude(p, phi)
+    write_state(p, time, qx, qy, qz, qw, speed * p[AXIS], speed * p[AXIS + 1], speed * p[AXIS + 2], p[PLACE], p[PLACE + 1], p[PLACE + 2],
+                0.0, 0.0, 0.0, out)

@@ -1,0 +1,175 @@
+"""Stepped: a scene followed step by step, as a solver.
+
+    solver = Stepped(scene, method='dop8', accuracy=1e-12, wrench=Wrench(torque=(0.0, 0.0, 0.1))).start(vector)
+    solver.state(time, out)        # out (14,)
+    solver.states(times, out)      # out (n, 14), any order of times, none before the start
+    solver.exchanged(time)         # array (5,), rigid_body_sim/exchange.py: work, heat, angular impulse since the start
+
+Give `accuracy` (step control) or `step` (fixed steps). A state does not depend on which other times were asked. Strikes of the scene are
+the business of rigid_body_sim/simulation.py, which starts a solver anew after each.
+"""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.exchange import EXCHANGE_SIZE
+from rigid_body_sim.integrators import METHODS, adaptive, fixed, track, unroll
+from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.specialise import specialise
+from rigid_body_sim.state import STATE_SIZE, TIME
+
+CHECKPOINTS = 1024
+NODE_HEAD = adaptive.VALUES
+FINEST = 1e-15          # accuracy below this is not in the doubles
+
+
+class Stepped:
+    """Solve a scene by a one-step method.
+
+    Parameters
+    ----------
+    scene : Scene
+    method : str
+        A name of ``rigid_body_sim.integrators.METHODS``.
+    accuracy : float, optional
+        Error of the attitude (rad), and of omega relative to its largest size, that may build up in `horizon`, where the motion itself
+        does not magnify it. Not both with `step`.
+    step : float, optional
+        Fixed step, s.
+    wrench : effects.wrench.Wrench, optional
+        Held all the time.
+    horizon : float
+        s.
+
+    Raises
+    ------
+    BadInput
+        By name and value, before anything runs.
+    """
+
+    def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0):
+        if (accuracy is None) == (step is None):
+            raise BadInput('method', f'got accuracy {accuracy!r} and step {step!r}', 'give one of them')
+        if step is not None and not (math.isfinite(step) and step > 0.0):
+            raise BadInput('step', f'got {step!r}', 'seconds, a positive number')
+        if accuracy is not None and not (math.isfinite(accuracy) and accuracy >= FINEST):
+            raise BadInput('accuracy', f'got {accuracy!r}', f'at least {FINEST!r}, what doubles carry')
+        self.scene, self.method, self.wrench = scene, METHODS[method], wrench
+        self.accuracy, self.step, self.horizon = accuracy, step, horizon
+        self._plain = _Bound(scene, self.method, wrench, step is None, books=False)
+        self._with_books = None
+
+    def start(self, vector):
+        """Return a solver from a state vector (14 doubles, its time included)."""
+        started = object.__new__(Stepped)
+        started.__dict__.update(self.__dict__)
+        started.__dict__['_vector'] = np.array(vector, dtype=float)
+        started._course, started._booked_course = _Course(started, self._plain), None
+        return started
+
+    def state(self, time, out):
+        """Fill out, shape (14,), with the state at a time (s)."""
+        self._course.states(np.array([time]), out[np.newaxis])
+
+    def states(self, times, out):
+        """Fill out, shape (n, 14), with the states at n times (s)."""
+        self._course.states(np.asarray(times, dtype=float), out)
+
+    def exchanged(self, time):
+        """Return what commands and effects exchanged with the body from the start to a time, shape (5,)."""
+        if not self._plain.equations.acts:
+            return np.zeros(EXCHANGE_SIZE)
+        if self._booked_course is None:
+            if self._with_books is None:
+                self._with_books = _Bound(self.scene, self.method, self.wrench, self.step is None, books=True)
+            self._booked_course = _Course(self, self._with_books)
+        row = np.empty((1, STATE_SIZE + EXCHANGE_SIZE))
+        self._booked_course.states(np.array([time]), row)
+        return row[0, STATE_SIZE:]
+
+
+class _Bound:
+    """The kernels of one method on the equations of one scene kind."""
+
+    def __init__(self, scene, method, wrench, adapts, books):
+        self.equations = equations = Equations(scene, wrench, books)
+        n, extra = equations.kind.UNKNOWNS, EXCHANGE_SIZE if books else 0
+        groups = equations.kind.GROUPS
+        kernels = equations.kernels.__name__
+        march = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled', 'SIZE': f'SIZE = {n + extra}\n',
+                 'step': unroll.step_source(method, n, extra),
+                 'load': unroll.load_source('load', n + extra), 'put': unroll.put_source('put', n + extra)}
+        if adapts:
+            relative = sum(not absolute for _, _, absolute in groups)
+            march |= {'trial': unroll.trial_source(method, n, extra, groups), 'ORDER': f'ORDER = {method.ORDER}\n',
+                      'load_scales': unroll.load_source('load_scales', relative), 'put_scales': unroll.put_source('put_scales', relative)}
+        self.march = specialise(adaptive if adapts else fixed, **march)
+        shared = {name: f'{self.march.__name__}:{name}' for name in ('march', 'rate', 'step', 'load', 'SIZE')}
+        self.track = specialise(track, write=f'{kernels}:write', **shared)
+
+
+class _Course:
+    """One march from a start: a piece for each stretch between breakpoints, made when it is reached."""
+
+    def __init__(self, stepped, bound):
+        self._stepped, self._bound = stepped, bound
+        equations = bound.equations
+        self._fixed, y = equations.start(stepped._vector)
+        self._size = len(y) + equations.extra
+        values = np.zeros(NODE_HEAD + 2 * self._size)
+        values[NODE_HEAD:NODE_HEAD + len(y)] = y
+        self._begin = float(stepped._vector[TIME])
+        self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
+        self._pieces = [self._piece(self._begin, values)]
+
+    def _piece(self, begin, values):
+        stepped, equations = self._stepped, self._bound.equations
+        p = equations.parameters(self._fixed, begin)
+        node = values.copy()
+        node[adaptive.TIME] = begin
+        if stepped.step is not None:
+            control = np.array([stepped.step, begin])
+            node[fixed.COUNT] = 0.0
+        else:
+            control = np.array([stepped.accuracy / stepped.horizon])
+            node[adaptive.STEP] = self._first_step(p, node, control[0])
+        return p, control, node, node.copy(), np.array([node]).repeat(CHECKPOINTS, axis=0), np.array([1, 1, 0])
+
+    def _first_step(self, p, node, tolerance):
+        """Return a step that is not too long by much; the control mends it."""
+        y = node[NODE_HEAD:NODE_HEAD + self._size]
+        rates = np.array(self._bound.equations.kernels.rate(p, tuple(y.tolist())))
+        fastest = 0.0
+        for first, last, absolute in self._bound.equations.kind.GROUPS:
+            size, change = np.linalg.norm(y[first:last]), np.linalg.norm(rates[first:last])
+            scale = 1.0 if absolute else size
+            fastest = max(fastest, change / scale if scale > 0.0 else 0.0)
+        return (0.1 if fastest == 0.0 else 1.0 / fastest) * math.pow(tolerance, 1.0 / self._stepped.method.ORDER)
+
+    def states(self, times, out):
+        """Fill out with the states at times."""
+        if len(times) == 0:
+            return
+        order = np.argsort(times, kind='stable')
+        first, last = times[order[0]], times[order[-1]]
+        if not (first >= self._begin and math.isfinite(last)):
+            raise BadInput('time', f'asked from {first!r} to {last!r} s', f'finite times from the start, {self._begin!r} s, on')
+        done, k = 0, 0
+        while done < len(order):
+            end = self._ends[k]
+            until = len(order) if end == math.inf else int(np.searchsorted(times[order], end, side='left'))
+            piece = self._pieces[k]
+            filled = done + self._bound.track.states(*piece, times, order[done:until], end, out)
+            self._check(filled == until, piece)
+            done, k = until, k + 1
+            if done < len(order) and k == len(self._pieces):
+                self._check(self._bound.track.follow(*piece, end, end), piece)
+                self._pieces.append(self._piece(end, piece[2]))
+
+    def _check(self, good, piece):
+        if not good:
+            method, scene = self._stepped.method.NAME, self._stepped.scene.name
+            raise NotConverged(f'{method} on {scene}: at t = {piece[2][adaptive.TIME]!r} s the state is no longer finite, '
+                               'or the step fell below what the clock resolves')

@@ -1,0 +1,69 @@
+"""Template: states at any times along a march, with checkpoints.
+
+The nodes of a march depend on its start only. Every `stride`-th node is kept; when the store is full, every other one is dropped and the
+stride doubles, so an earlier time costs a restart from the checkpoint before it. A state between two nodes is one step of the method from
+the earlier one: it is as accurate as the nodes, continuous, and does not depend on which times were asked.
+"""
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.specialise import UNBOUND
+
+march = UNBOUND
+rate = UNBOUND
+step = UNBOUND
+write = UNBOUND
+load = UNBOUND
+SIZE = UNBOUND
+
+TIME, VALUES = 0, 5
+STORED, STRIDE, COUNT = 0, 1, 2     # layout of `counts`
+
+
+@compiled
+def follow(p, control, node, following, store, counts, target, end):
+    """Bring `node` to the last node not later than `target`; return whether it went well."""
+    if target < node[TIME]:
+        low, high = 0, counts[STORED] - 1
+        while low < high:
+            middle = (low + high + 1) // 2
+            if store[middle, TIME] <= target:
+                low = middle
+            else:
+                high = middle - 1
+        node[:] = store[low]
+        following[TIME] = node[TIME]
+        counts[COUNT] = low * counts[STRIDE]
+    while True:
+        until_checkpoint = counts[STRIDE] - counts[COUNT] % counts[STRIDE]
+        moved, good = march(p, control, node, following, target, end, until_checkpoint)
+        counts[COUNT] += moved
+        if not good:
+            return False
+        if moved < until_checkpoint:
+            return True
+        if counts[COUNT] == counts[STORED] * counts[STRIDE]:
+            if counts[STORED] == len(store):
+                half = len(store) // 2
+                for k in range(half):
+                    store[k] = store[2 * k]
+                counts[STORED], counts[STRIDE] = half, 2 * counts[STRIDE]
+            if counts[COUNT] == counts[STORED] * counts[STRIDE]:
+                store[counts[STORED]] = node
+                counts[STORED] += 1
+
+
+@compiled
+def states(p, control, node, following, store, counts, times, order, end, out):
+    """Fill row order[i] of out with the state at times[order[i]], times rising in that order; return how many rows were filled."""
+    for i in range(len(order)):
+        k = order[i]
+        if not follow(p, control, node, following, store, counts, times[k], end):
+            return i
+        dt = times[k] - node[TIME]
+        y = load(node, VALUES)
+        if dt > 0.0:
+            y, _ = step(p, y, load(node, VALUES + SIZE), rate(p, y), dt)
+        write(p, times[k], y, out[k])
+        for book in range(14, out.shape[1]):
+            out[k, book] = y[SIZE - out.shape[1] + book]
+    return len(order)

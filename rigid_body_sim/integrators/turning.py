@@ -1,0 +1,43 @@
+"""Template: the equations of a pivoted body, or of a free one on which no force acts: q (4) and omega (3) of the frame.
+
+    q' = q (omega + u)/2,    omega1' = ((I2 - I3)/I1) omega2 omega3 + (Gamma + m x u)_1/I1 and so on in turn,  m = I omega
+
+Gamma is the torque about the point of reference, u the extra turning rate of internal dissipation. The coefficients of Euler's terms are
+between -1 and 1 for every body, needles included. The point of reference moves in a straight line.
+"""
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.euler import DRIFT, PLACE, START, attitude_rate, lost_norm, write_state
+from rigid_body_sim.rotations import rotate  # noqa: F401 - for the bound sums
+from rigid_body_sim.specialise import UNBOUND
+
+omega_rate = UNBOUND
+axes_rate = UNBOUND
+booked = UNBOUND
+
+UNKNOWNS = 7
+GROUPS = ((0, 4, True), (4, 7, False))
+
+
+@compiled
+def rate(p, y):
+    """Return the rates of the unknowns, then of the books."""
+    qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
+    ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0)
+    return (*attitude_rate(qx, qy, qz, qw, ax, ay, az), *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
+            *booked(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0))
+
+
+@compiled
+def settled(y, c):
+    """Return c (what the sums have lost) with what brings q back to norm 1."""
+    lost = lost_norm(y[0], y[1], y[2], y[3])
+    return (c[0] + lost * y[0], c[1] + lost * y[1], c[2] + lost * y[2], c[3] + lost * y[3], *c[4:])
+
+
+@compiled
+def write(p, time, y, out):
+    """Fill out, the state vector."""
+    dt = time - p[START]
+    write_state(p, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], p[PLACE] + dt * p[DRIFT], p[PLACE + 1] + dt * p[DRIFT + 1],
+                p[PLACE + 2] + dt * p[DRIFT + 2], p[DRIFT], p[DRIFT + 1], p[DRIFT + 2], out)
