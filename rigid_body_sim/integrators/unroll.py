@@ -28,8 +28,10 @@ def trial_source(method, n, extra, groups):
         Slices of the unknowns. The scale of an absolute group is 1; of the others the largest norm met so far, `scales` holds their
         squares.
     """
-    lines = ['@compiled', 'def trial(p, y, c, k0, h, scales):', *_stages(method, n), *_increment(method, n + extra), '    fifth = third =
-    0.0'] squares = [] for first, last, absolute in groups:
+    lines = ['@compiled', 'def trial(p, y, c, k0, h, scales):', *_stages(method, n), *_increment(method, n + extra),
+             '    fifth = third = 0.0']
+    squares = []
+    for first, last, absolute in groups:
         members = range(first, last)
         if absolute:
             weight = ''
