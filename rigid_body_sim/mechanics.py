@@ -135,7 +135,7 @@ def apply_impulse(p, state, force, couple, exchange):
     for k in range(6):
         exchange[REACTION_FORCE + k] = 0.0
     state[5], state[6], state[7] = ox + dx, oy + dy, oz + dz
-    if kind == FREE or kind == TABLE:
+    if kind in (FREE, TABLE):
         jz = force[2] if kind == FREE else 0.0
         ux, uy, uz = rotate(qx, qy, qz, qw, oy * cz - oz * cy, oz * cx - ox * cz, ox * cy - oy * cx)
         half = 0.5 / p[MASS]

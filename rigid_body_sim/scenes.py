@@ -31,7 +31,7 @@ def _mapping(required=(), **properties):
 
 
 def _lengths(*names):
-    return _mapping(names, **{name: POSITIVE for name in names})
+    return _mapping(names, **dict.fromkeys(names, POSITIVE))
 
 
 SHAPE = _mapping(
@@ -251,7 +251,7 @@ def _constraint(value, body, where):
     if kind == 'table' and body.radius is None:
         raise BadInput(where, 'a table needs a sphere', 'give body.shape solid_sphere or spherical_shell, or body.radius with equal moments')
     if kind == 'table' and any(body.center_of_mass):
-        raise BadInput(where, f'the centre of mass {list(body.center_of_mass)} is off the sphere\'s middle', 'a ball on a table is balanced')
+        raise BadInput(where, f'the centre of mass {list(body.center_of_mass)} is off the middle', 'a ball on a table is balanced')
     if kind != 'hinge':
         if settings:
             raise BadInput(where, f'{kind} takes no settings, got {scene_text.brief(settings)}', f'write constraint: {kind}')

@@ -1,5 +1,7 @@
 """Simulation: a scene in motion, tick by tick or at any times, with commands.
 
+::
+
     from rigid_body_sim import Simulation
     simulation = Simulation('tennis_racket')
     simulation.advance(1000)
@@ -83,6 +85,7 @@ class Simulation:
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
+        self.integrator, self.accuracy = integrator, accuracy
         self.choice = choose(self.scene, integrator, accuracy, step)
         self.tick = 0
         self.events = []
@@ -286,8 +289,7 @@ class Simulation:
 
     def _apply(self, base, force, torque, wrench):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""
-        spans, before = self._spans, self.wrench
-        kept = spans[:base]
+        kept = self._spans[:base]
         if force.any() or torque.any() or wrench != kept[-1].wrench:
             kept = [*kept, self._next_span(kept[-1], self.time, force, torque, wrench, kept[-1].strikes)]
         self._spans = kept

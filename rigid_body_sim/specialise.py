@@ -57,7 +57,7 @@ def _load(source, stem):
         return sys.modules[name]
     if CACHE_FOLDER is None:
         module = types.ModuleType(name)
-        exec(compile(source, f'<{name}>', 'exec'), module.__dict__)    # noqa: S102 - our own source, no writable cache
+        exec(compile(source, f'<{name}>', 'exec'), module.__dict__)
     else:
         path = CACHE_FOLDER / f'{name}.py'
         if not path.exists():

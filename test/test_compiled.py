@@ -26,7 +26,7 @@ def run(code, folder, **environment):
 
 @pytest.fixture
 def copy_of_package(tmp_path):
-    """A copy of the package with a cache of its own."""
+    """Return a copy of the package with a cache of its own."""
     shutil.copytree(PACKAGE, tmp_path / 'rigid_body_sim', ignore=shutil.ignore_patterns('__pycache__'))
     return tmp_path
 

@@ -101,22 +101,22 @@ def test_impulse_and_reaction_turn_the_body(kind):
 
 def test_bat_reaction_vanishes_at_the_centre_of_percussion():
     """Notes, "Baseball bat sweet spot": F_R/F = 1 - d/l' with l' = l + a^2/l (erratum: l l' = l^2 + a^2)."""
-    M, l, a2 = 0.9, 0.5, 0.06
-    scene = parse_scene(f'''
+    M, length, a2 = 0.9, 0.5, 0.06
+    scene = parse_scene(f"""
 scene: bat
-body: {{mass: {M}, inertia: [{M * a2}, {M * a2}, 0.001], center_of_mass: [0, 0, {-l}]}}
+body: {{mass: {M}, inertia: [{M * a2}, {M * a2}, 0.001], center_of_mass: [0, 0, {-length}]}}
 constraint: {{hinge: {{axis: [0, 1, 0]}}}}
 effects: []
 initial: {{}}
-''')
-    for d in (0.2, l, l + a2 / l):
+""")
+    for d in (0.2, length, length + a2 / length):
         vector, exchange = scene.initial.vector.copy(), np.empty(mechanics.EXCHANGE_SIZE)
         # a force at depth d is one at the centre of mass and a couple about it
         force = np.array([3.0, 0.0, 0.0])
-        couple = np.cross([0.0, 0.0, l - d], force)
+        couple = np.cross([0.0, 0.0, length - d], force)
         mechanics.apply_impulse(mechanics.parameters(scene), vector, force, couple, exchange)
         # the hand pushes back on the bat: F + reaction = M dv, so the reaction on the bat is -F_R
-        assert exchange[mechanics.REACTION_FORCE] == pytest.approx(-3.0 * (1.0 - d / (l + a2 / l)), abs=4e-15)
+        assert exchange[mechanics.REACTION_FORCE] == pytest.approx(-3.0 * (1.0 - d / (length + a2 / length)), abs=4e-15)
 
 
 def test_opposite_impulses_restore_the_state_of_a_simple_body():

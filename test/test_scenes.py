@@ -98,13 +98,13 @@ def test_quaternion_is_normalised_and_a_unit_one_kept():
 
 
 def test_hinge_starts_at_its_angle_about_its_axis():
-    text = '''
+    text = """
 scene: door
 body: {mass: 2.0, shape: {rod: {length: 1.0}}, center_of_mass: [0, 0, -0.4]}
 constraint: {hinge: {axis: [0, 2, 0], through: [0, 0, 0.1]}}
 effects: [gravity: {g: 9.81}]
 initial: {angle: 0.5, rate: 2.0}
-'''
+"""
     scene = parse_scene(text)
     assert scene.constraint.axis == (0.0, 1.0, 0.0)
     assert scene.initial.orientation.tolist() == pytest.approx([0.0, math.sin(0.25), 0.0, math.cos(0.25)], abs=1e-16)
@@ -114,13 +114,13 @@ initial: {angle: 0.5, rate: 2.0}
 
 
 def test_ball_starts_on_the_table():
-    text = '''
+    text = """
 scene: ball
 body: {mass: 0.17, shape: {solid_sphere: {radius: 0.028575}}}
 constraint: table
 effects: []
 initial: {velocity: [1, 0, 0]}
-'''
+"""
     assert parse_scene(text).initial.position.tolist() == [0.0, 0.0, 0.028575]
     with pytest.raises(BadInput, match='the ball lies on the table'):
         parse_scene(text, ['initial.position=[0, 0, 1]'])
