@@ -15,31 +15,38 @@ def test_two_tests_never_hold_one_domain(tmp_path):
         assert {first.id, second.id} <= set(range(1, 102))
 
 
-def test_all_domains_held_is_said(tmp_path, monkeypatch):
-    with ros.held_domain(tmp_path) as domain:
-        monkeypatch.setattr(ros, 'FIRST_DOMAIN', domain.id)
-        monkeypatch.setattr(ros, 'LAST_DOMAIN', domain.id)
-        with pytest.raises(RuntimeError, match='all domain ids'), ros.held_domain(tmp_path):
-            pass
+@pytest.fixture
+def one_domain(monkeypatch):
+    """Leave one id to hold, which no other test run looks at."""
+    only = 1000 + os.getpid()
+    monkeypatch.setattr(ros, 'FIRST_DOMAIN', only)
+    monkeypatch.setattr(ros, 'LAST_DOMAIN', only)
+    return only
 
 
-def test_another_process_does_not_get_a_held_domain(tmp_path):
+@pytest.mark.usefixtures('one_domain')
+def test_all_domains_held_is_said(tmp_path):
+    with ros.held_domain(tmp_path), pytest.raises(RuntimeError, match='all domain ids'), ros.held_domain(tmp_path):
+        pass
+
+
+def test_another_process_does_not_get_a_held_domain(tmp_path, one_domain):
     script = f"""
 import ros
-ros.FIRST_DOMAIN = ros.LAST_DOMAIN = int(input())
+ros.FIRST_DOMAIN = ros.LAST_DOMAIN = {one_domain}
 try:
     with ros.held_domain({str(tmp_path)!r}):
         print('got it')
 except RuntimeError:
     print('refused')
 """
-    def asked(domain_id):
-        return subprocess.run([sys.executable, '-c', script], input=str(domain_id), capture_output=True, text=True, timeout=30,
-                              cwd=ros.ROOT / 'test', check=True).stdout.strip()
+    def asked():
+        return subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=30, cwd=ros.ROOT / 'test',
+                              check=True).stdout.strip()
 
-    with ros.held_domain(tmp_path) as domain:
-        assert asked(domain.id) == 'refused'
-    assert asked(domain.id) == 'got it'
+    with ros.held_domain(tmp_path):
+        assert asked() == 'refused'
+    assert asked() == 'got it'
 
 
 def test_the_domain_reaches_this_process_and_its_children(ros_domain):
