@@ -8,6 +8,7 @@ k^2, is wrong by 5e-6 at k'^2 = 1e-10).
 import math
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.double_double import add, multiply, root
 
 
 @compiled
@@ -94,11 +95,34 @@ def nome(k, kc):
     Both moduli are asked for because k^2 + kc^2 = 1 holds the more digits in the smaller one; for kc < 0.17 use the nome of the
     complementary modulus, nome(kc, k) = exp(-pi K/K'). Series: DLMF 19.5.5 with its integers (OEIS A002103).
     """
-    root = math.sqrt(kc)
-    half = 0.5 * k * k / ((1.0 + kc) * (1.0 + root) * (1.0 + root))
+    s = 1.0 + math.sqrt(kc)
+    half = 0.5 * k * k / ((1.0 + kc) * s * s)
     x = half * half * half * half
     return half * (1.0 + x * (2.0 + x * (15.0 + x * (150.0 + x * (1707.0 + x * (20910.0 + x * (268616.0 + x * (
         3567400.0 + x * (48555069.0 + x * 673458874.0)))))))))
+
+
+@compiled
+def agm_pair(x, x_low, y, y_low):
+    """Return the arithmetic-geometric mean of two pairs of doubles (double_double.py), x >= y > 0, to 1e-19 of itself or better.
+
+    Two steps of the mean take the modulus to that of nome q^4, and what is left of it is 1/theta_3(q^4)^2 (DLMF 20.9.2).
+    """
+    while y < 0.17 * x:
+        product, product_low = multiply(x, x_low, y, y_low)
+        x, x_low = add(x, x_low, y, y_low)
+        x, x_low = 0.5 * x, 0.5 * x_low
+        y, y_low = root(product, product_low)
+    q = nome(math.sqrt(max((x - y) * (x + y), 0.0)) / x, y / x)
+    q4 = q * q * q * q
+    excess = 2.0 * q4 * (1.0 + q4 * q4 * q4)                    # theta_3 - 1
+    rest = excess * (2.0 + excess) / ((1.0 + excess) * (1.0 + excess))
+    product, product_low = multiply(x, x_low, y, y_low)
+    product, product_low = root(product, product_low)
+    x, x_low = add(x, x_low, y, y_low)
+    x, x_low = add(0.5 * x, 0.5 * x_low, product, product_low)
+    x, x_low = add(x, x_low, -rest * x, 0.0)
+    return 0.5 * x, 0.5 * x_low
 
 
 @compiled
@@ -149,19 +173,20 @@ def _jacobi_circular(u, k, kc):
 @compiled
 def _jacobi_hyperbolic(u, k, kc):
     quarter = complete_k(k)                                     # K', near pi/2
-    root = kc * math.sqrt(0.5 / (1.0 + k)) / (1.0 + math.sqrt(k))
-    root *= 1.0 + root * root * root * root * root * root * root * root     # sqrt(q'), that may be far above an underflowing q'
-    q = root * root
+    root_q = kc * math.sqrt(0.5 / (1.0 + k)) / (1.0 + math.sqrt(k))
+    q = root_q * root_q
+    root_q *= 1.0 + q * q * q * q                               # sqrt(q'), which may be far above an underflowing q'
+    q = root_q * root_q
     y = 0.5 * math.pi * u / quarter
     sign = 1.0
     if kc > 0.0:
-        period = -2.0 * math.log(root)                          # pi K / K'
+        period = -2.0 * math.log(root_q)                         # pi K / K'
         turns = math.floor(y / period + 0.5)
         y -= turns * period
         sign = 1.0 - 2.0 * (turns - 2.0 * math.floor(0.5 * turns))
     x = math.exp(-abs(y))
     e = x * x
-    f = root / x if x > 0.0 else 0.0                            # sqrt(q') e^|y| <= 1
+    f = root_q / x if x > 0.0 else 0.0                          # sqrt(q') e^|y| <= 1
     f *= f
     theta2 = 1.0 + e + q * (f + q * e * e) + q * q * q * q * f * f
     theta1 = math.copysign(1.0 - e - q * (f - q * e * e) + q * q * q * q * f * f, y)
