@@ -1,0 +1,90 @@
+"""What every recording says about its run, whoever writes it, the node or `simulate`: enough to understand it and to run it again.
+
+``about`` goes into metadata.yaml (custom_data), into a metadata record of each file and into the journal (entry ``begin``); the entry
+``state`` stands at the start of each file and after each gap. All texts are plain or JSON.
+"""
+
+import json
+import pathlib
+import platform
+import sys
+import xml.etree.ElementTree
+
+import numpy
+
+from rigid_body_sim import compiled
+from rigid_body_sim.messages import cdr
+
+STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
+OK, WARN, ERROR = 0, 1, 2
+
+
+def version():
+    """Return the package's version as package.xml has it, of the source tree or of the installed share folder; '' without that file."""
+    for parent in pathlib.Path(__file__).resolve().parents:
+        for path in (parent / 'package.xml', parent / 'share' / 'rigid_body_sim' / 'package.xml'):
+            if path.is_file():
+                root = xml.etree.ElementTree.parse(path).getroot()
+                if root.findtext('name') == 'rigid_body_sim':
+                    return root.findtext('version')
+    return ''
+
+
+def machine():
+    """Return all that the bits of a state depend on beside the scene, as a dict: equal dicts promise equal bits."""
+    numba = compiled.numba if compiled.HAVE_NUMBA else None
+    return {'processor': compiled.processor(), 'system': platform.platform(), 'libc': ' '.join(platform.libc_ver()), 'python': sys.version,
+            'numpy': numpy.__version__, 'numba': numba.__version__ if numba else 'no', 'sources': compiled.sources_key()}
+
+
+def about(made_by, simulation, parameters):
+    """Return what a recording says about its run.
+
+    Parameters
+    ----------
+    made_by : str
+        The command: ``sim_node``, ``simulate``.
+    simulation : Simulation
+    parameters : dict
+        All that the command was told, defaults included.
+
+    Returns
+    -------
+    dict of str to str
+        ``made_by``, ``version``, ``scene`` (YAML as it runs), and JSON: ``simulation`` (what it was asked for, and the method it chose),
+        ``parameters``, ``machine``.
+    """
+    return {'made_by': made_by, 'version': version(), 'scene': simulation.scene.text, 'simulation': json.dumps(run_of(simulation)),
+            'parameters': json.dumps(parameters), 'machine': json.dumps(machine())}
+
+
+def run_of(simulation):
+    """Return what a Simulation was asked for and what it chose, as a dict: with the scene, enough to make it again."""
+    return {'integrator': simulation.integrator, 'accuracy': simulation.accuracy, 'step': simulation.choice.step, 'rate': simulation.rate,
+            'method': simulation.choice.method}
+
+
+def state_entry(tick, simulation):
+    """Return the values of the journal's entry ``state``: the full state at a tick, the wrench that is held, and the run as it is now."""
+    wrench = simulation.wrench
+    return {'tick': tick, 'vector': simulation.vector.tolist(), 'energy': simulation.energy,
+            'angular_momentum_squared': simulation.angular_momentum_squared,
+            'wrench': {'force': wrench.force, 'torque': wrench.torque, 'frame': wrench.frame},
+            'scene': simulation.scene.text, 'simulation': run_of(simulation)}
+
+
+def scene_message(scene):
+    """Return the bytes of the latched message ``scene``."""
+    return cdr.encode(STRING_TYPE, {'data': scene.text})
+
+
+def event_message(source, level, name, message, values):
+    """Return the bytes of a message on ``events``; `values` maps names to texts or numbers, which keep all their digits."""
+    texts = [{'key': key, 'value': repr(value) if isinstance(value, float) else str(value)} for key, value in values.items()]
+    return cdr.encode(STATUS_TYPE, {'level': level, 'name': name, 'message': message, 'hardware_id': source, 'values': texts})
+
+
+def event_text(event):
+    """Return (message, values) of what a Simulation noted."""
+    return f'{event.name} at t = {event.time:.9g} s', {'tick': event.tick, 'time': event.time, **event.values}
+
