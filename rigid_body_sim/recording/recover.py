@@ -90,11 +90,12 @@ def recover_file(path):
 
 
 class Found:
-    """What metadata.yaml tells of one file: `topics` (TopicRecords), `file` (FileRecord), `about` (texts or None)."""
+    """What metadata.yaml tells of one file: `topics` (TopicRecords), `channels` (Channels), `file` (FileRecord), `about` (texts or None)."""
 
     def __init__(self, stream, contents, name):
         schemas = {number: mcap_format.read_schema(data[mcap_format.HEAD.size:])[1] for number, data in contents.schemas.items()}
         channels = [mcap_format.read_channel(data[mcap_format.HEAD.size:]) for data in contents.channels.values()]
+        self.channels = channels
         self.topics = [metadata.TopicRecord(channel.topic, schemas.get(channel.schema, ''), _profiles(channel),
                                             channel.metadata.get('topic_type_hash', '')) for channel in channels]
         names = {channel.id: channel.topic for channel in channels}

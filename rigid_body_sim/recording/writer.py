@@ -126,11 +126,11 @@ class Writer:
         """Record one message of any topic."""
         self._begin(log_time, publish_time)
         self._add_message(topic_name, log_time, publish_time, data, sequence)
-        if self._pending >= CHUNK_SIZE:
-            self.flush()
 
     def _begin(self, log_time, publish_time):
-        """Open the next file if there is none, and begin its journal."""
+        """Make room, open the next file if there is none, and begin its journal. Raises OSError before anything is taken."""
+        if self._pending >= CHUNK_SIZE:
+            self.flush()
         if self._file is None:
             self._open_file()
         if self._first_time is None:
@@ -151,20 +151,20 @@ class Writer:
     def ticks(self, sequence, log_times, publish_times, messages):
         """Record n ticks in a row, numbered from `sequence`: times (n,) in ns; for each ticking topic its messages, uint8 of shape (n, size).
 
-        Returns how many were taken: all, or fewer where the disk refused in between (then the next call raises OSError).
+        Returns how many were taken: all, or fewer where the disk refused after the first (then the next call raises OSError).
         """
         log_times = np.maximum.accumulate(np.maximum(np.asarray(log_times, np.int64), self.last_time)).astype(np.uint64)
         count, done = len(log_times), 0
         while done < count:
-            self._begin(int(log_times[done]), int(publish_times[done]))
-            end = min(count, done + max(1, (CHUNK_SIZE - self._pending) // self._tick.itemsize))
+            try:
+                self._begin(int(log_times[done]), int(publish_times[done]))
+            except OSError:
+                if done == 0:
+                    raise
+                break
+            end = min(count, done + max(1, -(-(CHUNK_SIZE - self._pending) // self._tick.itemsize)))
             self._add_ticks(sequence + done, log_times[done:end], publish_times[done:end], [rows[done:end] for rows in messages])
             done = end
-            if self._pending >= CHUNK_SIZE - self._tick.itemsize:
-                try:
-                    self.flush()
-                except OSError:
-                    break
         return done
 
     def _add_ticks(self, sequence, log_times, publish_times, messages):

@@ -1,0 +1,72 @@
+"""What the node and its recorder process say to each other over two pipes.
+
+To the recorder: frames. Each has a tag and the length of what follows, then
+
+======= ==========================================================================================================
+SETUP   JSON: all arguments of the Writer, and where to go on after a restart (first frame)
+TICK    number of the tick, log time, publish time (ns), and the messages of all ticking topics end to end: always the same length
+MESSAGE number (from 1 on; 0: may be lost), position of the topic among all, log time, publish time, the message
+END     JSON: ``ticks`` sent or dropped (last frame)
+======= ==========================================================================================================
+
+Back: lines of JSON, each a complete Report, so that one that is lost does not matter. A numbered message counts as recorded when a report's
+`acknowledged` has reached its number; the recorder takes them in order only, and asks for the missing ones by counting `resend` up.
+"""
+
+import dataclasses
+import json
+import struct
+
+SETUP, TICK, MESSAGE, END = range(1, 5)
+HEAD = struct.Struct('<BI')
+TICK_HEAD = struct.Struct('<BIQqq')
+MESSAGE_HEAD = struct.Struct('<BIQHqq')
+# A pipe takes this much at once or not at all (Linux; see pipe(7)).
+ATOMIC = 4096
+
+
+def json_frame(tag, values):
+    """Return a SETUP or END frame."""
+    data = json.dumps(values).encode()
+    return HEAD.pack(tag, len(data)) + data
+
+
+def message_frame(number, topic, log_time, publish_time, data):
+    """Return a MESSAGE frame."""
+    return MESSAGE_HEAD.pack(MESSAGE, MESSAGE_HEAD.size - HEAD.size + len(data), number, topic, log_time, publish_time) + data
+
+
+def tick_fields(sizes):
+    """Return the numpy fields of a TICK frame whose messages have the given sizes."""
+    return [('tag', 'u1'), ('length', '<u4'), ('number', '<u8'), ('log_time', '<i8'), ('publish_time', '<i8'),
+            *((f'message{position}', 'u1', (size,)) for position, size in enumerate(sizes))]
+
+
+@dataclasses.dataclass
+class Report:
+    """How the recorder stands.
+
+    `recorded` messages and `written` bytes are safe from a kill of the recorder; `dropped` ticks are missing between recorded ones; `ticks` is the
+    number of the next tick expected; `error` the problem right now, or ''; `resend` and `state_wanted` count requests; `refused`: why nothing
+    can be recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
+    """
+
+    recorded: int = 0
+    written: int = 0
+    dropped: int = 0
+    ticks: int = 0
+    acknowledged: int = 0
+    resend: int = 0
+    state_wanted: int = 0
+    error: str = ''
+    refused: tuple = ()
+    closed: bool = False
+
+    def line(self):
+        """Return the report as sent."""
+        return json.dumps(dataclasses.asdict(self)).encode() + b'\n'
+
+    @classmethod
+    def of(cls, line):
+        """Return the report of a line."""
+        return cls(**json.loads(line))

@@ -1,0 +1,242 @@
+"""The recorder process: takes frames from a pipe, writes the recording, outlives the node.
+
+``python -m rigid_body_sim.recording.process FRAMES REPORTS`` (two file descriptors) is started by :class:`rigid_body_sim.recording.recorder.Recorder`.
+It ends when the pipe is closed, by the node's last word or by its death, and leaves a complete recording either way. It sleeps between looks at the
+pipe, so that the node's writing never wakes it: 50 times a second, whatever the rate.
+"""
+
+import json
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording import frames
+from rigid_body_sim.recording.frames import Report
+from rigid_body_sim.recording.resume import resume
+from rigid_body_sim.recording.topics import Topic, journal_message
+from rigid_body_sim.recording.writer import Writer
+
+LOOK = 0.02             # s between looks at the pipe
+FLUSH = 0.1             # s after which what was received is in the file
+RETRY = 0.5             # s between tries while the disk refuses
+_READ = 2**20
+
+
+class RecorderProcess:
+    """Frames in, recording out. `descriptor_in`: the pipe of frames, non-blocking; `send`: sends bytes, returns whether it could."""
+
+    def __init__(self, descriptor_in, send):
+        self._in, self._send = descriptor_in, send
+        self._buffer = b''
+        self._writer = None
+        self.report = Report()
+        self._expected = 1          # number of the next numbered message
+        self._retry_at = self._flush_at = self._ask_at = 0.0
+        self._asked_for = 0
+        self._ended, self._told = False, b''
+
+    def run(self):
+        """Record until the pipe is closed. Returns the exit code: 0 if all that came is recorded, 1 if not, 2 if nothing could be."""
+        try:
+            while not self._ended:
+                data = self._read()
+                if data:
+                    self._buffer += data
+                    self._take_frames()
+                elif data == b'':
+                    break
+                now = time.monotonic()
+                if self._writer is not None and now >= (self._retry_at if self.report.error else self._flush_at):
+                    self._flush(now)
+                if data is None or len(data) < _READ // 4:
+                    time.sleep(LOOK)
+        except BadInput as error:
+            self.report.refused = (error.where, error.problem, error.remedy)
+            self._send(self.report.line())
+            return 2
+        return self._close()
+
+    def _read(self):
+        try:
+            return os.read(self._in, _READ)
+        except BlockingIOError:
+            return None
+
+    def _take_frames(self):
+        """Take all whole frames from the buffer."""
+        buffer, position = self._buffer, 0
+        while position + frames.HEAD.size <= len(buffer) and not self._ended:
+            tag, length = frames.HEAD.unpack_from(buffer, position)
+            end = position + frames.HEAD.size + length
+            if end > len(buffer):
+                break
+            if tag == frames.TICK:
+                position = self._take_ticks(buffer, position)
+                continue
+            content = buffer[position + frames.HEAD.size:end]
+            if tag == frames.MESSAGE:
+                self._take_message(buffer, position, end)
+            elif tag == frames.SETUP:
+                self._open(json.loads(content))
+            else:
+                self._end(json.loads(content)['ticks'])
+            position = end
+        self._buffer = buffer[position:]
+
+    def _open(self, setup):
+        ticking = [(Topic(**topic), size) for topic, size in setup['ticking']]
+        others, journal = [Topic(**topic) for topic in setup['others']], Topic(**setup['journal'])
+        self._names = [topic.name for topic, _ in ticking] + [topic.name for topic in others] + [journal.name]
+        self._journal = journal.name
+        self._tick = np.dtype(frames.tick_fields([size for _, size in ticking]))
+        self.report = Report(**setup['report'])
+        self._before = (self.report.recorded, self.report.written)
+        files = ()
+        try:
+            if setup['resume']:
+                files = resume(setup['path'], [topic.name for topic, _ in ticking], self.report)
+            self._writer = Writer(setup['path'], ticking, others, journal, setup['about'], setup['compression'], setup['split_bytes'],
+                                  setup['split_seconds'], files)
+        except OSError as error:
+            raise BadInput(setup['path'], f'nothing can be recorded here ({error.strerror})', 'a folder on a disk with room') from error
+        self._expected = self.report.acknowledged + 1
+        self.report.error = ''
+        self.report.resend += 1
+        self._tell()
+
+    def _take_ticks(self, buffer, position):
+        """Take a run of ticks; returns where the next other frame begins."""
+        rows = np.frombuffer(buffer, self._tick, (len(buffer) - position) // self._tick.itemsize, position)
+        others = np.flatnonzero(rows['tag'] != frames.TICK)
+        rows = rows[:others[0]] if len(others) else rows
+        if not self.report.error:
+            breaks = np.flatnonzero(np.diff(rows['number'].astype(np.int64)) != 1) + 1
+            for run in np.split(rows, breaks):
+                self._record_ticks(run)
+                if self.report.error:
+                    break
+        return position + len(rows) * self._tick.itemsize
+
+    def _record_ticks(self, rows):
+        """Record ticks with consecutive numbers, and a gap before them if there is one."""
+        first = int(rows['number'][0])
+        try:
+            if first > self.report.ticks:
+                self._gap(first - self.report.ticks, int(rows['log_time'][0]), int(rows['publish_time'][0]))
+            done = self._writer.ticks(first, rows['log_time'], rows['publish_time'],
+                                      [rows[name] for name in self._tick.names if name.startswith('message')])
+        except OSError as error:
+            self._fail(error)
+            return
+        self.report.ticks = first + done
+
+    def _gap(self, ticks, until, publish_time):
+        """Mark in the journal that ticks are missing; `until` (ns) is the stamp of the next one, None if there is none."""
+        data = journal_message('gap', ticks=ticks, after=self._writer.last_time, until=until)
+        self._writer.message(self._journal, self._writer.last_time, publish_time, data)
+        self.report.dropped += ticks
+        self.report.ticks += ticks
+        self.report.state_wanted += 1
+
+    def _take_message(self, buffer, position, end):
+        _, _, number, topic, log_time, publish_time = frames.MESSAGE_HEAD.unpack_from(buffer, position)
+        if self.report.error or 0 < number < self._expected:
+            return
+        if number > self._expected:
+            self._ask_for_missing()
+            return
+        try:
+            self._writer.message(self._names[topic], log_time, publish_time, buffer[position + frames.MESSAGE_HEAD.size:end], number)
+        except OSError as error:
+            self._fail(error)
+            return
+        self._expected += number > 0
+
+    def _ask_for_missing(self):
+        """Ask for the numbered messages from the expected one on, once until it comes or RETRY has passed."""
+        now = time.monotonic()
+        if self._asked_for != self._expected or now >= self._ask_at:
+            self._asked_for, self._ask_at = self._expected, now + RETRY
+            self.report.resend += 1
+            self._tell()
+
+    def _flush(self, now):
+        """Write what is pending; report."""
+        self._flush_at = now + FLUSH
+        try:
+            self._writer.flush()
+        except OSError as error:
+            self._fail(error)
+            return
+        if self.report.error:
+            self.report.error = ''
+            self.report.resend += 1
+        self.report.acknowledged = self._expected - 1
+        self._tell()
+
+    def _tell(self):
+        """Send a report if anything is new."""
+        self.report.recorded = self._before[0] + self._writer.messages_written
+        self.report.written = self._before[1] + self._writer.bytes_written
+        if self._writer.state_wanted:
+            self._writer.state_wanted = False
+            self.report.state_wanted += 1
+        line = self.report.line()
+        if line != self._told and self._send(line):
+            self._told = line
+
+    def _fail(self, error):
+        """Go on without recording: what comes is dropped (numbered messages are sent again later), until a flush succeeds."""
+        self._retry_at = time.monotonic() + RETRY
+        problem = f'{self._writer.path}: {error.strerror or error}'
+        if self.report.error != problem:
+            self.report.error = problem
+            self._tell()
+
+    def _end(self, ticks):
+        """Take the sender's last word: how many ticks there were."""
+        self._ended = True
+        if ticks > self.report.ticks and not self.report.error:
+            try:
+                self._gap(ticks - self.report.ticks, None, self._writer.last_time)
+            except OSError as error:
+                self._fail(error)
+        self.report.dropped += max(0, ticks - self.report.ticks)
+
+    def _close(self):
+        if self._writer is None:
+            return 2
+        try:
+            self._writer.close()
+        except OSError as error:
+            self.report.error = f'{self._writer.path}: {error.strerror or error}; not closed, "recover" makes it whole once there is room'
+        else:
+            self.report.error, self.report.closed = '', True
+            self.report.acknowledged = self._expected - 1
+        self._tell()
+        return 1 if self.report.error else 0
+
+
+def main(descriptor_in, descriptor_out):
+    """Run the process on its two pipes."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)       # they are for the node; this process ends when the pipe does
+    if os.sched_getscheduler(0) != os.SCHED_OTHER:
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    os.set_blocking(descriptor_in, False)
+    os.set_blocking(descriptor_out, False)
+
+    def send(line):
+        try:
+            return os.write(descriptor_out, line) == len(line)
+        except (BlockingIOError, BrokenPipeError):
+            return False
+    return RecorderProcess(descriptor_in, send).run()
+
+
+if __name__ == '__main__':
+    sys.exit(main(int(sys.argv[1]), int(sys.argv[2])))

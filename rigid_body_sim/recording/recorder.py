@@ -1,0 +1,288 @@
+"""The recorder as the node sees it: cheap calls from the tick thread, a process of its own that writes and outlives the node.
+
+::
+
+    recorder = Recorder('recordings/run', ticking=[(Topic('/pose', pose.type_name), pose.size), ...], others=[Topic('/events', ...)],
+                        journal=journal_topic('/racket'), about={'scene': text, ...})           # BadInput where nothing can be recorded
+    recorder.important('/scene', stamp, wall_clock, data)       # never lost
+    # at each tick, ~2 us, before or after publishing:
+    recorder.tick(stamp, wall_clock, (pose_bytes, omega_bytes, ...))
+    if recorder.state_wanted:                                   # at the start, after each gap, in each file
+        recorder.state_wanted = False
+        recorder.journal('state', stamp, wall_clock, tick=k, state=[...])
+    recorder.status()                                           # 2 to 10 times a second, from another thread
+    status = recorder.close()
+
+What is published but refused by the pipe waits in memory; when that is full (`BACKLOG` bytes), ticks are dropped, counted, and the gap is marked in
+the journal. Important messages are kept until the recorder has them in its file, and sent again to its successor if it dies.
+All methods may be called from any thread.
+"""
+
+import collections
+import contextlib
+import dataclasses
+import fcntl
+import itertools
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import time
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording import compression, frames
+from rigid_body_sim.recording.frames import Report
+from rigid_body_sim.recording.topics import journal_message
+
+BACKLOG = 16 * 2**20        # bytes of frames that wait for the pipe
+UNCONFIRMED = 256 * 2**20   # bytes of important messages that are not in the file yet
+_PIPE = 2**20
+_PIECES = 64                # frames written at once to catch up
+_RESTART = 1.0              # s between restarts
+
+
+@dataclasses.dataclass(frozen=True)
+class Status:
+    """How the recording stands: `recorded` messages and `written` bytes are in the file; `dropped` ticks; `lost` important messages (only if more
+    than `UNCONFIRMED` bytes of them wait); `waiting` bytes; `restarts` of the recorder; `error`: the problem right now, or ''; `closed`: complete.
+    """    # noqa: D205
+
+    recorded: int
+    written: int
+    dropped: int
+    lost: int
+    waiting: int
+    restarts: int
+    error: str
+    closed: bool
+
+
+class Recorder:
+    """Starts a recorder and feeds it. Parameters as of :class:`rigid_body_sim.recording.writer.Writer`; BadInput where nothing can be recorded.
+
+    `state_wanted` is True when the full state should be written into the journal; who does so sets it False.
+    """
+
+    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0):
+        self._setup = {'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in ticking],
+                       'others': [dataclasses.asdict(topic) for topic in others], 'journal': dataclasses.asdict(journal),
+                       'about': about, 'compression': compression_name, 'split_bytes': split_bytes, 'split_seconds': split_seconds}
+        self._positions = {topic.name: position for position, topic in enumerate([*(topic for topic, _ in ticking), *others, journal])}
+        self._journal = journal.name
+        self._tick_size = sum(size for _, size in ticking)
+        self._tick_length = frames.TICK_HEAD.size - frames.HEAD.size + self._tick_size
+        self._lock = threading.Lock()           # of all below, held for microseconds
+        self._waiting = collections.deque()     # (number, frame); number 0 for what may be lost
+        self._waiting_size = self._begun = 0    # bytes; of the first frame, bytes already in the pipe
+        self._unconfirmed = collections.deque()     # (number, frame)
+        self._unconfirmed_size = self._number = self._lost = 0
+        self._ticks = self._dropped_now = self._restarts = 0
+        self._dropping = self._ready = self.state_wanted = False
+        self._report, self._look_at = Report(), 0.0
+        self._keeping = threading.Lock()        # of starting and ending recorders
+        self._start(resume=False)
+        deadline = time.monotonic() + 30.0
+        while not self._ready and time.monotonic() < deadline and self._process.poll() is None:
+            time.sleep(0.01)
+            self._look_now()
+        self._look_now()
+        if not self._ready:
+            self._process.kill()
+            raise BadInput(*(self._report.refused or ('recording', 'the recorder did not start', 'see its message above, if any')))
+
+    def _start(self, resume):
+        """Start a recorder and tell it what to do; the lock is not held meanwhile."""
+        from_here, to_there = os.pipe(), os.pipe()
+        (frames_out, frames_in), (reports_out, reports_in) = from_here, to_there
+        with contextlib.suppress(OSError):      # an administrator may have set a lower limit
+            fcntl.fcntl(frames_in, fcntl.F_SETPIPE_SZ, _PIPE)
+        root = str(pathlib.Path(__file__).resolve().parents[2])
+        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, (root, os.environ.get('PYTHONPATH')))),
+                           OPENBLAS_NUM_THREADS='1', OMP_NUM_THREADS='1')
+        command = [sys.executable, '-m', 'rigid_body_sim.recording.process', str(frames_out), str(reports_in)]
+        # A session of its own: Ctrl-C and the end of a terminal are for the node.
+        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, pass_fds=(frames_out, reports_in),
+                                         start_new_session=True, env=environment)
+        os.close(frames_out)
+        os.close(reports_in)
+        self._started_at = time.monotonic()
+        setup = frames.json_frame(frames.SETUP, {**self._setup, 'resume': resume, 'report': dataclasses.asdict(self._report)})
+        with contextlib.suppress(BrokenPipeError):
+            while setup:
+                setup = setup[os.write(frames_in, setup):]
+        os.set_blocking(frames_in, False)
+        os.set_blocking(reports_out, False)
+        with self._lock:
+            self._frames_in, self._reports_out, self._lines, self._begun = frames_in, reports_out, b'', 0
+
+    def tick(self, log_time, publish_time, messages):
+        """Record a tick: its stamp and the wall clock in ns, and the messages (bytes) of the ticking topics in their order."""
+        data = b''.join(messages)
+        if len(data) != self._tick_size:
+            raise ValueError(f'messages of {len(data)} bytes where the ticking topics have {self._tick_size}')
+        with self._lock:
+            frame = frames.TICK_HEAD.pack(frames.TICK, self._tick_length, self._ticks, log_time, publish_time) + data
+            self._ticks += 1
+            if self._waiting or not self._ready:
+                self._wait(frame)
+            else:
+                self._write(0, frame)
+            if time.monotonic() >= self._look_at:
+                self._look()
+
+    def message(self, topic_name, log_time, publish_time, data):
+        """Record a message that may be lost under duress."""
+        frame = frames.message_frame(0, self._positions[topic_name], log_time, publish_time, data)
+        with self._lock:
+            self._wait(frame)
+
+    def important(self, topic_name, log_time, publish_time, data):
+        """Record a message that must not be lost."""
+        with self._lock:
+            frame = frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data)
+            if self._unconfirmed_size + len(frame) > UNCONFIRMED:
+                self._lost += 1
+                return
+            self._number += 1
+            self._unconfirmed.append((self._number, frame))
+            self._unconfirmed_size += len(frame)
+            self._append(self._number, frame)
+            self._pump()
+
+    def journal(self, kind, log_time, publish_time, **values):
+        """Record an entry of the journal (see :func:`rigid_body_sim.recording.topics.journal_topic`); it is never lost."""
+        self.important(self._journal, log_time, publish_time, journal_message(kind, **values))
+
+    def _append(self, number, frame):
+        self._waiting.append((number, frame))
+        self._waiting_size += len(frame)
+
+    def _wait(self, frame):
+        """Queue a frame that may be lost, or drop it where too much waits already (until half of that is gone)."""
+        self._dropping = self._waiting_size > (BACKLOG // 2 if self._dropping else BACKLOG)
+        if self._dropping:
+            self._dropped_now += frame[0] == frames.TICK
+        else:
+            self._dropped_now = 0
+            self._append(0, frame)
+        self._pump()
+
+    def _write(self, number, frame):
+        """Write a frame into the pipe, or queue it."""
+        written = self._try_to_write(frame)
+        if written < len(frame):
+            self._append(number, frame)
+            self._begun = written
+
+    def _try_to_write(self, data):
+        try:
+            return os.write(self._frames_in, data)
+        except BlockingIOError:
+            return 0
+        except BrokenPipeError:
+            self._ready = False
+            return 0
+
+    def _pump(self):
+        """Write what waits, as far as the pipe takes it; some of it at a call, so that no tick is late for it."""
+        if not self._ready or not self._waiting:
+            return
+        pieces = [frame for _, frame in itertools.islice(self._waiting, _PIECES)]
+        pieces[0] = pieces[0][self._begun:]
+        written = self._begun + self._try_to_write(b''.join(pieces))
+        while self._waiting and written >= len(self._waiting[0][1]):
+            size = len(self._waiting.popleft()[1])
+            written -= size
+            self._waiting_size -= size
+        self._begun = written
+
+    def _look_now(self):
+        with self._lock:
+            self._look()
+
+    def _look(self):
+        """Read the recorder's reports and act on the newest."""
+        self._look_at = time.monotonic() + 0.05
+        try:
+            self._lines += os.read(self._reports_out, 2**16)
+        except BlockingIOError:
+            return
+        *lines, self._lines = self._lines.split(b'\n')
+        if not lines:
+            return
+        before, self._report = self._report, Report.of(lines[-1])
+        self._ready = self._ready or self._report.resend > before.resend
+        self.state_wanted = self.state_wanted or self._report.state_wanted > before.state_wanted
+        while self._unconfirmed and self._unconfirmed[0][0] <= self._report.acknowledged:
+            self._unconfirmed_size -= len(self._unconfirmed.popleft()[1])
+        if self._report.resend > before.resend:
+            self._send_again()
+
+    def _send_again(self):
+        """Queue the important messages that the recorder lacks and that do not wait already, before everything that waits."""
+        first = next((number for number, _ in self._waiting if number), self._number + 1)
+        begun = [self._waiting.popleft()] if self._begun else []
+        again = [entry for entry in self._unconfirmed if entry[0] < first]
+        self._waiting.extendleft(reversed([*begun, *again]))
+        self._waiting_size += sum(len(frame) for _, frame in again)
+        self._pump()
+
+    def status(self):
+        """Return the Status. Call it a few times a second, not from the tick thread: it also starts a new recorder where one died (5 ms)."""
+        with self._keeping:
+            self._keep()
+        return self._status()
+
+    def _keep(self):
+        """Pump, look, and start a new recorder where there is none."""
+        with self._lock:
+            self._look()
+            self._pump()
+        if self._process.poll() is not None and not self._report.closed and time.monotonic() >= self._started_at + _RESTART:
+            self._close_pipes()
+            self._restarts += 1
+            self._start(resume=True)
+
+    def _close_pipes(self):
+        with self._lock:
+            self._ready = False
+            os.close(self._frames_in)
+            os.close(self._reports_out)
+
+    def _status(self):
+        with self._lock:
+            report = self._report
+            error = report.error or '; '.join(report.refused)
+            if not error and not self._ready and not report.closed:
+                error = 'the recorder died; a new one is starting'
+            dropped = report.dropped + (max(0, self._ticks - report.ticks) if report.error else self._dropped_now)
+            return Status(report.recorded, report.written, dropped, self._lost, self._waiting_size, self._restarts, error, report.closed)
+
+    def close(self, timeout=30.0):
+        """End the recording: send all that waits, let the recorder finish. Returns the last Status, whose `closed` says whether it is complete."""
+        with self._keeping:
+            deadline = time.monotonic() + timeout
+            while time.monotonic() < deadline and not self._report.closed:
+                self._keep()
+                if self._ready and not self._waiting:
+                    self._end(deadline)
+                    if self._report.error:
+                        break
+                time.sleep(0.005)
+            if self._process.poll() is None:
+                self._process.kill()
+            self._process.wait()
+            self._close_pipes()
+        return self._status()
+
+    def _end(self, deadline):
+        """Say the last word and wait for the recorder to end."""
+        with self._lock:
+            self._append(0, frames.json_frame(frames.END, {'ticks': self._ticks}))
+        while self._process.poll() is None and time.monotonic() < deadline:
+            with self._lock:
+                self._pump()
+                self._look()
+            time.sleep(0.005)
+        self._look_now()
