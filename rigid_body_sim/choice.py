@@ -41,7 +41,7 @@ class Choice:
         if wrench == Wrench():
             return self._prototype.start(start)
         method = 'dop8' if self.method == 'exact' else self.method
-        return Stepped(self.scene, method, self.accuracy, self.step, wrench, ledger=True).start(start)
+        return Stepped(self.scene, method, self.accuracy, self.step, wrench).start(start)
 
 
 def choose(scene, integrator='auto', accuracy=1e-12, step=None):
@@ -69,4 +69,4 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None):
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
-    return Choice(scene, method, accuracy, step, Stepped(scene, method, accuracy, step, ledger=True))
+    return Choice(scene, method, accuracy, step, Stepped(scene, method, accuracy, step))

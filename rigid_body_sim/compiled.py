@@ -11,8 +11,10 @@ import hashlib
 import os
 import pathlib
 import platform
+import shutil
 import sys
 import tempfile
+import time
 
 try:
     import numba
@@ -21,6 +23,7 @@ except ImportError:
 
 HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
 PACKAGE = pathlib.Path(__file__).resolve().parent
+KEEP_UNUSED = 30 * 86400.0    # s
 
 
 def processor():
@@ -51,10 +54,19 @@ def _cache_folder():
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             if os.access(folder, os.W_OK) and folder.stat().st_uid == os.getuid():
+                os.utime(folder)
+                _remove_unused(folder.parent)
                 return folder
         except OSError:
             continue
     return None
+
+
+def _remove_unused(base):
+    """Remove the caches of sources that no process has imported for a month."""
+    for folder in base.iterdir():
+        if time.time() - folder.stat().st_mtime > KEEP_UNUSED:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 CACHE_FOLDER = _cache_folder() if HAVE_NUMBA else None

@@ -186,7 +186,7 @@ class Simulation:
         force_world, torque_world = self._in_world(force, torque, frame, 'wrench')
         self._refuse_immovable(force_world, torque_world, 'wrench')
         base, force_sum, torque_sum, held = self._present_commands()
-        wrench = Wrench(tuple(map(float, force)), tuple(map(float, torque)), frame, frame)
+        wrench = Wrench(tuple(map(float, force)), tuple(map(float, torque)), frame)
         wrench = wrench if any(wrench.force) or any(wrench.torque) else Wrench()
         if wrench != held:
             self._apply(base, force_sum, torque_sum, wrench)
@@ -237,7 +237,7 @@ class Simulation:
         missing = np.linalg.norm(momentum - start[mechanics.MOMENTUM:] - impulse)
         size = max(np.linalg.norm(momentum), np.linalg.norm(start[mechanics.MOMENTUM:]), np.linalg.norm(impulse))
         return {'kinetic': kinetic, 'potential': potential, 'dissipated': float(dissipated), 'work': float(work),
-                'energy_residual': left / scale if scale > 0.0 else 0.0,
+                'energy_residual': float(left / scale) if scale > 0.0 else 0.0,
                 'angular_momentum_squared': self.angular_momentum_squared,
                 'momentum_residual': float(missing / size) if size > 0.0 else 0.0}
 
@@ -253,6 +253,16 @@ class Simulation:
         self._spans = self._spans_until(time)
         self._spans[-1].solver.state(time, self.vector)
         self._diagnosed_tick = None
+
+    def _note_events(self, before):
+        """Append the events after `before` (s) up to now, in the order of their times."""
+        now = self.time
+        for k, span in enumerate(self._spans):
+            end = self._spans[k + 1].time if k + 1 < len(self._spans) else now
+            if end > before:
+                for time, name, values in span.solver.events(max(span.time, before), min(end, now)):
+                    tick = self._origin + math.ceil(time * self.rate)
+                    self.events.append(Event(min(tick, self.tick), time, name, values))
 
     def _spans_until(self, time):
         """Return the spans up to a time, with the scene's strikes on the way."""

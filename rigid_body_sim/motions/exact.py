@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.motions import bulk
 from rigid_body_sim.specialise import specialise
 
@@ -31,6 +32,7 @@ class Exact:
         started.__dict__.update(self.__dict__)
         started.anchor = np.empty(self.motion.ANCHOR_SIZE)
         self.motion.anchor(self._parameters, vector, started.anchor)
+        started._next_event = None
         return started
 
     def state(self, time, out):
@@ -40,3 +42,21 @@ class Exact:
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times, in any order."""
         self._loops.states(self.anchor, times, out)
+
+    def exchanged(self, time):
+        """Return what effects exchanged with the body from the anchor to a time, shape (5,): rigid_body_sim/exchange.py."""
+        out = np.zeros(EXCHANGE_SIZE)
+        if hasattr(self.motion, 'exchanged'):
+            self.motion.exchanged(self.anchor, time, out)
+        return out
+
+    def events(self, after, until):
+        """Return the (time, name, values) of what happens after one time and not later than another, in order."""
+        found = []
+        while self._next_event is None or self._next_event[0] <= until:
+            if self._next_event is not None:
+                time, code = self._next_event
+                found.append((time, self.motion.EVENTS[code], {}))
+                after = time
+            self._next_event = self.motion.next_event(self.anchor, after)
+        return found
