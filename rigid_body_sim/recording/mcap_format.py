@@ -15,6 +15,7 @@ PRIVATE = 0x80      # opcodes from here on are skipped by every reader
 
 HEAD = struct.Struct('<BQ')
 MESSAGE_HEAD = struct.Struct('<BQHIQQ')
+MESSAGE_FIXED = MESSAGE_HEAD.size - HEAD.size      # bytes of a message's content before its data
 MESSAGE_FIELDS = [('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'), ('sequence', '<u4'), ('log_time', '<u8'), ('publish_time', '<u8')]
 _CHUNK_HEAD = struct.Struct('<QQQII')
 FOOTER_SIZE = HEAD.size + 20 + len(MAGIC)

@@ -107,7 +107,7 @@ def read_metadata_record(stream, contents, name):
         _, length = cursor.numbers('BQ')
         inner = mcap_format.Cursor(cursor.take(length))
         offset, record_length = inner.numbers('QQ')
-        if inner.text() == name and record_length <= _LARGEST_SUMMARY:
+        if inner.text() == name and record_length <= _LARGEST_SUMMARY and offset < os.fstat(stream.fileno()).st_size:
             stream.seek(offset)
             record = stream.read(record_length)
             if record[:1] == bytes([mcap_format.METADATA]):
