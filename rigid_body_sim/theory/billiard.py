@@ -1,0 +1,68 @@
+"""Billiard ball, from slipping to rolling (notes, "Billiard ball slipping -> rolling").
+
+Symbols: a radius (m), mu coefficient of friction, g gravity (m/s^2), h height of the cue above the middle of the ball (m, negative is
+below), v0 speed just after the strike (m/s), omega0 spin just after it (rad/s, positive rolls forward), t time since the strike (s).
+The ball is solid, I = (2/5) M a^2, and runs straight.
+
+Errata: above h = 2 a/5 the notes' time of sliding lacks a factor 1/7 (`onset_of_rolling_above_as_written`).
+"""
+
+import numpy as np
+
+
+def spin_after_strike(v0, h, a):
+    """Return omega0 = M v0 h/I = (5/2) h v0/a^2, rad/s."""
+    return 2.5 * h * v0 / a**2
+
+
+def height_of_natural_roll(a):
+    """Return the height h = 2 a/5 at which the ball rolls at once, m."""
+    return 2.0 * a / 5.0
+
+
+def friction_direction(h, a):
+    """Return -1 where friction holds the ball back (h < 2 a/5), +1 where it drives it on (h > 2 a/5), 0 where there is none."""
+    return np.sign(h - height_of_natural_roll(a))
+
+
+def acceleration(h, a, mu, g):
+    """Return x'' while sliding, -mu g struck below 2 a/5 and +mu g above, m/s^2."""
+    return friction_direction(h, a) * mu * g
+
+
+def angular_acceleration(h, a, mu, g):
+    """Return phi'' while sliding, (5/2) mu g/a struck below 2 a/5 and the opposite above, rad/s^2."""
+    return -friction_direction(h, a) * 2.5 * mu * g / a
+
+
+def onset_of_rolling(v0, h, a, mu, g):
+    """Return when rolling begins, on both sides of 2 a/5: t = 2 |v0 - a omega0|/(7 mu g), s.
+
+    For h = 0 it is 2 v0/(7 mu g), below 2 a/5 it is 2 v0/(7 mu g) (1 - 5 h/(2 a)): right in the notes.
+    """
+    return 2.0 * np.abs(v0 - a * spin_after_strike(v0, h, a)) / (7.0 * mu * g)
+
+
+def onset_of_rolling_above_as_written(v0, h, a, mu, g):
+    """Return what the notes say for h > 2 a/5, 2 v0/(mu g) (5 h/(2 a) - 1), s: seven times too long."""
+    return 2.0 * v0 / (mu * g) * (2.5 * h / a - 1.0)
+
+
+def sliding_speed(t, v0, h, a, mu, g):
+    """Return x' before the onset of rolling, m/s."""
+    return v0 + acceleration(h, a, mu, g) * t
+
+
+def sliding_spin(t, v0, h, a, mu, g):
+    """Return phi' before the onset of rolling, rad/s."""
+    return spin_after_strike(v0, h, a) + angular_acceleration(h, a, mu, g) * t
+
+
+def sliding_distance(t, v0, h, a, mu, g):
+    """Return x before the onset of rolling, m."""
+    return v0 * t + 0.5 * acceleration(h, a, mu, g) * t**2
+
+
+def rolling_speed(v0, h, a):
+    """Return the final speed, (5/7) v0 (1 + h/a), m/s; friction does not enter."""
+    return 5.0 / 7.0 * v0 * (1.0 + h / a)

@@ -1,0 +1,77 @@
+"""Small deviations from rotation about one axis: linearised by numbers from Euler's equations, frequency, growth, the erratum."""
+
+import itertools
+
+import mpmath
+import numpy as np
+import pytest
+
+from rigid_body_sim.theory import asymmetric_top as theory
+from rigid_body_sim.theory import euler_equations, largest_axis
+
+OMEGA0 = 3.0
+
+
+def matrix(I1, I2, I3, rates=theory.linear_rates):
+    """Return A in eta' = A eta."""
+    return np.array([rates(unit, OMEGA0, I1, I2, I3) for unit in np.eye(3)]).T
+
+
+def jacobian(I1, I2, I3):
+    """Return the derivative of Euler's right-hand side at (0, 0, omega0): exact, since it is quadratic."""
+    columns = []
+    for unit in np.eye(3):
+        there, back = (euler_equations.angular_acceleration((I1, I2, I3), np.array([0.0, 0.0, OMEGA0]) + step * unit) for step in (1.0, -1.0))
+        columns.append(0.5 * (there - back))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize('moments', list(itertools.permutations([1.0, 2.0, 2.7])))
+def test_linear_equations_and_their_frequency(moments):
+    A = matrix(*moments)
+    assert pytest.approx(A, abs=1e-14) == jacobian(*moments)
+    squared = theory.frequency_squared(OMEGA0, *moments)
+    assert (A @ A)[:2, :2] == pytest.approx(-squared * np.eye(2), abs=1e-13)
+    stable = moments[2] != 2.0
+    assert (squared > 0.0) == stable
+    if stable:
+        assert np.max(np.abs(np.linalg.eigvals(A).imag)) == pytest.approx(theory.frequency(OMEGA0, *moments), rel=1e-14)
+    else:
+        assert np.max(np.linalg.eigvals(A).real) == pytest.approx(theory.growth_rate(OMEGA0, *moments), rel=1e-14)
+        ratio = theory.growing_ratio(*moments)
+        assert A @ [1.0, ratio, 0.0] == pytest.approx(theory.growth_rate(OMEGA0, *moments) * np.array([1.0, ratio, 0.0]), rel=1e-14)
+
+
+def test_tennis_racket_by_hand():
+    """Moments 1, 3 across and 2 along omega0 = 3: Omega^2 = 9 (1)(-1)/3 = -3."""
+    assert theory.growth_rate(OMEGA0, 1.0, 3.0, 2.0) == pytest.approx(3.0**0.5, rel=1e-15)
+
+
+def test_erratum():
+    """I1 = 1, I2 = 3: as written the frequency is too large by sqrt(3), and the equations are not Euler's."""
+    assert np.abs(matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written) - jacobian(1.0, 3.0, 2.0)).max() > 1.0
+    written = matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written)
+    squared = theory.frequency_squared_as_written(OMEGA0, 1.0, 3.0, 2.0)
+    assert (written @ written)[0, 0] == pytest.approx(-squared, rel=1e-14)
+    assert squared / theory.frequency_squared(OMEGA0, 1.0, 3.0, 2.0) == pytest.approx(3.0, rel=1e-14)
+
+
+def test_least_energy_is_about_the_largest_axis():
+    """Over directions of m at fixed L: never below the least, never above the greatest, both reached; the excess is their difference."""
+    moments, L = np.array([1.0, 3.0, 2.0]), 5.0
+    m = np.random.default_rng(1).normal(size=(20000, 3))
+    m *= L / np.linalg.norm(m, axis=1)[:, None]
+    T = largest_axis.energy(moments, m)
+    least, greatest = largest_axis.least_energy(moments, L), largest_axis.greatest_energy(moments, L)
+    assert (least, greatest) == pytest.approx((25.0 / 6.0, 12.5), rel=1e-15)
+    assert least <= T.min() < 1.001 * least
+    assert 0.999 * greatest < T.max() <= greatest
+    assert largest_axis.energy(moments, [0.0, L, 0.0]) == pytest.approx(least, rel=1e-15)
+    assert largest_axis.excess_energy(moments, m) == pytest.approx(T - least, abs=1e-13)
+
+
+def test_excess_energy_does_not_cancel():
+    m = np.array([1e-9, 5.0, 2e-10])
+    with mpmath.workdps(40):
+        exact = sum(mpmath.mpf(x) ** 2 * (1 / mpmath.mpf(moment) - 1 / mpmath.mpf(3)) for x, moment in zip(m, (1, 3, 2))) / 2
+    assert largest_axis.excess_energy(np.array([1.0, 3.0, 2.0]), m) == pytest.approx(float(exact), rel=1e-15, abs=0.0)
