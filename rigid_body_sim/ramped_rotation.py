@@ -69,7 +69,7 @@ def _turn_polynomial(axis_polynomial, n):
 
 
 def _tables():
-    """Return the coefficients of p_n in powers of x^2 (for even n a factor x is taken out) and of r_n for odd n, with the signs of i^(n-1)."""
+    """Return the coefficients of p_n in powers of x^2 (even n: without a factor x) and of r_n for odd n, with the signs of i^(n-1)."""
     axis, turn = np.zeros((TERMS, (TERMS + 1) // 2)), np.zeros((TERMS, 2 * TERMS))
     for index, polynomial in enumerate(_axis_polynomials()):
         sign = -1 if index % 4 >= 2 else 1

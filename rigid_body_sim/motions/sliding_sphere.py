@@ -7,7 +7,7 @@ e = u/|u|.
 While u != 0 the table pushes with -mu M g e, so v' = -mu g e, a omega' = (mu g/k) z x e, u' = -mu g (1 + 1/k) e: the slip keeps its
 direction and dies at the onset of rolling,
 
-    t_r = k |u0|/((1 + k) mu g),  v_r = (v0 + k a omega0 x z)/(1 + k)   (notes, solid: t = 2 |v0 - a omega0|/(7 mu g), v = 5 v0 (1 + h/a)/7).
+    t_r = k |u0|/((1 + k) mu g),  v_r = (v0 + k a omega0 x z)/(1 + k)   (solid: t = 2 |v0 - a omega0|/(7 mu g), v = 5 v0 (1 + h/a)/7).
 
 From there on v and omega are constant and the slip is exactly zero. Spin about the vertical is untouched. While sliding omega runs along
 a straight line, so the attitude is a ramped rotation (rigid_body_sim/ramped_rotation.py): elementary without side spin, else
