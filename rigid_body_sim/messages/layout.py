@@ -26,7 +26,8 @@ NANOSECONDS = 1_000_000_000
 class Layout:
     """The layout of all messages of a type that have the string and sequence lengths of `sample` (its bytes).
 
-    Attributes: `size` in bytes; `leaves`, see :func:`rigid_body_sim.messages.cdr.decode`; `dtype`, a numpy view of one message.
+    Attributes: `size` in bytes; `leaves`, see :func:`rigid_body_sim.messages.cdr.decode`; `dtype`, a numpy view of one message;
+    `components` maps a column that is a struct of doubles to the names of its numbers.
     """
 
     def __init__(self, schemas, type_name, sample):
@@ -34,7 +35,7 @@ class Layout:
         self.leaves = []
         cdr.decode(schemas, type_name, sample, self.leaves)
         self.size = len(sample)
-        self._times = []
+        self._times, self.components = [], {}
         fields = self._fields()
         self.dtype = np.dtype({'names': [name for name, _, _ in fields], 'formats': [form for _, form, _ in fields],
                                'offsets': [offset for _, _, offset in fields], 'itemsize': self.size})
@@ -44,24 +45,25 @@ class Layout:
 
     def _fields(self):
         """Return (column, numpy format, offset) for each column, whole structs of doubles as one."""
-        siblings = {}
+        siblings, sequences = {}, {path for path, code, _, _ in self.leaves if code == '#'}
         for path, code, _, count in self.leaves:
             siblings.setdefault(path.rpartition('.')[0], []).append((code, count))
-        fields, groups = [], {}
+        fields = []
         for path, code, offset, count in self.leaves:
             parent, _, last = path.rpartition('.')
             if code == '#' or count == 0:
                 continue
             if parent and len(siblings[parent]) > 1 and all(leaf == ('d', 1) for leaf in siblings[parent]):
-                if parent not in groups:
-                    groups[parent] = True
+                if parent not in self.components:
+                    self.components[parent] = []
                     fields.append((parent, ('<f8', (len(siblings[parent]),)), offset))
+                self.components[parent].append(last)
             elif siblings[parent] == [('i', 1), ('I', 1)] and last == 'sec' and parent:
                 self._times.append(parent)
                 fields.append((path, '<i4', offset))
             else:
-                kind = f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, (count,) if count > 1 or path in _sequences(self.leaves) else ())
-                fields.append((path, kind, offset))
+                shape = (count,) if count > 1 or path in sequences else ()
+                fields.append((path, f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, shape), offset))
         return fields
 
     @property
@@ -97,10 +99,6 @@ class Layout:
             view[f'{name}.sec'], view[f'{name}.nanosec'] = np.divmod(values, NANOSECONDS)
         else:
             view[name] = values
-
-
-def _sequences(leaves):
-    return {path for path, code, _, _ in leaves if code == '#'}
 
 
 class Packer:

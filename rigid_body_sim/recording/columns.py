@@ -23,6 +23,11 @@ class Decoder:
         """Return one message (bytes) as a nested dict."""
         return cdr.decode(self._schemas, self.type_name, data)
 
+    @property
+    def components(self):
+        """Names of the numbers of columns that are structs of doubles, known once columns were decoded."""
+        return {name: names for layout in self._layouts for name, names in layout.components.items()}
+
     def columns(self, records, offsets, lengths, names=None):
         """Return the columns of messages whose records begin at `offsets` and have `lengths` (of their content), all arrays of n rows.
 

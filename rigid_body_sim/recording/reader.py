@@ -93,7 +93,7 @@ class Recording:
         found = next(filter(None, (file.metadata('rigid_body_sim') for file in self._files)), custom)
         if not found:
             begin = next((entry for entry in self.journal() if entry['kind'] == 'begin'), {})
-            found = {key: value for key, value in begin.items() if isinstance(value, str) and key not in ('kind', 'topic')}
+            found = {key: value for key, value in begin.items() if isinstance(value, str) and key != 'kind'}
         return found
 
     def topic(self, name):

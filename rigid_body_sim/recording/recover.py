@@ -10,10 +10,12 @@ import fcntl
 import os
 import pathlib
 import re
+import sys
 
 import numpy as np
 import yaml
 
+from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import mcap_format, metadata
 from rigid_body_sim.recording.mcap_file import PackedChunk, index_messages
@@ -208,3 +210,29 @@ def _write_metadata(path, names, found):
             metadata.write(folder, bag)
         finally:
             os.close(folder)
+
+
+def main(arguments=None):
+    """Run the command; return the exit status."""
+    parser = command_line.parser('recover', 'Make a recording whole that a kill, a full disk or a power cut left cut.',
+                                 'python -m rigid_body_sim recover recordings/racket')
+    parser.add_argument('recording', nargs='+', help='folder of a recording, or one of its .mcap files')
+    parser.add_argument('--json', action='store_true', help='machine-readable')
+    return command_line.run(_run, parser.parse_args(arguments))
+
+
+def _run(options):
+    try:
+        results = [result for path in options.recording for result in recover(path)]
+    except OSError as error:
+        print(f'{error.filename or "recover"}: the disk refuses ({error.strerror}); make room and run it again', file=sys.stderr)
+        return command_line.CHECK_FAILED
+    if options.json:
+        command_line.print_json([{**dataclasses.asdict(result), 'path': str(result.path)} for result in results])
+    else:
+        print(*results, sep='\n')
+    return command_line.GOOD
+
+
+if __name__ == '__main__':
+    sys.exit(main())
