@@ -1,0 +1,145 @@
+"""Heavy symmetric top with a fixed point, in closed form over any time (notes, "Symmetric Top" to "Fast top").
+
+Absorbs: constraint pivot (the body's origin stays where it is), gravity or none, a body with two equal moments about the pivot and its
+centre of mass on the third axis. Spherical tops, thin rods (the spherical pendulum), hanging and standing tops, and tops without weight are
+ordinary cases.
+
+Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the pivot; I1, I1, I3 moments about the pivot; k = M g h/I1;
+n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the vertical, u = cos(beta).
+
+A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate omega_3 - n = omega_3 (I1 - I3)/I1, so I3 enters
+nowhere else. The attitude is a pair of complex numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2,
+|b|^2 = (1 - u)/2, |a|^2 + |b|^2 = 1), so nothing happens at beta = 0 and pi where Euler's angles fail. a, b and omega_c = omega_2 - i omega_1
+are single-valued functions of time: a theta quotient times a phase that grows steadily (lagrange_top_theta.py), and with the same phases
+
+    omega_c = (c + i u')/(1 - u^2) gamma_c,     gamma_c = 2 i conj(a) b,     c = omega_c . gamma_c        (gamma: the vertical in body axes).
+
+At u1 and u2 (lagrange_top_roots.py) u' = 0: there arg(a)' = sigma/(2 x), arg(b)' = delta/(2 y), which gives the rates of the phases as sums of
+terms of one sign.
+
+Kernels besides those of every motion: `turning_index`, `turning_time` (where the axis turns between rising and falling), `reaction`.
+"""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim import bodies
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.motions.lagrange_top_anchor import HALF_PERIOD, INVERSE, NUTATION_SIZE, PARITY, PHASE, RATE, anchor_nutation, functions
+from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
+
+# layout of the parameters: M, g, h, M g h/I1, I3/I1, (I1 - I3)/I1, quaternion that turns the top's axes (third: e3) into the body's
+MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = range(7)
+PARAMETER_SIZE = 10
+
+# layout of the anchor: functions of time, then what is constant
+TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE + 2, NUTATION_SIZE + 6
+ANCHOR_SIZE = NUTATION_SIZE + 9
+
+
+def absorbs(scene):
+    """Return whether the scene is a symmetric body on a pivot under its weight alone; symmetric means exactly so (see `symmetry_axis`)."""
+    return (scene.constraint.kind == 'pivot' and all(effect.name in ('gravity', 'strike') for effect in scene.effects)
+            and symmetry_axis(scene.body) is not None)
+
+
+def symmetry_axis(body):
+    """Return the number (0, 1, 2) of the principal axis that is e3, and the quaternion that turns the top's axes into the body's; or None.
+
+    Two moments about the origin must be the same double and the centre of mass must lie on the third axis: to the last bit where principal
+    axes and body axes coincide up to order and sign, else to the rounding of the turn between them. e3 points towards the centre of mass.
+    """
+    moments, axes, center = body.about_origin.moments, body.about_origin.axes, body.center_of_mass
+    distance = math.hypot(*center)
+    if moments[0] == moments[1] == moments[2]:
+        return 2, _turn_to(*(component / distance for component in center)) if distance > 0.0 else bodies.IDENTITY
+    local = rotate_back(*axes, *center)
+    slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else bodies.ULPS * distance
+    for k, order in enumerate(((0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY)):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if moments[i] == moments[j] and max(abs(local[i]), abs(local[j])) <= slack:
+            upside_down = (1.0, 0.0, 0.0, 0.0) if local[k] < 0.0 else bodies.IDENTITY
+            return k, multiply(*axes, *multiply(*order, *upside_down))
+    return None
+
+
+def _turn_to(x, y, z):
+    """Return a quaternion that turns the third axis into the unit vector (x, y, z)."""
+    if z < 0.0:
+        return multiply(*normalised(y, -x, 0.0, 1.0 - z), 1.0, 0.0, 0.0, 0.0)      # -z into it, after z into -z
+    return normalised(-y, x, 0.0, 1.0 + z)
+
+
+def parameters(scene):
+    """Return the numbers of the scene, shape (10,): layout above."""
+    body, gravity = scene.body, scene.effect('gravity')
+    axis, frame = symmetry_axis(body)
+    I1, I3 = body.about_origin.moments[(axis + 1) % 3], body.about_origin.moments[axis]
+    g, arm = gravity.g if gravity else 0.0, math.hypot(*body.center_of_mass)
+    return np.array([body.mass, g, arm, body.mass * g * arm / I1, I3 / I1, (I1 - I3) / I1, *frame])
+
+
+@compiled
+def anchor(parameters, start, anchor):
+    """Fill the anchor from the state `start`."""
+    fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
+    x, y, z, w = multiply(start[1], start[2], start[3], start[4], fx, fy, fz, fw)
+    x, y, z, w = normalised(x, y, z, w)
+    omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, start[5], start[6], start[7])
+    anchor_nutation(w, z, y, -x, omega_2, -omega_1, parameters[RATIO] * omega_3, parameters[PULL], parameters[EXCESS] * omega_3, anchor)
+    anchor[TIME], anchor[SPIN] = start[0], omega_3
+    anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3] = fx, fy, fz, fw
+    anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2] = start[8], start[9], start[10]
+
+
+@compiled
+def state(anchor, time, out):
+    """Fill out with the state at a time."""
+    a_re, a_im, b_re, b_im, o_re, o_im = functions(anchor, time - anchor[TIME])
+    fx, fy, fz, fw = anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3]
+    x, y, z, w = multiply(-b_im, b_re, a_im, a_re, -fx, -fy, -fz, fw)
+    out[0] = time
+    out[1], out[2], out[3], out[4] = normalised(x, y, z, w)
+    out[5], out[6], out[7] = rotate(fx, fy, fz, fw, -o_im, o_re, anchor[SPIN])
+    out[8], out[9], out[10] = anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2]
+    out[11], out[12], out[13] = 0.0, 0.0, 0.0
+
+
+@compiled
+def turning_index(anchor, time):
+    """Return the number (a whole float) of the last turning point of beta at or before a time; even: lowest, odd: highest position of e3.
+
+    The turning points in (t1, t2] are those after turning_index(t1) up to turning_index(t2). In steady precession the number never changes.
+    """
+    phase = anchor[PHASE] + anchor[RATE] * (time - anchor[TIME])
+    if anchor[INVERSE] == 0.0:
+        return 0.0 if phase >= 0.0 else -1.0
+    return math.floor(phase * anchor[INVERSE]) + anchor[PARITY]
+
+
+@compiled
+def turning_time(anchor, index):
+    """Return the time (s) of a turning point of beta by its number, infinite if the motion has no such one."""
+    half_periods = index - anchor[PARITY]
+    if anchor[RATE] == 0.0 or (anchor[INVERSE] == 0.0 and half_periods != 0.0):
+        return math.inf
+    return anchor[TIME] + (half_periods * anchor[HALF_PERIOD] - anchor[PHASE]) / anchor[RATE]
+
+
+@compiled
+def reaction(parameters, state, out):
+    """Fill out, shape (3,), with the force of the pivot on the body (N, world axes): M (acceleration of the centre of mass + g z).
+
+    There is no couple. With c = h e3, I1 omega' = ... by Euler's equations: c'' = h (omega' x e3 + omega x (omega x e3)).
+    """
+    fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
+    x, y, z, w = multiply(state[1], state[2], state[3], state[4], fx, fy, fz, fw)
+    omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, state[5], state[6], state[7])
+    gamma_1, gamma_2, _ = rotate_back(x, y, z, w, 0.0, 0.0, 1.0)
+    rise_1 = parameters[EXCESS] * omega_2 * omega_3 + parameters[PULL] * gamma_2
+    rise_2 = -parameters[EXCESS] * omega_1 * omega_3 - parameters[PULL] * gamma_1
+    push = parameters[MASS] * parameters[ARM]
+    force_x, force_y, force_z = rotate(x, y, z, w, push * (rise_2 + omega_1 * omega_3), push * (omega_2 * omega_3 - rise_1),
+                                       -push * (omega_1 * omega_1 + omega_2 * omega_2))
+    out[0], out[1], out[2] = force_x, force_y, force_z + parameters[MASS] * parameters[GRAVITY]
