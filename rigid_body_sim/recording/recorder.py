@@ -260,7 +260,10 @@ class Recorder:
             return Status(report.recorded, report.written, dropped, self._lost, self._waiting_size, self._restarts, error, report.closed)
 
     def close(self, timeout=30.0):
-        """End the recording: send all that waits, let the recorder finish. Returns the last Status, whose `closed` says whether it is complete."""
+        """End the recording: send all that waits, let the recorder finish; one that takes longer than `timeout` (s) finishes on its own.
+
+        Returns the last Status, whose `closed` says whether the recording is complete.
+        """
         with self._keeping:
             deadline = time.monotonic() + timeout
             while time.monotonic() < deadline and not self._report.closed:
@@ -270,9 +273,6 @@ class Recorder:
                     if self._report.error:
                         break
                 time.sleep(0.005)
-            if self._process.poll() is None:
-                self._process.kill()
-            self._process.wait()
             self._close_pipes()
         return self._status()
 
