@@ -170,7 +170,10 @@ class Recording:
             yield message.log_time, decoder.decode(message.data)
 
     def journal(self):
-        """Return the entries of the journal in order: dicts with ``kind``, what the recorder wrote, and ``log_time``; [] in foreign recordings."""
+        """Return the entries of the journals in order: dicts with ``kind``, what the recorder wrote, ``log_time`` and ``topic``.
+
+        [] in foreign recordings.
+        """
         entries = []
         for name, topic in self.topics.items():
             if name.rpartition('/')[2] == 'journal' and topic.type == 'std_msgs/msg/String':
@@ -180,7 +183,7 @@ class Recording:
                     except ValueError:
                         continue
                     if isinstance(entry, dict) and isinstance(entry.get('kind'), str):
-                        entries.append({**entry, 'log_time': log_time})
+                        entries.append({**entry, 'log_time': log_time, 'topic': name})
         return entries
 
 
