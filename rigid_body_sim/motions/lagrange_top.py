@@ -26,7 +26,8 @@ import numpy as np
 
 from rigid_body_sim import bodies
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.motions.lagrange_top_anchor import HALF_PERIOD, INVERSE, NUTATION_SIZE, PARITY, PHASE, RATE, anchor_nutation, functions
+from rigid_body_sim.double_double import two_sum
+from rigid_body_sim.motions.lagrange_top_anchor import NEVER, NUTATION_SIZE, PARITY, RATE, START, STRETCH, anchor_nutation, functions
 from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
 
 # layout of the parameters: M, g, h, M g h/I1, I3/I1, (I1 - I3)/I1, quaternion that turns the top's axes (third: e3) into the body's
@@ -96,7 +97,8 @@ def anchor(parameters, start, anchor):
 @compiled
 def state(anchor, time, out):
     """Fill out with the state at a time."""
-    a_re, a_im, b_re, b_im, o_re, o_im = functions(anchor, time - anchor[TIME])
+    elapsed, elapsed_low = two_sum(time, -anchor[TIME])
+    a_re, a_im, b_re, b_im, o_re, o_im = functions(anchor, elapsed, elapsed_low)
     fx, fy, fz, fw = anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3]
     x, y, z, w = multiply(-b_im, b_re, a_im, a_re, -fx, -fy, -fz, fw)
     out[0] = time
@@ -112,19 +114,16 @@ def turning_index(anchor, time):
 
     The turning points in (t1, t2] are those after turning_index(t1) up to turning_index(t2). In steady precession the number never changes.
     """
-    phase = anchor[PHASE] + anchor[RATE] * (time - anchor[TIME])
-    if anchor[INVERSE] == 0.0:
-        return 0.0 if phase >= 0.0 else -1.0
-    return math.floor(phase * anchor[INVERSE]) + anchor[PARITY]
+    return math.floor(2.0 * (anchor[START] + anchor[RATE] * (time - anchor[TIME]))) + anchor[PARITY]
 
 
 @compiled
 def turning_time(anchor, index):
     """Return the time (s) of a turning point of beta by its number, infinite if the motion has no such one."""
-    half_periods = index - anchor[PARITY]
-    if anchor[RATE] == 0.0 or (anchor[INVERSE] == 0.0 and half_periods != 0.0):
+    turns = 0.5 * (index - anchor[PARITY])
+    if anchor[RATE] == 0.0 or (turns != 0.0 and anchor[STRETCH] >= NEVER):
         return math.inf
-    return anchor[TIME] + (half_periods * anchor[HALF_PERIOD] - anchor[PHASE]) / anchor[RATE]
+    return anchor[TIME] + (turns - anchor[START]) / anchor[RATE]
 
 
 @compiled

@@ -37,35 +37,42 @@ from rigid_body_sim.motions.lagrange_top_roots import (
     turning_points,
 )
 from rigid_body_sim.motions.lagrange_top_theta import FORM_SIZE, circular, hyperbolic, set_circular, set_hyperbolic, set_nome
+from rigid_body_sim.turns import nearest, phase, sin_cos
 
-# layout: the theta functions; phase of nutation, phases of a and b: value at the start, rate
-PHASE, RATE, HALF_PERIOD, INVERSE, PARITY = range(FORM_SIZE, FORM_SIZE + 5)
-PHASE_A, RATE_A, SHIFT_A, PHASE_B, RATE_B, SHIFT_B = range(FORM_SIZE + 5, FORM_SIZE + 11)
-IS_HYPERBOLIC, SIDE, WINDING = range(FORM_SIZE + 11, FORM_SIZE + 14)
-NUTATION_SIZE = FORM_SIZE + 14
+# layout: the theta functions; phase of nutation (a turn is a period) and phases of a and b (turns): value at the start, rate
+START, RATE, START_A, RATE_A, START_B, RATE_B = range(FORM_SIZE, FORM_SIZE + 6)
+# hyperbolic phase per turn of nutation; phases of a and b (turns) per unit of it; 1 for an odd position at the start; see `functions`
+IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING = range(FORM_SIZE + 6, FORM_SIZE + 13)
+NUTATION_SIZE = FORM_SIZE + 13
 
-QUARTER_TURN = 0.5 * math.pi
-TINY = 1e-60        # a tilt and swing below this follow linear equations, to far below round-off
+QUARTER_TURN, TURNS = 0.5 * math.pi, 0.5 / math.pi
+TINY = 1e-60            # a tilt and swing below this follow linear equations, to far below round-off
+NEVER = 2.0 ** 200      # stands for the half period on the separatrix
 
 
 @compiled
-def functions(anchor, elapsed):
-    """Return real and imaginary part of a, b and omega_c at a time (s) from the start, the steady spin omega_3 - n included."""
-    phase = anchor[PHASE] + anchor[RATE] * elapsed
-    phase_a = anchor[PHASE_A] + anchor[RATE_A] * elapsed
-    phase_b = anchor[PHASE_B] + anchor[RATE_B] * elapsed
+def functions(anchor, time, time_low):
+    """Return real and imaginary part of a, b and omega_c at a time (s) after the start, the steady spin omega_3 - n included."""
+    turns, low = phase(anchor[RATE], 0.0, time, time_low)
+    turns += anchor[START]
+    turns -= nearest(turns)
+    turns_a, low_a = phase(anchor[RATE_A], 0.0, time, time_low)
+    turns_b, low_b = phase(anchor[RATE_B], 0.0, time, time_low)
+    turns_a, turns_b = turns_a + anchor[START_A], turns_b + anchor[START_B]
     if anchor[IS_HYPERBOLIC] == 0.0:
-        c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, phase)
-        turn_re = c1 if anchor[WINDING] != 0.0 else 1.0
-        turn_im = anchor[WINDING] * s1
+        c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, turns, low)
+        turn_re, turn_im = c1 if anchor[WINDING] != 0.0 else 1.0, anchor[WINDING] * s1
     else:
-        half_periods = math.floor(phase * anchor[INVERSE] + 0.5)
-        phase_a += half_periods * anchor[SHIFT_A]
-        phase_b += half_periods * anchor[SHIFT_B]
-        odd = half_periods - 2.0 * math.floor(0.5 * half_periods)
-        ar, ai, br, bi, wr, wi = hyperbolic(anchor, phase - half_periods * anchor[HALF_PERIOD], odd != anchor[PARITY])
+        # half a period on, the highest position stands for the lowest; the phases' mean rates are in RATE_A, RATE_B
+        half_turns = nearest(2.0 * turns)
+        odd = abs(half_turns)
+        along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + low)
+        turns_a -= anchor[DRIFT_A] * along
+        turns_b -= anchor[DRIFT_B] * along
+        ar, ai, br, bi, wr, wi = hyperbolic(anchor, along, odd != anchor[PARITY])
         turn_re, turn_im = 1.0 - 2.0 * odd * anchor[WINDING], 0.0
-    ca, sa, cb, sb = math.cos(phase_a), math.sin(phase_a), math.cos(phase_b), math.sin(phase_b)
+    sa, ca = sin_cos(turns_a, low_a)
+    sb, cb = sin_cos(turns_b, low_b)
     # omega_c: i SIDE conj(e_a) e_b times the winding
     cd, sd = anchor[SIDE] * (ca * cb + sa * sb), anchor[SIDE] * (ca * sb - sa * cb)
     to_re, to_im = -(sd * turn_re + cd * turn_im), cd * turn_re - sd * turn_im
@@ -103,21 +110,29 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
         _circular(roots, n, k, for_a, for_b, scale, side_a, side_b, side_w, anchor)
     else:
         _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor)
-    anchor[RATE_A] += 0.5 * own_spin
-    anchor[RATE_B] -= 0.5 * own_spin
+    anchor[RATE_A] = TURNS * (anchor[RATE_A] + 0.5 * own_spin)
+    anchor[RATE_B] = TURNS * (anchor[RATE_B] - 0.5 * own_spin)
 
     # phases at the start: from those two of the three functions that are farthest from their zeros there
-    anchor[PHASE_A], anchor[PHASE_B] = 0.0, 0.0
-    ar, ai, br, bi, wr, wi = functions(anchor, 0.0)
-    phase_a = math.atan2(a_im, a_re) - math.atan2(ai, ar)
-    phase_b = math.atan2(b_im, b_re) - math.atan2(bi, br)
-    phase_w = math.atan2(o_im, o_re) - math.atan2(wi, wr)
+    anchor[START_A], anchor[START_B] = 0.0, 0.0
+    ar, ai, br, bi, wr, wi = functions(anchor, 0.0, 0.0)
+    phase_a, phase_b, phase_w = _angle(a_re, a_im, ar, ai), _angle(b_re, b_im, br, bi), _angle(o_re, o_im, wr, wi)
     share_a, share_b, share_w = quotient(roots[X], roots[X2]), quotient(roots[Y], roots[Y1]), quotient(roots[W], roots[W1])
     if share_a < min(share_b, share_w):
         phase_a = phase_b - phase_w
     elif share_b < min(share_a, share_w):
         phase_b = phase_a + phase_w
-    anchor[PHASE_A], anchor[PHASE_B] = phase_a, phase_b
+    anchor[START_A], anchor[START_B] = phase_a - nearest(phase_a), phase_b - nearest(phase_b)
+
+
+@compiled
+def _angle(to_re, to_im, from_re, from_im):
+    """Return the angle (turns) from one complex number to another; their moduli may be as small as doubles go."""
+    to, back = max(abs(to_re), abs(to_im)), max(abs(from_re), abs(from_im))
+    if to == 0.0 or back == 0.0:
+        return 0.0
+    to_re, to_im, from_re, from_im = to_re / to, to_im / to, from_re / back, from_im / back
+    return TURNS * math.atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
 
 
 @compiled
@@ -153,23 +168,22 @@ def _shifts(roots, k):
 def _circular(roots, n, k, for_a, for_b, scale, side_a, side_b, side_w, anchor):
     gap, wide = roots[GAP], roots[WIDE]
     modulus, complement = math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)
-    per_argument = QUARTER_TURN / complete_k(complement)
+    per_argument = math.pi / complete_k(complement)         # 2v of an argument of Jacobi's functions
     set_nome(nome(modulus, complement), anchor)
     A, B, C_ = _shifts(roots, k)
     rate = 0.5 * math.sqrt(wide) * per_argument if roots[STEADY] == 0.0 else 0.0
-    slope_a = set_circular(anchor, 0, math.exp(-2.0 * per_argument * A), -1.0, side_a, for_a * math.sqrt(0.5 * roots[X2]))
-    slope_b = set_circular(anchor, 1, math.exp(-2.0 * per_argument * B), 1.0, side_b, for_b * math.sqrt(0.5 * roots[Y1]))
-    slope_w = set_circular(anchor, 2, math.exp(-2.0 * per_argument * C_), 1.0, side_w, scale * math.sqrt(roots[W1]))
+    slope_a = set_circular(anchor, 0, math.exp(-per_argument * A), -1.0, side_a, for_a * math.sqrt(0.5 * roots[X2]))
+    slope_b = set_circular(anchor, 1, math.exp(-per_argument * B), 1.0, side_b, for_b * math.sqrt(0.5 * roots[Y1]))
+    slope_w = set_circular(anchor, 2, math.exp(-per_argument * C_), 1.0, side_w, scale * math.sqrt(roots[W1]))
     anchor[RATE_A] = 0.5 * quotient(roots[SIGMA], roots[X2]) + rate * slope_a
     anchor[RATE_B] = 0.5 * quotient(roots[DELTA], roots[Y1]) + rate * slope_b
     at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))        # arg(omega_c)' at u1
-    anchor[WINDING] = math.floor(quotient(at_lowest + rate * slope_w - anchor[RATE_B] + anchor[RATE_A], 2.0 * rate) + 0.5)
-    anchor[PHASE] = 0.0
+    anchor[WINDING] = nearest(quotient(at_lowest + rate * slope_w - anchor[RATE_B] + anchor[RATE_A], rate))
+    argument = 0.0
     if gap > 0.0:
-        argument = math.sqrt(roots[LOWER]) * carlson_rf(roots[UPPER], roots[ABOVE] * gap / wide, gap)
-        anchor[PHASE] = math.copysign(per_argument * argument, roots[RISE])
-    anchor[RATE], anchor[HALF_PERIOD], anchor[INVERSE], anchor[PARITY] = rate, QUARTER_TURN, 1.0 / QUARTER_TURN, 0.0
-    anchor[SHIFT_A], anchor[SHIFT_B], anchor[IS_HYPERBOLIC] = 0.0, 0.0, 0.0
+        argument = math.copysign(math.sqrt(roots[LOWER]) * carlson_rf(roots[UPPER], roots[ABOVE] * gap / wide, gap), roots[RISE])
+    anchor[START], anchor[RATE], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURNS * per_argument * argument, TURNS * rate, 0.0, 0.0
+    anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 0.0, 0.0, 0.0
 
 
 @compiled
@@ -177,12 +191,8 @@ def _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor):
     gap, wide, narrow, lower, upper = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER]
     complement = scale * math.sqrt(narrow / wide)
     per_argument = QUARTER_TURN / complete_k(math.sqrt(2.0 * k * gap / wide))
-    anchor[HALF_PERIOD], anchor[INVERSE] = 0.0, 0.0         # on the separatrix there is no second turning point
-    root_nome = 0.0
-    if complement > 0.0:
-        anchor[HALF_PERIOD] = per_argument * complete_k(complement)
-        anchor[INVERSE] = 1.0 / anchor[HALF_PERIOD]
-        root_nome = math.exp(-anchor[HALF_PERIOD])
+    half_period = per_argument * complete_k(complement) if complement > 0.0 else NEVER
+    root_nome = math.exp(-half_period)
     set_nome(root_nome * root_nome, anchor)
     A, B, C_ = _shifts(roots, k)
     A, B, C_ = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN), min(per_argument * C_, QUARTER_TURN)
@@ -190,11 +200,13 @@ def _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor):
     slope_a = set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root_nome)
     slope_b = set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root_nome)
     set_hyperbolic(anchor, 2, C_, 1.0, side_w, math.sqrt(roots[W1]), root_nome)
-    anchor[RATE_A] = 0.5 * roots[SIGMA] / roots[X2] + rate * slope_a
-    anchor[RATE_B] = 0.5 * roots[DELTA] / roots[Y1] + rate * slope_b
-    anchor[SHIFT_A], anchor[SHIFT_B] = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B)
-    # the shift of omega_c is that of b less that of a, up to half a turn
-    half_turns = math.floor((side_w * (QUARTER_TURN - C_) - anchor[SHIFT_B] + anchor[SHIFT_A]) / math.pi + 0.5)
+    # from the lowest to the highest position the phases make a step besides
+    step_a, step_b, step_w = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B), side_w * (QUARTER_TURN - C_)
+    anchor[RATE_A] = 0.5 * roots[SIGMA] / roots[X2] + rate * (slope_a + step_a / half_period)
+    anchor[RATE_B] = 0.5 * roots[DELTA] / roots[Y1] + rate * (slope_b + step_b / half_period)
+    anchor[DRIFT_A], anchor[DRIFT_B], anchor[STRETCH] = TURNS * step_a / half_period, TURNS * step_b / half_period, 2.0 * half_period
+    # the step of omega_c is that of b less that of a, up to half a turn
+    half_turns = nearest((step_w - step_b + step_a) / math.pi)
     anchor[WINDING] = half_turns - 2.0 * math.floor(0.5 * half_turns)
     if scale * upper * math.sqrt(wide) >= math.sqrt(narrow) * lower:     # nearer in time to the lowest position than to the highest
         anchor[PARITY] = 0.0
@@ -203,4 +215,5 @@ def _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor):
         anchor[PARITY] = 1.0
         anchor[SIDE] *= 1.0 - 2.0 * anchor[WINDING]
         argument = -math.copysign(math.sqrt(upper * wide) * carlson_rf(lower * narrow, narrow * gap, gap * roots[ABOVE]), roots[RISE])
-    anchor[PHASE], anchor[RATE], anchor[IS_HYPERBOLIC] = per_argument * argument, rate, 1.0
+    anchor[START], anchor[RATE] = per_argument * argument / anchor[STRETCH], rate / anchor[STRETCH]
+    anchor[IS_HYPERBOLIC] = 1.0

@@ -19,6 +19,7 @@ the lowest and the highest position in turn, so that no term outgrows the leadin
 import math
 
 from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.turns import sin_cos
 
 # layout of what a form takes beside its coefficients
 NOME, NOME2, NOME4, NOME6, NOME9 = range(5)
@@ -42,7 +43,7 @@ def theta_3(q):
 
 @compiled
 def set_circular(form, place, X, sign, orientation, modulus):
-    """Set one function of a circular form and return the phase rate of its periodic part per unit of v, where |S| is largest.
+    """Set one function of a circular form and return how fast the phase of its periodic part grows per growth of 2v, where |S| is largest.
 
     Parameters
     ----------
@@ -63,13 +64,13 @@ def set_circular(form, place, X, sign, orientation, modulus):
     form[at], form[at + 1], form[at + 2], form[at + 3] = scale, sign * scale * (p1 + m1), scale * (p2 + m2), sign * scale * (p3 + m3)
     turned = -orientation * scale
     form[at + 4], form[at + 5], form[at + 6] = sign * turned * (p1 - m1), turned * (p2 - m2), sign * turned * (p3 - m3)
-    return 2.0 * orientation * ((p1 - m1) + 2.0 * (p2 - m2) + 3.0 * (p3 - m3)) / total
+    return orientation * ((p1 - m1) + 2.0 * (p2 - m2) + 3.0 * (p3 - m3)) / total
 
 
 @compiled_inline
-def circular(form, v):
-    """Return cos 2v, sin 2v and real and imaginary part of a, b, omega_c without their phase factors."""
-    c1, s1 = math.cos(2.0 * v), math.sin(2.0 * v)
+def circular(form, turns, low):
+    """Return cos 2v, sin 2v and real and imaginary part of a, b, omega_c without their phase factors; 2v is given in turns."""
+    s1, c1 = sin_cos(turns, low)
     c2, s2 = 1.0 - 2.0 * s1 * s1, 2.0 * s1 * c1
     c3, s3 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
     theta = 1.0 / (1.0 - 2.0 * (form[NOME] * c1 - form[NOME4] * c2 + form[NOME9] * c3))
@@ -81,7 +82,7 @@ def circular(form, v):
 
 @compiled
 def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
-    """Set one function of a hyperbolic form and return the phase rate of its periodic part per unit of the hyperbolic phase.
+    """Set one function of a hyperbolic form and return how fast the phase of its periodic part grows per growth of the hyperbolic phase.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def hyperbolic(form, phase, highest):
     loss = math.expm1(-abs(phase))
     e = 1.0 + loss
     e2 = e * e
-    f = q / e2 if q > 0.0 else 0.0
+    f = q / e2 if e2 > 0.0 else 0.0
     turn = 1.0 if phase >= 0.0 else -1.0
     # products of the nome's powers with 2 cosh, 2 sinh: of odd multiples of the phase (times exp(-|phase|)), and of even ones
     up1, up2, up3, down1, down2 = q * f, q4 * f * f, q9 * f * f * f, q2 * e2 * e2, q6 * e2 * e2 * e2
