@@ -53,6 +53,8 @@ class Exact:
     def events(self, after, until):
         """Return the (time, name, values) of what happens after one time and not later than another, in order."""
         found = []
+        if not hasattr(self.motion, 'next_event'):
+            return found
         while self._next_event is None or self._next_event[0] <= until:
             if self._next_event is not None:
                 time, code = self._next_event
