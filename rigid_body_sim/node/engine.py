@@ -1,0 +1,190 @@
+"""The engine: all the parts of a running node, made from its parameters; the plain and the managed node are two ways to start it."""
+
+import concurrent.futures
+import contextlib
+import gc
+import sys
+
+from std_srvs.srv import SetBool, Trigger
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node.commands import Commands
+from rigid_body_sim.node.diagnostics import Diagnostics
+from rigid_body_sim.node.journal import open_journal
+from rigid_body_sim.node.publishing import Publishing, frames_of
+from rigid_body_sim.node.session import Session
+from rigid_body_sim.node.shutdown import say, tell
+from rigid_body_sim.node.ticking import Followed, Steady, Ticker
+from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.simulation import Simulation
+
+SWITCH_INTERVAL = 1e-4
+"""How long another thread may keep the interpreter from the tick thread, s."""
+ANSWER_WITHIN = 0.2
+"""How long a service waits for the tick that does what it asks, s; later it answers what will happen."""
+STOP_WITHIN = 0.4
+_OF_SIMULATION = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
+
+
+class Engine:
+    """Scene, topics, services, recording and tick thread of one node.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+    settings : parameters.Settings
+    at_end : callable
+        Called in the tick thread when that ends: when the duration is over, or by a failure.
+
+    Raises
+    ------
+    BadInput
+        Before anything runs.
+    """
+
+    def __init__(self, node, settings, at_end):
+        if 'clock' in settings.publish and settings.use_sim_time:
+            raise BadInput('parameter publish', 'got clock together with use_sim_time', 'a node cannot follow the /clock that it publishes')
+        self._node, self._settings = node, settings
+        self.simulation = self._prepare({})
+        scene = self.simulation.scene
+        frames = frames_of(node, settings)
+        self.commands = Commands(node, frames)
+        self.publishing = Publishing(node, settings, frames, scene)
+        settings.refuse_unknown_qos()
+        warm_up(self.simulation)
+        self.journal = open_journal(node, settings, self.simulation, self.publishing, frames)
+        self.session = Session(self.simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
+        source = Followed(node.get_clock()) if settings.use_sim_time else Steady()
+        self.ticker = Ticker(self.session, source, settings.rate, settings.real_time_factor, settings.overrun == 'skip_publish', at_end)
+        self.diagnostics = Diagnostics(node, settings, self.session, self.ticker, self.commands, self.journal)
+        self._services = [node.create_service(Trigger, '~/reset', self._reset), node.create_service(SetBool, '~/pause', self._pause),
+                          node.create_service(Trigger, '~/step', self._step)]
+        self._prepared = None
+        settings.on_change(self._before_change, self._after_change)
+
+    def start(self):
+        """Start ticking."""
+        # what is there now stays: the collector need not look at it again, and its pauses stay short
+        gc.collect()
+        gc.freeze()
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self.ticker.start()
+
+    def _epoch(self):
+        """Return the stamp of tick 0, ns."""
+        return 0 if self._settings.stamp_origin == 'zero' else self._node.get_clock().now().nanoseconds
+
+    def _prepare(self, changes):
+        """Return a simulation as the parameters say, with changes; it may take a while, so it is done before the tick that needs it."""
+        wanted = {name: changes.get(name, self._settings[name]) for name in _OF_SIMULATION}
+        scene = load_scene(wanted['scene'], wanted['scene_overrides'])
+        return Simulation(scene, wanted['integrator'], wanted['accuracy'], wanted['rate'])
+
+    # -- services -----------------------------------------------------------------------------------------------------------------------
+
+    def _reset(self, _, response):
+        future = self.session.request(Session.reset)
+        tick = _result_soon(future)
+        response.success = True
+        response.message = f'the state went back at tick {tick}' if tick is not None else \
+            'the state goes back at the next tick' + (': resume or step' if self.ticker.paused else '')
+        return response
+
+    def _pause(self, request, response):
+        if request.data:
+            self.ticker.pause()
+        else:
+            self.ticker.resume()
+        response.success, response.message = True, 'paused' if request.data else 'running'
+        return response
+
+    def _step(self, _, response):
+        if not self.ticker.paused:
+            response.success, response.message = False, 'the node is running: a step is for a paused one; call ~/pause with data: true first'
+            return response
+        tick = _result_soon(self.ticker.step())
+        response.success, response.message = True, f'tick {tick}' if tick is not None else 'the tick has not been run yet'
+        return response
+
+    # -- parameters ---------------------------------------------------------------------------------------------------------------------
+
+    def _before_change(self, changes):
+        """Refuse changes that cannot be; make ready what takes long."""
+        self._prepared = None
+        if _OF_SIMULATION & set(changes):
+            self._prepared = self._prepare(changes)
+            self.publishing.check_scene(self._prepared.scene)
+            warm_up(self._prepared)
+
+    def _after_change(self, changes):
+        """Have the changes take effect at a tick, where they are recorded."""
+        if not changes:
+            return
+        prepared, self._prepared = self._prepared, None
+        keep_state = not {'scene', 'scene_overrides'} & set(changes)
+        settings = self._settings
+
+        def change(session):
+            if prepared is not None:
+                session.switch(prepared, keep_state)
+            session.command_timeout = settings.command_timeout
+            self.ticker.skip_publish = settings.overrun == 'skip_publish'
+            if {'rate', 'real_time_factor'} & set(changes):
+                self.ticker.pace(settings.rate, settings.real_time_factor)
+            session.note_parameters(changes)
+
+        self.session.request(change)
+
+    # -- the end ------------------------------------------------------------------------------------------------------------------------
+
+    def close(self):
+        """End ticks and recording; return the exit status: 1 after one line if the simulation or the recording failed."""
+        if self.ticker.is_alive():
+            self.ticker.stop()
+            self.ticker.join(STOP_WITHIN)
+        self.journal.close(STOP_WITHIN)
+        failure = self.ticker.failure
+        if failure is not None:
+            say(f'{self._node.get_name()}: tick {self.session.next_tick}: {type(failure).__name__}: {failure}')
+            return 1
+        return 0
+
+    def report(self):
+        """Print how it went."""
+        session, ticker, balance = self.session, self.ticker, self.session.balance
+        ticks, running = ticker.latest
+        late, recording = ticker.lateness.summary(), self.journal.status
+        events = ''.join(f', {count} x {name}' for name, count in sorted(session.event_counts.items()))
+        for line in (
+                f'{self._node.get_fully_qualified_name()}: {self.simulation.scene.name}, {ticks} ticks in {running * 1e-9:.3f} s'
+                f' ({(ticks - 1) / running * 1e9 if running else 0.0:.3f} Hz)',
+                f'  lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; '
+                f'{ticker.overruns} overruns, {ticker.skipped} ticks not published, {ticker.slipped * 1e-9:.3f} s slipped',
+                f'  energy residual {balance["energy_residual"]:.2e}, angular momentum residual {balance["momentum_residual"]:.2e}{events}',
+                f'  recorded {recording.recorded} messages, {recording.dropped} ticks left out: {self.journal.path}' if recording else
+                '  not recorded'):
+            tell(line)
+
+
+def _result_soon(future):
+    """Return the result of a Future, or None if it is not there soon."""
+    try:
+        return future.result(ANSWER_WITHIN)
+    except concurrent.futures.TimeoutError:
+        return None
+
+
+def warm_up(simulation):
+    """Compile or load all that ticks and commands need, on a simulation of its own, so that no tick waits for it."""
+    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate)
+    trial.advance()
+    if trial.scene.accepts_commands:
+        for act in (trial.impulse, trial.hold):
+            with contextlib.suppress(BadInput):
+                act(torque=(1e-9, 1e-9, 1e-9))
+                trial.advance()
+        trial.forget_past()
+        trial.release()
+    trial.ledger()
+    trial.reset()

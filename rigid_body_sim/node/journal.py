@@ -1,0 +1,128 @@
+"""What a node records: the bytes it publishes, every command with the tick at which it took effect, and all that a resimulation needs.
+
+Entries of the journal topic, beside those of the recorder itself: ``state`` (see about.state_entry), ``commands`` (``tick``, and
+``commands``: in their order, with ``topic``, ``frame``, ``force``, ``torque``; a topic ``release`` ends the held wrench), ``reset``
+(``tick``), ``parameters`` (``tick``, ``changed``, and ``scene``, ``simulation``, ``keeps_state`` as they are from that tick on).
+"""
+
+import datetime
+import pathlib
+import time
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages.layout import Packer
+from rigid_body_sim.node.commands import IMPULSE, RELEASE, WRENCH
+from rigid_body_sim.recording import about
+from rigid_body_sim.recording.recorder import Recorder
+from rigid_body_sim.recording.topics import Topic, journal_topic
+from rigid_body_sim.timeline import NANOSECONDS
+
+WRENCH_TYPE = 'geometry_msgs/msg/WrenchStamped'
+
+
+class Journal:
+    """The recording of a node.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+    settings : parameters.Settings
+    simulation : Simulation
+    publishing : publishing.Publishing
+    frames : topics.Frames
+
+    Attributes
+    ----------
+    status : recorder.Status
+        As it was at the last :meth:`look`.
+
+    Raises
+    ------
+    BadInput
+        Where nothing can be recorded.
+    """
+
+    def __init__(self, node, settings, simulation, publishing, frames):
+        self._simulation = simulation
+        journal = journal_topic(node.get_namespace())
+        command_topics = {name: Topic(node.resolve_topic_name(name), WRENCH_TYPE) for name in (WRENCH, IMPULSE)}
+        others = [*publishing.others(), *command_topics.values()]
+        self._command_names = {name: topic.name for name, topic in command_topics.items()}
+        packers = {axes: Packer(WRENCH_TYPE, {'header': {'frame_id': name}}, ('header.stamp', 'wrench'))
+                   for axes, name in (('world', frames.world), ('body', frames.body))}
+        self._pack_command = {axes: packer.pack for axes, packer in packers.items()}
+        ticking = list(zip(publishing.ticking(), publishing.sizes, strict=True))
+        self.path = _free_path(node, settings, simulation.scene.name)
+        self._recorder = Recorder(self.path, ticking, others, journal, about.about('sim_node', simulation, settings.values))
+        self._record_tick = self._recorder.tick
+        self.status = self._recorder.status()
+
+    # -- the tick thread ----------------------------------------------------------------------------------------------------------------
+
+    def tick(self, simulation, stamp, messages):
+        """Record the messages of a tick, and the full state where the recorder wants one."""
+        now = time.time_ns()
+        self._record_tick(stamp, now, messages)
+        if self._recorder.state_wanted:
+            self._recorder.state_wanted = False
+            self._recorder.journal('state', stamp, now, **about.state_entry(simulation.tick, simulation))
+
+    def message(self, topic, stamp, data):
+        """Record a message on `events` or `scene`; it is never lost."""
+        self._recorder.important(topic, stamp, time.time_ns(), data)
+
+    def entry(self, kind, stamp, **values):
+        """Record an entry of the journal; it is never lost."""
+        self._recorder.journal(kind, stamp, time.time_ns(), **values)
+
+    def commands(self, tick, stamp, commands):
+        """Record the commands that took effect at a tick, in their order."""
+        now = time.time_ns()
+        for command in commands:
+            if command is not RELEASE:
+                data = self._pack_command[command.frame](*divmod(stamp, NANOSECONDS), *command.force, *command.torque)
+                self._recorder.important(self._command_names[command.topic], stamp, now, data)
+        self._recorder.journal('commands', stamp, now, tick=tick, commands=[command._asdict() for command in commands])
+
+    # -- the main thread ----------------------------------------------------------------------------------------------------------------
+
+    def look(self):
+        """Look after the recorder, a few times a second."""
+        self.status = self._recorder.status()
+
+    def close(self, timeout):
+        """End the recording; a recorder that takes longer (s) finishes on its own."""
+        self.status = self._recorder.close(timeout)
+
+
+class NoJournal:
+    """Stands for the recording of a node that does not record."""
+
+    path = status = None
+
+    def __getattr__(self, name):
+        return self._nothing
+
+    @staticmethod
+    def _nothing(*_, **__):
+        return None
+
+
+def open_journal(node, settings, simulation, publishing, frames):
+    """Return the Journal of a node, or NoJournal where its parameters say so."""
+    return Journal(node, settings, simulation, publishing, frames) if settings.record else NoJournal()
+
+
+def _free_path(node, settings, scene):
+    """Return the folder of the recording, which does not exist yet; two nodes never get the same one by default."""
+    folder, name = pathlib.Path(settings['recording.directory']), settings['recording.name']
+    if name:
+        if pathlib.Path(name).name != name:
+            raise BadInput('parameter recording.name', f'got {name!r}', 'needs one name; the folder around it is recording.directory')
+        return folder / name
+    who = node.get_fully_qualified_name().strip('/').replace('/', '_')
+    stem = f'{who}_{scene}_{datetime.datetime.now():%Y-%m-%d_%H-%M-%S}'
+    number = 1
+    while (path := folder / (stem if number == 1 else f'{stem}_{number}')).exists():
+        number += 1
+    return path

@@ -1,0 +1,275 @@
+"""The parameters of the node: one table from which they are declared, checked, changed and documented.
+
+rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let a deleted parameter go. So the overrides
+are read here, checked by the same rules that hold later for ``set_parameters``, and declared already converted. The README shows the table;
+``python -m rigid_body_sim.node.parameters`` prints it.
+"""
+
+import dataclasses
+import difflib
+import math
+
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.parameter import Parameter
+
+from rigid_body_sim.errors import BadInput
+
+EXTRA_TOPICS = ('odom', 'imu', 'joint_states', 'reaction', 'marker', 'tf', 'clock')
+STATE_TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """One parameter.
+
+    Attributes
+    ----------
+    name : str
+    default : str, bool, float or tuple of str
+        Its type is the parameter's type; an integer is accepted for a float.
+    about : str
+        One line for `ros2 param describe` and the README.
+    low, high : float
+        Least and largest value of a float, both allowed.
+    choices : tuple of str
+        The words allowed, for a string or for each entry of a list.
+    changeable : bool
+        Whether ``set_parameters`` may change it while the node runs.
+    """
+
+    name: str
+    default: object
+    about: str
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple = ()
+    changeable: bool = False
+
+    @property
+    def kind(self):
+        """The ROS type in words."""
+        return {bool: 'bool', str: 'string', float: 'double', tuple: 'string array'}[type(self.default)]
+
+    @property
+    def limits(self):
+        """What is allowed, in words."""
+        if self.choices:
+            return ', '.join(self.choices)
+        return f'{self.low:g} to {self.high:g}' if isinstance(self.default, float) else ''
+
+    def checked(self, value, where=None):
+        """Return the value with the parameter's type.
+
+        Raises
+        ------
+        BadInput
+            If the type, the range or a word is wrong.
+        """
+        where = where or f'parameter {self.name}'
+        if isinstance(self.default, float):
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
+            if not self.low <= value <= self.high:
+                raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
+            return float(value)
+        if isinstance(self.default, tuple):
+            # an empty list arrives without a type
+            words = () if value is None else value if isinstance(value, (list, tuple)) else None
+            if words is None or not all(isinstance(word, str) for word in words):
+                raise BadInput(where, f'got {value!r}', f'needs a list of words{f", each one of {self.limits}" if self.choices else ""}')
+            for word in words:
+                self._refuse_unknown_word(word, where)
+            return tuple(words)
+        if not isinstance(value, type(self.default)):
+            raise BadInput(where, f'got {value!r}', 'needs true or false' if self.kind == 'bool' else 'needs a text')
+        if isinstance(value, str):
+            self._refuse_unknown_word(value, where)
+        return value
+
+    def _refuse_unknown_word(self, word, where):
+        if self.choices and word not in self.choices:
+            near = difflib.get_close_matches(word, self.choices, 1)
+            raise BadInput(where, f'got {word!r}', f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}')
+
+    def descriptor(self):
+        """Return the ROS descriptor: type, range, whether it can be changed."""
+        # a list is declared before it has its value, so rclpy must not hold it fixed: Settings refuses the change itself
+        fixed = not self.changeable and not isinstance(self.default, tuple)
+        descriptor = ParameterDescriptor(description=self.about, additional_constraints=self.limits, read_only=fixed)
+        if isinstance(self.default, float):
+            descriptor.floating_point_range = [FloatingPointRange(from_value=self.low, to_value=self.high)]
+        return descriptor
+
+    def declare(self, node, value):
+        """Declare the parameter with a checked value."""
+        if isinstance(value, tuple):
+            # rclpy takes an empty list for one of bytes unless the type is said
+            node.declare_parameter(self.name, Parameter.Type.STRING_ARRAY, self.descriptor(), ignore_override=True)
+            node.set_parameters([Parameter(self.name, Parameter.Type.STRING_ARRAY, list(value))])
+        else:
+            node.declare_parameter(self.name, value, self.descriptor(), ignore_override=True)
+
+
+TABLE = (
+    Entry('scene', 'tennis_racket', 'name of a scene that ships, or path of a scene file', changeable=True),
+    Entry('scene_overrides', (), 'changes of the scene, each key.path=value', changeable=True),
+    Entry('rate', 1000.0, 'ticks per second of simulated time (Hz)', 1e-3, 1e5, changeable=True),
+    Entry('integrator', 'auto', 'method; auto: the exact one if there is, else the cheapest that meets accuracy', changeable=True),
+    Entry('accuracy', 1e-12, 'relative error of the state that a stepped method may make', 1e-15, 1e-1, changeable=True),
+    Entry('real_time_factor', 1.0, 'simulated seconds per second; 0: as fast as it goes', 0.0, 1e6, changeable=True),
+    Entry('duration', 0.0, 'simulated seconds after which the node ends (s); 0: endless', 0.0, 1e9),
+    Entry('overrun', 'slip', 'when it cannot keep up: slip (simulated time falls behind) or skip_publish (messages are left out first)',
+          choices=('slip', 'skip_publish'), changeable=True),
+    Entry('publish', (), f'topics beside {", ".join(STATE_TOPICS)}', choices=STATE_TOPICS + EXTRA_TOPICS),
+    Entry('stamp_origin', 'clock', 'stamp of tick 0: the node clock at start, or zero', choices=('clock', 'zero')),
+    Entry('frame_prefix', 'auto', 'put before both frame names; auto: the namespace of the node'),
+    Entry('world_frame', 'world', 'name of the fixed frame'),
+    Entry('body_frame', 'body', 'name of the frame that moves with the body'),
+    Entry('command_timeout', 0.0, 'a held wrench ends this long after its last message (s); 0: it is held until replaced', 0.0, 1e6,
+          changeable=True),
+    Entry('record', True, 'record to MCAP'),
+    Entry('recording.directory', 'recordings', 'folder in which each run makes a recording of its own'),
+    Entry('recording.name', '', 'name of the recording; empty: node, scene, date and time'),
+    Entry('diagnostics.energy_residual_warn', 1e-11, 'WARN above this relative energy residual', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.energy_residual_error', 1e-6, 'ERROR above this relative energy residual', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.momentum_residual_warn', 1e-11, 'WARN above this relative angular momentum residual', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.momentum_residual_error', 1e-6, 'ERROR above this relative angular momentum residual', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.lateness_warn', 0.002, 'WARN above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.lateness_error', 0.1, 'ERROR above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
+)
+ENTRIES = {entry.name: entry for entry in TABLE}
+# declared by rclpy itself, or for each topic when its publisher or subscription is made
+FOREIGN = ('use_sim_time',)
+FOREIGN_PREFIX = 'qos_overrides.'
+
+
+class Settings:
+    """The checked values of all parameters of a node, kept up to date by ``set_parameters``.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Its overrides are read and its parameters declared.
+
+    Raises
+    ------
+    BadInput
+        For an override that is unknown or wrong.
+    """
+
+    def __init__(self, node):
+        with node.handle:
+            self._overrides = node.handle.get_parameters(Parameter)
+        self._node = node
+        self._before_change, self._after_change = [], []
+        for name, override in self._overrides.items():
+            self._refuse_unknown(name, list(ENTRIES) + list(FOREIGN))
+            if name == 'use_sim_time' and not isinstance(override.value, bool):
+                raise BadInput('parameter use_sim_time', f'got {override.value!r}', 'needs true or false')
+        self.values = {}
+        for entry in TABLE:
+            given = self._overrides[entry.name].value if entry.name in self._overrides else entry.default
+            self.values[entry.name] = value = entry.checked(given)
+            entry.declare(node, value)
+        node.add_pre_set_parameters_callback(self._with_types)
+        node.add_on_set_parameters_callback(self._check_change)
+        node.add_post_set_parameters_callback(self._apply_change)
+
+    def __getitem__(self, name):
+        return self.values[name]
+
+    def __getattr__(self, name):
+        try:
+            return self.__dict__['values'][name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    @property
+    def use_sim_time(self):
+        """Whether the node follows /clock."""
+        return self._node.get_parameter('use_sim_time').value
+
+    def refuse_unknown_qos(self):
+        """Refuse qos_overrides of topics or policies that do not exist; call it when all publishers and subscriptions are made."""
+        declared = list(self._node.get_parameters_by_prefix(''))
+        for name in self._overrides:
+            if name.startswith(FOREIGN_PREFIX):
+                self._refuse_unknown(name, declared, ())
+
+    def on_change(self, before, after):
+        """Register what a change does.
+
+        Parameters
+        ----------
+        before : callable
+            Called with a dict of the changed values, before they hold; it raises BadInput to refuse them all.
+        after : callable
+            Called with the same dict once they hold.
+        """
+        self._before_change.append(before)
+        self._after_change.append(after)
+
+    @staticmethod
+    def _refuse_unknown(name, known, prefixes=(FOREIGN_PREFIX,)):
+        if name in known or name.startswith(prefixes):
+            return
+        near = difflib.get_close_matches(name, known, 1, 0.5)
+        raise BadInput(f'parameter {name}', 'there is none of that name',
+                       f'did you mean {near[0]}?' if near else f'the parameters are {", ".join(ENTRIES)}')
+
+    @staticmethod
+    def _with_types(parameters):
+        """Return the parameters with integers made doubles, and lists without entries made lists of words, where such are meant."""
+        typed = []
+        for parameter in parameters:
+            default = getattr(ENTRIES.get(parameter.name), 'default', None)
+            if isinstance(default, float) and parameter.type_ == Parameter.Type.INTEGER:
+                parameter = Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
+            elif isinstance(default, tuple) and (parameter.value is None or parameter.value == []):
+                parameter = Parameter(parameter.name, Parameter.Type.STRING_ARRAY, [])
+            typed.append(parameter)
+        return typed
+
+    def _check_change(self, parameters):
+        try:
+            changes = self._changes(parameters)
+            for before in self._before_change:
+                before(changes)
+        except BadInput as refusal:
+            return SetParametersResult(successful=False, reason=str(refusal))
+        return SetParametersResult(successful=True)
+
+    def _apply_change(self, parameters):
+        changes = self._changes(parameters)
+        self.values.update(changes)
+        for after in self._after_change:
+            after(changes)
+
+    @staticmethod
+    def _changes(parameters):
+        """Return the checked changes by name."""
+        changes = {}
+        for parameter in parameters:
+            entry = ENTRIES.get(parameter.name)
+            if parameter.type_ == Parameter.Type.NOT_SET:
+                raise BadInput(f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value')
+            if entry is None:
+                continue
+            if not entry.changeable:
+                raise BadInput(f'parameter {entry.name}', 'it cannot change while the node runs', 'give it at the start')
+            changes[entry.name] = entry.checked(parameter.value)
+        return changes
+
+
+def table():
+    """Return the table of the parameters in Markdown, for the README."""
+    rows = ['| parameter | type | default | range | while running | meaning |', '|---|---|---|---|---|---|']
+    for entry in TABLE:
+        default = str(list(entry.default)) if isinstance(entry.default, tuple) else str(entry.default).lower() if entry.kind == 'bool' \
+            else f'{entry.default}' or "''"
+        rows.append(f'| {entry.name} | {entry.kind} | {default} | {entry.limits} | {"yes" if entry.changeable else "no"} | {entry.about} |')
+    return '\n'.join(rows)
+
+
+if __name__ == '__main__':
+    print(table())

@@ -1,0 +1,72 @@
+"""A node in a process of its own: rclpy up, the executor in the main thread, and everything down again in order."""
+
+import rclpy
+from rclpy.exceptions import InvalidParameterTypeException
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+
+from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node.shutdown import say
+
+
+def run(make_node, arguments, stop):
+    """Run a node until it should end; return the exit status.
+
+    Parameters
+    ----------
+    make_node : callable
+        Called with `stop`; returns the node. The node has ``close()``, which ends it in order and returns an exit status.
+    arguments : list of str
+        The command line, with ``--ros-args``.
+    stop : shutdown.Stop
+
+    Returns
+    -------
+    int
+        0, or 2 after one line about bad input, or 1 after one line about a failure.
+    """
+    try:
+        # the first argument is taken for the program's name
+        rclpy.init(args=['', *arguments], signal_handler_options=SignalHandlerOptions.NO)
+    except Exception as error:   # rclpy has a class of its own for each fault of the command line
+        say(f'ROS arguments: {_one_line(error)}; see --help')
+        return BAD_INPUT
+    node = None
+    try:
+        node = make_node(stop)
+        return _spin(node, stop)
+    except BadInput as refusal:
+        say(refusal)
+        return BAD_INPUT
+    except InvalidParameterTypeException as error:
+        say(f'parameter {_one_line(error)}')
+        return BAD_INPUT
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+
+
+def _spin(node, stop):
+    """Serve the node until it should end; whatever happens, close it."""
+    status = GOOD
+    executor = SingleThreadedExecutor()
+    try:
+        executor.add_node(node)
+        stop.on_request(executor.wake)
+        while not stop.wanted:
+            executor.spin_once()
+    except ExternalShutdownException:
+        pass
+    except Exception as error:
+        say(f'{node.get_name()}: a callback failed: {type(error).__name__}: {_one_line(error)}')
+        status = CHECK_FAILED
+    finally:
+        stop.on_request(lambda: None)
+        executor.shutdown(timeout_sec=0.0)
+    return node.close() or status
+
+
+def _one_line(error):
+    return ' '.join(str(error).split())[:300]

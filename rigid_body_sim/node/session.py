@@ -1,0 +1,204 @@
+"""A session: one simulation, tick by tick, in the tick thread.
+
+At tick k, in this order: the state moves on to tick k; requests (reset, changes of parameters) take effect; then commands, in the order in
+which they came; then the state is published and recorded. So whatever reaches the node between two ticks takes effect at the next one, and is
+recorded with its number.
+"""
+
+import collections
+import concurrent.futures
+import time
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node import commands
+from rigid_body_sim.recording import about
+from rigid_body_sim.recording.about import ERROR, OK, WARN
+from rigid_body_sim.timeline import NANOSECONDS, Timeline
+from rigid_body_sim.topics import Moment
+
+REPORT_EVERY = NANOSECONDS
+"""A refused command is reported at most this often for each topic and reason, ns."""
+
+
+class Session:
+    """The work of the tick thread.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    command_queue : commands.Commands
+    publishing : publishing.Publishing
+    journal : journal.Journal
+    settings : parameters.Settings
+    epoch : callable
+        Returns the stamp of tick 0 (ns); called just before that tick.
+
+    Attributes
+    ----------
+    next_tick : int
+        Number of the next tick to run.
+    finished : bool
+    balance : dict
+        The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and ``time``.
+    event_counts : collections.Counter
+        Events so far, by name.
+    """
+
+    def __init__(self, simulation, command_queue, publishing, journal, settings, epoch):
+        self.simulation = simulation
+        self.timeline = Timeline(0, simulation.rate)
+        self._commands, self._publishing, self._journal, self._epoch = command_queue, publishing, journal, epoch
+        command_queue.report = self._report_refusal
+        self.command_timeout = settings.command_timeout
+        self._last_tick = self.timeline.ticks_in(settings.duration) if settings.duration else None
+        self.next_tick = simulation.tick
+        self.finished = False
+        self.event_counts = collections.Counter()
+        self._requests = collections.deque()
+        self._release_tick = None
+        self._velocity_before = None
+        self._reports = {}
+        self._balance_wanted = False
+        self.balance = self._take_balance()
+
+    # -- from other threads -------------------------------------------------------------------------------------------------------------
+
+    def request(self, act):
+        """Have `act(session)` called at the next tick; return a Future of what it returns."""
+        future = concurrent.futures.Future()
+        self._requests.append((act, future))
+        return future
+
+    def want_balance(self):
+        """Ask for a fresh :attr:`balance`."""
+        self._balance_wanted = True
+
+    # -- the tick thread ----------------------------------------------------------------------------------------------------------------
+
+    def begin(self):
+        """Fix the stamps, just before the first tick, and publish the scene."""
+        self.timeline = Timeline(self._epoch(), self.simulation.rate, self.next_tick)
+        self.announce_scene()
+
+    def run_tick(self, publish):
+        """Run the next tick; `publish` says whether its state is published and recorded."""
+        tick, simulation = self.next_tick, self.simulation
+        if tick > simulation.tick:
+            simulation.advance(tick - simulation.tick)
+        if self._requests:
+            self._serve_requests()
+            simulation = self.simulation
+        self._commands.take(simulation.scene.accepts_commands)
+        if self._commands.queue or self._release_tick is not None:
+            self._command(tick)
+        if simulation.events:
+            self._report_events()
+        if publish:
+            self._publish_state(tick)
+        if self._balance_wanted:
+            self.balance = self._take_balance()
+        self.next_tick = tick + 1
+        self.finished = tick == self._last_tick
+
+    def between_ticks(self):
+        """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
+        self._commands.take(self.simulation.scene.accepts_commands)
+        if self._balance_wanted:
+            self.balance = self._take_balance()
+
+    def _publish_state(self, tick):
+        simulation = self.simulation
+        stamp = self.timeline.instant(tick)
+        vector = simulation.vector.tolist()
+        acceleration = None
+        if self._publishing.wants_acceleration:
+            velocity = vector[11:14]
+            if self._velocity_before is not None:
+                acceleration = [(now - before) * simulation.rate for now, before in zip(velocity, self._velocity_before, strict=True)]
+            self._velocity_before = velocity
+        moment = Moment(divmod(stamp, NANOSECONDS), vector, simulation.energy, simulation.angular_momentum_squared, acceleration)
+        self._journal.tick(simulation, stamp, self._publishing.state(moment))
+
+    def _serve_requests(self):
+        while self._requests:
+            act, future = self._requests.popleft()
+            try:
+                future.set_result(act(self))
+            except BadInput as refusal:
+                future.set_exception(refusal)
+
+    def reset(self):
+        """Put the state back; called at a tick. Held wrenches end with it."""
+        self.simulation.reset()
+        self._release_tick = self._velocity_before = None
+        self._journal.entry('reset', self.stamp, tick=self.next_tick)
+        return self.next_tick
+
+    def announce_scene(self):
+        """Publish and record the scene as it runs."""
+        topic, data = self._publishing.scene(self.simulation.scene)
+        self._journal.message(topic, self.stamp, data)
+
+    @property
+    def stamp(self):
+        """Stamp of the tick that is being run, ns."""
+        return self.timeline.instant(self.next_tick)
+
+    def event(self, level, name, message, values=None):
+        """Publish and record an event of the tick that is being run."""
+        self.event_counts[name] += 1
+        values = {'tick': self.next_tick, 'time': self.simulation.time, **(values or {})}
+        topic, data = self._publishing.event(level, name, message, values)
+        self._journal.message(topic, self.stamp, data)
+
+    def _report_events(self):
+        events, self.simulation.events[:] = list(self.simulation.events), []
+        for event in events:
+            self.event(OK, event.name, *about.event_text(event))
+
+    # -- commands -----------------------------------------------------------------------------------------------------------------------
+
+    def _command(self, tick):
+        """Apply what waits in the queue; let go of a wrench whose time is over."""
+        self.simulation.forget_past()
+        applied = []
+        queue = self._commands.queue
+        while queue:
+            command = queue.popleft()
+            try:
+                self._apply(command, tick)
+            except BadInput as refusal:
+                self._commands.refuse(command.topic, 'the body cannot take it', refusal.problem, refusal.remedy)
+                continue
+            self._commands.applied += 1
+            applied.append(command)
+        if self._release_tick is not None and tick >= self._release_tick:
+            self._release_tick = None
+            self.simulation.release()
+            applied.append(commands.RELEASE)
+            self.event(WARN, 'command timed out', f'no cmd_wrench for {self.command_timeout:g} s: the held wrench ended')
+        if applied:
+            self._journal.commands(tick, self.stamp, applied)
+
+    def _apply(self, command, tick):
+        if command.topic == commands.IMPULSE:
+            self.simulation.impulse(command.force, command.torque, command.frame)
+            return
+        self.simulation.hold(command.force, command.torque, command.frame)
+        timeout = self.timeline.ticks_in(self.command_timeout)
+        self._release_tick = tick + timeout if timeout else None
+
+    def _report_refusal(self, topic, reason, got, remedy):
+        """Tell of a refused command, once a second for each topic and reason."""
+        now = time.monotonic_ns()
+        told, silent = self._reports.get((topic, reason), (-REPORT_EVERY, 0))
+        if now - told < REPORT_EVERY:
+            self._reports[topic, reason] = told, silent + 1
+            return
+        self._reports[topic, reason] = now, 0
+        self.event(ERROR, 'command refused', f'{topic}: {reason}: got {got}; right would be: {remedy}',
+                   {'topic': topic, 'reason': reason, 'got': got, 'right': remedy, 'not_told_since': silent})
+
+    def _take_balance(self):
+        self._balance_wanted = False
+        return {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}

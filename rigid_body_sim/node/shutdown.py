@@ -1,0 +1,100 @@
+"""How a node's process ends: within a second of a signal, and losing nothing.
+
+Signals reach a thread of their own by way of a pipe, because Python runs signal handlers only between two bytecodes of the main thread, and
+that one waits in the executor. The first signal asks for the end; more of them change nothing. This module imports nothing that takes time,
+so that signals are in order before the rest is loaded.
+"""
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+
+GRACE = 0.85
+"""Longest time from a signal to the end of the process, s: the recorder lives in a process of its own and finishes its file anyway."""
+
+
+class Stop:
+    """The wish to end, by a signal or by the program itself."""
+
+    def __init__(self):
+        self._event = threading.Event()
+        self._wake = lambda: None
+        self.by_signal = False
+
+    @property
+    def wanted(self):
+        """Whether the process should end."""
+        return self._event.is_set()
+
+    def on_request(self, wake):
+        """Register what wakes the main thread."""
+        self._wake = wake
+        if self.wanted:
+            wake()
+
+    def request(self):
+        """Ask for the end, from any thread."""
+        self._event.set()
+        self._wake()
+
+    def signalled(self):
+        """Ask for the end because of a signal; it comes soon, whatever the process is busy with."""
+        if not self.by_signal:
+            self.by_signal = True
+            watchdog = threading.Timer(GRACE, os._exit, (0,))
+            watchdog.daemon = True
+            watchdog.start()
+        self.request()
+
+
+@contextlib.contextmanager
+def signals():
+    """Yield a Stop that SIGINT, SIGTERM and SIGHUP ask to end (SIGHUP not under ``nohup``)."""
+    stop = Stop()
+    ours = [number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN]
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+
+    def listen():
+        # the interpreter writes the number of each signal; a zero ends this thread
+        while os.read(reading, 1) != b'\0':
+            stop.signalled()
+
+    listener = threading.Thread(target=listen, name='signals', daemon=True)
+    before = {number: signal.signal(number, lambda *_: None) for number in ours}
+    pipe_before = signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
+    listener.start()
+    try:
+        yield stop
+    finally:
+        signal.set_wakeup_fd(pipe_before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        os.write(writing, b'\0')
+        listener.join()
+        os.close(reading)
+        os.close(writing)
+
+
+def say(line):
+    """Print one line to stderr, if anybody is there to read it."""
+    with contextlib.suppress(OSError, ValueError):
+        print(line, file=sys.stderr, flush=True)
+
+
+def tell(line):
+    """Print one line to stdout, if anybody is there to read it."""
+    with contextlib.suppress(OSError, ValueError):
+        print(line, flush=True)
+
+
+def flush():
+    """Bring out what was printed, so that a closed terminal does not turn the end of the process into a failure."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except (OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -1,0 +1,45 @@
+"""The node that runs from its start to its end."""
+
+from rclpy.node import Node
+
+from rigid_body_sim.node.engine import Engine
+from rigid_body_sim.node.parameters import Settings
+from rigid_body_sim.node.status_line import StatusLine
+
+
+class SimulationNode(Node):
+    """Simulates, publishes, records and obeys commands from its construction on.
+
+    Parameters
+    ----------
+    stop : shutdown.Stop
+        Asked to end the process when the duration is over or the simulation fails.
+    options : dict
+        Those of rclpy.node.Node.
+
+    Raises
+    ------
+    BadInput
+        One line, before anything runs.
+    """
+
+    def __init__(self, stop, **options):
+        super().__init__('sim_node', **options)
+        self.engine = None
+        try:
+            self.engine = Engine(self, Settings(self), stop.request)
+            self.status_line = StatusLine(self, self.engine)
+            self.engine.start()
+        except BaseException:
+            self.close()
+            self.destroy_node()
+            raise
+
+    def close(self):
+        """End ticks and recording, and say how it went; return the exit status."""
+        if self.engine is None:
+            return 0
+        status = self.engine.close()
+        self.status_line.close()
+        self.engine.report()
+        return status

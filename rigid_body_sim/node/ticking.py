@@ -1,0 +1,267 @@
+"""The tick thread: one tick after the other on absolute deadlines, so that the mean rate is exact whatever single ticks do.
+
+Tick k is due at a fixed instant of the monotonic clock (or of /clock). A late tick is caught up with: the next ones follow at once. A tick
+that comes more than a whole period late is an overrun. ``skip_publish`` then leaves out messages until it has caught up; with either
+policy, when the backlog passes a tenth of a second, the schedule slips: simulated time falls behind, and this is counted.
+"""
+
+import collections
+import concurrent.futures
+import contextlib
+import ctypes
+import math
+import os
+import threading
+import time
+from fractions import Fraction
+
+from rigid_body_sim.node.lateness import Lateness
+from rigid_body_sim.timeline import NANOSECONDS, Timeline
+
+LONGEST_SLEEP = 0.01
+"""While it waits longer than this, the thread looks after commands and requests, s."""
+BACKLOG = 100_000_000
+"""How far behind its deadlines the thread may be before the schedule slips, ns (never less than two ticks)."""
+CLOCK_JUMP = 10 * NANOSECONDS
+"""A step of /clock forward by more than this is a jump, not the passing of time, ns."""
+PRIORITY = 10
+PR_SET_TIMERSLACK = 29
+
+
+class Steady:
+    """The monotonic clock of the machine."""
+
+    follows_clock_topic = False
+    now = staticmethod(time.monotonic_ns)
+
+    @staticmethod
+    def wait(nanoseconds):
+        """Sleep for that long, or for LONGEST_SLEEP if that is less."""
+        time.sleep(min(nanoseconds * 1e-9, LONGEST_SLEEP))
+
+
+class Followed:
+    """The node's clock when it follows /clock: it moves when a message says so."""
+
+    follows_clock_topic = True
+
+    def __init__(self, clock):
+        from rclpy.clock import JumpThreshold
+        from rclpy.duration import Duration
+        self._clock = clock
+        self._moved = threading.Event()
+        nanosecond = Duration(nanoseconds=1)
+        threshold = JumpThreshold(min_forward=nanosecond, min_backward=-nanosecond, on_clock_change=True)
+        self._handle = clock.create_jump_callback(threshold, post_callback=lambda _: self._moved.set())
+
+    def now(self):
+        """Return what /clock said last, ns; 0 before it said anything."""
+        return self._clock.now().nanoseconds
+
+    def wait(self, _):
+        """Wait until /clock moves, at most LONGEST_SLEEP."""
+        self._moved.wait(LONGEST_SLEEP)
+        self._moved.clear()
+
+
+class Ticker(threading.Thread):
+    """The thread that runs the ticks.
+
+    Parameters
+    ----------
+    work : object
+        ``work.begin()`` is called once, before the first tick; ``work.next_tick`` is the number of the tick to run,
+        ``work.run_tick(publish)`` runs it, ``work.between_ticks()`` looks after commands while there is time, ``work.finished`` says that
+        there are no more ticks to run.
+    time_source : Steady or Followed
+    rate, real_time_factor : float
+        See the parameters of the node; a factor of 0 runs without waiting.
+    skip_publish : bool
+        The policy at an overrun, see above.
+    at_end : callable
+        Called in this thread when it ends, for whatever reason.
+
+    Attributes
+    ----------
+    failure : BaseException or None
+        What ended the thread.
+    lateness : Lateness
+    overruns, skipped : int
+        Ticks that came more than a period late; ticks run without publishing.
+    slipped : int
+        How far simulated time has fallen behind by slipping, ns.
+    clock_jumps : int
+        How often /clock jumped.
+    latest : tuple of int
+        How many ticks were run, and for how long (ns) ticks have been running up to the last one, without pauses and jumps.
+    scheduling : str
+        How the system schedules the thread.
+    waiting_for_clock : bool
+        Whether no message on /clock has come yet.
+    """
+
+    def __init__(self, work, time_source, rate, real_time_factor, skip_publish, at_end):
+        super().__init__(name='ticks', daemon=True)
+        self._work, self._source, self._at_end = work, time_source, at_end
+        self._stopping = self._paused = False
+        self._steps = collections.deque()
+        self._rate, self._factor = rate, real_time_factor
+        self._due = self._left_out = 0
+        self.skip_publish = skip_publish
+        self.failure = None
+        self.lateness = Lateness()
+        self.overruns = self.skipped = self.slipped = self.clock_jumps = 0
+        self.latest = (0, 0)
+        self.scheduling = 'not started'
+        self.waiting_for_clock = True
+
+    # -- from other threads -------------------------------------------------------------------------------------------------------------
+
+    @property
+    def paused(self):
+        """Whether ticks wait for ``resume`` or ``step``."""
+        return self._paused
+
+    def pause(self):
+        """Run no ticks until :meth:`resume`."""
+        self._paused = True
+
+    def resume(self):
+        """Go on ticking."""
+        self._paused = False
+
+    def step(self):
+        """Run one tick while paused; return a Future of its number (None if the node is resumed before)."""
+        future = concurrent.futures.Future()
+        self._steps.append(future)
+        return future
+
+    def stop(self):
+        """End the thread after the tick it is in."""
+        self._stopping = True
+
+    # -- the thread ---------------------------------------------------------------------------------------------------------------------
+
+    def pace(self, rate, real_time_factor):
+        """Change the rate or the real-time factor; called in ``run_tick``, it holds from that tick on."""
+        self._rate, self._factor = rate, real_time_factor
+        self._take_priority()
+        self._schedule(self._due)
+
+    def run(self):
+        """Run ticks until stopped, finished or failed."""
+        try:
+            self._take_priority()
+            while not (self._source.now() or self._stopping):
+                self._source.wait(NANOSECONDS)
+                self._work.between_ticks()
+            self.waiting_for_clock = False
+            self._work.begin()
+            self._schedule(self._source.now())
+            self._left_out = self._due
+            while not (self._stopping or self._work.finished):
+                if self._paused:
+                    self._idle()
+                else:
+                    self._next_tick()
+        except BaseException as failure:
+            self.failure = failure
+        finally:
+            self._at_end()
+
+    def _take_priority(self):
+        """Ask for exact timers, and for real-time scheduling where it is allowed and the thread sleeps between ticks."""
+        with contextlib.suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
+        self.scheduling = 'normal'
+        with contextlib.suppress(OSError, AttributeError):
+            if self._factor > 0.0:
+                os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+                self.scheduling = f'SCHED_FIFO {PRIORITY}'
+            else:
+                os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+    def _schedule(self, due):
+        """Make the next tick due at that instant, and those after it follow at the pace wanted."""
+        factor = 1.0 if self._source.follows_clock_topic else self._factor
+        self._due = due
+        self._deadlines = Timeline(due, Fraction(self._rate) * Fraction(factor), self._work.next_tick) if factor else None
+        self._period = math.ceil(NANOSECONDS / (self._rate * factor)) if factor else 0
+        self._backlog = 2 * self._period + (CLOCK_JUMP if self._source.follows_clock_topic else BACKLOG)
+
+    def _resume_at(self, due):
+        """Go on at that instant as if no time had passed since the tick before."""
+        self._schedule(due)
+        ticks, running = self.latest
+        self._left_out = due - running - (self._period if ticks else 0)
+
+    def _run_tick(self, now, publish):
+        self._work.run_tick(publish)
+        self.latest = (self.latest[0] + 1, now - self._left_out)
+
+    def _idle(self):
+        """Wait while paused; run a tick for each step asked for."""
+        while self._paused and not self._stopping:
+            if self._steps:
+                future = self._steps.popleft()
+                now = self._source.now()
+                self._resume_at(now)
+                self._run_tick(now, True)
+                future.set_result(self._work.next_tick - 1)
+                if self._work.finished:
+                    return
+            else:
+                self._work.between_ticks()
+                time.sleep(LONGEST_SLEEP)
+        while self._steps:
+            self._steps.popleft().set_result(None)
+        self._resume_at(self._source.now())
+
+    def _next_tick(self):
+        """Wait for the next deadline and run its tick."""
+        source, work = self._source, self._work
+        now = source.now()
+        if self._deadlines is None:
+            self._due = now
+            self._run_tick(now, True)
+            return
+        due = self._deadlines.instant(work.next_tick)
+        while now < due:
+            if source.follows_clock_topic:
+                if due - now > 2 * self._period:
+                    self._jump(now)
+                    return
+                work.between_ticks()
+            elif due - now > LONGEST_SLEEP * NANOSECONDS:
+                work.between_ticks()
+            source.wait(due - now)
+            if self._stopping or self._paused:
+                return
+            now = source.now()
+        self._due = due
+        late = now - due
+        publish = True
+        if not source.follows_clock_topic:
+            self.lateness.add(late)
+            if late > self._period:
+                publish = self._overrun(now, late)
+        elif late > self._backlog:
+            self._jump(now)
+        self._run_tick(now, publish)
+
+    def _overrun(self, now, late):
+        """Count a tick that is more than a period late; return whether to publish it."""
+        self.overruns += 1
+        if late > self._backlog:
+            self.slipped += late
+            self._schedule(now)
+            return True
+        if self.skip_publish:
+            self.skipped += 1
+            return False
+        return True
+
+    def _jump(self, now):
+        """Go on from where /clock is now: no tick is lost or run twice."""
+        self.clock_jumps += 1
+        self._resume_at(now)
