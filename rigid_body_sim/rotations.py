@@ -37,9 +37,22 @@ def rotate_back(qx, qy, qz, qw, vx, vy, vz):
 
 @compiled
 def normalised(qx, qy, qz, qw):
-    """Return q / |q|; the norm must not be zero."""
-    scale = 1.0 / math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
-    return qx * scale, qy * scale, qz * scale, qw * scale
+    """Return q / |q|; the norm must not be zero.
+
+    A sum of squares near 1 rounds more finely below 1 than above, and quaternions made unit by it come out 0.6 ulp long on average: a trend
+    where it happens at every tick. So the last bits are corrected by |q|^2 - 1, summed near 0, where rounding has no side.
+    """
+    if abs(_excess(qx, qy, qz, qw)) > 1e-9:
+        scale = 1.0 / math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
+        qx, qy, qz, qw = qx * scale, qy * scale, qz * scale, qw * scale
+    half = 0.5 * _excess(qx, qy, qz, qw)
+    return qx - qx * half, qy - qy * half, qz - qz * half, qw - qw * half
+
+
+@compiled
+def _excess(qx, qy, qz, qw):
+    """Return |q|^2 - 1."""
+    return ((qx * qx - 0.25) + (qy * qy - 0.25)) + ((qz * qz - 0.25) + (qw * qw - 0.25))
 
 
 @compiled

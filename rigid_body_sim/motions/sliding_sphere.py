@@ -15,7 +15,7 @@ parabolic-cylinder functions, with checkpoints along the slide so that a later s
 
 A state whose slip is below ROUNDING (|v| + a |omega|) rolls: that much is left of zero when a rolling state goes through body axes.
 
-Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `heat`, `angular_impulse`.
+Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `exchanged`, `next_event`.
 """
 
 import math
@@ -23,12 +23,14 @@ import math
 import numpy as np
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.exchange import DISSIPATED, EXCHANGE_SIZE
 from rigid_body_sim.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.state import STATE_SIZE
 
 ROUNDING = 2.0 ** -49    # 8 ulp; 6.2 is the most that body axes and back were seen to leave in 200,000 random states
 CHECKPOINTS = 32
+EVENTS = ('rolling began',)
 
 RADIUS, RATIO, MASS, FRICTION, GRAVITY = range(5)
 PARAMETER_SIZE = 5
@@ -179,6 +181,8 @@ def state(anchor, time, out):
         qx, qy, qz, qw = multiply(
             sine * anchor[ROLLING_SPIN], sine * anchor[ROLLING_SPIN + 1], sine * anchor[ROLLING_SPIN + 2], math.cos(half),
             anchor[ROLLING_ORIENTATION], anchor[ROLLING_ORIENTATION + 1], anchor[ROLLING_ORIENTATION + 2], anchor[ROLLING_ORIENTATION + 3])
+        # an ulp in the norm of (axis sin, cos) would be the same at every tick, and the spin would drift where each tick is an anchor
+        qx, qy, qz, qw = normalised(qx, qy, qz, qw)
     else:
         lost, gained = anchor[DECELERATION] * elapsed, anchor[RAMP] * elapsed
         vx, vy = anchor[START + 11] - lost * ex, anchor[START + 12] - lost * ey
@@ -229,18 +233,24 @@ def reaction(anchor, time):
 
 
 @compiled
-def heat(anchor, time):
-    """Return the energy that friction has turned to heat since the anchor (J): mu M g times the distance slid."""
-    elapsed = time - anchor[START]
+def exchanged(anchor, time, out):
+    """Fill out (rigid_body_sim/exchange.py) with what friction did since the anchor.
+
+    Heat: mu M g times the distance slid. Angular impulse about the centre: a mu M g z x e times the time slid.
+    """
+    for n in range(EXCHANGE_SIZE):
+        out[n] = 0.0
     if anchor[SLIP] == 0.0 or anchor[DECELERATION] == 0.0:
-        return 0.0
-    slid_for = min(elapsed, anchor[DURATION])
-    return anchor[MASS] * anchor[DECELERATION] * anchor[SLIP] * slid_for * (1.0 - 0.5 * slid_for / anchor[DURATION])
+        return
+    slid_for = min(time - anchor[START], anchor[DURATION])
+    push = anchor[MASS] * anchor[DECELERATION]
+    impulse = anchor[RADIUS] * push * slid_for
+    out[DISSIPATED] = push * anchor[SLIP] * slid_for * (1.0 - 0.5 * slid_for / anchor[DURATION])
+    out[2], out[3] = -impulse * anchor[DIRECTION + 1], impulse * anchor[DIRECTION]
 
 
 @compiled
-def angular_impulse(anchor, time):
-    """Return the impulse of the table's torque about the centre since the anchor (N m s, world): a mu M g z x e times the time slid."""
-    slid_for = 0.0 if anchor[SLIP] == 0.0 or anchor[DECELERATION] == 0.0 else min(time - anchor[START], anchor[DURATION])
-    impulse = anchor[RADIUS] * anchor[MASS] * anchor[DECELERATION] * slid_for
-    return -impulse * anchor[DIRECTION + 1], impulse * anchor[DIRECTION], 0.0
+def next_event(anchor, after):
+    """Return the time and the code (into EVENTS) of the first event later than `after`; infinite if there is none."""
+    onset = rolling_onset(anchor)
+    return (onset, 0) if anchor[SLIP] > 0.0 and onset > after else (math.inf, 0)
