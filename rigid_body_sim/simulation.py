@@ -103,6 +103,7 @@ class Simulation:
         self._spans = [_Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
         self._commands = None
         self._arrive()
+        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
     @property
     def time(self):
@@ -120,6 +121,7 @@ class Simulation:
         self.tick += ticks
         self._commands = None
         self._arrive()
+        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
         self._note_events(before)
 
     def advance_through(self, ticks):
@@ -321,6 +323,7 @@ class Simulation:
         if frame not in ('world', 'body'):
             raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
         if frame == 'body':
-            q = self.vector[ORIENTATION]
+            # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
+            q = self._attitude_at_tick
             force, torque = np.array(rotate(*q, *force)), np.array(rotate(*q, *torque))
         return force, torque
