@@ -89,11 +89,11 @@ class Recording:
             file.close()
 
     def _about(self, custom):
-        """What the recorder left: in the files, in metadata.yaml, or in the journal (which survives a conversion)."""
+        """Return what the recorder left: in the files, in metadata.yaml, or in the journal (which survives a conversion)."""
         found = next(filter(None, (file.metadata('rigid_body_sim') for file in self._files)), custom)
         if not found:
             begin = next((entry for entry in self.journal() if entry['kind'] == 'begin'), {})
-            found = {key: value for key, value in begin.items() if isinstance(value, str) and key != 'kind'}
+            found = {key: value for key, value in begin.items() if isinstance(value, str) and key not in ('kind', 'topic')}
         return found
 
     def topic(self, name):

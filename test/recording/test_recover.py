@@ -1,0 +1,213 @@
+"""Cut files made whole: nothing invented, nothing lost before the cut chunk, the second time nothing changes."""
+
+import fcntl
+import json
+import os
+import random
+
+import pytest
+import yaml
+from mcap.reader import make_reader
+from mcap.writer import CompressionType
+from mcap.writer import Writer as TheirWriter
+from rosbags.rosbag2 import Reader
+
+from recording.conftest import ABOUT, SOAK, START, write
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording import mcap_format
+from rigid_body_sim.recording.recover import main, recover
+
+OFFSETS = 1000 if SOAK else 40
+
+
+def messages_of(path):
+    """Return all messages of a file in its order, read by indexes and with checksums validated."""
+    with open(path, 'rb') as stream:
+        return [(channel.topic, message.log_time, message.publish_time, message.sequence, message.data)
+                for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)]
+
+
+def chunks_of(path):
+    """Return (end of the chunk and its indexes, messages up to there) for each chunk."""
+    with open(path, 'rb') as stream:
+        indexes = make_reader(stream).get_summary().chunk_indexes
+        ends = sorted(index.chunk_start_offset + index.chunk_length for index in indexes)
+    counts, done = [], 0
+    for size in ([402] + [400] * (len(ends) - 1)):
+        done += size
+        counts.append(done)
+    return list(zip(ends, counts, strict=True))
+
+
+@pytest.mark.parametrize('compression_name', ['zstd', 'none'])
+def test_files_cut_at_random_offsets(tmp_path, compression_name):
+    whole = write(tmp_path / 'bag', compression_name=compression_name) / 'bag_0.mcap'
+    content, messages, chunks = whole.read_bytes(), messages_of(whole), chunks_of(whole)
+    folder = tmp_path / 'cut'
+    folder.mkdir()
+    file = folder / 'cut_0.mcap'
+    for offset in random.Random(7).sample(range(len(content)), OFFSETS):
+        file.write_bytes(content[:offset])
+        result, = recover(folder)
+        kept = messages_of(file)
+        assert result.changed
+        assert kept == messages[:len(kept)]
+        assert len(kept) == result.messages >= max((count for end, count in chunks if end <= offset), default=0)
+        if compression_name == 'none':      # then all that was complete is kept, also in the cut chunk
+            assert len(kept) + result.lost_messages <= len(messages)
+            assert result.messages >= max((count for end, count in chunks if end <= offset), default=0)
+        with Reader(folder) as reader:
+            assert reader.message_count == len(kept)
+        bag = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+        assert bag['message_count'] == len(kept)
+        again = file.read_bytes(), (folder / 'metadata.yaml').read_bytes()
+        second, = recover(folder)
+        assert not second.changed
+        assert (file.read_bytes(), (folder / 'metadata.yaml').read_bytes()) == again
+
+
+def test_uncompressed_chunk_is_kept_up_to_the_cut_message(tmp_path):
+    whole = write(tmp_path / 'bag', compression_name='none') / 'bag_0.mcap'
+    messages, content = messages_of(whole), whole.read_bytes()
+    marker = messages[601][4]       # somewhere in the second chunk
+    at = content.index(marker, chunks_of(whole)[0][0])
+    (tmp_path / 'cut.mcap').write_bytes(content[:at + len(marker) - 1])
+    result, = recover(tmp_path / 'cut.mcap')
+    assert messages_of(tmp_path / 'cut.mcap') == messages[:601]
+    assert result.lost_messages == pytest.approx(802 - 601, abs=2)      # the first chunk has some longer ones
+    assert result.lost_seconds == pytest.approx(0.05, abs=0.002)
+
+
+def test_what_is_lost_is_said(tmp_path, capsys):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    end = chunks_of(whole)[4][0]
+    os.truncate(whole, end - 10)    # in the fifth chunk
+    (whole.parent / 'metadata.yaml').unlink()
+    assert main([str(whole.parent)]) == 0
+    assert 'made whole, 1602 messages kept, lost about 400 messages, 0.100 s' in capsys.readouterr().out
+    assert main([str(whole.parent), '--json']) == 0
+    assert json.loads(capsys.readouterr().out) == [{'path': str(whole), 'messages': 1602, 'lost_messages': 0, 'lost_seconds': 0.0,
+                                                    'lost_bytes': 0, 'changed': False}]
+
+
+def test_cut_in_the_message_indexes_or_the_tail_loses_nothing(tmp_path):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    messages, content = messages_of(whole), whole.read_bytes()
+    for offset in (chunks_of(whole)[-1][0], chunks_of(whole)[-1][0] + 100, len(content) - 1, len(content) - 300):
+        (tmp_path / 'cut.mcap').write_bytes(content[:offset])
+        result, = recover(tmp_path / 'cut.mcap')
+        assert messages_of(tmp_path / 'cut.mcap') == messages
+        assert str(result).endswith(f'made whole, {len(messages)} messages kept, lost nothing')
+
+
+def test_whole_recording_is_left_alone(recording):
+    before = {path.name: path.read_bytes() for path in recording.iterdir()}
+    result, = recover(recording)
+    assert str(result) == f'{recording}/racket_0.mcap: whole, 4002 messages'
+    assert {path.name: path.read_bytes() for path in recording.iterdir()} == before
+
+
+def test_metadata_yaml_comes_back_as_it_was(tmp_path):
+    path = write(tmp_path / 'bag', split_seconds=0.2)
+    before = (path / 'metadata.yaml').read_text()
+    for text in (None, '', before.replace('message_count: 1000', 'message_count: 999'), 'x: [', 'rosbag2_bagfile_information: 1'):
+        (path / 'metadata.yaml').write_text(text) if text is not None else (path / 'metadata.yaml').unlink()
+        recover(path)
+        told, there = (yaml.safe_load(one) for one in (before, (path / 'metadata.yaml').read_text()))
+        if text and 'count: 999' in text:
+            assert there['rosbag2_bagfile_information']['message_count'] == told['rosbag2_bagfile_information']['message_count']
+        else:
+            assert there == told
+
+
+def test_split_recording_cut_in_its_last_file(tmp_path):
+    path = write(tmp_path / 'bag', split_seconds=0.3)
+    last = sorted(path.glob('*.mcap'))[-1]
+    os.truncate(last, 9000)
+    (path / 'metadata.yaml').unlink()
+    results = recover(path)
+    assert [result.changed for result in results] == [False, False, True]
+    with Reader(path) as reader:
+        assert reader.message_count == sum(result.messages for result in results)
+    assert yaml.safe_load((path / 'metadata.yaml').read_text())['rosbag2_bagfile_information']['custom_data'] == ABOUT
+
+
+def test_damaged_chunk_is_hidden_and_the_others_are_kept(tmp_path):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    messages, end = messages_of(whole), chunks_of(whole)[3][0]
+    content = bytearray(whole.read_bytes())
+    content[end - 2000] ^= 0x55
+    whole.write_bytes(content)
+    result, = recover(whole)
+    assert messages_of(whole) == messages[:1202] + messages[1602:]
+    assert result.lost_messages == pytest.approx(400, abs=3)
+    assert recover(whole)[0].changed is False
+
+
+@pytest.mark.parametrize('compression', list(CompressionType))
+def test_recording_of_another_writer_with_its_channels_inside_the_chunks(tmp_path, compression):
+    path = tmp_path / 'theirs.mcap'
+    with open(path, 'wb') as stream:
+        writer = TheirWriter(stream, chunk_size=2000, compression=compression)
+        writer.start('ros2', 'theirs')
+        schema = writer.register_schema('std_msgs/msg/Float64', 'ros2msg', b'float64 data')
+        channel = writer.register_channel('/x', 'cdr', schema)
+        for k in range(1000):
+            writer.add_message(channel, START + k, b'\0\1\0\0' + os.urandom(8), START + k, k)
+        writer.finish()
+    messages, content = messages_of(path), path.read_bytes()
+    for offset in range(300, len(content), len(content) // 12):
+        path.write_bytes(content[:offset])
+        result, = recover(path)
+        kept = messages_of(path)
+        assert kept == messages[:len(kept)]
+        assert len(kept) == result.messages >= (offset - 300) // 80 - 60
+
+
+def test_zeros_of_a_power_cut_are_cut_off(tmp_path):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    messages = messages_of(whole)
+    end = chunks_of(whole)[6][0]
+    content = whole.read_bytes()
+    whole.write_bytes(content[:end] + bytes(8192))
+    recover(whole)
+    assert messages_of(whole) == messages[:2802]
+
+
+@pytest.mark.parametrize('size', [0, 1, 8, 9, 20, 40])
+def test_file_cut_in_its_very_head_becomes_an_empty_one(tmp_path, recording, size):
+    path = tmp_path / 'cut.mcap'
+    path.write_bytes((recording / 'racket_0.mcap').read_bytes()[:size])
+    result, = recover(path)
+    assert result.messages == 0
+    assert messages_of(path) == []
+    assert recover(path)[0].changed is False
+
+
+def test_lengths_that_lie_are_cut_off(tmp_path):
+    path = tmp_path / 'liar.mcap'
+    head = mcap_format.MAGIC + mcap_format.header('ros2', 'x')
+    for lie in (mcap_format.HEAD.pack(mcap_format.CHUNK, 2**63), mcap_format.HEAD.pack(mcap_format.ATTACHMENT, 2**62) + bytes(99),
+                mcap_format.chunk(1, 2, 2**60, 0, 'zstd', b'short'), mcap_format.record(mcap_format.SCHEMA, b'\1\0\xff\xff\xff\xff')):
+        path.write_bytes(head + lie)
+        assert recover(path)[0].messages == 0
+        assert messages_of(path) == []
+
+
+def test_what_cannot_be_recovered_is_refused(tmp_path, recording, capsys):
+    (tmp_path / 'text.mcap').write_text('not a recording')
+    (tmp_path / 'empty').mkdir()
+    for path, problem in ((tmp_path / 'text.mcap', 'is not an MCAP file'), (tmp_path / 'empty', 'holds no .mcap file'),
+                          (tmp_path / 'nowhere', 'cannot be read')):
+        with pytest.raises(BadInput, match=problem):
+            recover(path)
+    assert main([str(tmp_path / 'nowhere')]) == 2
+    assert capsys.readouterr().err.count('\n') == 1
+    assert (tmp_path / 'text.mcap').read_text() == 'not a recording'
+
+
+def test_recording_that_goes_on_is_not_touched(recording):
+    with open(recording / 'racket_0.mcap', 'rb') as stream:
+        fcntl.flock(stream, fcntl.LOCK_EX)
+        with pytest.raises(BadInput, match='is still being recorded'):
+            recover(recording)
