@@ -95,8 +95,28 @@ class Simulation:
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
 
+    def follow(self, previous, keep_state):
+        """Begin at the present tick of another simulation, instead of at 0; called before anything else.
+
+        With `keep_state`, for another method, accuracy or rate on the same scene: state, time, held wrench and ledger go on from there.
+        Without it, for another scene: only the tick counter goes on.
+        """
+        self.tick = previous.tick
+        self._restart()
+        if not keep_state:
+            return
+        if self.rate == previous.rate:
+            self._origin, self._origin_time = previous._origin, previous._origin_time
+        else:
+            self._origin_time = previous.time
+        self._initial = previous._initial
+        span, now = previous._spans[-1], previous.time
+        given = span.given + span.solver.exchanged(now)
+        self._spans = [_Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
+        self._arrive()
+
     def _restart(self):
-        self._origin = self.tick
+        self._origin, self._origin_time = self.tick, 0.0
         start = self.scene.initial.vector
         mechanics.diagnose(self._mechanics, start, self._diagnosis)
         self._initial = self._diagnosis.copy()
@@ -108,7 +128,7 @@ class Simulation:
     @property
     def time(self):
         """Simulated time since the start or the last reset, s: ticks over rate, never a sum."""
-        return (self.tick - self._origin) / self.rate
+        return self._origin_time + (self.tick - self._origin) / self.rate
 
     @property
     def state(self):
@@ -126,7 +146,7 @@ class Simulation:
 
     def advance_through(self, ticks):
         """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
-        times = np.arange(self.tick - self._origin + 1, self.tick - self._origin + ticks + 1) / self.rate
+        times = self._origin_time + np.arange(self.tick - self._origin + 1, self.tick - self._origin + ticks + 1) / self.rate
         self._commands = None
         states = self.states(times)
         self.advance(ticks)
@@ -263,7 +283,7 @@ class Simulation:
             end = self._spans[k + 1].time if k + 1 < len(self._spans) else now
             if end > before:
                 for time, name, values in span.solver.events(max(span.time, before), min(end, now)):
-                    tick = self._origin + math.ceil(time * self.rate)
+                    tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
                     self.events.append(Event(min(tick, self.tick), time, name, values))
 
     def _spans_until(self, time):
