@@ -8,6 +8,8 @@ import math
 from fractions import Fraction
 
 NANOSECONDS = 1_000_000_000
+ROUND_OFF = Fraction(1, 2**51)
+"""Two factors, each known to half an ulp, and their product."""
 
 
 class Timeline:
@@ -34,8 +36,10 @@ class Timeline:
         return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (2 * self._rate_numerator)
 
     def ticks_in(self, seconds):
-        """Return the number of ticks after which at least `seconds` have passed (a float or Fraction, exact)."""
-        return math.ceil(Fraction(seconds) * self.rate)
+        """Return the number of ticks after which at least `seconds` have passed; 0.07 s at 100 Hz are 7, though the double is above 0.07."""
+        exact = Fraction(seconds) * self.rate
+        nearest = round(exact)
+        return nearest if abs(exact - nearest) <= nearest * ROUND_OFF else math.ceil(exact)
 
     def from_tick(self, tick, rate):
         """Return the timeline that goes on from a tick of this one at another rate."""

@@ -27,3 +27,9 @@ def test_ticks_in_a_span_never_fall_short():
     assert Timeline(0, 1000.0).ticks_in(0.5) == 500
     assert Timeline(0, 3.0).ticks_in(0.5) == 2
     assert Timeline(0, 0.1).ticks_in(0.0) == 0
+    assert Timeline(0, 1000.0).ticks_in(0.5000000001) == 501
+
+
+@pytest.mark.parametrize(('seconds', 'rate', 'ticks'), [(0.1, 1000.0, 100), (0.07, 100.0, 7), (0.3, 10.0, 3), (1e-3, 1e5, 100), (20.0, 0.1, 2)])
+def test_decimal_spans_are_whole_numbers_of_ticks(seconds, rate, ticks):
+    assert Timeline(0, rate).ticks_in(seconds) == ticks
