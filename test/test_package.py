@@ -33,9 +33,10 @@ def dependencies(tag):
 
 
 def imported(path):
-    """Return the names of the top-level packages that a file imports."""
-    names = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    """Return the names of the top-level packages that a file imports, those of message types that it names among them."""
+    text = path.read_text()
+    names = set(re.findall(r"'(\w+)/(?:msg|srv)/\w+'", text))
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name.partition('.')[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and not node.level:
