@@ -1,0 +1,98 @@
+"""The command `analyze`: recordings to reports; each is read once, in a stream, however long it is."""
+
+import json
+import pathlib
+import sys
+
+from tqdm import tqdm
+
+from rigid_body_sim import command_line
+from rigid_body_sim.analysis.measure import measure
+from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.analysis.summary import lines, summary, title
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording.reader import Recording
+
+
+def analyze(path, folder):
+    """Analyse a recording; return (list of summaries, one a body; paths of what was written, the text first).
+
+    Parameters
+    ----------
+    path : path-like
+        A recording's folder or an .mcap file.
+    folder : path-like
+        Where the report goes; made if need be, its files replaced.
+
+    Raises
+    ------
+    BadInput
+        Where there is no recording of a simulation, or the folder cannot be written.
+    """
+    recording, folder = Recording(path), pathlib.Path(folder)
+    bodies = sources(recording)
+    with tqdm(total=recording.message_count, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
+        measured = measure(recording, bodies, progress.update)
+    found = [summary(one) for one in measured]
+    written = [folder / 'report.txt', folder / 'report.json']
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        written[0].write_text('\n'.join(line for one in found for line in lines(one)) + '\n', encoding='utf-8')
+        written[1].write_text(json.dumps({'recording': str(path), 'bodies': found}, indent=2, allow_nan=False) + '\n', encoding='utf-8')
+        written += [_figure(one, numbers, folder) for one, numbers in zip(measured, found, strict=True)]
+    except OSError as error:
+        raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
+    return found, written
+
+
+def _figure(measured, found, folder):
+    # matplotlib takes a second to import
+    from rigid_body_sim.analysis.overview import draw
+    name = '_'.join(filter(None, ('overview', *measured.source.namespace.split('/'))))
+    path = folder / f'{name}.png'
+    draw(measured, title(found)).savefig(path)
+    return path
+
+
+def report_folder(path):
+    """Return where the report of a recording goes by default: beside it."""
+    path = pathlib.Path(path)
+    return path.resolve().parent / f'{path.resolve().stem}_report'
+
+
+def show(found, written):
+    """Print the short report and the paths."""
+    for one in found:
+        print('\n'.join(lines(one)))
+    for path in written:
+        print(f'  {path}')
+
+
+def main(arguments=None):
+    """Run the command; return the exit status."""
+    parser = command_line.parser('analyze', 'Recordings to reports: drift, flips, lateness, drops, figures.',
+                                 'python -m rigid_body_sim analyze recordings/racket')
+    parser.add_argument('recording', nargs='+', help='folder of a recording, or .mcap file; also of `ros2 bag record`')
+    parser.add_argument('--output', metavar='FOLDER', help='where the reports go (default: beside each recording); '
+                        'of several recordings each gets a folder of its own in it')
+    parser.add_argument('--json', action='store_true', help='print what report.json holds')
+    return command_line.run(_run, parser.parse_args(arguments))
+
+
+def _run(options):
+    results = []
+    for path in options.recording:
+        folder = report_folder(path)
+        if options.output:
+            folder = pathlib.Path(options.output) / (folder.name if len(options.recording) > 1 else '')
+        found, written = analyze(path, folder)
+        results.append({'recording': path, 'bodies': found, 'files': [str(name) for name in written]})
+        if not options.json:
+            show(found, written)
+    if options.json:
+        command_line.print_json(results)
+    return command_line.GOOD
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,77 @@
+"""Does a quantity stay what it should be? Its residual, tick by tick, from the first tick of the segment in which it is kept."""
+
+import numpy as np
+
+from rigid_body_sim import mechanics
+from rigid_body_sim.analysis.collectors import Curve
+
+FLOOR = 4 * np.finfo(float).eps
+"""Round-off floor of a relative residual: a few units in the last place, for each value is made of a handful of products and sums."""
+
+
+class Residual:
+    """Takes values of a quantity that is constant in some segments of the history.
+
+    Parameters
+    ----------
+    history : History
+    kept : callable
+        Says of a Segment whether the quantity is constant there.
+    scale : float
+        Least scale of the residual, in the unit of the quantity; it is relative to the largest of that and its value at the segment's start.
+    count : int
+        How many values will come, about.
+    """
+
+    def __init__(self, history, kept, scale, count):
+        self._history = history
+        self._kept = np.array([kept(segment) for segment in history.segments])
+        self._scale = scale
+        self._place, self._reference = -1, 0.0
+        self._residuals = Curve(count)
+        self.values = Curve(count)
+        self.first = self.last = None
+        self.least, self.greatest = np.inf, -np.inf
+        self.largest = self.last_residual = 0.0
+        self.judged = 0
+
+    def add(self, stamps, times, values):
+        """Take values (n,): their stamps (ns) and times from the start (s)."""
+        self.values.add(times, values)
+        self.first = float(values[0]) if self.first is None else self.first
+        self.last = float(values[-1])
+        self.least, self.greatest = min(self.least, float(values.min())), max(self.greatest, float(values.max()))
+        places = self._history.at(stamps)
+        # for each value, which one before it (-1: of an earlier block) is the first of its segment
+        begins = np.flatnonzero(np.diff(places, prepend=self._place))
+        which = np.searchsorted(begins, np.arange(len(values)), side='right') - 1
+        references = np.append(values[begins], self._reference)[which]
+        self._place, self._reference = places[-1], references[-1]
+        kept = self._kept[places]
+        if not kept.any():
+            return
+        scales = np.maximum(np.abs(references), self._scale)
+        residuals = np.divide(values - references, scales, out=np.zeros(len(values)), where=scales > 0.0)[kept]
+        self._residuals.add(times[kept], residuals)
+        self.judged += len(residuals)
+        self.largest = max(self.largest, float(np.abs(residuals).max()))
+        self.last_residual = float(residuals[-1])
+
+    def curve(self):
+        """Return times (s) and residuals where the quantity is kept."""
+        return self._residuals.curve()
+
+    def summary(self):
+        """Return a dict: first, last, least and greatest value; the largest and the last residual (None where it is never constant)."""
+        return {'first': self.first, 'last': self.last, 'least': self.least, 'greatest': self.greatest,
+                'largest_residual': self.largest if self.judged else None, 'last_residual': self.last_residual if self.judged else None,
+                'judged_ticks': self.judged}
+
+
+def scales(scene):
+    """Return the scales of energy (J) and of L^2 in a scene: the largest of its kinetic and potential energy at the start, and 0."""
+    if scene is None:
+        return 0.0, 0.0
+    out = np.empty(mechanics.DIAGNOSIS_SIZE)
+    mechanics.diagnose(mechanics.parameters(scene), scene.initial.vector, out)
+    return max(out[mechanics.KINETIC], abs(out[mechanics.POTENTIAL])), 0.0

@@ -1,0 +1,105 @@
+"""What a recording holds of one simulated body: its topics, how it was made, what happened to it.
+
+A recording may hold several bodies, each in a namespace of its own, and it may come from ``ros2 bag record``: then there is no journal, and
+the scene is known only if its topic was recorded.
+"""
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_body_sim.analysis.history import History, Segment, history
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.timeline import NANOSECONDS
+
+EVERY_TICK = {'pose': 'geometry_msgs/msg/PoseStamped', 'angular_velocity': 'geometry_msgs/msg/Vector3Stamped',
+              'energy': 'std_msgs/msg/Float64', 'angular_momentum_squared': 'std_msgs/msg/Float64'}
+TYPES = {**EVERY_TICK, 'events': 'diagnostic_msgs/msg/DiagnosticStatus', 'scene': 'std_msgs/msg/String', 'journal': 'std_msgs/msg/String',
+         'cmd_wrench': 'geometry_msgs/msg/WrenchStamped', 'cmd_impulse': 'geometry_msgs/msg/WrenchStamped'}
+
+
+@dataclass(frozen=True)
+class Source:
+    """One body in a recording.
+
+    Attributes
+    ----------
+    namespace : str
+        ``/`` or ``/racket``.
+    topics : dict
+        Name in TYPES -> complete name of the topic; what was not recorded is missing.
+    run : dict
+        What the simulation was asked for (see recording.about.run_of); empty where unknown.
+    made_by, version : str
+        '' where unknown.
+    history : History
+    start : int
+        Log time of the first tick, ns: t = 0 of all curves.
+    ticks : int
+        Messages on the topic of every tick that has most of them.
+    """
+
+    namespace: str
+    topics: dict
+    run: dict
+    made_by: str
+    version: str
+    history: History
+    start: int
+    ticks: int
+
+    @property
+    def scene(self):
+        """The scene at the start, or None."""
+        return self.history.segments[0].scene
+
+
+def sources(recording):
+    """Return the Sources in a Recording, by namespace; BadInput where there is none."""
+    found = {}
+    for name, topic in recording.topics.items():
+        namespace, _, last = name.rpartition('/')
+        if TYPES.get(last) == topic.type and topic.count:
+            found.setdefault(namespace, {})[last] = name
+    bodies = [_source(recording, namespace or '/', topics) for namespace, topics in sorted(found.items()) if set(topics) & set(EVERY_TICK)]
+    if not bodies:
+        raise BadInput(str(recording.path), f'holds none of the topics {", ".join(EVERY_TICK)}', 'a recording of a simulation')
+    return bodies
+
+
+def _source(recording, namespace, topics):
+    entries = [entry for entry in recording.journal() if entry['topic'] == topics.get('journal')]
+    begin = next((entry for entry in entries if entry['kind'] == 'begin'), {})
+    ticking = [recording.topics[topics[name]] for name in EVERY_TICK if name in topics]
+    start = min(_first_time(recording, topic.name) for topic in ticking)
+    text = begin.get('scene') or _latched_scene(recording, topics)
+    scene = parse_scene(text, where=f'{recording.path}: scene') if text else None
+    run = json.loads(begin.get('simulation', '{}'))
+    pace = 0.0 if begin.get('made_by') == 'simulate' else float(json.loads(begin.get('parameters', '{}')).get('real_time_factor', 1.0))
+    # commands without a journal: nobody knows at which tick they acted
+    held = not entries and bool({'cmd_wrench', 'cmd_impulse'} & set(topics))
+    events = recording.decoded(topics['events']) if 'events' in topics else ()
+    rate = run['rate'] if run else _estimated_rate(recording, topics)
+    happened = history(entries, events, Segment(start, scene, rate, pace, held))
+    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, start,
+                  max(topic.count for topic in ticking))
+
+
+def _first_time(recording, topic):
+    return int(next(recording.blocks([topic], []))[1]['log_time'].min())
+
+
+def _estimated_rate(recording, topics):
+    """Return the ticks per second that the stamps of the first block of messages show; 0 where there are none."""
+    for name in ('pose', 'angular_velocity'):
+        if name in topics:
+            steps = np.diff(next(recording.blocks([topics[name]], ['header.stamp']))[1]['header.stamp'])
+            steps = steps[steps > 0]
+            return NANOSECONDS / float(np.median(steps)) if len(steps) else 0.0
+    return 0.0
+
+
+def _latched_scene(recording, topics):
+    return next((message['data'] for _, message in recording.decoded(topics['scene'])), '') if 'scene' in topics else ''

@@ -1,0 +1,79 @@
+"""What the analysis says of a recording: as data (report.json) and as a few lines for people."""
+
+import collections
+
+from rigid_body_sim.analysis.drift import FLOOR
+
+
+def summary(measured):
+    """Return all numbers of a Measured as plain data."""
+    source = measured.source
+    segment = source.history.segments[0]
+    marks = collections.Counter(mark.kind for mark in source.history.marks)
+    events = collections.Counter(mark.name for mark in source.history.marks if mark.kind == 'event')
+    return {
+        'namespace': source.namespace,
+        'scene': source.scene.name if source.scene else None,
+        'made_by': source.made_by,
+        'version': source.version,
+        'run': source.run,
+        'rate': segment.rate,
+        'energy': measured.energy.summary(),
+        'angular_momentum_squared': measured.momentum.summary(),
+        'round_off_floor': FLOOR,
+        'flips': measured.flips.count if measured.flips else None,
+        'events': dict(events),
+        'commands': marks['commands'],
+        'resets': marks['reset'],
+        'parameter_changes': marks['parameters'],
+        'timing': measured.punctuality.summary(),
+        'left_out_by_recorder': sum(mark.values['ticks'] for mark in source.history.marks if mark.kind == 'gap'),
+    }
+
+
+def title(found):
+    """Return one line that names what was recorded."""
+    run = found['run']
+    how = f'{run["method"]}, {found["rate"]:g} Hz' if run else f'{found["rate"]:.6g} Hz'
+    who = f', by {found["made_by"]} {found["version"]}'.rstrip() if found['made_by'] else ''
+    where = f' in {found["namespace"]}' if found['namespace'] != '/' else ''
+    return f'{found["scene"] or "unknown scene"}{where}: {how}{who}'
+
+
+def lines(found):
+    """Return the short report, a list of lines."""
+    timing = found['timing']
+    text = [f'{title(found)}; {timing["ticks"]} ticks']
+    for name, label, unit in (('energy', 'energy', 'J'), ('angular_momentum_squared', 'L^2', '(kg m^2/s)^2')):
+        text.append(f'  {label:9}{_quantity(found[name], unit)}')
+    if found['flips'] is not None:
+        text.append(f'  flips    {found["flips"]}')
+    others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
+    others += [f'{found[kind]} {name}' for kind, name in
+               (('commands', 'ticks with commands'), ('resets', 'resets'), ('parameter_changes', 'changes of parameters')) if found[kind]]
+    if others:
+        text.append(f'  events   {", ".join(others)}')
+    if timing['lateness']:
+        late = {name: value * 1e6 for name, value in timing['lateness'].items()}
+        rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
+        stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
+        text.append(f'  lateness p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us{rate}{stood}')
+    text.append(f'  drops    {_drops(found)}')
+    return text
+
+
+def _quantity(values, unit):
+    if values['first'] is None:
+        return 'not recorded'
+    if values['largest_residual'] is None:
+        return f'{values["first"]:.9g} to {values["last"]:.9g} {unit} (not constant in this scene)'
+    floor = ', round-off' if values['largest_residual'] <= FLOOR else ''
+    return (f'{values["first"]:.9g} {unit}; drift {values["last_residual"]:+.1e}, '
+            f'largest residual {values["largest_residual"]:.1e} (relative{floor})')
+
+
+def _drops(found):
+    missing, left_out = found['timing']['missing'], found['left_out_by_recorder']
+    if not missing and not left_out:
+        return 'none'
+    return f'{missing} ticks are missing, {left_out} of them left out by the recorder'
