@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from near import near
 
 from rigid_body_sim.rotations import normalised
 
@@ -28,5 +29,5 @@ def test_normalised_has_no_side(scale):
 
 def test_normalised_keeps_the_direction():
     q = normalised(0.3, -0.4, 1.2, 2.0)
-    assert q == pytest.approx(tuple(np.array([0.3, -0.4, 1.2, 2.0]) / np.sqrt(5.69)), rel=1e-15)
+    assert q == near(tuple(np.array([0.3, -0.4, 1.2, 2.0]) / np.sqrt(5.69)), 1e-15)
     assert normalised(0.0, 0.0, 0.0, -1.0) == (0.0, 0.0, 0.0, -1.0)
