@@ -19,6 +19,7 @@ from rigid_body_sim.integrators import METHODS, adaptive, fixed, track, unroll
 from rigid_body_sim.integrators.equations import Equations
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import STATE_SIZE, TIME
+from rigid_body_sim.watches import Watcher, watches
 
 CHECKPOINTS = 1024
 NODE_HEAD = adaptive.VALUES
@@ -67,6 +68,7 @@ class Stepped:
         started.__dict__.update(self.__dict__)
         started.__dict__['_vector'] = np.array(vector, dtype=float)
         started._course, started._booked_course = _Course(started, self._plain), None
+        started._watcher = None
         return started
 
     def state(self, time, out):
@@ -76,6 +78,12 @@ class Stepped:
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times (s)."""
         self._course.states(np.asarray(times, dtype=float), out)
+
+    def events(self, after, until):
+        """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward."""
+        if self._watcher is None:
+            self._watcher = Watcher(self, watches(self.scene), float(self._vector[TIME]))
+        return [event for event in self._watcher.events(until) if event[0] > after]
 
     def exchanged(self, time):
         """Return what commands and effects exchanged with the body from the start to a time, shape (5,)."""
