@@ -11,8 +11,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import SEQUENCE, SIZES, schema
 
 ENCAPSULATION = b'\x00\x01\x00\x00'
-CODES = {'bool': '?', 'byte': 'B', 'char': 'B', 'int8': 'b', 'uint8': 'B', 'int16': 'h', 'uint16': 'H', 'int32': 'i', 'uint32': 'I', 'int64': 'q',
-         'uint64': 'Q', 'float32': 'f', 'float64': 'd'}
+CODES = {'bool': '?', 'byte': 'B', 'char': 'B', 'int8': 'b', 'uint8': 'B', 'int16': 'h', 'uint16': 'H', 'int32': 'i', 'uint32': 'I',
+         'int64': 'q', 'uint64': 'Q', 'float32': 'f', 'float64': 'd'}
 
 
 def encode(type_name, values):
@@ -73,8 +73,8 @@ def decode(schemas, type_name, data, leaves=None):
     """Return a message as a nested dict; BadInput where the bytes are no such message.
 
     `schemas` comes from :mod:`rigid_body_sim.messages.definitions`. If `leaves` is a list, what was met is appended in wire order as
-    (path, code, offset, count): `code` as in :mod:`struct`, ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a string.
-    Text that is not UTF-8 (ROS does not forbid it) gets replacement characters.
+    (path, code, offset, count): `code` as in :mod:`struct`, ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a
+    string. Text that is not UTF-8 (ROS does not forbid it) gets replacement characters.
     """
     if bytes(data[:2]) != ENCAPSULATION[:2]:
         raise BadInput(type_name, f'a message that starts with {bytes(data[:4]).hex()}', 'little-endian CDR (00 01)')
@@ -82,7 +82,8 @@ def decode(schemas, type_name, data, leaves=None):
     try:
         return reader.fields(type_name, '')
     except struct.error as error:
-        raise BadInput(type_name, f'a message of {len(data)} bytes that cannot be decoded ({error})', 'a message as its definition says') from error
+        problem = f'a message of {len(data)} bytes that cannot be decoded ({error})'
+        raise BadInput(type_name, problem, 'a message as its definition says') from error
 
 
 class _Reader:

@@ -15,7 +15,8 @@ SIZES = {'bool': 1, 'byte': 1, 'char': 1, 'int8': 1, 'uint8': 1, 'int16': 2, 'ui
          'float32': 4, 'float64': 8}
 SEQUENCE = -1
 _SEPARATOR = re.compile(r'^={80}\s*$', re.MULTILINE)
-_FIELD = re.compile(r'(?P<base>[A-Za-z]\w*(?:/\w+){0,2})(?P<bound><=\d+)?(?P<array>\[(?:<=)?\d*\])?\s+(?P<name>[A-Za-z]\w*)\s*(?P<constant>=(?!=))?')
+_FIELD = re.compile(r'(?P<base>[A-Za-z]\w*(?:/\w+){0,2})(?P<bound><=\d+)?(?P<array>\[(?:<=)?\d*\])?\s+(?P<name>[A-Za-z]\w*)'
+                    r'\s*(?P<constant>=(?!=))?')
 _MAX_FIXED_ARRAY = 1_000_000
 
 

@@ -24,7 +24,8 @@ TYPES = (
     'std_msgs/msg/String',
     'visualization_msgs/msg/Marker',
 )
-PRIMITIVES = {'bool', 'byte', 'char', 'float32', 'float64', 'int8', 'uint8', 'int16', 'uint16', 'int32', 'uint32', 'int64', 'uint64', 'string'}
+PRIMITIVES = {'bool', 'byte', 'char', 'float32', 'float64', 'int8', 'uint8', 'int16', 'uint16', 'int32', 'uint32', 'int64', 'uint64',
+              'string'}
 FIELD_TYPE = re.compile(r'(?:^|\n)\s*([a-zA-Z0-9_/]+)(?:\[[^\]]*\])?\s+')
 
 # tf2_msgs is not among the wheels. Its text is this one line; the hash is the one that rosbags computes and that Jazzy's own tf2_msgs has.

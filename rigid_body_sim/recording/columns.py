@@ -31,8 +31,8 @@ class Decoder:
     def columns(self, records, offsets, lengths, names=None):
         """Return the columns of messages whose records begin at `offsets` and have `lengths` (of their content), all arrays of n rows.
 
-        `names` chooses columns; without it all that every message here has. BadInput where a chosen column is not in every message, has no fixed
-        length, or the messages have too many different forms (sequences of many lengths: decode those one by one).
+        `names` chooses columns; without it all that every message here has. BadInput where a chosen column is not in every message, has
+        no fixed length, or the messages have too many different forms (sequences of many lengths: decode those one by one).
         """
         data, parts, rows_of = np.frombuffer(records, np.uint8), [], []
         for length in np.unique(lengths).tolist():

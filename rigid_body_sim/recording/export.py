@@ -119,8 +119,8 @@ TABLES = {'csv': CsvTable, 'parquet': ParquetTable, 'numpy': NumpyTable}
 def export(path, folder, form, topics=None, progress=None):
     """Write the topics of a recording (all, or those named) into a new folder; return the paths written.
 
-    `form` is ``csv``, ``parquet`` or ``numpy``; `progress` is called with the number of messages done. BadInput where the recording or the folder
-    will not do, or the messages of a table change their form.
+    `form` is ``csv``, ``parquet`` or ``numpy``; `progress` is called with the number of messages done. BadInput where the recording or
+    the folder will not do, or the messages of a table change their form.
     """
     if form == 'parquet' and pyarrow is None:
         raise BadInput('--format parquet', 'pyarrow is not installed', 'pip install pyarrow, or --format csv or numpy')

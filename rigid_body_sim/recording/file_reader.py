@@ -36,9 +36,9 @@ class Piece(typing.NamedTuple):
         heads_, offsets = self.heads[order], self.offsets[order]
         begins = offsets + mcap_format.MESSAGE_HEAD.size
         ends = offsets + mcap_format.HEAD.size + heads_['length'].astype(np.int64)
-        return [make(log_time, channels[number], publish_time, sequence, self.records[begin:end]) for log_time, number, publish_time, sequence,
-                begin, end in zip(heads_['log_time'].tolist(), heads_['channel'].tolist(), heads_['publish_time'].tolist(),
-                                  heads_['sequence'].tolist(), begins.tolist(), ends.tolist(), strict=True)]
+        columns = (heads_['log_time'], heads_['channel'], heads_['publish_time'], heads_['sequence'], begins, ends)
+        return [make(log_time, channels[number], publish_time, sequence, self.records[begin:end])
+                for log_time, number, publish_time, sequence, begin, end in zip(*(column.tolist() for column in columns), strict=True)]
 
 
 class FileReader:
@@ -134,7 +134,8 @@ class FileReader:
         except ValueError as error:
             raise self._nonsense(error) from error
         message_heads = heads(data, offsets)
-        wanted = np.isin(message_heads['channel'], list(channels)) & (message_heads['log_time'] >= start) & (message_heads['log_time'] <= end)
+        times = message_heads['log_time']
+        wanted = np.isin(message_heads['channel'], list(channels)) & (times >= start) & (times <= end)
         return Piece(data, offsets[wanted], message_heads[wanted])
 
     def _uncompressed(self, data):
@@ -147,7 +148,7 @@ class FileReader:
 
 
 def _whole_records(data):
-    """Return how many bytes of data section records there are at the start, True where the section ends behind them, and their log times."""
+    """Return how many bytes of data section records there are at the start, whether the section ends behind them, and their log times."""
     try:
         (offsets, others), whole = walk(data), len(data)
     except Cut as cut:

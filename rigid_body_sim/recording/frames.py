@@ -46,9 +46,10 @@ def tick_fields(sizes):
 class Report:
     """How the recorder stands.
 
-    `recorded` messages and `written` bytes are safe from a kill of the recorder; `dropped` ticks are missing between recorded ones; `ticks` is the
-    number of the next tick expected; `error` the problem right now, or ''; `resend` and `state_wanted` count requests; `refused`: why nothing
-    can be recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
+    `recorded` messages and `written` bytes are safe from a kill of the recorder; `dropped` ticks are missing between recorded ones;
+    `ticks` is the number of the next tick expected; `acknowledged` that of the last numbered message in the file; `error` the problem
+    right now, or ''; `resend` and `state_wanted` count requests; `refused`: why nothing can be
+    recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
     """
 
     recorded: int = 0

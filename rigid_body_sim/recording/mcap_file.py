@@ -73,7 +73,8 @@ class Contents:
         summary, offsets = bytearray(), bytearray()
         for opcode, group in groups:
             if group:
-                offsets += mcap_format.record(mcap_format.SUMMARY_OFFSET, struct.pack('<BQQ', opcode, summary_start + len(summary), len(group)))
+                place = struct.pack('<BQQ', opcode, summary_start + len(summary), len(group))
+                offsets += mcap_format.record(mcap_format.SUMMARY_OFFSET, place)
             summary += group
         offsets_start = summary_start + len(summary)
         summary += offsets + mcap_format.HEAD.pack(mcap_format.FOOTER, 20) + struct.pack('<QQ', summary_start, offsets_start)

@@ -16,13 +16,14 @@ PRIVATE = 0x80      # opcodes from here on are skipped by every reader
 HEAD = struct.Struct('<BQ')
 MESSAGE_HEAD = struct.Struct('<BQHIQQ')
 MESSAGE_FIXED = MESSAGE_HEAD.size - HEAD.size      # bytes of a message's content before its data
-MESSAGE_FIELDS = [('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'), ('sequence', '<u4'), ('log_time', '<u8'), ('publish_time', '<u8')]
+MESSAGE_FIELDS = [('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'), ('sequence', '<u4'), ('log_time', '<u8'),
+                  ('publish_time', '<u8')]
 _CHUNK_HEAD = struct.Struct('<QQQII')
 FOOTER_SIZE = HEAD.size + 20 + len(MAGIC)
 
 
 class Chunk(typing.NamedTuple):
-    """The head of a chunk: times in ns, size and checksum of the uncompressed records, name of the compression, where in the content data is."""
+    """The head of a chunk: times in ns, size and checksum of the uncompressed records, name of the compression, where its data is."""
 
     start_time: int
     end_time: int
@@ -59,57 +60,57 @@ def _text_map(texts):
 
 
 def header(profile, library):
-    """The first record of a file."""
+    """Return the first record of a file."""
     return record(HEADER, _text(profile) + _text(library))
 
 
 def schema(number, name, encoding, text):
-    """A message type."""
+    """Return the record of a message type."""
     data = text.encode()
     return record(SCHEMA, struct.pack('<H', number) + _text(name) + _text(encoding) + struct.pack('<I', len(data)) + data)
 
 
 def channel(number, schema_number, topic, encoding, metadata):
-    """A topic."""
+    """Return the record of a topic."""
     return record(CHANNEL, struct.pack('<HH', number, schema_number) + _text(topic) + _text(encoding) + _text_map(metadata))
 
 
 def message(channel_number, sequence, log_time, publish_time, data):
-    """A message."""
+    """Return the record of a message."""
     return MESSAGE_HEAD.pack(MESSAGE, 22 + len(data), channel_number, sequence, log_time, publish_time) + data
 
 
 def chunk(start_time, end_time, size, crc, compression, data):
-    """Compressed records of `size` bytes."""
+    """Return a chunk: compressed records of `size` bytes."""
     content = _CHUNK_HEAD.pack(start_time, end_time, size, crc, len(compression)) + compression.encode() + struct.pack('<Q', len(data))
     return record(CHUNK, content + data)
 
 
 def message_index(channel_number, times_and_offsets):
-    """Where in a chunk the messages of one channel are: uint64 of shape (n, 2)."""
+    """Return where in a chunk the messages of one channel are: uint64 of shape (n, 2)."""
     data = np.ascontiguousarray(times_and_offsets, '<u8').tobytes()
     return record(MESSAGE_INDEX, struct.pack('<HI', channel_number, len(data)) + data)
 
 
 def chunk_index(head, offset, length, index_offsets, index_length):
-    """Where in the file a chunk is (`head`: Chunk), and its message indexes (channel number -> offset)."""
+    """Return where in the file a chunk is (`head`: Chunk), and its message indexes (channel number -> offset)."""
     offsets = b''.join(struct.pack('<HQ', *item) for item in index_offsets.items())
     return record(CHUNK_INDEX, struct.pack('<QQQQI', head.start_time, head.end_time, offset, length, len(offsets)) + offsets
                   + struct.pack('<Q', index_length) + _text(head.compression) + struct.pack('<QQ', head.data_size, head.size))
 
 
 def metadata(name, texts):
-    """Named texts about the recording."""
+    """Return named texts about the recording."""
     return record(METADATA, _text(name) + _text_map(texts))
 
 
 def metadata_index(offset, length, name):
-    """Where in the file a metadata record is."""
+    """Return where in the file a metadata record is."""
     return record(METADATA_INDEX, struct.pack('<QQ', offset, length) + _text(name))
 
 
 def statistics(schemas, channels, attachments, metadatas, chunks, start_time, end_time, counts):
-    """Totals of a file; `counts` maps channel number -> messages."""
+    """Return the totals of a file; `counts` maps channel number -> messages."""
     per_channel = b''.join(struct.pack('<HQ', *item) for item in sorted(counts.items()))
     return record(STATISTICS, struct.pack('<QHIIIIQQI', sum(counts.values()), schemas, channels, attachments, metadatas, chunks, start_time,
                                           end_time, len(per_channel)) + per_channel)
@@ -181,6 +182,6 @@ def read_attachment(content):
 
 
 def attachment_index(offset, length, attachment):
-    """Where in the file an attachment is; `attachment` as from read_attachment."""
+    """Return where in the file an attachment is; `attachment` as from read_attachment."""
     log_time, create_time, name, media_type, size = attachment
     return record(ATTACHMENT_INDEX, struct.pack('<QQQQQ', offset, length, log_time, create_time, size) + _text(name) + _text(media_type))

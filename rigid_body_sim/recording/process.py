@@ -1,7 +1,7 @@
 """The recorder process: takes frames from a pipe, writes the recording, outlives the node.
 
-``python -m rigid_body_sim.recording.process FRAMES REPORTS`` (two file descriptors) is started by :class:`rigid_body_sim.recording.recorder.Recorder`.
-It ends when the pipe is closed, by the node's last word or by its death, and leaves a complete recording either way. It sleeps between looks at the
+``python -m rigid_body_sim.recording.process FRAMES REPORTS`` (two file descriptors) is started by the Recorder (recorder.py). It ends when
+the pipe is closed, by the node's last word or by its death, and leaves a complete recording either way. It sleeps between looks at the
 pipe, so that the node's writing never wakes it: 50 times a second, whatever the rate.
 """
 

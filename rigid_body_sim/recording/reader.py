@@ -57,8 +57,8 @@ class RecordedTopic:
 class Recording:
     """A recording, opened. BadInput where there is none, it is cut (then recover makes it whole), or it makes no sense.
 
-    Attributes: `path`; `topics`, dict of name to RecordedTopic; `start_time` and `end_time` in ns, `message_count`; `about`, dict of texts that the
-    recorder left (of ours: scene, parameters, version, machine), empty if it left none.
+    Attributes: `path`; `topics`, dict of name to RecordedTopic; `start_time` and `end_time` in ns, `message_count`; `about`, dict of texts
+    that the recorder left (of ours: scene, parameters, version, machine), empty if it left none.
     """
 
     def __init__(self, path):
@@ -123,8 +123,9 @@ class Recording:
     def blocks(self, topics=None, names=None, start=0, end=2**63, progress=None):
         """Yield (topic, columns) for each topic in each chunk.
 
-        Columns are those of :mod:`rigid_body_sim.messages.layout` plus ``log_time`` and ``publish_time`` (int64, ns) and ``sequence``. `names`
-        chooses columns; `start` and `end` (ns of log time, inclusive) choose messages; `progress` is called with the number of messages done.
+        Columns are those of :mod:`rigid_body_sim.messages.layout` plus ``log_time`` and ``publish_time`` (int64, ns) and ``sequence``.
+        `names` chooses columns; `start` and `end` (ns of log time, inclusive) choose messages; `progress` is called with the number of
+        messages done.
         """
         for channels, piece, _ in self._pieces(topics, start, end):
             for number, topic in channels.items():
@@ -140,11 +141,12 @@ class Recording:
                 progress(len(piece.heads))
 
     def read(self, topic, names=None, start=0, end=2**63, progress=None):
-        """Return all columns of one topic (or those in `names`) in the order of log time; columns that are not in every message are left out."""
+        """Return the columns of one topic (all that every message has, or those in `names`) in the order of log time."""
         blocks = [columns for _, columns in self.blocks([topic], names, start, end, progress)]
         if not blocks:
             return {'log_time': np.empty(0, np.int64), 'publish_time': np.empty(0, np.int64), 'sequence': np.empty(0, np.uint32)}
-        common = [name for name in blocks[0] if all(name in block and block[name].shape[1:] == blocks[0][name].shape[1:] for block in blocks)]
+        common = [name for name, column in blocks[0].items()
+                  if all(name in block and block[name].shape[1:] == column.shape[1:] for block in blocks)]
         joined = {}
         for name in common:
             joined[name] = np.concatenate([block.pop(name) for block in blocks])

@@ -13,8 +13,8 @@
     recorder.status()                                           # 2 to 10 times a second, from another thread
     status = recorder.close()
 
-What is published but refused by the pipe waits in memory; when that is full (`BACKLOG` bytes), ticks are dropped, counted, and the gap is marked in
-the journal. Important messages are kept until the recorder has them in its file, and sent again to its successor if it dies.
+What is published but refused by the pipe waits in memory; when that is full (`BACKLOG` bytes), ticks are dropped, counted, and the gap is
+marked in the journal. Important messages are kept until the recorder has them in its file, and sent again to its successor if it dies.
 All methods may be called from any thread.
 """
 
@@ -44,9 +44,11 @@ _RESTART = 1.0              # s between restarts
 
 @dataclasses.dataclass(frozen=True)
 class Status:
-    """How the recording stands: `recorded` messages and `written` bytes are in the file; `dropped` ticks; `lost` important messages (only if more
-    than `UNCONFIRMED` bytes of them wait); `waiting` bytes; `restarts` of the recorder; `error`: the problem right now, or ''; `closed`: complete.
-    """    # noqa: D205
+    """How the recording stands.
+
+    `recorded` messages and `written` bytes are in the file; `dropped` ticks; `lost` important messages (only if more than `UNCONFIRMED`
+    bytes of them wait); `waiting` bytes; `restarts` of the recorder; `error`: the problem right now, or ''; `closed`: complete.
+    """
 
     recorded: int
     written: int
@@ -59,7 +61,7 @@ class Status:
 
 
 class Recorder:
-    """Starts a recorder and feeds it. Parameters as of :class:`rigid_body_sim.recording.writer.Writer`; BadInput where nothing can be recorded.
+    """Starts a recorder and feeds it. Parameters as of the Writer (writer.py); BadInput where nothing can be recorded.
 
     `state_wanted` is True when the full state should be written into the journal; who does so sets it False.
     """
@@ -115,6 +117,11 @@ class Recorder:
         os.set_blocking(reports_out, False)
         with self._lock:
             self._frames_in, self._reports_out, self._lines, self._begun = frames_in, reports_out, b'', 0
+
+    @property
+    def process_id(self):
+        """Process id of the recorder, of the newest one."""
+        return self._process.pid
 
     def tick(self, log_time, publish_time, messages):
         """Record a tick: its stamp and the wall clock in ns, and the messages (bytes) of the ticking topics in their order."""
@@ -229,7 +236,7 @@ class Recorder:
         self._pump()
 
     def status(self):
-        """Return the Status. Call it a few times a second, not from the tick thread: it also starts a new recorder where one died (5 ms)."""
+        """Return the Status. Call it a few times a second, not from the tick thread: it also starts a new recorder where one died."""
         with self._keeping:
             self._keep()
         return self._status()

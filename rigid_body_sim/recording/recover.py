@@ -1,8 +1,8 @@
-"""A cut recording made whole: what a kill -9, a full disk or a power cut left gets the tail and the metadata.yaml that every reader asks for.
+"""A cut recording made whole: what a kill -9, a full disk or a power cut left gets the tail and metadata.yaml that every reader asks for.
 
-Everything that was completely written is kept. Of the chunk in which a file is cut (at most 0.1 s of a node's recording) the messages are kept
-if it is not compressed; half a compressed chunk cannot be decompressed. Nothing is ever invented: a chunk with a wrong checksum is hidden, not guessed
-at. The file is repaired in place, so that a full disk needs room for the index only, and a second run changes nothing.
+Everything that was completely written is kept. Of the chunk in which a file is cut (at most 0.1 s of a node's recording) the messages are
+kept if it is not compressed; half a compressed chunk cannot be decompressed. Nothing is ever invented: a chunk with a wrong checksum is
+hidden, not guessed at. The file is repaired in place, so that a full disk needs room for the index only, and a second run changes nothing.
 """
 
 import dataclasses
@@ -28,8 +28,8 @@ from rigid_body_sim.recording.walk import Cut, heads, walk
 class Recovered:
     """What became of one file.
 
-    `messages` it holds now; `lost_messages` estimated from the size of what could not be kept, `lost_seconds` of stamps between the last message
-    kept and the last in the cut chunk, `lost_bytes` dropped; `changed` is False where the file was whole.
+    `messages` it holds now; `lost_messages` estimated from the size of what could not be kept, `lost_seconds` of stamps between the last
+    message kept and the last in the cut chunk, `lost_bytes` dropped; `changed` is False where the file was whole.
     """
 
     path: pathlib.Path
@@ -92,7 +92,7 @@ def recover_file(path):
 
 
 class Found:
-    """What metadata.yaml tells of one file: `topics` (TopicRecords), `channels` (Channels), `file` (FileRecord), `about` (texts or None)."""
+    """What metadata.yaml tells of a file: `topics` (TopicRecords), `channels` (Channels), `file` (FileRecord), `about` (texts or None)."""
 
     def __init__(self, stream, contents, name):
         schemas = {number: mcap_format.read_schema(data[mcap_format.HEAD.size:])[1] for number, data in contents.schemas.items()}

@@ -6,7 +6,7 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import compression, mcap_format
-from rigid_body_sim.recording.recover import recover_file, recording_files
+from rigid_body_sim.recording.recover import recording_files, recover_file
 from rigid_body_sim.recording.summary import chunk_places, read_summary
 from rigid_body_sim.recording.walk import heads, walk
 
@@ -17,8 +17,8 @@ _LAST_CHUNKS = 16
 def resume(path, ticking, report):
     """Make the files of a recording whole, bring `report` (Report) up to what they hold, and return their FileRecords.
 
-    `ticking`: names of the topics recorded at every tick. The sequence of their messages is the number of the tick, that of others the number
-    of the message (modulo 2**32).
+    `ticking`: names of the topics recorded at every tick. The sequence of their messages is the number of the tick, that of others the
+    number of the message (modulo 2**32).
     """
     folder = pathlib.Path(path)
     found = [recover_file(folder / name)[1] for name in recording_files(folder)]

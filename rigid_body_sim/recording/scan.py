@@ -10,12 +10,12 @@ from rigid_body_sim.recording.mcap_file import Contents
 from rigid_body_sim.recording.walk import heads, walk
 
 _LARGEST_RECORD = compression.LARGEST_CHUNK + 2**16
-_AFTER_DATA = (mcap_format.FOOTER, mcap_format.CHUNK_INDEX, mcap_format.ATTACHMENT_INDEX, mcap_format.STATISTICS, mcap_format.METADATA_INDEX,
-               mcap_format.SUMMARY_OFFSET, mcap_format.DATA_END)
+_AFTER_DATA = (mcap_format.FOOTER, mcap_format.CHUNK_INDEX, mcap_format.ATTACHMENT_INDEX, mcap_format.STATISTICS,
+               mcap_format.METADATA_INDEX, mcap_format.SUMMARY_OFFSET, mcap_format.DATA_END)
 
 
 class FoundChunk:
-    """A whole chunk: its head, its place in the file, the channels, times and offsets of its messages, and the message indexes behind it."""
+    """A whole chunk: its head, its place in the file, channels, times and offsets of its messages, and the message indexes behind it."""
 
     def __init__(self, head, offset, length, records):
         self.head, self.offset, self.length = head, offset, length
@@ -80,7 +80,7 @@ class Scan:
         begin = self._stream.tell()
         known = opcode not in (mcap_format.HEADER, mcap_format.ATTACHMENT) and opcode <= mcap_format.DATA_END
         content = self._stream.read(min(length, _LARGEST_RECORD if known else 2**16))
-        if begin + length > self._size or known and len(content) < length:
+        if begin + length > self._size or (known and len(content) < length):
             self._cut_in(opcode, content)
             return False
         try:
@@ -125,7 +125,8 @@ class Scan:
     def _chunk(self, content, offset, length):
         head = mcap_format.read_chunk(content)
         try:
-            records = compression.decompress(head.compression, content[head.data_offset:head.data_offset + head.data_size], head.size, head.crc)
+            data = content[head.data_offset:head.data_offset + head.data_size]
+            records = compression.decompress(head.compression, data, head.size, head.crc)
             chunk = FoundChunk(head, offset, length, records)
         except BadInput:
             raise

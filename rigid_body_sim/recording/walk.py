@@ -14,7 +14,10 @@ _LONGEST_TICK = 64              # messages
 
 
 class Cut(ValueError):
-    """A record that does not end within the bytes there are. `whole`: the offset up to which all is complete; `found`: result of walk until there."""
+    """A record that does not end within the bytes there are.
+
+    `whole`: the offset up to which all is complete; `found`: the result of walk until there.
+    """
 
     def __init__(self, whole, found):
         super().__init__(f'a record at byte {whole} that is not complete')
@@ -22,7 +25,7 @@ class Cut(ValueError):
 
 
 def walk(records):
-    """Return (offsets, others) of records end to end: where each message begins, int64, and (opcode, begin, end) of other records' contents.
+    """Return (offsets, others) of records end to end: where messages begin, int64, and (opcode, begin, end) of other records' contents.
 
     Raises Cut where a record makes no sense or does not end within them.
     """
@@ -46,7 +49,7 @@ def walk(records):
             begins.append(position)
             position = end
             continue
-        tick = [] if first is None or others and others[-1][1] > begins[first] else begins[first:]
+        tick = [] if first is None or (others and others[-1][1] > begins[first]) else begins[first:]
         found.append(np.array(begins[:len(begins) - len(tick)], np.int64))
         period = position - tick[0] if tick else 0
         if tick and all(records[at:at + _FORM] == records[at + k * period:at + k * period + _FORM] for at in tick for k in (1, 2)):

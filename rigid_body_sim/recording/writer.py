@@ -1,4 +1,4 @@
-"""Recordings as rosbag2 in Jazzy writes them: a folder of ``<bag>_0.mcap``, ... and metadata.yaml, which is written at the end and tells the truth.
+"""Recordings as rosbag2 in Jazzy writes them: a folder of ``<bag>_0.mcap``, ... and metadata.yaml, written at the end: it tells the truth.
 
 ::
 
@@ -8,7 +8,8 @@
         writer.message('/scene', stamp, wall_clock, cdr.encode(...))
         writer.ticks(0, stamps, wall_clocks, [pose.pack_many(columns)])
 
-log_time is the stamp (never falling: an older one is raised to the last), publish_time the wall clock, both in ns; ``sequence`` counts ticks.
+log_time is the stamp (never falling: an older one is raised to the last), publish_time the wall clock, both in ns; ``sequence`` counts
+ticks.
 """
 
 import errno
@@ -63,7 +64,8 @@ class Writer:
     Every method raises OSError when the disk refuses. Nothing recorded before is lost then, and the call may be repeated.
     """
 
-    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0, resume=()):
+    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
+                 resume=()):
         compression.compressor(compression_name)
         self.path = pathlib.Path(path)
         self._topics = [topic for topic, _ in ticking] + [*others, journal]
@@ -149,7 +151,7 @@ class Writer:
         self._pending += len(records)
 
     def ticks(self, sequence, log_times, publish_times, messages):
-        """Record n ticks in a row, numbered from `sequence`: times (n,) in ns; for each ticking topic its messages, uint8 of shape (n, size).
+        """Record n ticks in a row, numbered from `sequence`: times (n,) in ns; for each ticking topic its messages, uint8 (n, size).
 
         Returns how many were taken: all, or fewer where the disk refused after the first (then the next call raises OSError).
         """
@@ -233,7 +235,8 @@ class Writer:
 
 def _tick_records(sizes):
     """Return the dtype of one tick's message records end to end."""
-    return np.dtype([(str(position), np.dtype([*mcap_format.MESSAGE_FIELDS, ('data', 'u1', (size,))])) for position, size in enumerate(sizes)])
+    return np.dtype([(str(position), np.dtype([*mcap_format.MESSAGE_FIELDS, ('data', 'u1', (size,))]))
+                     for position, size in enumerate(sizes)])
 
 
 def _next_number(files):

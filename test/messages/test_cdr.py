@@ -1,5 +1,6 @@
 """CDR by hand against rosbags, against rclpy's own deserialiser, and against bytes that are no message."""
 
+import contextlib
 import importlib
 import math
 
@@ -24,11 +25,15 @@ SAMPLES = {
     'geometry_msgs/msg/WrenchStamped': {'header': HEADER, 'wrench': {'force': {'x': 1.0, 'y': 2.0, 'z': 3.0},
                                                                      'torque': {'x': 4.0, 'y': 5.0, 'z': 6.0}}},
     'nav_msgs/msg/Odometry': {'header': HEADER, 'child_frame_id': 'b', 'pose': {'covariance': [float(k) for k in range(36)]}},
-    'sensor_msgs/msg/Imu': {'header': HEADER, 'orientation_covariance': [-1.0] + [0.0] * 8, 'linear_acceleration': {'x': 9.81, 'y': 0.0, 'z': 0.0}},
+    'sensor_msgs/msg/Imu': {'header': HEADER, 'orientation_covariance': [-1.0] + [0.0] * 8,
+                            'linear_acceleration': {'x': 9.81, 'y': 0.0, 'z': 0.0}},
     'sensor_msgs/msg/JointState': {'header': HEADER, 'name': ['hinge', 'b'], 'position': [1.0, 2.0], 'velocity': [3.0, 4.0], 'effort': []},
-    'diagnostic_msgs/msg/DiagnosticStatus': {'level': 2, 'name': 'n', 'message': '', 'values': [{'key': 'a', 'value': '1'}, {'key': '', 'value': 'b'}]},
-    'diagnostic_msgs/msg/DiagnosticArray': {'header': HEADER, 'status': [{'level': 1, 'values': [{'key': 'k', 'value': 'v'}]}, {'name': 'x'}]},
-    'visualization_msgs/msg/Marker': {'header': HEADER, 'ns': 'body', 'type': 1, 'points': [{'x': 1.0, 'y': 2.0, 'z': 3.0}], 'frame_locked': True},
+    'diagnostic_msgs/msg/DiagnosticStatus': {'level': 2, 'name': 'n', 'message': '',
+                                         'values': [{'key': 'a', 'value': '1'}, {'key': '', 'value': 'b'}]},
+    'diagnostic_msgs/msg/DiagnosticArray': {'header': HEADER,
+                                        'status': [{'level': 1, 'values': [{'key': 'k', 'value': 'v'}]}, {'name': 'x'}]},
+    'visualization_msgs/msg/Marker': {'header': HEADER, 'ns': 'body', 'type': 1, 'points': [{'x': 1.0, 'y': 2.0, 'z': 3.0}],
+                                      'frame_locked': True},
     'tf2_msgs/msg/TFMessage': {'transforms': [{'header': HEADER, 'child_frame_id': 'body'}, {}]},
 }
 
@@ -97,15 +102,14 @@ def test_array_of_wrong_length_is_refused():
         encode('sensor_msgs/msg/Imu', {'orientation_covariance': [0.0] * 8})
 
 
-@given(type_name=st.sampled_from(sorted(SAMPLES)), cut=st.floats(0, 1, exclude_max=True), junk=st.binary(max_size=12), at=st.integers(4, 60))
+@given(type_name=st.sampled_from(sorted(SAMPLES)), cut=st.floats(0, 1, exclude_max=True), junk=st.binary(max_size=12),
+       at=st.integers(4, 60))
 @settings(deadline=None, max_examples=200)
 def test_damaged_bytes_never_do_worse_than_bad_input(type_name, cut, junk, at):
     data = encode(type_name, SAMPLES[type_name])
     for damaged in (data[:int(cut * len(data))], data[:at] + junk + data[at + len(junk):]):
-        try:
+        with contextlib.suppress(BadInput):
             decode(schema(type_name), type_name, damaged)
-        except BadInput:
-            pass
 
 
 def test_big_endian_is_refused_with_what_is_read():

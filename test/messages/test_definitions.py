@@ -37,7 +37,7 @@ def test_texts_are_understood_by_rosbags_and_name_the_same_fields(type_name):
 
 
 def test_unknown_type_is_refused_with_those_there_are():
-    with pytest.raises(BadInput, match='std_msgs/msg/Floaty.*std_msgs/msg/Float64'):
+    with pytest.raises(BadInput, match=r'std_msgs/msg/Floaty.*std_msgs/msg/Float64'):
         definition('std_msgs/msg/Floaty')
 
 
@@ -51,7 +51,8 @@ def test_parser_reads_constants_defaults_bounds_and_arrays():
 
 
 def test_empty_message_has_the_byte_that_ros_puts_there():
-    assert parse('std_msgs/msg/Empty', '# nothing\n') == {'std_msgs/msg/Empty': [Field('structure_needs_at_least_one_member', 'uint8', None)]}
+    assert parse('std_msgs/msg/Empty', '# nothing\n') == {
+        'std_msgs/msg/Empty': [Field('structure_needs_at_least_one_member', 'uint8', None)]}
 
 
 @pytest.mark.parametrize(('text', 'problem'), [

@@ -2,11 +2,12 @@
 
 import csv
 import json
+import pathlib
 
 import numpy as np
 import pytest
-
 from recording.conftest import START, Ticks, write
+
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import export as module
 from rigid_body_sim.recording.export import export, main
@@ -55,7 +56,7 @@ def test_parquet_without_pyarrow_says_what_to_do(tmp_path, recording, monkeypatc
 def test_texts_become_json_lines(tmp_path, recording, capsys):
     assert main([str(recording), '--output', str(tmp_path / 'out'), '--topics', '/scene', '--json']) == 0
     path, = json.loads(capsys.readouterr().out)
-    line, = open(path, encoding='utf-8').read().splitlines()
+    line, = pathlib.Path(path).read_text(encoding='utf-8').splitlines()
     assert json.loads(line) == {'log_time': START, 'data': 'scene: tennis_racket\nbody: {mass: 1.0}\n'}
 
 

@@ -11,11 +11,11 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as TheirWriter
 from mcap_ros2.decoder import DecoderFactory
+from recording.conftest import ABOUT, JOURNAL, PACKERS, SCENE, START, TICKING, Ticks, scene_text, write
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from recording.conftest import ABOUT, JOURNAL, PACKERS, SCENE, START, TICKING, Ticks, scene_text, write
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.definitions import definition
@@ -168,7 +168,7 @@ def test_long_file_without_chunks_is_read_in_pieces(tmp_path, monkeypatch):
 def test_cut_file_is_refused_with_what_helps(tmp_path, recording):
     shutil.copytree(recording, tmp_path / 'bag')
     os.truncate(tmp_path / 'bag' / 'racket_0.mcap', 30_000)
-    with pytest.raises(BadInput, match='cut or damaged.*"recover" makes a cut recording whole'):
+    with pytest.raises(BadInput, match=r'cut or damaged.*"recover" makes a cut recording whole'):
         Recording(tmp_path / 'bag')
     (tmp_path / 'bag' / 'metadata.yaml').unlink()
     with pytest.raises(BadInput, match=r'holds no metadata\.yaml'):

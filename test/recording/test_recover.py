@@ -10,9 +10,9 @@ import yaml
 from mcap.reader import make_reader
 from mcap.writer import CompressionType
 from mcap.writer import Writer as TheirWriter
+from recording.conftest import ABOUT, SOAK, START, write
 from rosbags.rosbag2 import Reader
 
-from recording.conftest import ABOUT, SOAK, START, write
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import mcap_format
 from rigid_body_sim.recording.recover import main, recover

@@ -8,12 +8,12 @@ import yaml
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
+from recording.conftest import ABOUT, JOURNAL, LATE, PACKERS, SCENE, START, TICKING, Ticks, scene_text, write
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability, QosReliability
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
-from recording.conftest import ABOUT, JOURNAL, LATE, PACKERS, SCENE, START, TICKING, Ticks, scene_text, write
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import definition
 from rigid_body_sim.recording.topics import Topic
