@@ -49,10 +49,11 @@ class Engine:
         self.simulation = self._prepare({})
         scene = self.simulation.scene
         frames = frames_of(node, settings)
+        # before anything is offered: who finds the topics finds them alive
+        warm_up(self.simulation)
         self.commands = Commands(node, frames)
         self.publishing = Publishing(node, settings, frames, scene)
         settings.refuse_unknown_qos()
-        warm_up(self.simulation)
         self.journal = open_journal(node, settings, self.simulation, self.publishing, frames)
         self.session = Session(self.simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
         source = Followed(node.get_clock()) if settings.use_sim_time else Steady()
@@ -132,7 +133,7 @@ class Engine:
             self.ticker.skip_publish = settings.overrun == 'skip_publish'
             if {'rate', 'real_time_factor'} & set(changes):
                 self.ticker.pace(settings.rate, settings.real_time_factor)
-            session.note_parameters(changes)
+            session.note_parameters(changes, keep_state)
 
         self.session.request(change)
 

@@ -10,6 +10,7 @@ import difflib
 import math
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
 from rigid_body_sim.errors import BadInput
@@ -211,17 +212,16 @@ class Settings:
 
     @staticmethod
     def _refuse_unknown(name, known, prefixes=(FOREIGN_PREFIX,)):
-        if name in known or name.startswith(prefixes):
-            return
-        near = difflib.get_close_matches(name, known, 1, 0.5)
-        raise BadInput(f'parameter {name}', 'there is none of that name',
-                       f'did you mean {near[0]}?' if near else f'the parameters are {", ".join(ENTRIES)}')
+        if name not in known and not name.startswith(prefixes):
+            raise BadInput(f'parameter {name}', 'there is none of that name', _nearest(name, known))
 
-    @staticmethod
-    def _with_types(parameters):
+    def _with_types(self, parameters):
         """Return the parameters with integers made doubles, and lists without entries made lists of words, where such are meant."""
         typed = []
         for parameter in parameters:
+            if not self._node.has_parameter(parameter.name):
+                # rclpy would leave out the name
+                raise ParameterNotDeclaredException(f'{parameter.name}; {_nearest(parameter.name, ENTRIES)}')
             default = getattr(ENTRIES.get(parameter.name), 'default', None)
             if isinstance(default, float) and parameter.type_ == Parameter.Type.INTEGER:
                 parameter = Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
@@ -259,6 +259,12 @@ class Settings:
                 raise BadInput(f'parameter {entry.name}', 'it cannot change while the node runs', 'give it at the start')
             changes[entry.name] = entry.checked(parameter.value)
         return changes
+
+
+def _nearest(name, known):
+    """Return what to say of an unknown name."""
+    near = difflib.get_close_matches(name, known, 1, 0.5)
+    return f'did you mean {near[0]}?' if near else f'the parameters are {", ".join(ENTRIES)}'
 
 
 def table():

@@ -8,6 +8,7 @@ recorded with its number.
 import collections
 import concurrent.futures
 import time
+from fractions import Fraction
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import commands
@@ -50,7 +51,7 @@ class Session:
         self._commands, self._publishing, self._journal, self._epoch = command_queue, publishing, journal, epoch
         command_queue.report = self._report_refusal
         self.command_timeout = settings.command_timeout
-        self._last_tick = self.timeline.ticks_in(settings.duration) if settings.duration else None
+        self._duration, self._last_tick = settings.duration, None
         self.next_tick = simulation.tick
         self.finished = False
         self.event_counts = collections.Counter()
@@ -78,6 +79,8 @@ class Session:
     def begin(self):
         """Fix the stamps, just before the first tick, and publish the scene."""
         self.timeline = Timeline(self._epoch(), self.simulation.rate, self.next_tick)
+        self._end = self.timeline.origin + round(self._duration * NANOSECONDS)
+        self._find_last_tick()
         self.announce_scene()
 
     def run_tick(self, publish):
@@ -98,7 +101,7 @@ class Session:
         if self._balance_wanted:
             self.balance = self._take_balance()
         self.next_tick = tick + 1
-        self.finished = tick == self._last_tick
+        self.finished = self._last_tick is not None and tick >= self._last_tick
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
@@ -133,6 +136,32 @@ class Session:
         self._release_tick = self._velocity_before = None
         self._journal.entry('reset', self.stamp, tick=self.next_tick)
         return self.next_tick
+
+    def switch(self, simulation, keep_state):
+        """Go on with another simulation from the present tick on; called at a tick."""
+        self._report_events()
+        simulation.follow(self.simulation, keep_state)
+        if simulation.rate != self.simulation.rate:
+            self.timeline = self.timeline.from_tick(self.next_tick, simulation.rate)
+            self._find_last_tick()
+        self.simulation = simulation
+        self._velocity_before = None
+        if not keep_state:
+            self._release_tick = None
+            self._publishing.use_scene(simulation.scene)
+            self.announce_scene()
+
+    def _find_last_tick(self):
+        if self._duration:
+            left = Fraction(self._end - self.timeline.origin, NANOSECONDS)
+            self._last_tick = self.timeline.tick + self.timeline.ticks_in(left)
+
+    def note_parameters(self, changed, keep_state):
+        """Record and tell that parameters changed; called at the tick from which they hold."""
+        simulation = self.simulation
+        self._journal.entry('parameters', self.stamp, tick=self.next_tick, changed=changed, scene=simulation.scene.text,
+                            simulation=about.run_of(simulation), keeps_state=keep_state)
+        self.event(OK, 'parameters changed', ', '.join(changed), changed)
 
     def announce_scene(self):
         """Publish and record the scene as it runs."""

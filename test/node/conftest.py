@@ -1,0 +1,118 @@
+"""A client of the node under test: a plain rclpy node in this process, while the simulation runs in another."""
+
+import contextlib
+import time
+
+import pytest
+import ros
+
+TIMEOUT = 20.0
+"""Discovery takes 0.1 or 2.5 s; a loaded machine may take much longer. Seconds."""
+START = 90.0
+"""The first node after a change of the sources compiles its kernels. Seconds."""
+
+
+class Client:
+    """Subscribes, publishes and calls services; everything waits with a time limit."""
+
+    def __init__(self, domain):
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        self._context = rclpy.Context()
+        rclpy.init(args=[], context=self._context, domain_id=domain.id)
+        self.node = rclpy.create_node('client', context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+
+    def close(self):
+        """Leave the domain."""
+        self.node.destroy_node()
+        self._executor.shutdown()
+        self._context.try_shutdown()
+
+    def until(self, condition, timeout=TIMEOUT, what='a condition'):
+        """Serve callbacks until `condition()` is true; return what it returned."""
+        deadline = time.monotonic() + timeout
+        while not (result := condition()):
+            assert time.monotonic() < deadline, f'waited {timeout:g} s for {what}'
+            self._executor.spin_once(timeout_sec=0.05)
+        return result
+
+    def spin(self, seconds):
+        """Serve callbacks for a time."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            self._executor.spin_once(timeout_sec=0.02)
+
+    def collect(self, message_type, topic, qos=10):
+        """Subscribe as users do; return the list that fills with messages. It is empty until :meth:`until` or :meth:`spin` runs."""
+        messages = []
+        self.node.create_subscription(message_type, topic, messages.append, qos)
+        return messages
+
+    def forget(self):
+        """Destroy all subscriptions and publishers."""
+        for subscription in list(self.node.subscriptions):
+            self.node.destroy_subscription(subscription)
+        for publisher in [publisher for publisher in self.node.publishers if publisher.topic_name not in ('/rosout', '/parameter_events')]:
+            self.node.destroy_publisher(publisher)
+
+    def publisher(self, message_type, topic, qos=10):
+        """Return a publisher that is matched by a subscription."""
+        publisher = self.node.create_publisher(message_type, topic, qos)
+        self.until(publisher.get_subscription_count, what=f'a subscription to {topic}')
+        return publisher
+
+    def call(self, service_type, name, **fields):
+        """Call a service; return the response."""
+        client = self.node.create_client(service_type, name)
+        self.until(client.service_is_ready, what=f'the service {name}')
+        future = client.call_async(service_type.Request(**fields))
+        self.until(future.done, what=f'an answer from {name}')
+        self.node.destroy_client(client)
+        return future.result()
+
+
+@contextlib.contextmanager
+def _client(domain):
+    client = Client(domain)
+    try:
+        yield client
+    finally:
+        client.close()
+
+
+@pytest.fixture
+def new_client():
+    """Return the context manager that yields a Client in a domain."""
+    return _client
+
+
+class Running:
+    """A node in a process of its own and a client of it."""
+
+    def __init__(self, domain, process, client, folder):
+        self.domain, self.process, self.client, self.folder = domain, process, client, folder
+
+
+@contextlib.contextmanager
+def _running(folder, *arguments):
+    with ros.held_domain(folder / 'log') as domain, \
+            domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'recording.directory:={folder / "recordings"}',
+                           *arguments) as process, _client(domain) as client:
+        client.until(lambda: process.poll() is not None or client.node.count_publishers('energy'), timeout=START, what='the node')
+        assert process.poll() is None, process.communicate()[1]
+        yield Running(domain, process, client, folder)
+
+
+@pytest.fixture
+def run_node(tmp_path):
+    """Return the context manager that runs a node with arguments and yields a Running."""
+    return lambda *arguments: _running(tmp_path, *arguments)
+
+
+@pytest.fixture(scope='module')
+def shared_node(request, tmp_path_factory):
+    """Yield a Running that all tests of a module share; its arguments are the module's ARGUMENTS."""
+    with _running(tmp_path_factory.mktemp('node'), *request.module.ARGUMENTS) as running:
+        yield running
