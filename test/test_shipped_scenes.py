@@ -10,7 +10,8 @@ from rigid_body_sim.simulation import Simulation
 NOTES = (
     'billiard_center', 'billiard_low', 'billiard_natural_roll', 'billiard_follow', 'kater_pendulum', 'kater_pendulum_from_p',
     'baseball_bat', 'driven_body', 'free_body', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'tennis_racket',
-    'major_axis_relaxation', 'heavy_top', 'steady_precession', 'fast_top', 'sleeping_top', 'falling_top', 'thin_rod', 'sphere', 'needle', 'spherical_pendulum')
+    'major_axis_relaxation', 'heavy_top', 'steady_precession', 'fast_top', 'sleeping_top', 'falling_top', 'thin_rod', 'sphere',
+    'needle', 'spherical_pendulum')
 
 
 def test_none_is_missing():

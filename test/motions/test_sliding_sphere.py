@@ -77,8 +77,8 @@ def test_reference(name):
     parameters = np.array([record['radius'], record['ratio'], 0.17, record['mu'], record['g']])
     start = start_of(record['velocity'], record['angular_velocity'], record['orientation'], record['radius'])
     anchor = anchored(start, parameters)
-    # worst measured 1 ulp
-    assert motion.rolling_onset(anchor) == near(float(record['onset']), 2.0 * EPSILON)
+    # worst measured 2 epsilon (fast spin)
+    assert motion.rolling_onset(anchor) == near(float(record['onset']), 3.0 * EPSILON)
     for entry in record['states']:
         time = float.fromhex(entry['time'])
         values = [float(value) for value in entry['state']]
@@ -86,6 +86,7 @@ def test_reference(name):
         state = at(anchor, time)
         for part, where in PARTS.items():
             floor = 2.0 * EPSILON * max(np.linalg.norm(expected[where]), np.linalg.norm(start[where]))
+            # worst measured: 0.68 of this (attitude 2.2e-14 after 500 rad, fast spin); the others below 0.35
             bound = floor + conditioning(parameters, start, time, where)
             assert np.linalg.norm(state[where] - expected[where]) <= bound, (part, entry['time'])
 
@@ -201,11 +202,11 @@ def test_energy_lost_is_heat():
         for time in (-0.3 * onset, 0.4 * onset, onset, 2.0 * onset):
             state = at(anchor, time)
             balance = kinetic(state) + exchanged(anchor, time)[DISSIPATED] - kinetic(start)
-            # worst measured 7 epsilon
-            assert abs(balance) <= 16.0 * EPSILON * max(kinetic(start), kinetic(state))
+            # worst measured 2.3 epsilon
+            assert abs(balance) <= 6.0 * EPSILON * max(kinetic(start), kinetic(state))
             gained = BALL[1] * BALL[2] * BALL[0] ** 2 * (world_spin(state) - world_spin(start))
             size = BALL[1] * BALL[2] * BALL[0] ** 2 * max(np.linalg.norm(start[5:8]), np.linalg.norm(state[5:8]))
-            # worst measured 5 epsilon
+            # worst measured 5.8 epsilon
             assert np.linalg.norm(gained - exchanged(anchor, time)[ANGULAR_IMPULSE]) <= 12.0 * EPSILON * size
 
 
@@ -221,7 +222,7 @@ def test_rolling_does_not_chatter():
         assert motion.slip(anchor, state[0] + 0.3) == (0.0, 0.0)
         state = at(anchor, onset + 0.001 * (k + 1))
         assert np.array_equal(state[11:13], velocity)
-    # the vertical spin goes 10000 times into body axes and back, half an ulp of omega each way at random; measured 5e-14, and 2e-13 when
+    # the vertical spin goes 10000 times into body axes and back, half an ulp of omega each way at random; measured 42 epsilon of omega, and 540 when
     # rotations.normalised rounds to one side
     assert world_spin(state)[2] == near(spin, 100.0 * EPSILON * np.linalg.norm(state[5:8]) / abs(spin))
 
@@ -261,7 +262,7 @@ def test_attitude_is_continuous():
     rates = np.linalg.norm(states[:, 5:8], axis=1)
     jumps = np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1)
     assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (1.0 + 1e-6) + 1e-14).all()
-    assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 4.0 * EPSILON
+    assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 2.0 * EPSILON    # measured 1
 
 
 def test_long_before_and_long_after():
