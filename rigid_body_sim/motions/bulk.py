@@ -1,7 +1,7 @@
 """Template of the loops over a motion in closed form: many times from one start, many starts.
 
-Bound to a motion by :func:`rigid_body_sim.specialise.specialise` with the names in ``BINDINGS``. Every state comes from the motion's own
-``state`` kernel, so a state has the same bits whether it is asked for alone, among a million, or out of order.
+Bound to a motion by rigid_body_sim/motions/exact.py. A state has the same bits whether it is asked for alone, among a million, or out of order:
+either every state comes from the motion's kernel `state`, or the motion has its own kernel `states` of the same operations in the same order.
 """
 
 import numpy as np
@@ -9,7 +9,9 @@ import numpy as np
 from rigid_body_sim.compiled import compiled, compiled_parallel, parallel_range
 from rigid_body_sim.specialise import UNBOUND
 
-BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state')
+BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state', 'states')
+ONE_BY_ONE = 'states = one_by_one\n'     # binding of `states` for a motion that has none of its own
+CHUNK = 64                              # bodies that one thread takes at a time
 
 ANCHOR_SIZE = UNBOUND
 anchor = UNBOUND
@@ -17,10 +19,13 @@ state = UNBOUND
 
 
 @compiled
-def states(anchored, times, out):
+def one_by_one(anchored, times, out):
     """Fill out, shape (n, 14), with the states at n times, in any order, of a motion anchored before."""
     for k in range(len(times)):
         state(anchored, times[k], out[k])
+
+
+states = UNBOUND
 
 
 @compiled_parallel
@@ -36,8 +41,8 @@ def ensemble(parameters, starts, times, out):
     times : array (n,)
     """
     stride = 0 if len(parameters) == 1 else 1
-    for body in parallel_range(len(starts)):
+    for chunk in parallel_range((len(starts) + CHUNK - 1) // CHUNK):
         anchored = np.empty(ANCHOR_SIZE)
-        anchor(parameters[stride * body], starts[body], anchored)
-        for k in range(len(times)):
-            state(anchored, times[k], out[body, k])
+        for body in range(CHUNK * chunk, min(CHUNK * (chunk + 1), len(starts))):
+            anchor(parameters[stride * body], starts[body], anchored)
+            states(anchored, times, out[body])

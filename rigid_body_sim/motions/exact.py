@@ -2,9 +2,18 @@
 
 import numpy as np
 
-from rigid_body_sim.exchange import EXCHANGE_SIZE
+from rigid_body_sim.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE
 from rigid_body_sim.motions import bulk
+from rigid_body_sim.motions.weight import WeightImpulse
 from rigid_body_sim.specialise import specialise
+
+
+def loops(motion):
+    """Return the module of bulk loops bound to a motion (rigid_body_sim/motions/bulk.py)."""
+    bindings = {name: f'{motion.__name__}:{name}' for name in bulk.BINDINGS}
+    if not hasattr(motion, 'states'):
+        bindings['states'] = bulk.ONE_BY_ONE
+    return specialise(bulk, **bindings)
 
 
 class Exact:
@@ -23,8 +32,9 @@ class Exact:
 
     def __init__(self, scene, motion):
         self.motion = motion
+        self._scene = scene
         self._parameters = motion.parameters(scene)
-        self._loops = specialise(bulk, **{name: f'{motion.__name__}:{name}' for name in bulk.BINDINGS})
+        self._loops = loops(motion)
 
     def start(self, vector):
         """Anchor the motion at a state (14 doubles, its time included) and return a solver from there."""
@@ -32,7 +42,8 @@ class Exact:
         started.__dict__.update(self.__dict__)
         started.anchor = np.empty(self.motion.ANCHOR_SIZE)
         self.motion.anchor(self._parameters, vector, started.anchor)
-        started._next_event = None
+        started._next_event = started._weight = None
+        started._start = np.array(vector)
         return started
 
     def state(self, time, out):
@@ -48,6 +59,10 @@ class Exact:
         out = np.zeros(EXCHANGE_SIZE)
         if hasattr(self.motion, 'exchanged'):
             self.motion.exchanged(self.anchor, time, out)
+        elif self._scene.constraint.kind in ('pivot', 'hinge') and self._scene.effect('gravity'):
+            if self._weight is None:
+                self._weight = WeightImpulse(self._scene, self.states, self._start)
+            out[ANGULAR_IMPULSE] = self._weight.until(time)
         return out
 
     def events(self, after, until):

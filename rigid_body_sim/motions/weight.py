@@ -1,0 +1,61 @@
+"""Angular impulse of the weight of a pivoted or hinged body: a quadrature over its motion in closed form, for the ledger.
+
+The torque about the constraint is r x (0, 0, -M g) = M g (-r_y, r_x, 0), r the world vector from there to the centre of mass. It is integrated
+with 16 Gauss-Legendre nodes on panels of at most 8 rad of the fastest turning; the next term is below 1e-24 of the integral then.
+"""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+RADIANS_A_PANEL = 8.0
+PANELS_AT_ONCE = 1024
+
+
+class WeightImpulse:
+    """The integral from a start on, kept up to the last time asked.
+
+    Parameters
+    ----------
+    scene : Scene
+        With constraint pivot or hinge, and gravity.
+    states : callable
+        (times, out) -> None, as a solver has it.
+    start : array (14,)
+        The state at the start.
+    """
+
+    def __init__(self, scene, states, start):
+        frame, body = Frame.of(scene.body, scene.constraint), scene.body
+        self._states, self._from, self._time = states, start[0], start[0]
+        self._arm = np.subtract(body.center_of_mass, frame.point)
+        self._weight = body.mass * scene.effect('gravity').g
+        self._axis = Rotation.from_quat(start[ORIENTATION]).apply(scene.constraint.axis) if scene.constraint.kind == 'hinge' else None
+        self._impulse = np.zeros(3)
+        across = sorted(body.about_origin.moments)[1] if scene.constraint.kind == 'pivot' else sorted(body.about_center.moments)[1]
+        # by the energy, no component across the arm ever turns faster than this
+        swing = 2.0 * math.sqrt(self._weight * np.linalg.norm(self._arm) / across)
+        self._fastest = float(np.linalg.norm(start[ANGULAR_VELOCITY])) + swing
+
+    def until(self, time):
+        """Return the angular impulse (N m s, world axes; for a hinge its part along the axis) from the start to a time (s)."""
+        if time < self._time:
+            self._time, self._impulse = self._from, np.zeros(3)
+        panels = max(1, math.ceil((time - self._time) * self._fastest / RADIANS_A_PANEL))
+        edges = self._time + (time - self._time) * (np.arange(panels + 1) / panels)
+        for first in range(0, panels, PANELS_AT_ONCE):
+            part = edges[first:first + PANELS_AT_ONCE + 1]
+            half = np.diff(part) / 2.0
+            times = ((part[:-1] + half)[:, None] + half[:, None] * NODES).ravel()
+            out = np.empty((len(times), STATE_SIZE))
+            self._states(times, out)
+            r = Rotation.from_quat(out[:, ORIENTATION]).apply(self._arm)
+            weights = (half[:, None] * WEIGHTS).ravel() * self._weight
+            self._impulse += [-(weights @ r[:, 1]), weights @ r[:, 0], 0.0]
+        self._time = time
+        return self._impulse if self._axis is None else self._axis * (self._axis @ self._impulse)
