@@ -14,7 +14,6 @@ endif
 unexport $(FOREIGN)
 export AMENT_PREFIX_PATH := $(CURDIR)/.venv
 
-RIGID_BODY_SIM = .venv/bin/python -m rigid_body_sim
 PYTHON_VERSIONS = 3.11 3.12 3.13
 COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
@@ -25,11 +24,8 @@ PYTEST = python -m pytest --numprocesses 2 --timeout 120 --ignore test/test_inst
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
 
-# Ctrl-C ends the node, and what it recorded is reported all the same: hence the trap.
 run: .venv/run.stamp ## the node on SCENE (tennis_racket) at RATE (1000) Hz for DURATION (20) s; its recording, report and figure
-	@trap : INT; name=$(basename $(notdir $(SCENE)))_$$(date +%Y-%m-%d_%H-%M-%S); \
-	$(RIGID_BODY_SIM) sim_node --ros-args -p scene:=$(SCENE) -p rate:=$(RATE) -p duration:=$(DURATION) -p recording.name:=$$name && \
-	$(RIGID_BODY_SIM) analyze recordings/$$name
+	@.venv/bin/python -m rigid_body_sim run --scene $(SCENE) --rate $(RATE) --duration $(DURATION)
 
 test: lint package ## everything: ruff, colcon build and test of the package, pytest
 	.venv/bin/$(PYTEST)
