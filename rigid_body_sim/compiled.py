@@ -90,7 +90,7 @@ def compiled(function):
 
 def compiled_inline(function):
     """Compile a short kernel that is copied into its callers."""
-    return _jit(function, inline='always')
+    return _jit(function, forceinline=True)
 
 
 def compiled_parallel(function):

@@ -1,7 +1,7 @@
 """Arithmetic with the unevaluated sum of two doubles (high, low), about 32 digits, for the few numbers that must not lose any.
 
-A pair is a tuple of two floats with |low| <= ulp(high)/2. Products are split after Dekker, so no fused multiply-add is needed and the bits are
-the same on every machine. Factors stay below 1e150 and products above 1e-290, or their low parts are lost to overflow and underflow.
+A pair is a tuple of two floats with |low| <= ulp(high)/2. The error of a product is one fused multiply-add where numba compiles, else Dekker's
+split: both are exact, so the bits agree, as long as factors stay below 1e150 and products above 1e-290 (beyond, low parts are lost).
 
 Sources: T. J. Dekker, Numerische Mathematik 18 (1971) 224; M. Joldes, J.-M. Muller, V. Popescu, ACM TOMS 44 (2017) 15, whose error bounds are
 quoted in units of u^2 = 2^-106.
@@ -9,12 +9,33 @@ quoted in units of u^2 = 2^-106.
 
 import math
 
-from rigid_body_sim.compiled import compiled
+from rigid_body_sim.compiled import HAVE_NUMBA, compiled, compiled_inline
 
 SPLITTER = 134217729.0     # 2^27 + 1
 
 
-@compiled
+def _product_error(a, b, product):
+    """Return a b - product exactly, for product = a b rounded; both factors split into halves of 26 bits."""
+    c, d = SPLITTER * a, SPLITTER * b
+    ah, bh = c - (c - a), d - (d - b)
+    al, bl = a - ah, b - bh
+    return al * bl - (((product - ah * bh) - al * bh) - ah * bl)
+
+
+if HAVE_NUMBA:
+    from numba.core import types
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def _product_error(typing_context, a, b, product):
+        """Return a b - product exactly: the machine's fused multiply-add."""
+        def generate(context, builder, signature, arguments):
+            a, b, product = arguments
+            return builder.fma(a, b, builder.fneg(product))
+        return types.float64(types.float64, types.float64, types.float64), generate
+
+
+@compiled_inline
 def two_sum(a, b):
     """Return the exact sum of two doubles."""
     total = a + b
@@ -22,36 +43,18 @@ def two_sum(a, b):
     return total, (a - (total - part)) + (b - part)
 
 
-@compiled
+@compiled_inline
 def quick_two_sum(a, b):
     """Return the exact sum of two doubles with |a| >= |b| or a = 0."""
     total = a + b
     return total, b - (total - a)
 
 
-@compiled
-def split(a):
-    """Return the two halves of a double, of 26 bits each."""
-    c = SPLITTER * a
-    high = c - (c - a)
-    return high, a - high
-
-
-@compiled
+@compiled_inline
 def two_product(a, b):
     """Return the exact product of two doubles."""
     product = a * b
-    ah, al = split(a)
-    bh, bl = split(b)
-    return product, al * bl - (((product - ah * bh) - al * bh) - ah * bl)
-
-
-@compiled
-def square(a):
-    """Return the exact square of a double."""
-    product = a * a
-    ah, al = split(a)
-    return product, al * al - ((product - ah * ah) - 2.0 * (ah * al))
+    return product, _product_error(a, b, product)
 
 
 @compiled
@@ -61,6 +64,13 @@ def add(a, al, b, bl):
     t, f = two_sum(al, bl)
     s, e = quick_two_sum(s, e + t)
     return quick_two_sum(s, e + f)
+
+
+@compiled
+def add_alike(a, al, b, bl):
+    """Return a + b to 3 u^2 of the result, for a and b of one sign."""
+    s, e = two_sum(a, b)
+    return quick_two_sum(s, e + (al + bl))
 
 
 @compiled
@@ -91,5 +101,5 @@ def root(a, al):
     if a <= 0.0:
         return 0.0, 0.0
     s = math.sqrt(a)
-    p, e = square(s)
+    p, e = two_product(s, s)
     return quick_two_sum(s, ((a - p) - e + al) / (s + s))
