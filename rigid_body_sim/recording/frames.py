@@ -47,15 +47,16 @@ class Report:
     """How the recorder stands.
 
     `recorded` messages and `written` bytes are safe from a kill of the recorder; `dropped` ticks are missing between recorded ones;
-    `ticks` is the number of the next tick expected; `acknowledged` that of the last numbered message in the file; `error` the problem
-    right now, or ''; `resend` and `state_wanted` count requests; `refused`: why nothing can be
-    recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
+    `ticks` is the number of the tick that follows the last one in the file, `last_tick` the stamp of that (ns); `acknowledged` the number
+    of the last numbered message in the file; `error` the problem right now, or ''; `resend` and `state_wanted` count requests; `refused`:
+    why nothing can be recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
     """
 
     recorded: int = 0
     written: int = 0
     dropped: int = 0
     ticks: int = 0
+    last_tick: int = 0
     acknowledged: int = 0
     resend: int = 0
     state_wanted: int = 0

@@ -35,6 +35,7 @@ class RecorderProcess:
         self._writer = None
         self.report = Report()
         self._expected = 1          # number of the next numbered message
+        self._next_tick = self._last_tick = self._dropped = 0   # number of the next tick expected, stamp of the last one taken, ticks missing
         self._retry_at = self._flush_at = self._ask_at = 0.0
         self._asked_for = 0
         self._ended, self._told = False, b''
@@ -103,7 +104,8 @@ class RecorderProcess:
                                   setup['split_seconds'], files)
         except OSError as error:
             raise BadInput(setup['path'], f'nothing can be recorded here ({error.strerror})', 'a folder on a disk with room') from error
-        self._expected = self.report.acknowledged + 1
+        self._expected, self._next_tick = self.report.acknowledged + 1, self.report.ticks
+        self._last_tick, self._dropped = self.report.last_tick, self.report.dropped
         self.report.error = ''
         self.report.resend += 1
         self._tell()
@@ -125,21 +127,21 @@ class RecorderProcess:
         """Record ticks with consecutive numbers, and a gap before them if there is one."""
         first = int(rows['number'][0])
         try:
-            if first > self.report.ticks:
-                self._gap(first - self.report.ticks, int(rows['log_time'][0]), int(rows['publish_time'][0]))
+            if first > self._next_tick:
+                self._gap(first - self._next_tick, int(rows['log_time'][0]), int(rows['publish_time'][0]))
             done = self._writer.ticks(first, rows['log_time'], rows['publish_time'],
                                       [rows[name] for name in self._tick.names if name.startswith('message')])
         except OSError as error:
             self._fail(error)
             return
-        self.report.ticks = first + done
+        self._next_tick, self._last_tick = first + done, int(rows['log_time'][done - 1])
 
     def _gap(self, ticks, until, publish_time):
         """Mark in the journal that ticks are missing; `until` (ns) is the stamp of the next one, None if there is none."""
-        data = journal_message('gap', ticks=ticks, after=self._writer.last_time, until=until)
+        data = journal_message('gap', ticks=ticks, after=self._last_tick, until=until)
         self._writer.message(self._journal, self._writer.last_time, publish_time, data)
-        self.report.dropped += ticks
-        self.report.ticks += ticks
+        self._dropped += ticks
+        self._next_tick += ticks
         self.report.state_wanted += 1
 
     def _take_message(self, buffer, position, end):
@@ -175,8 +177,13 @@ class RecorderProcess:
         if self.report.error:
             self.report.error = ''
             self.report.resend += 1
-        self.report.acknowledged = self._expected - 1
+        self._confirm()
         self._tell()
+
+    def _confirm(self):
+        """Note that all taken so far is in the file."""
+        self.report.acknowledged, self.report.ticks = self._expected - 1, self._next_tick
+        self.report.last_tick, self.report.dropped = self._last_tick, self._dropped
 
     def _tell(self):
         """Send a report if anything is new."""
@@ -200,12 +207,12 @@ class RecorderProcess:
     def _end(self, ticks):
         """Take the sender's last word: how many ticks there were."""
         self._ended = True
-        if ticks > self.report.ticks and not self.report.error:
+        if ticks > self._next_tick and not self.report.error:
             try:
-                self._gap(ticks - self.report.ticks, None, self._writer.last_time)
+                self._gap(ticks - self._next_tick, None, self._writer.last_time)
             except OSError as error:
                 self._fail(error)
-        self.report.dropped += max(0, ticks - self.report.ticks)
+        self.report.dropped = self._dropped + max(0, ticks - self._next_tick)
 
     def _close(self):
         if self._writer is None:
@@ -216,7 +223,7 @@ class RecorderProcess:
             self.report.error = f'{self._writer.path}: {error.strerror or error}; not closed, "recover" makes it whole once there is room'
         else:
             self.report.error, self.report.closed = '', True
-            self.report.acknowledged = self._expected - 1
+            self._confirm()
         self._tell()
         return 1 if self.report.error else 0
 

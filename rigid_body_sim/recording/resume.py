@@ -33,11 +33,12 @@ def resume(path, ticking, report):
             records = compression.decompress(head.compression, content[head.data_offset:], head.size, head.crc)
             message_heads = heads(records, walk(records)[0])
             for number in np.unique(message_heads['channel']).tolist():
-                last = int(message_heads['sequence'][message_heads['channel'] == number][-1])
+                last = message_heads[message_heads['channel'] == number][-1]
+                sequence = int(last['sequence'])
                 if names[number] in ticking:
-                    report.ticks = _later(report.ticks, last + 1)
-                elif last:
-                    report.acknowledged = _later(report.acknowledged, last)
+                    report.ticks, report.last_tick = _later(report.ticks, sequence + 1), max(report.last_tick, int(last['log_time']))
+                elif sequence:
+                    report.acknowledged = _later(report.acknowledged, sequence)
     report.recorded = sum(sum(one.file.counts.values()) for one in found)
     return [one.file for one in found]
 

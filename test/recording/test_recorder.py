@@ -75,7 +75,8 @@ def check(path, sent):
     missing = sorted(set(range(sent)) - set(numbers.tolist()))
     assert np.all(np.diff(numbers) > 0)
     assert sum(gap['ticks'] for gap in gaps) == len(missing) == sent - len(numbers)
-    ends = [number for number in missing if number + 1 not in missing]
+    begins, ends = ([number for number in missing if number + step not in missing] for step in (-1, 1))
+    assert [gap['after'] for gap in gaps] == [int(ticks.stamps[begin - 1]) if begin else 0 for begin in begins]
     assert [gap['until'] for gap in gaps] == [int(ticks.stamps[end + 1]) if end + 1 < sent else None for end in ends]
     return gaps
 
