@@ -15,14 +15,14 @@ POSITIVE = {'type': 'number', 'exclusiveMinimum': 0}
 class SlidingFriction:
     """``sliding_friction: {mu: 0.2, g: 9.81}``.
 
-    mu is the coefficient of sliding friction, g the gravity that presses the ball on the table (m/s^2); both positive.
+    mu is the coefficient of sliding friction, g the gravity that presses the ball on the table (m/s^2); mu may be 0.
     """
 
     mu: float
     g: float
     name: ClassVar = 'sliding_friction'
     SCHEMA: ClassVar = {
-        'type': 'object', 'properties': {'mu': POSITIVE, 'g': POSITIVE}, 'required': ['mu', 'g'], 'additionalProperties': False}
+        'type': 'object', 'properties': {'mu': {'type': 'number', 'minimum': 0}, 'g': POSITIVE}, 'required': ['mu', 'g'], 'additionalProperties': False}
     constraints: ClassVar = ('table',)
     repeatable: ClassVar = False
     breakpoints: ClassVar = ()
