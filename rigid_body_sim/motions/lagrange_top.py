@@ -21,18 +21,19 @@ Kernels besides those of every motion: `turning_index`, `turning_time` (where th
 """
 
 import math
+from fractions import Fraction
 
 import numpy as np
 
 from rigid_body_sim import bodies
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.double_double import two_sum
+from rigid_body_sim.double_double import multiply_double, two_sum
 from rigid_body_sim.motions.lagrange_top_anchor import NEVER, NUTATION_SIZE, PARITY, RATE, START, STRETCH, anchor_nutation, functions
 from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
 
-# layout of the parameters: M, g, h, M g h/I1, I3/I1, (I1 - I3)/I1, quaternion that turns the top's axes (third: e3) into the body's
-MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = range(7)
-PARAMETER_SIZE = 10
+# layout of the parameters: M, g, h, the pairs M g h/I1, I3/I1, (I1 - I3)/I1, quaternion that turns the top's axes (third: e3) into the body's
+MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = 0, 1, 2, 3, 5, 7, 9
+PARAMETER_SIZE = 13
 
 # layout of the anchor: functions of time, then what is constant
 TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE + 2, NUTATION_SIZE + 6
@@ -73,12 +74,18 @@ def _turn_to(x, y, z):
 
 
 def parameters(scene):
-    """Return the numbers of the scene, shape (10,): layout above."""
+    """Return the numbers of the scene, shape (13,): layout above."""
     body, gravity = scene.body, scene.effect('gravity')
     axis, frame = symmetry_axis(body)
-    I1, I3 = body.about_origin.moments[(axis + 1) % 3], body.about_origin.moments[axis]
+    I1, I3 = Fraction(body.about_origin.moments[(axis + 1) % 3]), Fraction(body.about_origin.moments[axis])
     g, arm = gravity.g if gravity else 0.0, math.hypot(*body.center_of_mass)
-    return np.array([body.mass, g, arm, body.mass * g * arm / I1, I3 / I1, (I1 - I3) / I1, *frame])
+    pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
+    return np.array([body.mass, g, arm, *_pair(pull), *_pair(I3 / I1), *_pair((I1 - I3) / I1), *frame])
+
+
+def _pair(number):
+    """Return an exact number as a pair of doubles."""
+    return float(number), float(number - Fraction(float(number)))
 
 
 @compiled
@@ -86,9 +93,9 @@ def anchor(parameters, start, anchor):
     """Fill the anchor from the state `start`."""
     fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
     x, y, z, w = multiply(start[1], start[2], start[3], start[4], fx, fy, fz, fw)
-    x, y, z, w = normalised(x, y, z, w)
     omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, start[5], start[6], start[7])
-    anchor_nutation(w, z, y, -x, omega_2, -omega_1, parameters[RATIO] * omega_3, parameters[PULL], parameters[EXCESS] * omega_3, anchor)
+    anchor_nutation(w, z, y, -x, omega_2, -omega_1, multiply_double(parameters[RATIO], parameters[RATIO + 1], omega_3),
+                    (parameters[PULL], parameters[PULL + 1]), multiply_double(parameters[EXCESS], parameters[EXCESS + 1], omega_3), anchor)
     anchor[TIME], anchor[SPIN] = start[0], omega_3
     anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3] = fx, fy, fz, fw
     anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2] = start[8], start[9], start[10]

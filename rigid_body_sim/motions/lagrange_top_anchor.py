@@ -6,6 +6,7 @@ import numpy as np
 
 from rigid_body_sim.compiled import compiled
 from rigid_body_sim.elliptic import carlson_rf, complete_k, nome
+from rigid_body_sim.motions.lagrange_top_means import NEVER, TURN, mean_rates
 from rigid_body_sim.motions.lagrange_top_roots import (
     ABOVE,
     CHI,
@@ -33,31 +34,33 @@ from rigid_body_sim.motions.lagrange_top_roots import (
     W,
     X,
     Y,
-    quotient,
+    minus,
+    plus,
+    scaled,
+    times,
     turning_points,
 )
 from rigid_body_sim.motions.lagrange_top_theta import FORM_SIZE, circular, hyperbolic, set_circular, set_hyperbolic, set_nome
 from rigid_body_sim.turns import nearest, phase, sin_cos
 
 # layout: the theta functions; phase of nutation (a turn is a period) and phases of a and b (turns): value at the start, rate
-START, RATE, START_A, RATE_A, START_B, RATE_B = range(FORM_SIZE, FORM_SIZE + 6)
+START, START_A, START_B, RATE, RATE_A, RATE_B = FORM_SIZE, FORM_SIZE + 1, FORM_SIZE + 2, FORM_SIZE + 3, FORM_SIZE + 5, FORM_SIZE + 7
 # hyperbolic phase per turn of nutation; phases of a and b (turns) per unit of it; 1 for an odd position at the start; see `functions`
-IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING = range(FORM_SIZE + 6, FORM_SIZE + 13)
-NUTATION_SIZE = FORM_SIZE + 13
+IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING = range(FORM_SIZE + 9, FORM_SIZE + 16)
+NUTATION_SIZE = FORM_SIZE + 16
 
-QUARTER_TURN, TURNS = 0.5 * math.pi, 0.5 / math.pi
+QUARTER_TURN = 0.5 * math.pi
 TINY = 1e-60            # a tilt and swing below this follow linear equations, to far below round-off
-NEVER = 2.0 ** 200      # stands for the half period on the separatrix
 
 
 @compiled
 def functions(anchor, time, time_low):
     """Return real and imaginary part of a, b and omega_c at a time (s) after the start, the steady spin omega_3 - n included."""
-    turns, low = phase(anchor[RATE], 0.0, time, time_low)
+    turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
     turns += anchor[START]
     turns -= nearest(turns)
-    turns_a, low_a = phase(anchor[RATE_A], 0.0, time, time_low)
-    turns_b, low_b = phase(anchor[RATE_B], 0.0, time, time_low)
+    turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
+    turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
     turns_a, turns_b = turns_a + anchor[START_A], turns_b + anchor[START_B]
     if anchor[IS_HYPERBOLIC] == 0.0:
         c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, turns, low)
@@ -83,35 +86,43 @@ def functions(anchor, time, time_low):
 
 @compiled
 def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
-    """Fill the anchor from Cayley-Klein parameters (of modulus 1) and omega_c (rad/s).
+    """Fill the anchor from Cayley-Klein parameters (of any norm) and omega_c (rad/s).
 
     Parameters
     ----------
-    n, k : float
-        I3 omega_3/I1 (rad/s) and M g h/I1 (1/s^2, not negative).
-    own_spin : float
-        omega_3 - n, rad/s.
+    n, k, own_spin : pair of floats (double_double.py)
+        I3 omega_3/I1 (rad/s), M g h/I1 (1/s^2, not negative), omega_3 - n (rad/s).
     """
+    # powers of two are exact: in the unit of time used here rates are of order 1, and a tiny tilt and swing are TINY
+    largest = max(max(abs(n[0]), 2.0 * math.sqrt(k[0])), max(abs(o_re), abs(o_im)))
+    rate_unit = math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 1.0
+    n, k = scaled(n, 1.0 / rate_unit), scaled(scaled(k, 1.0 / rate_unit), 1.0 / rate_unit)
+    o_re, o_im = o_re / rate_unit, o_im / rate_unit
     standing = b_re * b_re + b_im * b_im <= a_re * a_re + a_im * a_im
-    tilt = max(abs(b_re), abs(b_im)) if standing else max(abs(a_re), abs(a_im))
-    swing = max(abs(o_re), abs(o_im))
-    scale = _scale(max(tilt, swing / math.sqrt(n * n + 4.0 * k))) if n * n + 4.0 * k > 0.0 else 1.0
-    for_a, for_b = (1.0, scale) if standing else (scale, 1.0)
-    roots = np.empty(SIZE)
-    turning_points(a_re / for_a, a_im / for_a, b_re / for_b, b_im / for_b, o_re / scale, o_im / scale, n, k, roots)
+    tilt, swing = max(abs(b_re), abs(b_im)) if standing else max(abs(a_re), abs(a_im)), max(abs(o_re), abs(o_im))
+    own = max(abs(n[0]), 2.0 * math.sqrt(k[0]))
+    scale = _scale(max(tilt, swing / own)) if own > 0.0 else 1.0
+    unit_a, unit_b = (1.0, scale) if standing else (scale, 1.0)
+    roots = np.empty(2 * SIZE)
+    turning_points(a_re / unit_a, a_im / unit_a, b_re / unit_b, b_im / unit_b, unit_a, unit_b, o_re / scale, o_im / scale, n, k, roots)
+    mean, nutation, rate_a, rate_b = mean_rates(roots, scale if roots[SEPARATE] == 1.0 else 1.0)
 
     side_a = 1.0 if roots[SIGMA] >= 0.0 else -1.0
     side_b = 1.0 if roots[DELTA] >= 0.0 else -1.0
     side_w = -1.0 if roots[CHI] >= 0.0 else 1.0
     # c at u1: from the pole that is near, or its sign is that of a rounding error
-    lowest = roots[SIGMA] - n * roots[X1] if roots[X1] < 0.5 * roots[X] else roots[C] + n * roots[LOWER]
+    lowest = roots[SIGMA] - n[0] * roots[X1] if roots[X1] < 0.5 * roots[X] else roots[C] + n[0] * roots[LOWER]
     anchor[SIDE] = 1.0 if lowest >= 0.0 else -1.0
+    swing_unit = rate_unit * scale
     if roots[SEPARATE] == 0.0:
-        _circular(roots, n, k, for_a, for_b, scale, side_a, side_b, side_w, anchor)
+        _circular(roots, n[0], k[0], mean, unit_a, unit_b, swing_unit, side_a, side_b, side_w, rate_b[0] - rate_a[0], anchor)
     else:
-        _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor)
-    anchor[RATE_A] = TURNS * (anchor[RATE_A] + 0.5 * own_spin)
-    anchor[RATE_B] = TURNS * (anchor[RATE_B] - 0.5 * own_spin)
+        _hyperbolic(roots, k[0], mean, scale, rate_unit, side_a, side_b, side_w, anchor)
+    rate_a = times(plus(scaled(rate_a, rate_unit), scaled(own_spin, 0.5)), TURN)
+    rate_b = times(minus(scaled(rate_b, rate_unit), scaled(own_spin, 0.5)), TURN)
+    anchor[RATE], anchor[RATE + 1] = scaled(nutation, rate_unit)
+    anchor[RATE_A], anchor[RATE_A + 1] = rate_a
+    anchor[RATE_B], anchor[RATE_B + 1] = rate_b
 
     # phases at the start: from those two of the three functions that are farthest from their zeros there
     anchor[START_A], anchor[START_B] = 0.0, 0.0
@@ -132,7 +143,13 @@ def _angle(to_re, to_im, from_re, from_im):
     if to == 0.0 or back == 0.0:
         return 0.0
     to_re, to_im, from_re, from_im = to_re / to, to_im / to, from_re / back, from_im / back
-    return TURNS * math.atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
+    return TURN[0] * math.atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
+
+
+@compiled
+def quotient(a, b):
+    """Return a / b, or 0 where b is 0."""
+    return a / b if b != 0.0 else 0.0
 
 
 @compiled
@@ -165,47 +182,41 @@ def _shifts(roots, k):
 
 
 @compiled
-def _circular(roots, n, k, for_a, for_b, scale, side_a, side_b, side_w, anchor):
+def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w, rate_difference, anchor):
     gap, wide = roots[GAP], roots[WIDE]
-    modulus, complement = math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)
-    per_argument = math.pi / complete_k(complement)         # 2v of an argument of Jacobi's functions
-    set_nome(nome(modulus, complement), anchor)
+    per_argument = 2.0 * mean                               # 2v of an argument of Jacobi's functions
+    set_nome(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)), anchor)
     A, B, C_ = _shifts(roots, k)
-    rate = 0.5 * math.sqrt(wide) * per_argument if roots[STEADY] == 0.0 else 0.0
-    slope_a = set_circular(anchor, 0, math.exp(-per_argument * A), -1.0, side_a, for_a * math.sqrt(0.5 * roots[X2]))
-    slope_b = set_circular(anchor, 1, math.exp(-per_argument * B), 1.0, side_b, for_b * math.sqrt(0.5 * roots[Y1]))
-    slope_w = set_circular(anchor, 2, math.exp(-per_argument * C_), 1.0, side_w, scale * math.sqrt(roots[W1]))
-    anchor[RATE_A] = 0.5 * quotient(roots[SIGMA], roots[X2]) + rate * slope_a
-    anchor[RATE_B] = 0.5 * quotient(roots[DELTA], roots[Y1]) + rate * slope_b
-    at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))        # arg(omega_c)' at u1
-    anchor[WINDING] = nearest(quotient(at_lowest + rate * slope_w - anchor[RATE_B] + anchor[RATE_A], rate))
+    set_circular(anchor, 0, math.exp(-per_argument * A), -1.0, side_a, unit_a * math.sqrt(0.5 * roots[X2]))
+    set_circular(anchor, 1, math.exp(-per_argument * B), 1.0, side_b, unit_b * math.sqrt(0.5 * roots[Y1]))
+    slope_w = set_circular(anchor, 2, math.exp(-per_argument * C_), 1.0, side_w, unit_w * math.sqrt(roots[W1]))
+    # mean rate of arg(omega_c), from its rate at u1, less that of conj(a) b: a whole multiple of the rate of 2v
+    at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))
+    rate = 0.5 * math.sqrt(wide) * per_argument
+    anchor[WINDING] = nearest((at_lowest - rate_difference) / rate + slope_w) if roots[STEADY] == 0.0 else 0.0
     argument = 0.0
     if gap > 0.0:
         argument = math.copysign(math.sqrt(roots[LOWER]) * carlson_rf(roots[UPPER], roots[ABOVE] * gap / wide, gap), roots[RISE])
-    anchor[START], anchor[RATE], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURNS * per_argument * argument, TURNS * rate, 0.0, 0.0
+    anchor[START], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURN[0] * per_argument * argument, 0.0, 0.0
     anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 0.0, 0.0, 0.0
 
 
 @compiled
-def _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor):
+def _hyperbolic(roots, k, mean, scale, rate_unit, side_a, side_b, side_w, anchor):
     gap, wide, narrow, lower, upper = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER]
-    complement = scale * math.sqrt(narrow / wide)
     per_argument = QUARTER_TURN / complete_k(math.sqrt(2.0 * k * gap / wide))
-    half_period = per_argument * complete_k(complement) if complement > 0.0 else NEVER
+    half_period = per_argument * QUARTER_TURN / mean if mean > 0.0 else NEVER
     root_nome = math.exp(-half_period)
     set_nome(root_nome * root_nome, anchor)
     A, B, C_ = _shifts(roots, k)
     A, B, C_ = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN), min(per_argument * C_, QUARTER_TURN)
-    rate = 0.5 * math.sqrt(wide) * per_argument
-    slope_a = set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root_nome)
-    slope_b = set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root_nome)
-    set_hyperbolic(anchor, 2, C_, 1.0, side_w, math.sqrt(roots[W1]), root_nome)
-    # from the lowest to the highest position the phases make a step besides
+    set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root_nome)
+    set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root_nome)
+    set_hyperbolic(anchor, 2, C_, 1.0, side_w, rate_unit * math.sqrt(roots[W1]), root_nome)
+    # from the lowest to the highest position the phases make a step beside their steady growth; that of omega_c is that of b less that of a,
+    # up to half a turn
     step_a, step_b, step_w = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B), side_w * (QUARTER_TURN - C_)
-    anchor[RATE_A] = 0.5 * roots[SIGMA] / roots[X2] + rate * (slope_a + step_a / half_period)
-    anchor[RATE_B] = 0.5 * roots[DELTA] / roots[Y1] + rate * (slope_b + step_b / half_period)
-    anchor[DRIFT_A], anchor[DRIFT_B], anchor[STRETCH] = TURNS * step_a / half_period, TURNS * step_b / half_period, 2.0 * half_period
-    # the step of omega_c is that of b less that of a, up to half a turn
+    anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 2.0 * half_period, TURN[0] * step_a / half_period, TURN[0] * step_b / half_period
     half_turns = nearest((step_w - step_b + step_a) / math.pi)
     anchor[WINDING] = half_turns - 2.0 * math.floor(0.5 * half_turns)
     if scale * upper * math.sqrt(wide) >= math.sqrt(narrow) * lower:     # nearer in time to the lowest position than to the highest
@@ -215,5 +226,4 @@ def _hyperbolic(roots, k, scale, side_a, side_b, side_w, anchor):
         anchor[PARITY] = 1.0
         anchor[SIDE] *= 1.0 - 2.0 * anchor[WINDING]
         argument = -math.copysign(math.sqrt(upper * wide) * carlson_rf(lower * narrow, narrow * gap, gap * roots[ABOVE]), roots[RISE])
-    anchor[START], anchor[RATE] = per_argument * argument / anchor[STRETCH], rate / anchor[STRETCH]
-    anchor[IS_HYPERBOLIC] = 1.0
+    anchor[START], anchor[IS_HYPERBOLIC] = per_argument * argument / anchor[STRETCH], 1.0

@@ -82,7 +82,7 @@ def circular(form, turns, low):
 
 @compiled
 def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
-    """Set one function of a hyperbolic form and return how fast the phase of its periodic part grows per growth of the hyperbolic phase.
+    """Set one function of a hyperbolic form.
 
     Parameters
     ----------
@@ -98,7 +98,6 @@ def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
     c3, s3, c5, s5 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2, c1 * c4 - s1 * s4, s1 * c4 + c1 * s4
     c6, s6, c7, s7 = c2 * c4 - s2 * s4, s2 * c4 + c2 * s4, c3 * c4 - s3 * s4, s3 * c4 + c3 * s4
     theta_4 = 1.0 - 2.0 * (q * c2 - form[NOME4] * c4 + form[NOME9] * c6)
-    slope = 4.0 * (q * s2 - 2.0 * form[NOME4] * s4 + 3.0 * form[NOME9] * s6)
     at = 5 + BLOCK * place
     if sign < 0.0:      # odd about the lowest position: theta_1/theta_2; about the highest: theta_4/theta_3
         odd_at, even_at = at, at + 8
@@ -113,7 +112,6 @@ def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
     turned = orientation * even
     form[even_at], form[even_at + 1], form[even_at + 2], form[even_at + 3] = even, -even * c2, even * c4, -even * c6
     form[even_at + 4], form[even_at + 5], form[even_at + 6], form[even_at + 7] = 0.0, turned * s2, -turned * s4, turned * s6
-    return -orientation * slope / theta_4
 
 
 @compiled_inline
