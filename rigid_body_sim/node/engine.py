@@ -4,6 +4,7 @@ import concurrent.futures
 import contextlib
 import gc
 import sys
+import threading
 
 from std_srvs.srv import SetBool, Trigger
 
@@ -23,6 +24,8 @@ SWITCH_INTERVAL = 1e-4
 ANSWER_WITHIN = 0.2
 """How long a service waits for the tick that does what it asks, s; later it answers what will happen."""
 STOP_WITHIN = 0.4
+PATIENCE = 4.0
+"""After so long at the start the node says what it is doing, s."""
 _OF_SIMULATION = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
 
 
@@ -178,6 +181,16 @@ def _result_soon(future):
 
 def warm_up(simulation):
     """Compile or load all that ticks and commands need, on a simulation of its own, so that no tick waits for it."""
+    patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])
+    patience.daemon = True
+    patience.start()
+    try:
+        _use_everything(simulation)
+    finally:
+        patience.cancel()
+
+
+def _use_everything(simulation):
     trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate)
     trial.advance()
     if trial.scene.accepts_commands:

@@ -3,6 +3,7 @@
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
@@ -26,12 +27,16 @@ def run(make_node, arguments, stop):
     int
         0, or 2 after one line about bad input, or 1 after one line about a failure.
     """
+    # its complaint about arguments would come in two lines, and ours says the same
+    set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         # the first argument is taken for the program's name
         rclpy.init(args=['', *arguments], signal_handler_options=SignalHandlerOptions.NO)
     except Exception as error:   # rclpy has a class of its own for each fault of the command line
         say(f'ROS arguments: {_one_line(error)}; see --help')
         return BAD_INPUT
+    set_logger_level('rcl', LoggingSeverity.UNSET)
+    stop.last_resort = rclpy.try_shutdown
     node = None
     try:
         node = make_node(stop)

@@ -11,8 +11,9 @@ import signal
 import sys
 import threading
 
-GRACE = 0.85
-"""Longest time from a signal to the end of the process, s: the recorder lives in a process of its own and finishes its file anyway."""
+GRACE, LAST_GRACE = 0.7, 0.2
+"""Longest time from a signal to the last resort, and from there to the end of the process, s. The recorder, a process of its own, finishes its
+file anyway."""
 
 
 class Stop:
@@ -22,6 +23,8 @@ class Stop:
         self._event = threading.Event()
         self._wake = lambda: None
         self.by_signal = False
+        self.last_resort = lambda: None
+        """What to close if the process is still busy (compiling, say) when its time after a signal is over; called in another thread."""
 
     @property
     def wanted(self):
@@ -43,10 +46,19 @@ class Stop:
         """Ask for the end because of a signal; it comes soon, whatever the process is busy with."""
         if not self.by_signal:
             self.by_signal = True
-            watchdog = threading.Timer(GRACE, os._exit, (0,))
-            watchdog.daemon = True
-            watchdog.start()
+            _later(GRACE, self._end)
         self.request()
+
+    def _end(self):
+        _later(LAST_GRACE, os._exit, 0)
+        self.last_resort()
+        os._exit(0)
+
+
+def _later(seconds, function, *arguments):
+    timer = threading.Timer(seconds, function, arguments)
+    timer.daemon = True
+    timer.start()
 
 
 @contextlib.contextmanager
@@ -91,10 +103,10 @@ def tell(line):
         print(line, flush=True)
 
 
-def flush():
-    """Bring out what was printed, so that a closed terminal does not turn the end of the process into a failure."""
+def leave(status):
+    """End the process at once: everything is closed, and Python's own way out takes up to a second where numba is loaded."""
     for stream in (sys.stdout, sys.stderr):
-        try:
+        # a closed terminal must not turn the end into a failure
+        with contextlib.suppress(OSError, ValueError):
             stream.flush()
-        except (OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    os._exit(status)

@@ -25,6 +25,7 @@ class SimulationNode(Node):
 
     def __init__(self, stop, **options):
         super().__init__('sim_node', **options)
+        stop.last_resort = self.destroy_node
         self.engine = None
         try:
             self.engine = Engine(self, Settings(self), stop.request)

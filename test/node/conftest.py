@@ -1,6 +1,10 @@
 """A client of the node under test: a plain rclpy node in this process, while the simulation runs in another."""
 
 import contextlib
+import fcntl
+import os
+import pathlib
+import tempfile
 import time
 
 import pytest
@@ -8,8 +12,19 @@ import ros
 
 TIMEOUT = 20.0
 """Discovery takes 0.1 or 2.5 s; a loaded machine may take much longer. Seconds."""
-START = 90.0
-"""The first node after a change of the sources compiles its kernels. Seconds."""
+START = 60.0
+"""A process that imports numba and rclpy on a loaded machine. Seconds."""
+
+
+@pytest.fixture(scope='session', autouse=True)
+def compiled_kernels():
+    """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
+    from rigid_body_sim.node.engine import warm_up
+    from rigid_body_sim.simulation import Simulation
+    with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}', 'w') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for scene in ('tennis_racket', 'sphere'):
+            warm_up(Simulation(scene))
 
 
 class Client:

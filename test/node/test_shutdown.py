@@ -1,0 +1,126 @@
+"""How a node ends: soon, with exit status 0, its recording whole; and what it says when it cannot begin."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import yaml
+from std_msgs.msg import Float64
+
+WITHIN = 1.0
+"""From the signal to the end of the process, s."""
+
+
+def recording_of(running):
+    """Return the only recording of a node, once it is complete (its recorder may outlive a killed node for a moment)."""
+    [folder] = (running.folder / 'recordings').iterdir()
+    deadline = time.monotonic() + 5.0
+    while not (folder / 'metadata.yaml').exists():
+        assert time.monotonic() < deadline, list(folder.iterdir())
+        time.sleep(0.02)
+    return folder
+
+
+def messages_in(folder):
+    """Return how many messages metadata.yaml tells of, by topic, after rosbags has read as many."""
+    from rosbags.highlevel import AnyReader
+    told = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    counts = {entry['topic_metadata']['name']: entry['message_count'] for entry in told['topics_with_message_count']}
+    with AnyReader([folder]) as reader:
+        assert sum(1 for _ in reader.messages()) == sum(counts.values())
+    return counts
+
+
+def one(process, number):
+    process.send_signal(number)
+
+
+def interrupt_twice(process, _):
+    os.killpg(process.pid, signal.SIGINT)
+    time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+
+
+@pytest.mark.parametrize(('send', 'number'), [
+    (one, signal.SIGINT), (interrupt_twice, signal.SIGINT), (one, signal.SIGTERM), (one, signal.SIGHUP)],
+    ids=['SIGINT', 'SIGINT twice to the group', 'SIGTERM', 'SIGHUP'])
+def test_signal_ends_it_with_a_whole_recording(run_node, send, number):
+    with run_node() as node:
+        energies = node.client.collect(Float64, 'energy', 1000)
+        node.client.until(lambda: len(energies) > 300, what='300 ticks')
+        began = time.monotonic()
+        send(node.process, number)
+        out, err = node.process.communicate(timeout=5.0)
+        took = time.monotonic() - began
+        assert (node.process.returncode, err) == (0, '')
+        assert took < WITHIN
+        assert 'recorded' in out
+        assert messages_in(recording_of(node))['/energy'] >= len(energies)
+
+
+def test_killed_node_leaves_a_complete_recording(run_node):
+    with run_node() as node:
+        energies = node.client.collect(Float64, 'energy', 1000)
+        node.client.until(lambda: len(energies) > 300, what='300 ticks')
+        node.process.kill()
+        node.process.wait(5.0)
+        counts = messages_in(recording_of(node))
+        assert counts['/energy'] >= len(energies)
+        assert counts['/energy'] == counts['/pose'] == counts['/angular_velocity']
+
+
+def test_duration_ends_it_with_a_report(ros_domain, tmp_path):
+    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.5', '-p', 'rate:=200', '-p',
+                          f'recording.directory:={tmp_path}', timeout=90)
+    assert (node.returncode, node.stderr) == (0, '')
+    # ticks 0 to 100
+    assert node.stdout.startswith('/sim_node: tennis_racket, 101 ticks in 0.5')
+    [folder] = tmp_path.glob('sim_node_tennis_racket_*')
+    assert messages_in(folder)['/pose'] == 101
+    assert str(folder) in node.stdout
+
+
+def test_a_closed_terminal_does_not_turn_the_end_into_a_failure(ros_domain, tmp_path):
+    reading, writing = os.pipe()
+    os.close(reading)
+    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.1', '-p', 'record:=false', cwd=None,
+                            stdout=writing, stderr=writing, text=False) as node:
+        os.close(writing)
+        assert node.wait(90) == 0
+
+
+def test_early_signal_ends_it_too(ros_domain, tmp_path):
+    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'recording.directory:={tmp_path}') as node:
+        # handlers are set before rclpy and numba are loaded; the table of signals in /proc says when
+        status = pathlib.Path(f'/proc/{node.pid}/status')
+        deadline = time.monotonic() + 20.0
+        while not (int(next(line for line in status.read_text().splitlines() if line.startswith('SigCgt')).split()[1], 16)
+                   & (1 << (signal.SIGTERM - 1))):
+            assert time.monotonic() < deadline
+            time.sleep(0.005)
+        node.terminate()
+        _, err = node.communicate(timeout=5.0)
+        assert (node.returncode, err) == (0, '')
+
+
+@pytest.mark.parametrize(('arguments', 'line'), [
+    (['-p', 'ratee:=5'], 'parameter ratee: there is none of that name; did you mean rate?'),
+    (['-p', 'rate'], 'ROS arguments: '),
+    (['-p', 'recording.directory:=/proc/nowhere'], 'no recording can be made here'),
+], ids=['unknown parameter', 'broken argument', 'unwritable'])
+def test_what_cannot_begin_says_why_in_one_line(ros_domain, arguments, line):
+    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', *arguments, timeout=90)
+    assert node.returncode == 2
+    assert len(node.stderr.splitlines()) == 1, node.stderr
+    assert line in node.stderr
+    assert node.stdout == ''
+
+
+def test_help_does_not_start_ros(ros_domain):
+    shown = subprocess.run([sys.executable, '-S', '-m', 'rigid_body_sim', 'sim_node', '--help'], capture_output=True, text=True, timeout=20,
+                           cwd=pathlib.Path(__file__).resolve().parents[2], check=True).stdout
+    assert 'example' in shown
