@@ -76,7 +76,7 @@ def test_events_stand_at_their_ticks(flipping):
     simulation.advance(5000)
     found = read(flipping)
     events = found['/events']
-    assert len(events) == len(simulation.events) > 3
+    assert len(events) == len(simulation.events) == 3
     for (stamp, message), event in zip(events, simulation.events, strict=True):
         values = {pair.key: pair.value for pair in message.values}
         assert (message.name, values['tick'], values['time']) == (event.name, str(event.tick), repr(event.time))

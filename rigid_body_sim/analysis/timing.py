@@ -76,7 +76,7 @@ class Punctuality:
             self._standstills += 1
             self._schedule = promptest
         else:
-            self._schedule = min(promptest, self._schedule + int(SLEW * (times[0] - self._last_time)))
+            self._schedule = min(promptest, self._schedule + int(SLEW * (times[-1] - self._last_time)))
         # without a tick before there is no time between it and the first of these
         self._running += int(times[-1] - (times[0] if self._last_time is None else self._last_time)) - stood
         self._paced += len(times) - (self._last_time is None)

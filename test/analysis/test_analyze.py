@@ -1,0 +1,144 @@
+"""The command `analyze` on recordings whose content is known, of ours and of strangers."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+made = pytest.importorskip('analysis.made', reason='needs rosbags')
+
+from rigid_body_sim.analysis.analyze import analyze, main, report_folder  # noqa: E402
+from rigid_body_sim.analysis.measure import measure  # noqa: E402
+from rigid_body_sim.analysis.overview import draw  # noqa: E402
+from rigid_body_sim.analysis.source import sources  # noqa: E402
+from rigid_body_sim.recording.reader import Recording  # noqa: E402
+from rigid_body_sim.simulation import Simulation  # noqa: E402
+
+LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)
+
+
+@pytest.fixture(scope='module')
+def eventful(tmp_path_factory):
+    """Return the path of a recording of 3 s: an impulse, a wrench held for 0.5 s, a reset, a gap, known lateness."""
+    path = tmp_path_factory.mktemp('analyze') / 'eventful'
+    acts = {500: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')],
+            1000: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), 'body')],
+            1500: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 'body')],
+            2500: [('reset',)]}
+    made.record(path, 'tennis_racket', 3000, acts=acts, late=LATE, left_out=range(2000, 2040))
+    return path
+
+
+def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
+    assert main([str(eventful), '--output', str(tmp_path)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[:-3] == (tmp_path / 'report.txt').read_text().splitlines()
+    assert [line.strip() for line in printed[-3:]] == [str(tmp_path / name) for name in ('report.txt', 'report.json', 'overview.png')]
+    [found] = json.loads((tmp_path / 'report.json').read_text())['bodies']
+    assert (found['scene'], found['made_by'], found['rate'], found['run']['method']) == ('tennis_racket', 'sim_node', 1000.0, 'exact')
+    assert (found['commands'], found['resets'], found['left_out_by_recorder'], found['events']['reset']) == (3, 1, 40, 1)
+    energy, momentum = found['energy'], found['angular_momentum_squared']
+    # the impulse and the wrench change them by far more than this, but not the residuals; kept in 2461 ticks of 2961
+    assert energy['greatest'] > energy['least'] + 1.0
+    for quantity in (energy, momentum):
+        assert 0.0 < quantity['largest_residual'] < 2e-14     # 1.3e-14
+        assert quantity['judged_ticks'] == 3001 - 40 - 500
+    timing = found['timing']
+    assert (timing['ticks'], timing['missing'], timing['standstills']) == (2961, 40, 0)
+    assert timing['lateness']['max'] == pytest.approx(60e-6, abs=1.5e-6)
+    assert timing['lateness']['p50'] == pytest.approx(30e-6, abs=2.5e-6)
+    assert '  drops    40 ticks are missing, 40 of them left out by the recorder' in printed
+
+
+def test_the_figure_shows_what_was_recorded(eventful):
+    recording = Recording(eventful)
+    [one] = measure(recording, sources(recording))
+    figure = draw(one, 'title')
+    omega, energy, momentum, late = figure.axes
+    recorded = recording.read('/angular_velocity')
+    for k, line in enumerate(omega.lines[:3]):
+        assert line.get_ydata().tolist() == recorded['vector'][:, k].tolist()
+        assert line.get_xdata() == pytest.approx((recorded['log_time'] - made.START) * 1e-9)
+    assert len({line.get_linestyle() for line in omega.lines[:3]}) == 3     # told apart without colour
+    marks = {tuple(line.get_xdata()) for line in omega.lines[3:]}
+    assert {(0.5, 1.0, 1.5), (2.5,), (1.999,)} <= {tuple(np.round(times, 9)) for times in marks}
+    for axes, quantity in ((energy, one.energy), (momentum, one.momentum)):
+        assert axes.lines[0].get_ydata().tolist() == quantity.curve()[1].tolist()
+    assert {text.get_text() for text in late.get_legend().get_texts()} == {'p50', 'p99', 'max'}
+
+
+def test_flips_are_counted_without_looking_at_events(tmp_path):
+    made.record(tmp_path / 'run', 'tennis_racket', 6000, rate=300.0)
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    omega = Recording(tmp_path / 'run').read('/angular_velocity')['vector']
+    assert found['flips'] == np.count_nonzero(np.diff(omega[:, 1] > 0.0)) == 4
+    assert found['events'].get('flip', 4) == 4
+
+
+def test_drift_that_is_there_is_found(tmp_path):
+    """The energy of a stepped method with coarse steps drifts: the report has the drift that the messages show."""
+    simulation = Simulation('tennis_racket', integrator='dop8', accuracy=1e-4, rate=100.0)
+    states = made.record_foreign(tmp_path / 'run', simulation, 2000, 0.01)
+    energies, momenta = simulation.diagnose(states)
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    assert found['energy']['largest_residual'] == pytest.approx(np.abs(energies / energies[0] - 1.0).max(), rel=1e-12)
+    assert found['angular_momentum_squared']['last_residual'] == pytest.approx(momenta[-1] / momenta[0] - 1.0, rel=1e-9)
+    assert found['energy']['largest_residual'] > 1e-9
+
+
+def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
+    states = made.record_foreign(tmp_path / 'run', Simulation('tennis_racket', rate=200.0), 2001, 0.005)
+    [found], files = analyze(tmp_path / 'run', tmp_path / 'report')
+    assert (found['namespace'], found['scene'], found['made_by'], found['run']) == ('/lab', 'tennis_racket', '', {})
+    assert found['rate'] == pytest.approx(200.0, rel=1e-9)
+    assert found['flips'] == np.count_nonzero(np.diff(states.angular_velocity[:, 1] > 0.0)) == 2
+    assert found['energy']['largest_residual'] < 1e-14
+    assert (found['timing']['ticks'], found['timing']['missing']) == (2001, 0)
+    # written at once at its time of arrival, 20 to 90 us after the stamp
+    assert found['timing']['lateness']['max'] == pytest.approx(70e-6, abs=3e-6)
+    assert files[-1].name == 'overview_lab.png' and files[-1].stat().st_size > 10_000
+
+
+def test_without_a_scene_nothing_is_judged_by_it(tmp_path):
+    made.record_foreign(tmp_path / 'run', Simulation('tennis_racket'), 500, 0.001, with_scene=False)
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    assert found['scene'] is None and found['flips'] is None
+    assert found['energy']['largest_residual'] is None and found['energy']['first'] == pytest.approx(25.0002)
+
+
+def test_two_bodies_in_one_recording(tmp_path):
+    made.record(tmp_path / 'run', 'tennis_racket', 300, namespace='/left', bodies=['/right'])
+    found, files = analyze(tmp_path / 'run', tmp_path / 'report')
+    assert [one['namespace'] for one in found] == ['/left', '/right']
+    assert found[0]['energy'] == found[1]['energy'] and found[0]['energy']['judged_ticks'] == 301
+    assert {path.name for path in files} == {'report.txt', 'report.json', 'overview_left.png', 'overview_right.png'}
+
+
+def test_the_report_lies_beside_the_recording(tmp_path, capsys):
+    for name in ('one', 'two'):
+        made.record(tmp_path / name, 'tennis_racket', 50)
+    assert main([str(tmp_path / 'one'), str(tmp_path / 'two' / 'two_0.mcap'), '--json']) == 0
+    results = json.loads(capsys.readouterr().out)
+    assert report_folder(tmp_path / 'one') == tmp_path / 'one_report' and (tmp_path / 'one_report' / 'report.json').is_file()
+    assert (tmp_path / 'two' / 'two_0_report' / 'overview.png').is_file()
+    assert [len(result['bodies']) for result in results] == [1, 1]
+    assert main([str(tmp_path / 'one'), str(tmp_path / 'two'), '--output', str(tmp_path / 'all')]) == 0
+    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one_report', 'two_report']
+
+
+def test_bad_input_is_one_line(tmp_path, capsys):
+    made.record(tmp_path / 'run', 'tennis_racket', 2000)
+    shutil.copytree(tmp_path / 'run', tmp_path / 'cut')
+    file = tmp_path / 'cut' / 'cut_0.mcap'
+    (tmp_path / 'cut' / 'run_0.mcap').rename(file)
+    file.write_bytes(file.read_bytes()[:-1000])
+    (tmp_path / 'cut' / 'metadata.yaml').unlink()
+    (tmp_path / 'text.mcap').write_text('hello')
+    (tmp_path / 'blocked').write_text('')
+    for arguments, said in [
+            ([tmp_path / 'missing'], 'missing'), ([tmp_path / 'cut'], 'recover'), ([file], 'recover'), ([tmp_path / 'text.mcap'], 'MCAP'),
+            ([tmp_path / 'run', '--output', tmp_path / 'blocked' / 'here'], 'the report cannot be written (Not a directory)')]:
+        assert main([str(argument) for argument in arguments]) == 2
+        error = capsys.readouterr().err
+        assert said in error and error.count('\n') == 1

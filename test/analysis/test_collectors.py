@@ -1,0 +1,55 @@
+"""Thinning: what is kept was there, and nothing that stands out is lost, however the blocks fall."""
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.analysis.collectors import Curve, Samples
+
+RANDOM = np.random.default_rng(7)
+
+
+def blocks(count):
+    """Yield slices that cut `count` samples into blocks of any size."""
+    begin = 0
+    while begin < count:
+        end = begin + int(RANDOM.integers(1, 700))
+        yield slice(begin, end)
+        begin = end
+
+
+@pytest.mark.parametrize('count', [1, 99, 1000, 1001, 12345])
+def test_a_thinned_curve_has_the_least_and_the_greatest_of_every_group(count):
+    times, values = np.arange(count) * 0.5, RANDOM.normal(size=(count, 3))
+    values[count // 3, 1] = 1e6    # one spike
+    curve = Curve(count, points=1000)
+    for block in blocks(count):
+        curve.add(times[block], values[block])
+    for k in range(3):
+        kept_times, kept = curve.curve(k)
+        assert len(kept) <= 1002 and np.all(np.diff(kept_times) >= 0.0)
+        assert values[(kept_times / 0.5).astype(int), k].tolist() == kept.tolist()
+        if count <= 1000:
+            assert kept.tolist() == values[:, k].tolist()
+        group = -(-2 * count // 1000) if count > 1000 else 1
+        for begin in range(0, count, group):
+            inside = kept[(kept_times >= times[begin]) & (kept_times <= times[min(begin + group, count) - 1])]
+            part = values[begin:begin + group, k]
+            assert (inside.min(), inside.max()) == (part.min(), part.max())
+
+
+def test_a_curve_of_one_column_and_of_nothing():
+    curve = Curve(4)
+    assert [part.tolist() for part in curve.curve()] == [[], []]
+    curve.add(np.arange(4.0), np.arange(4.0))
+    assert curve.curve()[1].tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_samples_are_evenly_spaced_across_blocks():
+    count = 9999
+    numbers = np.arange(count)
+    samples = Samples(count, 100)
+    for block in blocks(count):
+        samples.add(numbers[block], np.stack([numbers[block], -numbers[block]], axis=1))
+    first, second = samples.columns()
+    assert first.tolist() == list(range(0, count, 100))
+    assert second.tolist() == [[k, -k] for k in range(0, count, 100)]
