@@ -18,8 +18,8 @@ KIND, MASS, CENTER, MOMENTS, AXES, GRAVITY, HINGE_AXIS, THROUGH, HINGE_MOMENT = 
 PARAMETER_SIZE = 20
 
 # layout of what `diagnose` fills
-KINETIC, POTENTIAL, MOMENTUM = 0, 1, 2
-DIAGNOSIS_SIZE = 5
+KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = 0, 1, 2, 3
+DIAGNOSIS_SIZE = 6
 
 # layout of what `apply_impulse` fills beside the state
 WORK, ANGULAR_IMPULSE, REACTION_FORCE, REACTION_COUPLE = 0, 1, 4, 7
@@ -60,7 +60,7 @@ def angular_momentum(p, omega_x, omega_y, omega_z):
 
 @compiled
 def diagnose(p, state, out):
-    """Fill out with kinetic and potential energy (J) and L (world axes, kg m^2/s) of a state."""
+    """Fill out with kinetic and potential energy (J), L^2 and L (world axes, kg m^2/s) of a state."""
     qx, qy, qz, qw = state[1], state[2], state[3], state[4]
     wx, wy, wz = state[5], state[6], state[7]
     mx, my, mz = angular_momentum(p, wx, wy, wz)
@@ -76,12 +76,14 @@ def diagnose(p, state, out):
         potential = p[MASS] * p[GRAVITY] * (state[10] + height)
     out[KINETIC] = kinetic
     out[POTENTIAL] = potential
+    # of the body components: the turn to the world would only add its rounding
+    out[MOMENTUM_SQUARED] = mx * mx + my * my + mz * mz
     out[MOMENTUM], out[MOMENTUM + 1], out[MOMENTUM + 2] = rotate(qx, qy, qz, qw, mx, my, mz)
 
 
 @compiled
 def diagnose_many(p, states, out):
-    """Fill out, shape (n, 5), for states of shape (n, 14)."""
+    """Fill out, shape (n, 6), for states of shape (n, 14)."""
     for k in range(len(states)):
         diagnose(p, states[k], out[k])
 

@@ -156,9 +156,7 @@ class Simulation:
         """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
         out = np.empty((len(states), mechanics.DIAGNOSIS_SIZE))
         mechanics.diagnose_many(self._mechanics, states.vector, out)
-        momentum = out[:, mechanics.MOMENTUM:]
-        squared = momentum[:, 0] * momentum[:, 0] + momentum[:, 1] * momentum[:, 1] + momentum[:, 2] * momentum[:, 2]
-        return out[:, mechanics.KINETIC] + out[:, mechanics.POTENTIAL], squared
+        return out[:, mechanics.KINETIC] + out[:, mechanics.POTENTIAL], out[:, mechanics.MOMENTUM_SQUARED].copy()
 
     def states(self, times):
         """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
@@ -240,8 +238,7 @@ class Simulation:
     @property
     def angular_momentum_squared(self):
         """L . L about the point of reference (mechanics.py), (kg m^2/s)^2."""
-        x, y, z = self._diagnose()[mechanics.MOMENTUM:]
-        return float(x * x + y * y + z * z)
+        return float(self._diagnose()[mechanics.MOMENTUM_SQUARED])
 
     def ledger(self):
         """Return the balance of energy (J) and angular momentum since the start or the last reset, as a dict of floats.
@@ -249,7 +246,7 @@ class Simulation:
         ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|, |potential|, |work|; ``momentum_residual``
         is |L - L(0) - angular impulse| relative to the largest of the three.
         """
-        kinetic, potential, *momentum = self._diagnose().tolist()
+        kinetic, potential, _, *momentum = self._diagnose().tolist()
         span = self._spans[-1]
         given = span.given + span.solver.exchanged(self.time)
         work, dissipated, impulse = given[WORK], given[DISSIPATED], given[ANGULAR_IMPULSE]
