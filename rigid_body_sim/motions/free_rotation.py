@@ -131,7 +131,7 @@ def _hyperbolic_series(c, v, v_low):
     ends, middle = qq * (e2 * e2 + qq * f * f), q * f
     scale = 1.0 / (1.0 + e2 + middle + ends)
     theta1 = 1.0 - e2 - middle + ends
-    even, odd = 1.0 + qq * f * f, f + q * e2
+    even, odd = 1.0 + qq * (f * f + qq * e2 * e2), f + q * e2
     side = 1.0 if x >= 0.0 else -1.0
     near, far, near2, far2, last = root * g, q * e2, qq * f, qq * q * e2 * e, c[POWER] * g * f
     return (c[AMPLITUDES] * sign * e * (even - odd) * scale,
