@@ -5,6 +5,7 @@ are read here, checked by the same rules that hold later for ``set_parameters``,
 ``python -m rigid_body_sim.node.parameters`` prints it.
 """
 
+import array
 import dataclasses
 import difflib
 import math
@@ -67,6 +68,7 @@ class Entry:
             If the type, the range or a word is wrong.
         """
         where = where or f'parameter {self.name}'
+        value = value.tolist() if isinstance(value, array.array) else value
         if isinstance(self.default, float):
             if isinstance(value, bool) or not isinstance(value, (int, float)):
                 raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
@@ -89,7 +91,7 @@ class Entry:
 
     def _refuse_unknown_word(self, word, where):
         if self.choices and word not in self.choices:
-            near = difflib.get_close_matches(word, self.choices, 1)
+            near = difflib.get_close_matches(word, self.choices, 1) if len(self.choices) > 3 else ()
             raise BadInput(where, f'got {word!r}', f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}')
 
     def descriptor(self):

@@ -16,7 +16,7 @@ START = 60.0
 """A process that imports numba and rclpy on a loaded machine. Seconds."""
 
 
-@pytest.fixture(scope='session', autouse=True)
+@pytest.fixture(scope='session')
 def compiled_kernels():
     """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
     from rigid_body_sim.node.engine import warm_up
@@ -121,13 +121,13 @@ def _running(folder, *arguments):
 
 
 @pytest.fixture
-def run_node(tmp_path):
+def run_node(tmp_path, compiled_kernels):
     """Return the context manager that runs a node with arguments and yields a Running."""
     return lambda *arguments: _running(tmp_path, *arguments)
 
 
 @pytest.fixture(scope='module')
-def shared_node(request, tmp_path_factory):
+def shared_node(request, tmp_path_factory, compiled_kernels):
     """Yield a Running that all tests of a module share; its arguments are the module's ARGUMENTS."""
     with _running(tmp_path_factory.mktemp('node'), *request.module.ARGUMENTS) as running:
         yield running

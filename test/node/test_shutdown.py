@@ -11,6 +11,8 @@ import pytest
 import yaml
 from std_msgs.msg import Float64
 
+pytestmark = pytest.mark.usefixtures('compiled_kernels')
+
 WITHIN = 1.0
 """From the signal to the end of the process, s."""
 
