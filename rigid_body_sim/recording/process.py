@@ -95,11 +95,11 @@ class RecorderProcess:
         self._journal = journal.name
         self._tick = np.dtype(frames.tick_fields([size for _, size in ticking]))
         self.report = Report(**setup['report'])
-        self._before = (self.report.recorded, self.report.written)
         files = ()
         try:
             if setup['resume']:
                 files = resume(setup['path'], [topic.name for topic, _ in ticking], self.report)
+            self._before = (self.report.recorded, self.report.written)
             self._writer = Writer(setup['path'], ticking, others, journal, setup['about'], setup['compression'], setup['split_bytes'],
                                   setup['split_seconds'], files)
         except OSError as error:

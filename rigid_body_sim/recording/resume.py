@@ -40,6 +40,7 @@ def resume(path, ticking, report):
                 elif sequence:
                     report.acknowledged = _later(report.acknowledged, sequence)
     report.recorded = sum(sum(one.file.counts.values()) for one in found)
+    report.written = sum((folder / one.file.name).stat().st_size for one in found)
     return [one.file for one in found]
 
 

@@ -1,0 +1,154 @@
+"""What the recorder does with what it is sent, frame by frame: nothing twice, nothing out of order, whatever the order of arrival."""
+
+import dataclasses
+import errno
+import json
+import os
+
+import pytest
+from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
+
+from rigid_body_sim.recording import frames
+from rigid_body_sim.recording.frames import Report
+from rigid_body_sim.recording.mcap_file import McapFile
+from rigid_body_sim.recording.process import RecorderProcess
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.recover import recover
+
+SCENE_POSITION = len(TICKING)
+
+
+def setup(path, resume=False, report=None):
+    return frames.json_frame(frames.SETUP, {
+        'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING], 'others': [dataclasses.asdict(SCENE)],
+        'journal': dataclasses.asdict(JOURNAL), 'about': ABOUT, 'compression': 'zstd', 'split_bytes': 0, 'split_seconds': 0.0,
+        'resume': resume, 'report': dataclasses.asdict(report or Report())})
+
+
+def message(number):
+    return frames.message_frame(number, SCENE_POSITION, START, START, scene_text(str(number)))
+
+
+def ticks(first, count):
+    made, size = Ticks(first, count), sum(size for _, size in TICKING)
+    return b''.join(frames.TICK_HEAD.pack(frames.TICK, 24 + size, first + index, int(made.stamps[index]), int(made.wall_clock[index]))
+                    + b''.join(made.messages(index)) for index in range(count))
+
+
+def end(sent):
+    return frames.json_frame(frames.END, {'ticks': sent})
+
+
+def run(*sent):
+    """Run a process on frames; return (exit code, its reports)."""
+    frames_out, frames_in = os.pipe()
+    reports = []
+
+    def send(line):
+        reports.append(Report.of(line))
+        return True
+    os.write(frames_in, b''.join(sent))
+    os.close(frames_in)
+    os.set_blocking(frames_out, False)
+    code = RecorderProcess(frames_out, send).run()
+    os.close(frames_out)
+    return code, reports
+
+
+def recorded(path):
+    """Return (numbers of messages, numbers of ticks, (ticks, after, until) of gaps in ticks since the start)."""
+    with Recording(path) as recording:
+        numbers = [message.sequence for message in recording.messages(['/scene'])]
+        poses = recording.read('/pose')['sequence'].tolist() if recording.topics['/pose'].count else []
+        gaps = [(entry['ticks'], *((time - START) // 10**6 if time else time for time in (entry['after'], entry['until'])))
+                for entry in recording.journal() if entry['kind'] == 'gap']
+    return numbers, poses, gaps
+
+
+def test_frames_split_anywhere_are_put_together(tmp_path):
+    sent = setup(tmp_path / 'bag') + message(1) + ticks(0, 3) + message(2) + ticks(3, 2) + end(5)
+    process = RecorderProcess(-1, lambda line: True)
+    for byte in sent:
+        process._buffer += bytes([byte])
+        process._take_frames()
+    assert process._close() == 0
+    assert recorded(tmp_path / 'bag') == ([1, 2], list(range(5)), [])
+
+
+def test_repeated_messages_are_recorded_once(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag'), *map(message, (1, 2, 1, 2, 3, 3, 1)))
+    assert code == 0
+    assert reports[-1].acknowledged == 3
+    assert recorded(tmp_path / 'bag')[0] == [1, 2, 3]
+
+
+def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag'), *map(message, (1, 3, 4)))
+    assert code == 0
+    assert recorded(tmp_path / 'bag')[0] == [1]
+    assert reports[-1].acknowledged == 1
+    assert reports[-1].resend == reports[0].resend + 1      # asked once, though two came too early
+    run(setup(tmp_path / 'again'), *map(message, (1, 3, 2, 3)))
+    assert recorded(tmp_path / 'again')[0] == [1, 2, 3]
+
+
+def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag'), ticks(2, 3), ticks(7, 2), message(1), ticks(9, 1), ticks(20, 1), end(25))
+    assert code == 0
+    assert (reports[-1].dropped, reports[-1].closed) == (2 + 2 + 10 + 4, True)
+    assert recorded(tmp_path / 'bag') == ([1], [2, 3, 4, 7, 8, 9, 20], [(2, 0, 2), (2, 4, 7), (10, 9, 20), (4, 20, None)])
+
+
+def _die_after(path, *sent):
+    """Record frames up to a flush and then die without a word: the sender knows nothing of what was flushed."""
+    process = RecorderProcess(-1, lambda line: True)
+    process._buffer = b''.join(sent)
+    process._take_frames()
+    process._flush(0.0)
+    process._writer._file.close()
+
+
+def test_successor_does_not_record_again_what_its_predecessor_did_not_report(tmp_path):
+    _die_after(tmp_path / 'bag', setup(tmp_path / 'bag'), message(1), ticks(0, 10), message(2), message(3))
+    code, reports = run(setup(tmp_path / 'bag', resume=True), *map(message, (1, 2, 3, 4)), ticks(12, 3), end(15))
+    assert code == 0
+    assert (reports[0].acknowledged, reports[0].ticks) == (3, 10)
+    assert recorded(tmp_path / 'bag') == ([1, 2, 3, 4], [*range(10), 12, 13, 14], [(2, 9, 12)])
+    assert reports[-1].recorded == 13 * 4 + 4 + 1 + 2       # ticks, messages, gap, begins
+
+
+def test_successor_believes_the_sender_where_the_last_file_says_nothing(tmp_path):
+    _die_after(tmp_path / 'bag', setup(tmp_path / 'bag'), message(0))
+    known = Report(acknowledged=2**32 + 5, ticks=2**32 + 7, last_tick=START, dropped=3)
+    code, reports = run(setup(tmp_path / 'bag', resume=True, report=known), message(2**32 + 6), message(2**32 + 5), ticks(2**32 + 8, 1))
+    assert code == 0
+    assert reports[-1].acknowledged == 2**32 + 6
+    assert reports[-1].dropped == 4
+    assert recorded(tmp_path / 'bag')[:2] == ([0, 6], [8])      # MCAP has 32 bits for it
+
+
+def test_deleted_recording_cannot_be_resumed(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag', resume=True))
+    assert code == 2
+    assert reports[-1].refused[0] == str(tmp_path / 'bag')
+    assert json.loads(reports[-1].line())['closed'] is False
+
+
+@pytest.mark.parametrize('let_through', [0, 1, 100])
+def test_refused_write_leaves_the_file_as_it_was(tmp_path, monkeypatch, let_through):
+    path = tmp_path / 'x.mcap'
+    file = McapFile(os.open(path, os.O_RDWR | os.O_CREAT), 'zstd', lambda contents, offset: b'')
+    before, really = path.read_bytes(), os.pwrite
+
+    def refuse(descriptor, data, offset):
+        if offset > len(before) or not let_through:
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        return really(descriptor, data[:let_through], offset)
+    monkeypatch.setattr(os, 'pwrite', refuse)
+    with pytest.raises(OSError, match='No space left'):
+        file.metadata('a', {'b': 'c' * 1000})
+    assert path.read_bytes() == before
+    monkeypatch.undo()
+    file.metadata('a', {'b': 'c'})
+    file.finish()
+    assert recover(path)[0].changed is False
