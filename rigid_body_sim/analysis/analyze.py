@@ -57,7 +57,8 @@ def _figure(measured, found, folder):
 def report_folder(path):
     """Return where the report of a recording goes by default: beside it."""
     path = pathlib.Path(path)
-    return path.resolve().parent / f'{path.resolve().stem}_report'
+    path = path.resolve() if path.name in ('', '..') else path
+    return path.with_name(f'{path.stem if path.is_file() else path.name}_report')
 
 
 def show(found, written):

@@ -57,6 +57,11 @@ class Residual:
         self.largest = max(self.largest, float(np.abs(residuals).max()))
         self.last_residual = float(residuals[-1])
 
+    @property
+    def not_kept_from(self):
+        """Stamps (ns) from which on the quantity is not kept for a while."""
+        return [segment.stamp for segment, kept in zip(self._history.segments, self._kept, strict=True) if not kept]
+
     def curve(self):
         """Return times (s) and residuals where the quantity is kept."""
         return self._residuals.curve()

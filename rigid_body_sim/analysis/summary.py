@@ -50,7 +50,7 @@ def lines(found):
         text.append(f'  flips    {found["flips"]}')
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
     others += [f'{found[kind]} {name}' for kind, name in
-               (('commands', 'ticks with commands'), ('resets', 'resets'), ('parameter_changes', 'changes of parameters')) if found[kind]]
+               (('commands', 'ticks with commands'), ('parameter_changes', 'changes of parameters')) if found[kind]]
     if others:
         text.append(f'  events   {", ".join(others)}')
     if timing['lateness']:

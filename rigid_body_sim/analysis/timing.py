@@ -27,11 +27,12 @@ class Punctuality:
         self._history = history
         self._counts = np.zeros(BINS + 1, np.int64)
         self._pending = (np.empty(0, np.int64), np.empty(0, np.int64))
-        self._pace, self._size = 0.0, FEWEST
-        self._origin = self._last_stamp = self._schedule = self._last_time = None
+        self._pace = self._rate = 0.0
+        self._origin = self._last_stamp = self._schedule = self._last_time = self._paced_until = None
         self._running = self._worst = 0
         self._groups = []
-        self.ticks = self.missing = self._paced = self._standstills = 0
+        self.ticks = self.missing = self._standstills = 0
+        self._advanced = 0.0
 
     def add(self, stamps, publish_times):
         """Take ticks: stamps and publish times (n,) int64, ns."""
@@ -42,8 +43,8 @@ class Punctuality:
             segment = self._history.segments[places[begin]]
             if segment.pace != self._pace:
                 self._take_groups(all_of_them=True)
-                self._pace, self._schedule = segment.pace, None
-            self._size = max(FEWEST, round(segment.rate))
+                self._pace, self._schedule, self._last_time = segment.pace, None, None
+            self._rate = segment.rate
             more = stamps[begin:end], publish_times[begin:end]
             self._pending = tuple(np.concatenate(pair) for pair in zip(self._pending, more, strict=True))
             self._take_groups()
@@ -59,11 +60,11 @@ class Punctuality:
 
     def _take_groups(self, all_of_them=False):
         stamps, times = self._pending
-        done = 0
-        while len(stamps) - done >= self._size or (all_of_them and done < len(stamps)):
+        size, done = max(FEWEST, round(self._rate)), 0
+        while len(stamps) - done >= size or (all_of_them and done < len(stamps)):
             if self._pace:
-                self._take_group(stamps[done:done + self._size], times[done:done + self._size])
-            done += self._size
+                self._take_group(stamps[done:done + size], times[done:done + size])
+            done += size
         self._pending = stamps[done:], times[done:]
 
     def _take_group(self, stamps, times):
@@ -77,15 +78,17 @@ class Punctuality:
             self._schedule = promptest
         else:
             self._schedule = min(promptest, self._schedule + int(SLEW * (times[-1] - self._last_time)))
-        # without a tick before there is no time between it and the first of these
-        self._running += int(times[-1] - (times[0] if self._last_time is None else self._last_time)) - stood
-        self._paced += len(times) - (self._last_time is None)
-        self._last_time = times[-1]
+        if self._last_time is None:
+            self._last_time, self._paced_until = times[0], stamps[0]
+        self._running += int(times[-1] - self._last_time) - stood
+        # by the stamps, for ticks that are missing here were run all the same
+        self._advanced += float(stamps[-1] - self._paced_until) * self._rate
+        self._last_time, self._paced_until = times[-1], stamps[-1]
         late = np.maximum(behind - self._schedule, 0)
         late = late[late <= STANDSTILL]     # a pause within the group is no lateness
         self._counts += np.bincount(late // 1000, minlength=BINS + 1)
         self._worst = max(self._worst, int(late.max()))
-        self._groups.append((stamps[0], *np.percentile(late, (50, 99, 100))))
+        self._groups.append((stamps[0], stamps[-1], *np.percentile(late, (50, 99, 100))))
 
     def summary(self):
         """Return lateness (s), the rate achieved (Hz) and counts, as a dict; None for what a run that was not paced cannot tell."""
@@ -98,9 +101,9 @@ class Punctuality:
             p50, p99 = (min((int(np.searchsorted(ranks, share * measured)) + 1) * 1e-6, self._worst * 1e-9) for share in (0.5, 0.99))
             found['lateness'] = {'p50': p50, 'p99': p99, 'max': self._worst * 1e-9}
         if self._running > 0:
-            found['achieved_rate'] = self._paced / self._running * NANOSECONDS
+            found['achieved_rate'] = self._advanced / self._running
         return found
 
     def curve(self):
-        """Return an array (n, 4): stamp (ns), then p50, p99 and max of the lateness (ns) of the ticks from there on."""
-        return np.array(self._groups, dtype=float).reshape(-1, 4)
+        """Return an array (n, 5): first and last stamp (ns) of groups of ticks, then p50, p99 and max of their lateness (ns)."""
+        return np.array(self._groups, dtype=float).reshape(-1, 5)

@@ -60,7 +60,7 @@ def test_being_late_for_long_is_lateness():
     assert summary['standstills'] == 0
     curve = punctuality.curve()
     assert (curve[:, 0] - START).tolist() == [k * 1000.0 * MS for k in range(20)]
-    assert np.all(curve[5:15, 1] > 34.9 * MS) and np.all(curve[16:, 1] < MS)
+    assert np.all(curve[5:15, 2] > 34.9 * MS) and np.all(curve[16:, 2] < MS)
 
 
 def test_a_clock_that_is_slewed_is_no_lateness():
@@ -94,6 +94,7 @@ def test_missing_ticks_are_counted_at_the_rate_of_their_time():
     kept[[5, 6, 229, 230, 231, 4000]] = False
     summary, _ = measured(stamps[kept], (stamps + late)[kept])
     assert (summary['ticks'], summary['missing']) == (5994, 6)
+    assert summary['achieved_rate'] == pytest.approx(1000.0, rel=1e-5)     # they were run
     slow = np.concatenate([stamps[:3000], stamps[3000] + np.arange(100) * 10 * MS])
     segments = [Segment(START, None, 1000.0, 1.0), Segment(int(stamps[3000]), None, 100.0, 1.0)]
     assert measured(slow, slow, segments)[0]['missing'] == 0
