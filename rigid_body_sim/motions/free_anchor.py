@@ -126,7 +126,8 @@ def fill_rotation(p, start, out):
     p2, p2_low = multiply(p[b + E12], p[b + E12 + 1], x3, x3_low)
     e, e_low = multiply(p[b + E13], p[b + E13 + 1], x2, x2_low)
     p2, p2_low = add_alike(p2, p2_low, e, e_low)
-    steady = p2 == 0.0 or _is_principal(p, b, w1, w2, w3)
+    # with p^2 < 1e-250 (omega being of order 1) omega does not move in the body in 1e120 s, and squares would be near underflow
+    steady = p2 < 1e-250 or _is_principal(p, b, w1, w2, w3)
     top, top_low = w3, 0.0
     if not steady:
         e, e_low = multiply(p[b + E32], p[b + E32 + 1], x2, x2_low)
