@@ -72,7 +72,7 @@ def fill_circular(c, A1, A2, A3, k2, kc, quarter, shift):
 
 
 @compiled_inline
-def _circular_series(c, v, v_low):
+def circular_series(c, v, v_low):
     """Return omega_1, omega_2, omega_3, and real and imaginary part of the half angle's theta function, at the phase v (turns)."""
     s, c0 = sin_cos(v, v_low)
     c1, s1 = (c0 - s) * (c0 + s), 2.0 * s * c0
@@ -118,8 +118,8 @@ def fill_hyperbolic(c, A1, A2, A3, k, kc, period, shift):
 
 
 @compiled_inline
-def _hyperbolic_series(c, v, v_low):
-    """Return what :func:`_circular_series` returns, and the part of the half angle (turns) that goes along with v between two half turns."""
+def hyperbolic_series(c, v, v_low):
+    """Return what :func:`circular_series` returns, and the part of the half angle (turns) that goes along with v between two half turns."""
     half_turns = nearest(2.0 * v)
     x = (v - 0.5 * half_turns) + v_low
     sign = 1.0 - 2.0 * abs(half_turns - 2.0 * nearest(0.5 * half_turns))
@@ -148,7 +148,7 @@ def circular(c, dt, dt_low):
     half, half_low = phase(c[HALF], c[HALF + 1], dt, dt_low)
     v, v_low = phase(c[RATE], c[RATE + 1], dt, dt_low)
     v, low = two_sum(v, c[PHASE])
-    w1, w2, w3, re, im = _circular_series(c, v, v_low + low)
+    w1, w2, w3, re, im = circular_series(c, v, v_low + low)
     return _joined(c, w1, w2, w3, re, im, half, half_low)
 
 
@@ -158,7 +158,7 @@ def hyperbolic(c, dt, dt_low):
     half, half_low = phase(c[HALF], c[HALF + 1], dt, dt_low)
     v, v_low = phase(c[RATE], c[RATE + 1], dt, dt_low)
     v, low = two_sum(v, c[PHASE])
-    w1, w2, w3, re, im, along = _hyperbolic_series(c, v, v_low + low)
+    w1, w2, w3, re, im, along = hyperbolic_series(c, v, v_low + low)
     half, low = two_sum(half, along)
     return _joined(c, w1, w2, w3, re, im, half, half_low + low)
 
