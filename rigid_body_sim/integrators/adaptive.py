@@ -21,7 +21,8 @@ SIZE = UNBOUND
 ORDER = UNBOUND
 
 TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
-SMALLEST = 2.0 ** -50    # of the time since 0: a step below that does not move the clock
+GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
+TRIALS = 60                # of one step: after so many refusals it is given up
 
 
 @compiled
@@ -42,7 +43,8 @@ def march(p, control, node, following, target, end, limit):
     if following[TIME] > node[TIME]:
         if target < following[TIME]:
             return 0, True
-        node[:] = following
+        for k in range(len(node)):
+            node[k] = following[k]
         moved = 1
     t, planned = node[TIME], node[STEP]
     scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
@@ -50,21 +52,17 @@ def march(p, control, node, following, target, end, limit):
     while t < end:
         k0 = rate(p, y)
         h = planned
-        while True:
+        good = False
+        for _ in range(TRIALS):
             t1 = end if t + 1.1 * h >= end else t + h
             y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
             allowed = tolerance * (t1 - t)
-            if error <= 1e-9 * allowed:
-                factor = 10.0
-            elif error < math.inf:
-                factor = min(10.0, max(0.1, 0.9 * math.pow(allowed / error, 1.0 / (ORDER - 1))))
-            else:    # also not a number
-                factor = 0.1
-            h = (t1 - t) * factor
-            if error <= allowed:
-                break
-            if not h > SMALLEST * (abs(t) + h):
-                good = False
+            good = error <= allowed and t1 > t
+            if error > 1e-9 * allowed and error < math.inf:
+                h = (t1 - t) * min(GROWTH, max(SHRINK, SAFETY * math.pow(allowed / error, 1.0 / (ORDER - 1))))
+            else:    # nothing to be seen of the error, or not a number
+                h = (t1 - t) * (GROWTH if good else SHRINK)
+            if good:
                 break
         if not good or target < t1 or moved == limit:
             following[TIME], following[STEP] = t1, h

@@ -169,4 +169,4 @@ def _booked(calls):
         strict=True)))
     torques = [call for call in calls if call.gives == 'torque']
     return _kernel('booked', calls, (' + '.join(power['work']) or '0.0', f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0',
-                                     f'*rotate(qx, qy, qz, qw, {", ".join(_sums(torques))})'))
+                                     f'*rotate(qx, qy, qz, qw, *taken(p, {", ".join(_sums(torques))}))'))

@@ -14,9 +14,9 @@ FIXED = 24
 
 
 @compiled
-def euler(p, wx, wy, wz):
-    """Return omega' of a body left alone: ((I2 - I3)/I1) omega2 omega3 and so on in turn (notes, "Euler's equations")."""
-    return p[EULER] * (wy * wz), p[EULER + 1] * (wz * wx), p[EULER + 2] * (wx * wy)
+def taken(p, tx, ty, tz):
+    """Return the part of a torque that turns the body: none about an axis of zero moment, which a thin rod cannot take."""
+    return (tx if p[INVERSE] > 0.0 else 0.0), (ty if p[INVERSE + 1] > 0.0 else 0.0), (tz if p[INVERSE + 2] > 0.0 else 0.0)
 
 
 @compiled

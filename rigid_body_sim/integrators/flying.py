@@ -5,10 +5,11 @@ rigid_body_sim/integrators/turning.py, about the centre of mass; x' = v, M v' = 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import MASS, attitude_rate, lost_norm, write_state
-from rigid_body_sim.rotations import rotate  # noqa: F401 - for the bound sums
+from rigid_body_sim.integrators.euler import MASS, attitude_rate, lost_norm, taken, write_state  # noqa: F401
+from rigid_body_sim.rotations import rotate  # noqa: F401
 from rigid_body_sim.specialise import UNBOUND
 
+# `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND

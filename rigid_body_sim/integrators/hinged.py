@@ -9,7 +9,7 @@ import math
 
 from rigid_body_sim.compiled import compiled
 from rigid_body_sim.integrators.euler import FIXED, INVERSE, PLACE, write_state
-from rigid_body_sim.rotations import multiply, rotate  # noqa: F401 - rotate is for the bound sums
+from rigid_body_sim.rotations import multiply, rotate  # noqa: F401 (rotate: for the bound sums)
 from rigid_body_sim.specialise import UNBOUND
 
 torque = UNBOUND
@@ -25,6 +25,13 @@ def attitude(p, phi):
     """Return q at an angle."""
     s, c = math.sin(0.5 * phi), math.cos(0.5 * phi)
     return multiply(p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3], s * p[AXIS], s * p[AXIS + 1], s * p[AXIS + 2], c)
+
+
+@compiled
+def taken(p, tx, ty, tz):
+    """Return the part of a torque that turns the body: the one along the axis."""
+    along = p[AXIS] * tx + p[AXIS + 1] * ty + p[AXIS + 2] * tz
+    return along * p[AXIS], along * p[AXIS + 1], along * p[AXIS + 2]
 
 
 @compiled

@@ -5,8 +5,8 @@
     solver.states(times, out)      # out (n, 14), any order of times, none before the start
     solver.exchanged(time)         # array (5,), rigid_body_sim/exchange.py: work, heat, angular impulse since the start
 
-Give `accuracy` (step control) or `step` (fixed steps). A state does not depend on which other times were asked. Strikes of the scene are
-the business of rigid_body_sim/simulation.py, which starts a solver anew after each.
+Give `accuracy` (step control) or `step` (fixed steps; it goes before). A state does not depend on which other times were asked. Strikes of
+the scene are the business of rigid_body_sim/simulation.py, which starts a solver anew after each.
 """
 
 import math
@@ -36,7 +36,7 @@ class Stepped:
         A name of ``rigid_body_sim.integrators.METHODS``.
     accuracy : float, optional
         Error of the attitude (rad), and of omega relative to its largest size, that may build up in `horizon`, where the motion itself
-        does not magnify it. Not both with `step`.
+        does not magnify it. It says nothing where `step` is given.
     step : float, optional
         Fixed step, s.
     wrench : effects.wrench.Wrench, optional
@@ -51,8 +51,8 @@ class Stepped:
     """
 
     def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0):
-        if (accuracy is None) == (step is None):
-            raise BadInput('method', f'got accuracy {accuracy!r} and step {step!r}', 'give one of them')
+        if accuracy is None and step is None:
+            raise BadInput('method', 'got neither accuracy nor step', 'give one of them')
         if step is not None and not (math.isfinite(step) and step > 0.0):
             raise BadInput('step', f'got {step!r}', 'seconds, a positive number')
         if accuracy is not None and not (math.isfinite(accuracy) and accuracy >= FINEST):

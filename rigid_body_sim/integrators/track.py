@@ -20,6 +20,12 @@ STORED, STRIDE, COUNT = 0, 1, 2     # layout of `counts`
 
 
 @compiled
+def _copy(source, target):
+    for k in range(len(source)):    # an assignment of slices would compile numba's own error texts, for seconds
+        target[k] = source[k]
+
+
+@compiled
 def follow(p, control, node, following, store, counts, target, end):
     """Bring `node` to the last node not later than `target`; return whether it went well."""
     if target < node[TIME]:
@@ -30,7 +36,7 @@ def follow(p, control, node, following, store, counts, target, end):
                 low = middle
             else:
                 high = middle - 1
-        node[:] = store[low]
+        _copy(store[low], node)
         following[TIME] = node[TIME]
         counts[COUNT] = low * counts[STRIDE]
     while True:
@@ -45,10 +51,10 @@ def follow(p, control, node, following, store, counts, target, end):
             if counts[STORED] == len(store):
                 half = len(store) // 2
                 for k in range(half):
-                    store[k] = store[2 * k]
+                    _copy(store[2 * k], store[k])
                 counts[STORED], counts[STRIDE] = half, 2 * counts[STRIDE]
             if counts[COUNT] == counts[STORED] * counts[STRIDE]:
-                store[counts[STORED]] = node
+                _copy(node, store[counts[STORED]])
                 counts[STORED] += 1
 
 

@@ -7,10 +7,11 @@ between -1 and 1 for every body, needles included. The point of reference moves 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import DRIFT, PLACE, START, attitude_rate, lost_norm, write_state
-from rigid_body_sim.rotations import rotate  # noqa: F401 - for the bound sums
+from rigid_body_sim.integrators.euler import DRIFT, PLACE, START, attitude_rate, lost_norm, taken, write_state  # noqa: F401
+from rigid_body_sim.rotations import rotate  # noqa: F401
 from rigid_body_sim.specialise import UNBOUND
 
+# `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 booked = UNBOUND

@@ -1,0 +1,49 @@
+"""Order conditions of Runge-Kutta methods: one for each rooted tree (Hairer, Norsett and Wanner, Solving ODEs I, II.2)."""
+
+from fractions import Fraction
+from functools import cache
+
+
+@cache
+def trees(order):
+    """Return the rooted trees with that many nodes, each a sorted tuple of its subtrees."""
+    return tuple(sorted(set(_forests(order - 1, order - 1))))
+
+
+@cache
+def _forests(nodes, largest):
+    if nodes == 0:
+        return ((),)
+    found = []
+    for size in range(min(nodes, largest), 0, -1):
+        for tree in trees(size):
+            found += [tuple(sorted((tree, *rest))) for rest in _forests(nodes - size, size)]
+    return tuple(set(found))
+
+
+def nodes(tree):
+    return 1 + sum(nodes(subtree) for subtree in tree)
+
+
+def density(tree):
+    """Return gamma(t): the condition is sum_i b_i Phi_i(t) = 1/gamma(t)."""
+    result = nodes(tree)
+    for subtree in tree:
+        result *= density(subtree)
+    return result
+
+
+def weight(tree, A):
+    """Return Phi(t), a list with one entry a stage; A: rows {stage: coefficient}, of Fractions."""
+    result = [Fraction(1)] * len(A)
+    for subtree in tree:
+        inner = weight(subtree, A)
+        result = [left * sum((a * inner[j] for j, a in row.items()), Fraction(0)) for left, row in zip(result, A, strict=True)]
+    return result
+
+
+def largest_defect(order, A, B):
+    """Return the largest |sum b Phi(t) - 1/gamma(t)| over the trees of an order, in exact arithmetic on the doubles given."""
+    A = [{j: Fraction(a) for j, a in row.items()} for row in A]
+    sums = {tree: sum(Fraction(b) * weight(tree, A)[j] for j, b in B.items()) for tree in trees(order)}
+    return max(abs(float(total - Fraction(1, density(tree)))) for tree, total in sums.items())

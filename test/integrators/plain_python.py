@@ -1,0 +1,28 @@
+"""Solve cases without numba: many scene kinds in a few seconds, where compiling each would take minutes. Prints JSON.
+
+From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test python test/integrators/plain_python.py METHOD accuracy|step VALUE [CASE ...]
+"""
+
+import json
+import sys
+
+import numpy as np
+from data import smooth_cases
+
+from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.scenes import parse_scene
+
+
+def solve(name, method, **control):
+    """Return {time: {state (13), exchanged (5)}} of a case of smooth_cases.py."""
+    scene, wrench, times = parse_scene(smooth_cases.text(name)), *smooth_cases.CASES[name][4:]
+    solver = Stepped(scene, method, wrench=Wrench(*wrench) if wrench else None, **control).start(scene.initial.vector)
+    out = np.empty((len(times), 14))
+    solver.states(np.array(times), out)
+    return {repr(time): {'state': out[k, 1:].tolist(), 'exchanged': solver.exchanged(time).tolist()} for k, time in enumerate(times)}
+
+
+if __name__ == '__main__':
+    method, control, value, *names = sys.argv[1:]
+    print(json.dumps({name: solve(name, method, **{control: float(value)}) for name in names or smooth_cases.CASES}))
