@@ -17,6 +17,7 @@ from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.topics import Topic, journal_topic
 from rigid_body_sim.timeline import NANOSECONDS
 
+ATTEMPTS = 5
 WRENCH_TYPE = 'geometry_msgs/msg/WrenchStamped'
 
 
@@ -52,8 +53,16 @@ class Journal:
                    for axes, name in (('world', frames.world), ('body', frames.body))}
         self._pack_command = {axes: packer.pack for axes, packer in packers.items()}
         ticking = list(zip(publishing.ticking(), publishing.sizes, strict=True))
-        self.path = _free_path(node, settings, simulation.scene.name)
-        self._recorder = Recorder(self.path, ticking, others, journal, about.about('sim_node', simulation, settings.values))
+        told = about.about('sim_node', simulation, settings.values)
+        for attempt in range(ATTEMPTS):
+            self.path = _free_path(node, settings, simulation.scene.name)
+            try:
+                self._recorder = Recorder(self.path, ticking, others, journal, told)
+                break
+            except BadInput:
+                # another node of this name may have begun its recording in this moment
+                if settings['recording.name'] or not self.path.exists() or attempt == ATTEMPTS - 1:
+                    raise
         self._record_tick = self._recorder.tick
         self.status = self._recorder.status()
 

@@ -120,6 +120,12 @@ def _running(folder, *arguments):
         yield Running(domain, process, client, folder)
 
 
+@pytest.fixture(scope='session')
+def run_node_in(compiled_kernels):
+    """Return the context manager that runs a node with its recordings in a folder, with arguments, and yields a Running."""
+    return _running
+
+
 @pytest.fixture
 def run_node(tmp_path, compiled_kernels):
     """Return the context manager that runs a node with arguments and yields a Running."""

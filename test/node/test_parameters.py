@@ -68,7 +68,7 @@ def test_empty_list_arrives_as_one(make):
     ('rate:=abc', "parameter rate: got 'abc'; needs a number from 0.001 to 100000"),
     ('rate:=true', 'parameter rate: got True; needs a number from 0.001 to 100000'),
     ('rate:=.nan', 'parameter rate: got nan; needs a number from 0.001 to 100000'),
-    ('rate:=[1.0]', "parameter rate: got [1.0]; needs a number from 0.001 to 100000"),
+    ('rate:=[1.0]', 'parameter rate: got [1.0]; needs a number from 0.001 to 100000'),
     ('record:=1', 'parameter record: got 1; needs true or false'),
     ('scene:=3', 'parameter scene: got 3; needs a text'),
     ('overrun:=skip', "parameter overrun: got 'skip'; needs one of slip, skip_publish"),

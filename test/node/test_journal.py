@@ -1,0 +1,107 @@
+"""What a node's recording tells: states as they were published, and every command, reset and change with its tick."""
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import PoseStamped, Vector3, Wrench, WrenchStamped
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from std_srvs.srv import Trigger
+
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.simulation import Simulation
+
+RATE = 200.0
+
+
+def command(frame, **torque):
+    message = WrenchStamped(wrench=Wrench(torque=Vector3(**torque)))
+    message.header.frame_id = frame
+    return message
+
+
+@pytest.fixture(scope='module')
+def recording(tmp_path_factory, run_node_in):
+    """Return the recording of a node that was commanded, reset and changed."""
+    folder = tmp_path_factory.mktemp('journal')
+    with run_node_in(folder, '-p', f'rate:={RATE}', '-p', 'stamp_origin:=zero', '-p', 'command_timeout:=0.1') as node:
+        client = node.client
+        poses = client.collect(PoseStamped, 'pose')
+        impulses, wrenches = client.publisher(WrenchStamped, 'cmd_impulse'), client.publisher(WrenchStamped, 'cmd_wrench')
+        client.until(lambda: len(poses) > 20, what='ticks')
+        for k in range(50):
+            impulses.publish(command('body' if k % 2 else 'world', x=0.001 * k, y=0.1))
+        wrenches.publish(command('world', z=0.3))
+        client.spin(0.3)
+        assert client.call(Trigger, '/sim_node/reset').success
+        client.spin(0.1)
+        impulses.publish(command('', z=0.7))
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value='dop8')
+        client.call(SetParameters, '/sim_node/set_parameters', parameters=[Parameter(name='integrator', value=value)])
+        client.spin(0.2)
+        node.process.terminate()
+        assert node.process.wait(5.0) == 0
+    [path] = (folder / 'recordings').iterdir()
+    return Recording(path)
+
+
+def entries(recording, kind):
+    return [entry for entry in recording.journal() if entry['kind'] == kind]
+
+
+def test_every_command_stands_there_with_its_tick_in_order(recording):
+    given = [(entry['tick'], one) for entry in entries(recording, 'commands') for one in entry['commands']]
+    impulses = [one for _, one in given if one['topic'] == 'cmd_impulse']
+    assert [one['torque'][0] for one in impulses] == [*(0.001 * k for k in range(50)), 0.0]
+    assert {one['frame'] for one in impulses} == {'body', 'world'}
+    [hold] = [tick for tick, one in given if one['topic'] == 'cmd_wrench']
+    [release] = [tick for tick, one in given if one['topic'] == 'release']
+    # 0.1 s of ticks
+    assert release - hold == 20
+    assert [tick for tick, _ in given] == sorted(tick for tick, _ in given)
+
+
+def test_resets_and_changes_stand_there_with_their_ticks(recording):
+    [reset], [change] = entries(recording, 'reset'), entries(recording, 'parameters')
+    assert change['tick'] > reset['tick'] > 0
+    assert change['changed'] == {'integrator': 'dop8'}
+    assert (change['simulation']['method'], change['keeps_state']) == ('dop8', True)
+    assert change['scene'].startswith('scene: tennis_racket\n')
+
+
+def test_recording_alone_gives_every_state_again_to_the_last_bit(recording):
+    """Run the scene again with the journal's commands at their ticks: each recorded pose and angular velocity is met exactly."""
+    simulation = Simulation('tennis_racket', rate=RATE)
+    acts = {}
+    for entry in recording.journal():
+        if entry['kind'] in ('commands', 'reset', 'parameters'):
+            acts.setdefault(entry['tick'], []).append(entry)
+    poses = recording.read('/pose', ['header.stamp', 'pose.orientation'])
+    spins = recording.read('/angular_velocity', ['vector'])
+    stamps = poses['header.stamp']
+    assert np.array_equal(stamps, np.arange(len(stamps)) * round(1e9 / RATE))
+    assert acts
+    assert max(acts) < len(stamps)
+    for tick in range(len(stamps)):
+        if tick:
+            simulation.advance()
+        for entry in acts.get(tick, ()):
+            simulation = act(simulation, entry)
+        assert np.array_equal(simulation.state.orientation, poses['pose.orientation'][tick]), tick
+        assert np.array_equal(simulation.state.angular_velocity, spins['vector'][tick]), tick
+
+
+def act(simulation, entry):
+    """Do what an entry of the journal says; return the simulation that goes on."""
+    if entry['kind'] == 'reset':
+        simulation.reset()
+    elif entry['kind'] == 'parameters':
+        following = Simulation('tennis_racket', entry['simulation']['integrator'], rate=RATE)
+        following.follow(simulation, entry['keeps_state'])
+        return following
+    else:
+        for one in entry['commands']:
+            if one['topic'] == 'release':
+                simulation.release()
+            else:
+                {'cmd_impulse': simulation.impulse, 'cmd_wrench': simulation.hold}[one['topic']](one['force'], one['torque'], one['frame'])
+    return simulation
