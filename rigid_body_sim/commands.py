@@ -9,6 +9,7 @@ COMMANDS = {
     'run': ('rigid_body_sim.run:main', 'run the node for a while, record it, and report: what `make run` does'),
     'simulate': ('rigid_body_sim.simulate:main', 'run a scene to a recording as fast as it goes'),
     'analyze': ('rigid_body_sim.analysis.analyze:main', 'a recording to numbers and a figure'),
+    'resimulate': ('rigid_body_sim.analysis.resimulate:main', "a recording's scene and commands run again: the same bits, or where they part"),
     'recover': ('rigid_body_sim.recording.recover:main', 'make a cut recording whole'),
     'export': ('rigid_body_sim.recording.export:main', 'a recording to CSV, Parquet or NumPy'),
     'scenes': ('rigid_body_sim.list_scenes:main', 'list the scenes, their effects and the methods that can run them'),

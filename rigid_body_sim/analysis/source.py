@@ -71,7 +71,7 @@ def sources(recording):
 
 def _source(recording, namespace, topics):
     entries = [entry for entry in recording.journal() if entry['topic'] == topics.get('journal')]
-    begin = next((entry for entry in entries if entry['kind'] == 'begin'), {})
+    begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {})
     ticking = [recording.topics[topics[name]] for name in EVERY_TICK if name in topics]
     start = min(_first_time(recording, topic.name) for topic in ticking)
     text = begin.get('scene') or _latched_scene(recording, topics)

@@ -17,6 +17,8 @@ from rigid_body_sim.messages import cdr
 
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
 OK, WARN, ERROR = 0, 1, 2
+SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
+"""Parameters whose change makes a new Simulation, which follows the one before."""
 
 
 def version():

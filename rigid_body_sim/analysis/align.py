@@ -1,0 +1,43 @@
+"""Several topics of a recording side by side, in the order of their stamps, however the recorder cut them into chunks."""
+
+import numpy as np
+
+LARGEST = 1_000_000
+"""Messages of one topic that may wait for those of another, beyond which they are handed out without."""
+
+
+def aligned(recording, topics, progress=None):
+    """Yield dicts topic -> columns: all messages up to some log time that were not yielded before, in the order of log time.
+
+    Parameters
+    ----------
+    recording : Recording
+    topics : sequence of str
+        Complete names; each dict has all of them that have messages in its stretch.
+    progress : callable, optional
+        Called with numbers of messages done.
+    """
+    left = {topic: recording.topics[topic].count for topic in topics}
+    waiting = {topic: [] for topic in topics}
+    for topic, columns in recording.blocks(list(topics), progress=progress):
+        waiting[topic].append(columns)
+        left[topic] -= len(columns['log_time'])
+        if all(blocks or not left[name] for name, blocks in waiting.items()) or sum(len(part['log_time']) for part in waiting[topic]) > LARGEST:
+            # what comes later of a topic has a log time of at least its last one
+            until = min((waiting[name][-1]['log_time'][-1] - 1 for name in topics if left[name] and waiting[name]), default=None)
+            stretch = {name: _take(waiting, name, until) for name in topics if waiting[name]}
+            stretch = {name: part for name, part in stretch.items() if part is not None}
+            if stretch:
+                yield stretch
+    rest = {name: _take(waiting, name, None) for name in topics if waiting[name]}
+    if rest:
+        yield rest
+
+
+def _take(waiting, name, until):
+    """Return the columns of a topic up to a log time (None: all), or None; leave the rest waiting."""
+    blocks = waiting[name]
+    joined = blocks[0] if len(blocks) == 1 else {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
+    count = len(joined['log_time']) if until is None else int(np.searchsorted(joined['log_time'], until, side='right'))
+    waiting[name] = [{key: column[count:] for key, column in joined.items()}] if count < len(joined['log_time']) else []
+    return {key: column[:count] for key, column in joined.items()} if count else None

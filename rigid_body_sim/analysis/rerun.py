@@ -1,0 +1,121 @@
+"""A recorded run, run again from its journal alone: the same scene, and the same commands at the same ticks."""
+
+import json
+
+import numpy as np
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
+from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.state import States
+from rigid_body_sim.timeline import NANOSECONDS, Timeline
+
+
+class Rerun:
+    """A run as its journal tells it.
+
+    Parameters
+    ----------
+    entries : list of dict
+        The journal of one body, see recording.reader.Recording.journal.
+    method : dict
+        What to change: ``integrator``, ``accuracy``; it then holds for the whole run.
+
+    Attributes
+    ----------
+    begin : dict
+        The journal's entry of that kind: all about the run.
+    recorded : dict
+        What the recorded simulation was asked for, and its method.
+    simulation : Simulation
+        As it stands now.
+
+    Raises
+    ------
+    BadInput
+        If there is no journal, or it does not reach back to the start.
+    """
+
+    def __init__(self, entries, method):
+        self.begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), None)
+        anchor = next((entry for entry in entries if entry['kind'] == 'state'), None)
+        if self.begin is None or anchor is None:
+            raise BadInput('journal', 'is missing', 'a recording by sim_node or simulate: ros2 bag record knows no ticks of commands')
+        self._method = method
+        self.recorded = json.loads(self.begin['simulation'])
+        self.simulation = self._simulation(self.begin['scene'], self.recorded)
+        self._lines = [_line(anchor, self.recorded['rate'])]
+        self._actions = []
+        rate = self.recorded['rate']
+        for entry in entries:
+            if entry['kind'] not in ('commands', 'reset', 'parameters'):
+                continue
+            self._actions.append(entry)
+            if entry['kind'] == 'parameters' and entry['simulation']['rate'] != rate:
+                rate = entry['simulation']['rate']
+                self._lines.append(self._lines[-1].from_tick(entry['tick'], rate))
+        self._actions.reverse()
+        self._act()
+        self._given = -1
+
+    def _simulation(self, text, asked):
+        asked = {**asked, **self._method}
+        return Simulation(parse_scene(text), asked['integrator'], asked['accuracy'], asked['rate'])
+
+    def ticks(self, stamps):
+        """Return the ticks of stamps (n,) int64, ns; BadInput where one lies between ticks."""
+        starts = np.array([line.origin for line in self._lines[1:]], dtype=np.int64)
+        places = np.searchsorted(starts, stamps, side='right')
+        ticks = np.empty(len(stamps), np.int64)
+        for place, line in enumerate(self._lines):
+            mine = places == place
+            if mine.any():
+                ticks[mine] = line.tick + np.rint((stamps[mine] - line.origin) * float(line.rate) / NANOSECONDS).astype(np.int64)
+                for k in np.flatnonzero(mine)[[0, -1]]:
+                    if line.instant(int(ticks[k])) != stamps[k]:
+                        raise BadInput('recording', f'a message at {int(stamps[k])} ns, between two ticks', 'stamps of a simulation')
+        return ticks
+
+    def through(self, tick):
+        """Run on to a tick; return all ticks not yet given (the first one is 0), their States after all commands, energies and L^2."""
+        first, parts = self._given + 1, []
+        if self._given < self.simulation.tick:
+            parts.append((self.simulation.vector[np.newaxis].copy(), [self.simulation.energy], [self.simulation.angular_momentum_squared]))
+        self._given = max(tick, self.simulation.tick)
+        while self.simulation.tick < tick:
+            until = min(tick, self._actions[-1]['tick']) if self._actions else tick
+            simulation = self.simulation
+            vectors = simulation.advance_through(until - simulation.tick).vector
+            energies, momenta = simulation.diagnose(States(vectors))
+            if self._act():
+                vectors[-1] = self.simulation.vector
+                energies[-1], momenta[-1] = self.simulation.energy, self.simulation.angular_momentum_squared
+            self.simulation.events.clear()
+            parts.append((vectors, energies, momenta))
+        vectors, energies, momenta = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+        return np.arange(first, first + len(vectors)), States(vectors), energies, momenta
+
+    def _act(self):
+        """Do what was done at the present tick, in its order; return whether anything was."""
+        acted = False
+        while self._actions and self._actions[-1]['tick'] == self.simulation.tick:
+            acted = True
+            entry = self._actions.pop()
+            if entry['kind'] == 'reset':
+                self.simulation.reset()
+            elif entry['kind'] == 'commands':
+                self.simulation.forget_past()
+                for command in entry['commands']:
+                    act = self.simulation.impulse if command['topic'] == 'cmd_impulse' else self.simulation.hold
+                    act(command['force'], command['torque'], command['frame'])
+            elif SIMULATION_PARAMETERS & set(entry['changed']):
+                following = self._simulation(entry['scene'], entry['simulation'])
+                following.follow(self.simulation, entry['keeps_state'])
+                self.simulation = following
+        return acted
+
+
+def _line(anchor, rate):
+    """Return the Timeline on which an entry's tick has its stamp."""
+    return Timeline(anchor['log_time'] - Timeline(0, rate).instant(anchor['tick']), rate)

@@ -1,0 +1,38 @@
+"""Topics side by side: every message once, in order, though their chunks are cut anywhere."""
+
+import types
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.analysis.align import aligned
+
+
+def made_up(counts, seed):
+    """Return a recording whose blocks are cut at random, and what each topic holds."""
+    random = np.random.default_rng(seed)
+    times = {topic: np.sort(random.choice(5000, count, replace=False)) for topic, count in counts.items()}
+    blocks = []
+    for topic, stamps in times.items():
+        cuts = np.sort(random.choice(len(stamps) + 1, 12))
+        for begin, end in zip([0, *cuts], [*cuts, len(stamps)], strict=True):
+            if end > begin:
+                blocks.append((stamps[begin], topic, {'log_time': stamps[begin:end], 'data': -stamps[begin:end]}))
+    blocks.sort(key=lambda block: block[0])
+    recording = types.SimpleNamespace(topics={topic: types.SimpleNamespace(count=count) for topic, count in counts.items()},
+                                      blocks=lambda topics, progress: ((topic, columns) for _, topic, columns in blocks))
+    return recording, times
+
+
+@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('counts', [{'a': 3000, 'b': 3000}, {'a': 3000, 'b': 1, 'c': 40}, {'a': 5000}])
+def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
+    recording, times = made_up(counts, seed)
+    found, latest = {topic: [] for topic in counts}, -1
+    for stretch in aligned(recording, list(counts)):
+        assert min(columns['log_time'][0] for columns in stretch.values()) > latest
+        latest = max(columns['log_time'][-1] for columns in stretch.values())
+        for topic, columns in stretch.items():
+            assert (columns['data'] == -columns['log_time']).all()
+            found[topic] += columns['log_time'].tolist()
+    assert found == {topic: stamps.tolist() for topic, stamps in times.items()}

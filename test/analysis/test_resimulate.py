@@ -1,0 +1,139 @@
+"""A recorded run, run again from the recording alone: the same bits, or the first that is another."""
+
+import json
+
+import numpy as np
+import pytest
+
+made = pytest.importorskip('analysis.made', reason='needs rosbags')
+
+from rigid_body_sim.analysis.resimulate import main  # noqa: E402
+from rigid_body_sim.recording import metadata  # noqa: E402
+from rigid_body_sim.recording.reader import Recording  # noqa: E402
+from rigid_body_sim.simulate import main as simulate  # noqa: E402
+from rigid_body_sim.simulation import Simulation  # noqa: E402
+
+ZERO = (0.0, 0.0, 0.0)
+ACTS = {0: [('cmd_impulse', ZERO, (0.1, 0.0, 0.2), 'body')],
+        500: [('cmd_impulse', (1.0, 2.0, 3.0), (0.5, 0.1, 0.0), 'world'), ('cmd_impulse', ZERO, (-0.5, -0.1, 0.0), 'world')],
+        900: [('cmd_wrench', (0.1, 0.2, 0.3), (0.3, 2.0, 0.1), 'body')],
+        901: [('cmd_impulse', ZERO, (0.0, 0.0, 1.0), 'body')],
+        1300: [('cmd_wrench', ZERO, (0.0, 0.0, -1.0), 'world')],
+        1500: [('release', ZERO, ZERO, 'world')],
+        1700: [('reset',), ('cmd_impulse', ZERO, (0.0, 0.3, 0.0), 'world')],
+        1900: [('cmd_impulse', ZERO, (0.0, -0.3, 0.0), 'world')]}
+
+
+@pytest.fixture(scope='module')
+def commanded(tmp_path_factory):
+    """Return the path of a recording with every kind of command and a gap around one of them."""
+    path = tmp_path_factory.mktemp('resimulate') / 'commanded'
+    made.record(path, 'tennis_racket', 2200, acts=ACTS, left_out=range(880, 920))
+    return path
+
+
+def outcome(capsys, *arguments):
+    status = main([*map(str, arguments), '--json'])
+    return status, json.loads(capsys.readouterr().out)['bodies'][0]
+
+
+def test_commands_resets_and_gaps_are_reproduced_to_the_bit(commanded, capsys):
+    assert main([str(commanded)]) == 0
+    assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
+
+
+def test_what_simulate_wrote_is_reproduced_to_the_bit(tmp_path, capsys):
+    assert simulate(['--duration', '12.3', '--rate', '789', '--output', str(tmp_path / 'run')]) == 0
+    capsys.readouterr()
+    status, found = outcome(capsys, tmp_path / 'run')
+    assert (status, found['identical'], found['states']) == (0, True, 9706)
+
+
+def test_one_bit_in_one_message_is_found(commanded, tmp_path, capsys):
+    """The last bit of omega_y at tick 1234 is turned over on the disk, in a copy without compression."""
+    recording = Recording(commanded)
+    value = recording.read('/angular_velocity')['vector'][1234 - 40, 1]
+    damaged = rewritten(commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
+    status, found = outcome(capsys, damaged, '--output', tmp_path)
+    assert status == 1 and not found['identical']
+    parting = found['parting']
+    assert (parting['tick'], parting['quantity']) == (1234, 'angular_velocity')
+    assert parting['recorded'][1] == np.nextafter(value, np.inf) and parting['resimulated'][1] == value
+    assert main([str(damaged), '--output', str(tmp_path)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == 'differs from tick 1234 on (t = 1.234 s), angular velocity:'
+    assert repr(float(value)) in lines[2]
+    assert (tmp_path / 'difference.png').stat().st_size > 10_000
+    rows = [line.split(',') for line in (tmp_path / 'difference.csv').read_text().splitlines()[1:]]
+    assert {row[1] for row in rows if float(row[2]) > 0.0} == {'1.234'}
+
+
+def rewritten(source, folder, old, new):
+    """Return a copy of a recording, without compression, in which one number is another."""
+    from rigid_body_sim.recording.topics import Topic
+    from rigid_body_sim.recording.writer import Writer
+    recording = Recording(source)
+    topics = [Topic(name, topic.type) for name, topic in recording.topics.items() if name != '/journal']
+    journal = Topic('/journal', recording.topics['/journal'].type)
+    changed = 0
+    with Writer(folder, [], topics, journal, {}, 'none') as writer:
+        for message in recording.messages():
+            data = message.data
+            if message.topic == '/angular_velocity' and old.tobytes() in data:
+                data, changed = data.replace(old.tobytes(), new.tobytes()), changed + 1
+            writer.message(message.topic, message.log_time, message.publish_time, data)
+    assert changed == 1
+    return folder
+
+
+def test_a_converted_recording_without_our_metadata_is_reproduced(commanded, tmp_path, capsys):
+    """Like after `ros2 bag convert`: other chunks, no metadata record, no custom_data, sequence numbers lost; the journal tells all."""
+    copy = rewritten(commanded, tmp_path / 'copy', np.float64(Recording(commanded).read('/angular_velocity')['vector'][7, 0]), np.float64(0.0))
+    path = copy / metadata.FILE_NAME
+    bag = metadata.load(path.read_text())
+    bag[metadata.ROOT]['custom_data'] = None
+    path.write_text(metadata.dump(bag))
+    status, found = outcome(capsys, copy, '--output', tmp_path)
+    assert status == 1 and found['parting']['tick'] == 7 and found['states'] == 2161
+    assert found['largest']['orientation']['difference'] == 0.0
+
+
+def test_another_method_shows_what_it_would_have_changed(commanded, tmp_path, capsys):
+    status, found = outcome(capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-6', '--output', tmp_path)
+    assert status == 0 and not found['identical']
+    assert found['resimulated']['method'] == 'dop8' and found['recorded']['method'] == 'exact'
+    coarse = found['largest']['orientation']['difference']
+    assert 1e-11 < coarse < 1e-5
+    _, found = outcome(capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-12', '--output', tmp_path)
+    assert found['largest']['orientation']['difference'] < 1e-3 * coarse
+    assert (tmp_path / 'difference.png').exists()
+
+
+def test_on_another_machine_the_bits_may_differ_within_a_tolerance(commanded, tmp_path, monkeypatch, capsys):
+    from rigid_body_sim.recording import about
+    here = about.machine()
+    value = Recording(commanded).read('/angular_velocity')['vector'][1234 - 40, 1]
+    damaged = rewritten(commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
+    monkeypatch.setattr(about, 'machine', lambda: {**here, 'numba': 'no'})
+    status, found = outcome(capsys, damaged, '--output', tmp_path)
+    assert status == 0 and not found['identical'] and found['machine_differs'] == ['numba']
+    main([str(damaged), '--output', str(tmp_path)])
+    assert 'bits are promised on the same machine only; these differ: numba' in capsys.readouterr().out
+    # a state that is really another one is not excused
+    worse = rewritten(commanded, tmp_path / 'worse', np.float64(value), np.float64(value + 1e-6))
+    status, found = outcome(capsys, worse, '--output', tmp_path)
+    assert status == 1 and found['largest']['orientation']['difference'] == 0.0
+    assert outcome(capsys, worse, '--output', tmp_path, '--tolerance', '1e-6')[0] == 0
+
+
+@pytest.mark.parametrize('case', ['foreign', 'missing', 'method'])
+def test_bad_input_is_one_line(case, tmp_path, commanded, capsys):
+    path, more = tmp_path / 'run', []
+    said = {'foreign': 'a recording by sim_node or simulate', 'missing': 'holds no metadata.yaml', 'method': "did you mean 'dop8'?"}[case]
+    if case == 'foreign':
+        made.record_foreign(path, Simulation('tennis_racket'), 100, 0.001)
+    elif case == 'method':
+        path, more = commanded, ['--integrator', 'dop9']
+    assert main([str(path), *more]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count('\n') == 1
