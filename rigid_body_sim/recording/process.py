@@ -35,7 +35,8 @@ class RecorderProcess:
         self._writer = None
         self.report = Report()
         self._expected = 1          # number of the next numbered message
-        self._next_tick = self._last_tick = self._dropped = 0   # number of the next tick expected, stamp of the last one taken, ticks missing
+        # number of the next tick expected, stamp of the last one taken (ns), ticks missing so far
+        self._next_tick = self._last_tick = self._dropped = 0
         self._retry_at = self._flush_at = self._ask_at = 0.0
         self._asked_for = 0
         self._ended, self._told = False, b''

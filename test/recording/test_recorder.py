@@ -62,7 +62,7 @@ def wait_for(condition, what):
 
 
 def check(path, sent):
-    """Check a closed recording of `sent` ticks made by tick(): right but for marked gaps, nothing important lost or twice. Return the gaps."""
+    """Check a closed recording of `sent` ticks made by tick(): right but for marked gaps, nothing important lost. Return the gaps."""
     with Recording(path) as recording:
         pose, journal = recording.read('/pose'), recording.journal()
     numbers = pose['sequence'].astype(int)

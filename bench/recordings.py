@@ -1,0 +1,158 @@
+"""Figures of recordings: writing, size, reading, cost of a tick to the node, what a kill loses.
+
+    PYTHONPATH=. .venv/bin/python bench/recordings.py [--seconds 60] [--hour]
+
+The messages are those of a node's four topics on the racket scene. Prints JSON; single times depend on the machine and on what else it does.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.recorder import Recorder
+from rigid_body_sim.recording.recover import recover
+from rigid_body_sim.recording.topics import Topic, journal_topic
+from rigid_body_sim.recording.writer import Writer
+from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.topics import EVERY_TICK, Frames
+
+MILLISECOND = 1_000_000
+HERE = pathlib.Path(__file__).resolve().parent
+ENVIRONMENT = dict(os.environ, PYTHONPATH=f'{HERE}{os.pathsep}{HERE.parent}')
+
+
+class Racket:
+    """Ticks of the racket at a rate (1/s): stamps, and packed messages of the four topics."""
+
+    def __init__(self, count, rate):
+        simulation = Simulation('tennis_racket', rate=rate)
+        states = simulation.states(np.arange(count) / rate)
+        self.stamps = time.time_ns() + np.arange(count) * round(1e9 / rate)
+        packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
+        columns = [output.columns(self.stamps, states, *simulation.diagnose(states)) for output in EVERY_TICK]
+        self.rows = [packer.pack_many(column) for packer, column in zip(packers, columns, strict=True)]
+        self.ticking = [(Topic(f'/{output.name}', output.type), packer.size) for output, packer in zip(EVERY_TICK, packers, strict=True)]
+        self.payload = sum(rows.size for rows in self.rows)
+
+
+def writing(folder, seconds, block=None):
+    """Write the racket at 1 kHz, a chunk every `block` ticks as the node does, or as fast as it goes; return messages/s and size/payload."""
+    racket = Racket(round(seconds * 1000), 1000.0)
+    late = racket.stamps + np.random.default_rng(1).integers(30_000, 200_000, len(racket.stamps))
+    began = time.perf_counter()
+    with Writer(folder, racket.ticking, [], journal_topic(), {'scene': 'tennis_racket'}) as writer:
+        for first in range(0, len(late), block or 4096):
+            part = slice(first, first + (block or 4096))
+            writer.ticks(first, racket.stamps[part], late[part], [rows[part] for rows in racket.rows])
+            if block:
+                writer.flush()
+    spent = time.perf_counter() - began
+    size = sum(path.stat().st_size for path in folder.iterdir())
+    return 4 * len(late) / spent, size / racket.payload
+
+
+def reading(folder):
+    """Decode every column of a recording; return (messages, seconds, peak memory of this process so far in MB)."""
+    began, count = time.perf_counter(), 0
+    with Recording(folder) as recording:
+        for _, columns in recording.blocks():
+            count += len(columns['log_time'])
+    peak = re.search(r'VmHWM:\s*(\d+) kB', pathlib.Path('/proc/self/status').read_text())
+    return count, time.perf_counter() - began, int(peak[1]) / 1024
+
+
+def reading_apart(folder):
+    """Return what reading() does in a process of its own, so that its memory is its own."""
+    code = 'import json, sys; from recordings import reading; print(json.dumps(reading(sys.argv[1])))'
+    return json.loads(subprocess.run([sys.executable, '-c', code, str(folder)], capture_output=True, check=True, env=ENVIRONMENT).stdout)
+
+
+def ticking(folder, rate, seconds):
+    """Record at a rate in real time; return cost of a tick in us (median, 99 %), dropped ticks, and CPU share of the recorder."""
+    racket = Racket(min(round(rate * seconds), 40_000), rate)
+    messages = [[rows[index].tobytes() for rows in racket.rows] for index in range(len(racket.stamps))]
+    recorder = Recorder(folder, racket.ticking, [], journal_topic(), {})
+    costs, start, period = [], time.perf_counter(), round(1e9 / rate)
+    for k in range(round(rate * seconds)):
+        while (wait := start + k / rate - time.perf_counter()) > 0.0:
+            time.sleep(wait)
+        stamp, begun = int(racket.stamps[0]) + k * period, time.perf_counter()
+        recorder.tick(stamp, time.time_ns(), messages[k % len(messages)])
+        costs.append(time.perf_counter() - begun)
+    cpu = sum(map(int, pathlib.Path(f'/proc/{recorder.process_id}/stat').read_text().rpartition(')')[2].split()[11:13]))
+    status = recorder.close()
+    return {'median_us': statistics.median(costs) * 1e6, 'p99_us': float(np.quantile(costs, 0.99)) * 1e6, 'dropped': status.dropped,
+            'recorder_cpu': cpu / os.sysconf('SC_CLK_TCK') / seconds, 'complete': status.closed}
+
+
+_NODE = """
+import sys, time
+from recordings import Racket, Recorder, journal_topic
+racket = Racket(2000, 1000.0)
+recorder = Recorder(sys.argv[1], racket.ticking, [], journal_topic(), {})
+print(recorder.process_id, flush=True)
+start = time.monotonic()
+for k in range(10**9):
+    time.sleep(max(0.0, start + k / 1000 - time.monotonic()))
+    recorder.tick((1 + k) * 1_000_000, time.time_ns(), [rows[k % 2000].tobytes() for rows in racket.rows])
+    sys.stdout.write('.')
+    sys.stdout.flush()
+"""
+
+
+def killing(folder, runs=10):
+    """Kill a 1 kHz recording with its recorder, `runs` times; return what was lost each time, in ms of stamps, in ascending order."""
+    lost = []
+    for number in range(runs):
+        path = folder / f'killed{number}'
+        with subprocess.Popen([sys.executable, '-c', _NODE, str(path)], stdout=subprocess.PIPE, env=ENVIRONMENT) as node:
+            recorder = int(node.stdout.readline())
+            said = 0
+            while said < 500 + 37 * number:
+                said += len(node.stdout.read1())
+            os.kill(recorder, signal.SIGKILL)
+            node.kill()
+            said += len(node.stdout.read())
+        while pathlib.Path(f'/proc/{recorder}').exists():
+            time.sleep(0.01)
+        recover(path)
+        with Recording(path) as recording:
+            lost.append(said - recording.end_time / MILLISECOND)
+    return sorted(lost)
+
+
+def main():
+    """Run the benchmark."""
+    parser = argparse.ArgumentParser(description='Figures of recordings.')
+    parser.add_argument('--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)')
+    parser.add_argument('--hour', action='store_true', help='also write and read an hour at 1 kHz: 14.4 million messages, 0.6 GB on disk')
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder, figures = pathlib.Path(name), {}
+        for title, block in (('simulate', None), ('node', 100)):
+            speed, ratio = writing(folder / title, 60.0, block)
+            figures[f'writer as {title}'] = {'messages_per_second': speed, 'size_by_payload': ratio}
+        count, spent, _ = reading(folder / 'node')
+        figures['reader'] = {'messages_per_second': count / spent}
+        figures['4 topics at 1 kHz'] = ticking(folder / 'slow', 1000.0, 10.0)
+        figures['4 topics at 4 kHz'] = ticking(folder / 'fast', 4000.0, options.seconds)
+        figures['node and recorder killed: ms lost'] = killing(folder)
+        if options.hour:
+            writing(folder / 'hour', 3600.0, 100)
+            figures['hour read'] = dict(zip(('messages', 'seconds', 'peak_mb'), reading_apart(folder / 'hour'), strict=True))
+    print(json.dumps(figures, indent=2))
+
+
+if __name__ == '__main__':
+    main()
