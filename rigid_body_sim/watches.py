@@ -27,11 +27,14 @@ class Watch:
         State vector -> float, relative to its natural size.
     share : float
         Hysteresis: a change of sign counts if the value has been at least this large since the one before.
+    largest : callable
+        State vector -> float: how large the value becomes from there if nothing but the free motion acts; stands for the past of a start.
     """
 
     name: str
     value: object
     share: float
+    largest: object
 
 
 def watches(scene):
@@ -42,23 +45,37 @@ def watches(scene):
     """
     kind, body = scene.constraint.kind, scene.body
     if kind == 'free' and len(set(body.about_center.moments)) == 3:
-        return (Watch('flip', _momentum_along_middle_axis(body.about_center), 0.5),)
+        return (Watch('flip', *_momentum_along_middle_axis(body.about_center)),)
     if kind == 'pivot':
-        return (Watch('turning point', _rise_of_third_axis, 1e-9),)
+        return (Watch('turning point', _rise_of_third_axis, 1e-9, _rise_of_third_axis),)
     if kind == 'hinge':
-        return (Watch('turning point', _rate_about(scene.constraint.axis), 0.0),)
+        rate = _rate_about(scene.constraint.axis)
+        return (Watch('turning point', rate, 0.0, rate),)
     return ()
 
 
 def _momentum_along_middle_axis(inertia):
-    middle = int(np.argsort(inertia.moments)[1])
+    """Return the share of the momentum that lies along the middle axis, the share that makes a flip, and the largest it becomes."""
+    order = np.argsort(inertia.moments)
+
+    def components(vector):
+        omega = rotate_back(*inertia.axes, *vector[5:8])
+        return [(float(inertia.moments[k]), omega[k]) for k in order]
 
     def share(vector):
-        m = [I * w for I, w in zip(inertia.moments, rotate_back(*inertia.axes, *vector[5:8]), strict=True)]
+        m = [I * w for I, w in components(vector)]
         size = math.hypot(*m)
-        return m[middle] / size if size > 0.0 else 0.0
+        return m[1] / size if size > 0.0 else 0.0
 
-    return share
+    def largest(vector):
+        # where the motion crosses the plane of omega1 = 0 or omega3 = 0, whichever comes first, by the constancy of E and L^2
+        (I1, w1), (I2, w2), (I3, w3) = components(vector)
+        size = math.hypot(I1 * w1, I2 * w2, I3 * w3)
+        by_first = w2 * w2 + I1 * (I3 - I1) / (I2 * (I3 - I2)) * w1 * w1
+        by_third = w2 * w2 + I3 * (I3 - I1) / (I2 * (I2 - I1)) * w3 * w3
+        return I2 * math.sqrt(min(by_first, by_third)) / size if size > 0.0 else 0.0
+
+    return share, 0.5, largest
 
 
 def _rise_of_third_axis(vector):
@@ -92,7 +109,7 @@ class Watcher:
         self._vector = np.empty(STATE_SIZE)
         self._time = start
         self._values = self._look(start)
-        self._strong = [abs(value) >= watch.share for watch, value in zip(watched, self._values, strict=True)]
+        self._strong = [abs(watch.largest(self._vector.tolist())) >= watch.share for watch in watched]
 
     def _look(self, time):
         self._solver.state(time, self._vector)
