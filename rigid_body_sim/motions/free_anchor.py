@@ -39,7 +39,7 @@ from rigid_body_sim.motions.free_rotation import (
     turned,
 )
 from rigid_body_sim.rotations import multiply as compose
-from rigid_body_sim.rotations import rotate
+from rigid_body_sim.rotations import normalised, rotate
 
 # layout of the parameters: the factors of the discriminant, then a block for either choice of the polar axis
 GAP_LARGE, GAP_SMALL, GAP, BLOCKS = 0, 2, 4, 6
@@ -48,8 +48,9 @@ MOMENTS, MATRIX, SIDE, HAND, E12, E13, E23, E32, ROOT12, SQUARES, TOWARD = 0, 3,
 BLOCK_SIZE = 30
 PARAMETER_SIZE = BLOCKS + 2 * BLOCK_SIZE
 
-# layout of the anchor behind what free_rotation takes: axes of its frame in the body, attitude, 1 if the middle component of m reaches L/2
-TO_BODY, TO_WORLD, TUMBLES = free_rotation.SIZE, free_rotation.SIZE + 9, free_rotation.SIZE + 25
+# layout of the anchor behind what free_rotation takes: axes of its frame in the body, matrix of the attitude, what rounding took from omega
+# at the start, 1 if the middle component of m reaches L/2
+TO_BODY, TO_WORLD, ROUNDING, TUMBLES = (free_rotation.SIZE + k for k in (0, 9, 25, 28))
 SIZE = TUMBLES + 1
 
 TURN, TURN_LOW = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi)
@@ -243,14 +244,18 @@ def _fill_periodic(p, b, w1, w2, w3, top, p2, p2_low, gap, gap_low, lift, out):
 
 @compiled
 def _fill_attitude(start, out):
-    """Fill the matrix that takes the quaternion of Z S, in the frame of free_rotation, to the body's attitude."""
-    x, y, z, w = turned(out, 0.0, 0.0)[3:]
+    """Fill the matrix that takes the quaternion of Z S to the body's attitude, and what is missing in omega at the start.
+
+    The missing ulp or so is added to omega at all times. Then the start comes back to the last bit, and in a motion that is anchored anew at
+    every tick energy and momentum walk at random: what the formulas round to one side cancels between two evaluations.
+    """
+    w1, w2, w3, x, y, z, w = turned(out, 0.0, 0.0)
     m = TO_BODY
+    for k in range(3):
+        out[ROUNDING + k] = start[5 + k] - (out[m + 3 * k] * w1 + out[m + 3 * k + 1] * w2 + out[m + 3 * k + 2] * w3)
     bx, by, bz = (out[m] * x + out[m + 1] * y + out[m + 2] * z, out[m + 3] * x + out[m + 4] * y + out[m + 5] * z,
                   out[m + 6] * x + out[m + 7] * y + out[m + 8] * z)
-    x, y, z, w = compose(start[1], start[2], start[3], start[4], -bx, -by, -bz, w)
-    scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
-    x, y, z, w = scale * x, scale * y, scale * z, scale * w
+    x, y, z, w = normalised(*compose(start[1], start[2], start[3], start[4], -bx, -by, -bz, w))
     for k in range(3):
         column = compose(x, y, z, w, out[m + k], out[m + 3 + k], out[m + 6 + k], 0.0)
         for row in range(4):

@@ -15,7 +15,7 @@ import numpy as np
 from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import free_anchor
-from rigid_body_sim.motions.free_anchor import TO_BODY, TO_WORLD, TUMBLES, fill_rotation, rotation_parameters
+from rigid_body_sim.motions.free_anchor import ROUNDING, TO_BODY, TO_WORLD, TUMBLES, fill_rotation, rotation_parameters
 from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PHASE, RATE, START, circular, hyperbolic, steady, turned
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.state import STATE_SIZE
@@ -76,13 +76,13 @@ def state(c, time, out):
 @compiled_inline
 def _attitude_and_omega(c, w1, w2, w3, x, y, z, w):
     """Return the orientation and omega (body axes) of what :func:`turned` returns."""
-    g, m = TO_WORLD, TO_BODY
+    g, m, d = TO_WORLD, TO_BODY, ROUNDING
     scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
     x, y, z, w = scale * x, scale * y, scale * z, scale * w
     return (c[g] * x + c[g + 1] * y + c[g + 2] * z + c[g + 3] * w, c[g + 4] * x + c[g + 5] * y + c[g + 6] * z + c[g + 7] * w,
             c[g + 8] * x + c[g + 9] * y + c[g + 10] * z + c[g + 11] * w, c[g + 12] * x + c[g + 13] * y + c[g + 14] * z + c[g + 15] * w,
-            c[m] * w1 + c[m + 1] * w2 + c[m + 2] * w3, c[m + 3] * w1 + c[m + 4] * w2 + c[m + 5] * w3,
-            c[m + 6] * w1 + c[m + 7] * w2 + c[m + 8] * w3)
+            c[m] * w1 + c[m + 1] * w2 + c[m + 2] * w3 + c[d], c[m + 3] * w1 + c[m + 4] * w2 + c[m + 5] * w3 + c[d + 1],
+            c[m + 6] * w1 + c[m + 7] * w2 + c[m + 8] * w3 + c[d + 2])
 
 
 @compiled_inline
