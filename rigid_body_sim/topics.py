@@ -1,17 +1,41 @@
 """The topics that a simulation fills: type, frames, and how a state becomes each message, one at a time or thousands at once.
 
 The node publishes these bytes and records the same; ``simulate`` records them without a node: one serialisation for wire and recording.
+
+All messages of a tick are made of one array of doubles, the *moment*:
+
+======== ======================== ====================================================================================
+place    name                     meaning
+======== ======================== ====================================================================================
+0:14     VECTOR                   the state, see state.py
+14, 15   ENERGY, SQUARE           energy (J) and L . L ((kg m^2/s)^2)
+16:19    BODY_VELOCITY            velocity of the body's origin in body axes (m/s)
+19:22    ACCELERATION             proper acceleration of the body's origin in body axes (m/s^2)
+22:31    ACCELERATION_COVARIANCE  as sensor_msgs/Imu has it: begins with -1 where the acceleration is not known
+31:33    HINGE                    angle (rad) and rate (rad/s) of a hinged body
+33:40    BOX                      position (m) and quaternion of the principal axes at the centre of mass
+======== ======================== ====================================================================================
 """
 
 import dataclasses
 import math
 import typing
 
+import numpy as np
 import yaml
 
 from rigid_body_sim import rotations
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages.layout import Packer
+from rigid_body_sim.messages import cdr, definitions
+from rigid_body_sim.messages.layout import Layout, Packer
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, TIME, VELOCITY
+from rigid_body_sim.timeline import NANOSECONDS
+
+VECTOR = slice(0, STATE_SIZE)
+ENERGY, SQUARE = 14, 15
+BODY_VELOCITY, ACCELERATION, ACCELERATION_COVARIANCE, HINGE, BOX = slice(16, 19), slice(19, 22), slice(22, 31), slice(31, 33), slice(33, 40)
+MOMENT_SIZE = 40
+STAMPS = ('header.stamp.sec', 'transforms[0].header.stamp.sec', 'clock.sec')
 
 
 class Frames(typing.NamedTuple):
@@ -22,40 +46,109 @@ class Frames(typing.NamedTuple):
     prefix: str = ''
 
 
-class Moment(typing.NamedTuple):
-    """All that the messages of one tick are made of.
-
-    `stamp` as (s, ns); `vector`: the state as 14 floats; `energy` (J) and `angular_momentum_squared` ((kg m^2/s)^2); `acceleration` of the
-    body's origin, world axes (m/s^2), None where it is not known (at the first tick and after a reset).
-    """
-
-    stamp: tuple
-    vector: list
-    energy: float
-    angular_momentum_squared: float
-    acceleration: tuple | None = None
-
-
 @dataclasses.dataclass(frozen=True)
 class Output:
     """A topic that is filled at every tick.
 
-    `absolute`: its name is not below the node's namespace. `constants(scene, frames)`: the fields that never change; `variable`: paths of
-    those that do; `numbers(scene)`: the function from a Moment to their values in wire order; `columns(stamps, states, energies, momenta)`:
-    the same for many, by column.
+    Attributes
+    ----------
+    name, type : str
+    constants : callable
+        (scene, frames) -> the fields that never change, and the lengths of sequences; BadInput where the topic has no meaning for a scene.
+    variable : tuple of str
+        Paths of the doubles that change, in wire order; the stamp, if there is one, always does.
+    places : tuple of (int or slice)
+        Where they stand in the moment, in the same order.
+    columns : callable, optional
+        (stamps, states, energies, momenta) -> columns of many messages, for Packer.pack_many.
+    derive : callable, optional
+        scene -> function that fills its part of the moment from the rest of it.
+    absolute : bool
+        Whether its name is not below the node's namespace.
     """
 
     name: str
     type: str
     constants: object
     variable: tuple
-    numbers: object
+    places: tuple
     columns: object = None
+    derive: object = None
     absolute: bool = False
 
     def packer(self, scene, frames):
-        """Return the Packer of its messages for a scene."""
-        return Packer(self.type, self.constants(scene, frames), self.variable)
+        """Return the Packer of many of its messages."""
+        stamp = ('header.stamp',) if 'header' in self.constants(scene, frames) else ()
+        return Packer(self.type, self.constants(scene, frames), stamp + self.variable)
+
+
+class TickMessages:
+    """Makes all messages of a tick at once.
+
+    Each message is kept in a buffer such that its doubles lie on multiples of eight bytes (CDR aligns them so after its four bytes of
+    encapsulation); those of all topics are set by one indexed assignment.
+
+    Parameters
+    ----------
+    outputs : sequence of Output
+    scene : scenes.Scene
+    frames : Frames
+
+    Attributes
+    ----------
+    sizes : list of int
+        Bytes of each message.
+    moment : array (40,)
+        To be filled before :meth:`messages`.
+
+    Raises
+    ------
+    BadInput
+        Where a topic has no meaning for the scene.
+    """
+
+    def __init__(self, outputs, scene, frames):
+        buffer, targets, sources, seconds, self._parts = bytearray(), [], [], [], []
+        for output in outputs:
+            blank = cdr.encode(output.type, output.constants(scene, frames))
+            buffer += bytes((4 - len(buffer)) % 8)
+            start = len(buffer)
+            buffer += blank
+            self._parts.append(slice(start, start + len(blank)))
+            doubles, stamps = _places(output, blank)
+            targets += [(start + place) // 8 for place in doubles]
+            seconds += [(start + place) // 4 for place in stamps]
+            sources += [place for entry in output.places
+                        for place in (range(entry.start, entry.stop) if isinstance(entry, slice) else [entry])]
+        self._words = np.frombuffer(buffer + bytes(-len(buffer) % 8), dtype=np.float64).copy()
+        self._halves = self._words.view(np.uint32)
+        self._targets, self._sources, self._seconds = (np.array(places, dtype=np.intp) for places in (targets, sources, seconds))
+        self._nanoseconds = self._seconds + 1
+        if len(self._targets) != len(self._sources):
+            raise TypeError('an Output names more or fewer places than it has doubles')
+        self.sizes = [part.stop - part.start for part in self._parts]
+        self.moment = np.zeros(MOMENT_SIZE)
+        self._derive = [output.derive(scene) for output in outputs if output.derive]
+
+    def messages(self, stamp):
+        """Return the messages (bytes) for the moment at a stamp (ns), in the order of the outputs."""
+        for derive in self._derive:
+            derive(self.moment)
+        self._words[self._targets] = self.moment[self._sources]
+        self._halves[self._seconds], self._halves[self._nanoseconds] = divmod(stamp, NANOSECONDS)
+        data = self._words.tobytes()
+        return [data[part] for part in self._parts]
+
+
+def _places(output, blank):
+    """Return the offsets in a message of the doubles that change, and of its stamps."""
+    doubles, stamps = [], []
+    for path, code, offset, count in Layout(definitions.schema(output.type), output.type, blank).leaves:
+        if code == 'd' and any(path == name or path.startswith((f'{name}.', f'{name}[')) for name in output.variable):
+            doubles += range(offset, offset + 8 * count, 8)
+        elif path in STAMPS:
+            stamps.append(offset)
+    return doubles, stamps
 
 
 def _in_world(scene, frames):
@@ -70,70 +163,53 @@ def _nothing(scene, frames):
     return {}
 
 
-def always(numbers):
-    """Return a function of a scene that ignores the scene."""
-    return lambda scene: numbers
+def _odometry(scene, frames):
+    return {**_in_world(scene, frames), 'child_frame_id': frames.body}
 
 
-def _pose(moment):
-    v = moment.vector
-    return *moment.stamp, v[8], v[9], v[10], v[1], v[2], v[3], v[4]
+def _velocity_in_body(scene):
+    def derive(moment):
+        moment[BODY_VELOCITY] = rotations.rotate_back(*moment[ORIENTATION], *moment[VELOCITY])
+    return derive
 
 
-def _angular_velocity(moment):
-    v = moment.vector
-    return *moment.stamp, v[5], v[6], v[7]
+class Accelerometer:
+    """The proper acceleration a - g of the body's origin (REP 145): the mean since the tick before, as a real one gives it.
 
-
-def _odometry(moment):
-    v = moment.vector
-    twist = rotations.rotate_back(v[1], v[2], v[3], v[4], v[11], v[12], v[13])
-    return *moment.stamp, v[8], v[9], v[10], v[1], v[2], v[3], v[4], *twist, v[5], v[6], v[7]
-
-
-# covariances of sensor_msgs/Imu, row by row
-_EXACT, _UNKNOWN = (0.0,) * 9, (-1.0, *(0.0,) * 8)
-
-
-def _imu(scene):
-    """Return attitude, angular velocity and proper acceleration a - g of the body's origin, in body axes (REP 145).
-
-    A covariance of -1 marks an acceleration that is not known.
+    It is not known at the first tick and when time does not go forward (after a reset).
     """
-    gravity = scene.effect('gravity')
-    g = gravity.g if gravity else 0.0
 
-    def numbers(moment):
-        v = moment.vector
-        if moment.acceleration is None:
-            return *moment.stamp, *v[1:8], 0.0, 0.0, 0.0, *_UNKNOWN
-        x, y, z = moment.acceleration
-        return *moment.stamp, *v[1:8], *rotations.rotate_back(v[1], v[2], v[3], v[4], x, y, z + g), *_EXACT
+    def __init__(self, scene):
+        gravity = scene.effect('gravity')
+        self._g = np.array([0.0, 0.0, gravity.g if gravity else 0.0])
+        self._time, self._velocity = math.inf, np.zeros(3)
 
-    return numbers
+    def __call__(self, moment):
+        """Fill acceleration and covariance."""
+        span = moment[TIME] - self._time
+        known = span > 0.0
+        proper = (moment[VELOCITY] - self._velocity) / span + self._g if known else np.zeros(3)
+        moment[ACCELERATION] = rotations.rotate_back(*moment[ORIENTATION], *proper)
+        moment[ACCELERATION_COVARIANCE.start] = 0.0 if known else -1.0
+        self._time, self._velocity = moment[TIME], moment[VELOCITY].copy()
 
 
 def _joint(scene, frames):
     if scene.constraint.kind != 'hinge':
         raise BadInput('parameter publish', f'got joint_states with constraint {scene.constraint.kind!r}', 'only a hinge is a joint')
-    return {'header': {'frame_id': frames.world}, 'name': [f'{frames.prefix}hinge'], 'position': [0.0], 'velocity': [0.0]}
+    return {**_in_world(scene, frames), 'name': [f'{frames.prefix}hinge'], 'position': [0.0], 'velocity': [0.0]}
 
 
-def _joint_state(scene):
-    """Return the hinge's angle (rad) as the scene file counts it, and its rate (rad/s).
-
-    Whole turns are kept as far as the continuous sign of the quaternion keeps them, one either way.
-    """
-    nx, ny, nz = scene.constraint.axis
+def _hinge(scene):
+    """Derive the hinge's angle as the scene file counts it; whole turns are kept as far as the sign of q keeps them, one either way."""
+    axis = np.array(scene.constraint.axis)
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
-    px, py, pz, pw = scene.initial.orientation.tolist()
+    x, y, z, w = scene.initial.orientation.tolist()
 
-    def numbers(moment):
-        v = moment.vector
-        x, y, z, w = rotations.multiply(-px, -py, -pz, pw, v[1], v[2], v[3], v[4])
-        return *moment.stamp, start + 2.0 * math.atan2(nx * x + ny * y + nz * z, w), nx * v[5] + ny * v[6] + nz * v[7]
-
-    return numbers
+    def derive(moment):
+        *turn, cosine = rotations.multiply(-x, -y, -z, w, *moment[ORIENTATION])
+        moment[HINGE] = start + 2.0 * math.atan2(axis @ turn, cosine), axis @ moment[ANGULAR_VELOCITY]
+    return derive
 
 
 def box_of(body):
@@ -146,48 +222,40 @@ def _box(scene, frames):
     edges = box_of(scene.body)
     thinnest = 0.02 * max(edges)
     scale = dict(zip('xyz', (max(edge, thinnest) for edge in edges), strict=True))
-    return {'header': {'frame_id': frames.world}, 'ns': frames.body, 'type': 1, 'scale': scale,
-            'color': {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}, 'frame_locked': False}
+    return {**_in_world(scene, frames), 'ns': frames.body, 'type': 1, 'scale': scale, 'color': {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}}
 
 
 def _box_pose(scene):
-    """Return the pose of the principal axes at the centre of mass: there the box is drawn."""
     center, axes = scene.body.center_of_mass, scene.body.about_center.axes
 
-    def numbers(moment):
-        v = moment.vector
-        q = v[1:5]
-        offset = rotations.rotate(*q, *center)
-        return *moment.stamp, v[8] + offset[0], v[9] + offset[1], v[10] + offset[2], *rotations.multiply(*q, *axes)
-
-    return numbers
+    def derive(moment):
+        q = moment[ORIENTATION]
+        moment[BOX] = *(moment[POSITION] + rotations.rotate(*q, *center)), *rotations.multiply(*q, *axes)
+    return derive
 
 
 def _transform(scene, frames):
-    return {'transforms': [{'header': {'frame_id': frames.world}, 'child_frame_id': frames.body}]}
+    return {'transforms': [{**_in_world(scene, frames), 'child_frame_id': frames.body}]}
 
 
 EVERY_TICK = (
-    Output('pose', 'geometry_msgs/msg/PoseStamped', _in_world, ('header.stamp', 'pose'), always(_pose),
+    Output('pose', 'geometry_msgs/msg/PoseStamped', _in_world, ('pose',), (POSITION, ORIENTATION),
            lambda stamps, states, energies, momenta: {
                'header.stamp': stamps, 'pose.position': states.position, 'pose.orientation': states.orientation}),
-    Output('angular_velocity', 'geometry_msgs/msg/Vector3Stamped', _in_body, ('header.stamp', 'vector'), always(_angular_velocity),
+    Output('angular_velocity', 'geometry_msgs/msg/Vector3Stamped', _in_body, ('vector',), (ANGULAR_VELOCITY,),
            lambda stamps, states, energies, momenta: {'header.stamp': stamps, 'vector': states.angular_velocity}),
-    Output('energy', 'std_msgs/msg/Float64', _nothing, ('data',), always(lambda moment: (moment.energy,)),
-           lambda stamps, states, energies, momenta: {'data': energies}),
-    Output('angular_momentum_squared', 'std_msgs/msg/Float64', _nothing, ('data',),
-           always(lambda moment: (moment.angular_momentum_squared,)),
+    Output('energy', 'std_msgs/msg/Float64', _nothing, ('data',), (ENERGY,), lambda stamps, states, energies, momenta: {'data': energies}),
+    Output('angular_momentum_squared', 'std_msgs/msg/Float64', _nothing, ('data',), (SQUARE,),
            lambda stamps, states, energies, momenta: {'data': momenta}),
 )
 ON_REQUEST = (
-    Output('odom', 'nav_msgs/msg/Odometry', lambda scene, frames: {**_in_world(scene, frames), 'child_frame_id': frames.body},
-           ('header.stamp', 'pose.pose', 'twist.twist'), always(_odometry)),
-    Output('imu', 'sensor_msgs/msg/Imu', _in_body,
-           ('header.stamp', 'orientation', 'angular_velocity', 'linear_acceleration', 'linear_acceleration_covariance'), _imu),
-    Output('joint_states', 'sensor_msgs/msg/JointState', _joint, ('header.stamp', 'position', 'velocity'), _joint_state),
-    Output('marker', 'visualization_msgs/msg/Marker', _box, ('header.stamp', 'pose'), _box_pose),
-    Output('tf', 'tf2_msgs/msg/TFMessage', _transform, ('transforms[0].header.stamp', 'transforms[0].transform'), always(_pose),
-           absolute=True),
-    Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, ('clock',), always(lambda moment: moment.stamp), absolute=True),
+    Output('odom', 'nav_msgs/msg/Odometry', _odometry, ('pose.pose', 'twist.twist'), (POSITION, ORIENTATION, BODY_VELOCITY, ANGULAR_VELOCITY),
+           derive=_velocity_in_body),
+    Output('imu', 'sensor_msgs/msg/Imu', _in_body, ('orientation', 'angular_velocity', 'linear_acceleration', 'linear_acceleration_covariance'),
+           (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION, ACCELERATION_COVARIANCE), derive=Accelerometer),
+    Output('joint_states', 'sensor_msgs/msg/JointState', _joint, ('position', 'velocity'), (HINGE,), derive=_hinge),
+    Output('marker', 'visualization_msgs/msg/Marker', _box, ('pose',), (BOX,), derive=_box_pose),
+    Output('tf', 'tf2_msgs/msg/TFMessage', _transform, ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True),
+    Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
 )
 OUTPUTS = {output.name: output for output in EVERY_TICK + ON_REQUEST}

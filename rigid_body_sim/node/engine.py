@@ -16,6 +16,7 @@ from rigid_body_sim.node.publishing import Publishing, frames_of
 from rigid_body_sim.node.session import Session
 from rigid_body_sim.node.shutdown import say, tell
 from rigid_body_sim.node.ticking import Followed, Steady, Ticker
+from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
 from rigid_body_sim.scenes import load_scene
 from rigid_body_sim.simulation import Simulation
 
@@ -26,7 +27,6 @@ ANSWER_WITHIN = 0.2
 STOP_WITHIN = 0.4
 PATIENCE = 4.0
 """After so long at the start the node says what it is doing, s."""
-_OF_SIMULATION = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
 
 
 class Engine:
@@ -81,7 +81,7 @@ class Engine:
 
     def _prepare(self, changes):
         """Return a simulation as the parameters say, with changes; it may take a while, so it is done before the tick that needs it."""
-        wanted = {name: changes.get(name, self._settings[name]) for name in _OF_SIMULATION}
+        wanted = {name: changes.get(name, self._settings[name]) for name in SIMULATION_PARAMETERS}
         scene = load_scene(wanted['scene'], wanted['scene_overrides'])
         return Simulation(scene, wanted['integrator'], wanted['accuracy'], wanted['rate'])
 
@@ -116,9 +116,9 @@ class Engine:
     def _before_change(self, changes):
         """Refuse changes that cannot be; make ready what takes long."""
         self._prepared = None
-        if _OF_SIMULATION & set(changes):
+        if SIMULATION_PARAMETERS & set(changes):
             self._prepared = self._prepare(changes)
-            self.publishing.check_scene(self._prepared.scene)
+            self.publishing.messages_for(self._prepared.scene)
             warm_up(self._prepared)
 
     def _after_change(self, changes):

@@ -52,7 +52,7 @@ class Journal:
         packers = {axes: Packer(WRENCH_TYPE, {'header': {'frame_id': name}}, ('header.stamp', 'wrench'))
                    for axes, name in (('world', frames.world), ('body', frames.body))}
         self._pack_command = {axes: packer.pack for axes, packer in packers.items()}
-        ticking = list(zip(publishing.ticking(), publishing.sizes, strict=True))
+        ticking = list(zip(publishing.every_tick(), publishing.ticking.sizes, strict=True))
         told = about.about('sim_node', simulation, settings.values)
         for attempt in range(ATTEMPTS):
             self.path = _free_path(node, settings, simulation.scene.name)

@@ -41,15 +41,15 @@ class Publishing:
 
     Attributes
     ----------
-    wants_acceleration : bool
-        Whether some topic needs the acceleration of the body's origin.
+    ticking : topics.TickMessages
+        Makes the messages of a tick for the present scene.
     """
 
     def __init__(self, node, settings, frames, scene):
         self._node, self._frames = node, frames
         self._outputs = [*topics.EVERY_TICK, *(output for output in topics.ON_REQUEST if output.name in settings.publish)]
-        self.wants_acceleration = 'imu' in settings.publish
         self._publishers = [self._create(output.type, output.name, QoSProfile(depth=DEPTH), output.absolute) for output in self._outputs]
+        self._publish = [publisher.handle.publish_raw for publisher in self._publishers]
         self._events = self._create(DiagnosticStatus, 'events', _latched(EVENTS_KEPT))
         self._scene = self._create(String, 'scene', _latched(1))
         self.use_scene(scene)
@@ -62,23 +62,21 @@ class Publishing:
 
     def use_scene(self, scene):
         """Fill the messages for this scene from now on; BadInput where a topic has no meaning for it."""
-        packers = [output.packer(scene, self._frames) for output in self._outputs]
-        self.sizes = [packer.size for packer in packers]
-        self._fills = [(packer.pack, output.numbers(scene), publisher.handle.publish_raw)
-                       for packer, output, publisher in zip(packers, self._outputs, self._publishers, strict=True)]
+        self.ticking = self.messages_for(scene)
 
-    def check_scene(self, scene):
-        """Raise BadInput where a topic that is published has no meaning for a scene."""
-        for output in self._outputs:
-            output.packer(scene, self._frames)
+    def messages_for(self, scene):
+        """Return the TickMessages for a scene; BadInput where a topic that is published has no meaning for it."""
+        return topics.TickMessages(self._outputs, scene, self._frames)
 
-    def state(self, moment):
-        """Publish a tick; return its messages in the order of :meth:`ticking`."""
-        messages = []
-        for pack, numbers, publish in self._fills:
-            data = pack(*numbers(moment))
-            publish(data)
-            messages.append(data)
+    def state(self, simulation, stamp):
+        """Publish a tick; return its messages in the order of :meth:`every_tick`."""
+        ticking = self.ticking
+        moment = ticking.moment
+        moment[topics.VECTOR] = simulation.vector
+        moment[topics.ENERGY], moment[topics.SQUARE] = simulation.energy, simulation.angular_momentum_squared
+        messages = ticking.messages(stamp)
+        for publish, message in zip(self._publish, messages):
+            publish(message)
         return messages
 
     def event(self, level, name, message, values):
@@ -93,7 +91,7 @@ class Publishing:
         self._scene.handle.publish_raw(data)
         return self._scene.topic_name, data
 
-    def ticking(self):
+    def every_tick(self):
         """Return the topics of every tick, as recording.topics.Topic."""
         return [_offer(publisher, output.type) for publisher, output in zip(self._publishers, self._outputs, strict=True)]
 

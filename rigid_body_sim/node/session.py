@@ -15,7 +15,6 @@ from rigid_body_sim.node import commands
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 from rigid_body_sim.timeline import NANOSECONDS, Timeline
-from rigid_body_sim.topics import Moment
 
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
@@ -57,7 +56,6 @@ class Session:
         self.event_counts = collections.Counter()
         self._requests = collections.deque()
         self._release_tick = None
-        self._velocity_before = None
         self._reports = {}
         self._balance_wanted = False
         self.balance = self._take_balance()
@@ -110,17 +108,8 @@ class Session:
             self.balance = self._take_balance()
 
     def _publish_state(self, tick):
-        simulation = self.simulation
-        stamp = self.timeline.instant(tick)
-        vector = simulation.vector.tolist()
-        acceleration = None
-        if self._publishing.wants_acceleration:
-            velocity = vector[11:14]
-            if self._velocity_before is not None:
-                acceleration = [(now - before) * simulation.rate for now, before in zip(velocity, self._velocity_before, strict=True)]
-            self._velocity_before = velocity
-        moment = Moment(divmod(stamp, NANOSECONDS), vector, simulation.energy, simulation.angular_momentum_squared, acceleration)
-        self._journal.tick(simulation, stamp, self._publishing.state(moment))
+        simulation, stamp = self.simulation, self.timeline.instant(tick)
+        self._journal.tick(simulation, stamp, self._publishing.state(simulation, stamp))
 
     def _serve_requests(self):
         while self._requests:
@@ -133,7 +122,7 @@ class Session:
     def reset(self):
         """Put the state back; called at a tick. Held wrenches end with it."""
         self.simulation.reset()
-        self._release_tick = self._velocity_before = None
+        self._release_tick = None
         self._journal.entry('reset', self.stamp, tick=self.next_tick)
         return self.next_tick
 
@@ -145,7 +134,6 @@ class Session:
             self.timeline = self.timeline.from_tick(self.next_tick, simulation.rate)
             self._find_last_tick()
         self.simulation = simulation
-        self._velocity_before = None
         if not keep_state:
             self._release_tick = None
             self._publishing.use_scene(simulation.scene)

@@ -1,0 +1,200 @@
+"""Cost of the node beside the floor: the same tick thread publishing the same bytes, with no simulation, commands, diagnostics or recording.
+
+    .venv/bin/python bench/node.py [--seconds 20] [--rates 1000 4000] [--subscribers 1] [--json]
+
+Each row is a process of its own, with its subscriber processes (plain rclpy). Floor, node without recording and node with recording take
+turns, so that what else the machine does falls on all; the figures are medians over the turns.
+CPU in percent of one core, lateness in microseconds, over the whole life of the process; memory from one second after the first message on.
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import pathlib
+import re
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
+SETTLED = 1.0
+ROWS = ('floor', 'node', 'node, recording')
+LATENESS = re.compile(r'lateness p50 (\d+), p99 (\d+), max (\d+) us')
+ACHIEVED = re.compile(r'(\d+) ticks in ([\d.]+) s \(([\d.]+) Hz\)')
+
+
+def floor(rate):
+    """Publish the bytes of one state of the racket at every tick, until a signal; report as the node does."""
+    import importlib
+
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    from rigid_body_sim.node.shutdown import leave, signals
+    from rigid_body_sim.node.ticking import Steady, Ticker
+    from rigid_body_sim.simulation import Simulation
+    from rigid_body_sim.topics import EVERY_TICK, VECTOR, Frames, TickMessages
+    simulation = Simulation('tennis_racket')
+    ticking = TickMessages(EVERY_TICK, simulation.scene, Frames())
+    ticking.moment[VECTOR] = simulation.vector
+    messages = ticking.messages(0)
+
+    class Publish:
+        next_tick, finished = 0, False
+
+        def __init__(self, publishers):
+            self._pairs = [(publisher.handle.publish_raw, data) for publisher, data in zip(publishers, messages, strict=True)]
+
+        def begin(self):
+            pass
+
+        between_ticks = begin
+
+        def run_tick(self, _):
+            for publish, data in self._pairs:
+                publish(data)
+            self.next_tick += 1
+
+    with signals() as stop:
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node('floor')
+        types = [getattr(importlib.import_module(output.type.split('/')[0] + '.msg'), output.type.split('/')[2]) for output in EVERY_TICK]
+        publishers = [node.create_publisher(kind, name, 10) for kind, name in zip(types, TOPICS, strict=True)]
+        ticker = Ticker(Publish(publishers), Steady(), rate, 1.0, False, lambda: None)
+        ticker.start()
+        while not stop.wanted:
+            time.sleep(0.05)
+        ticker.stop()
+        ticker.join()
+        late, (ticks, running) = ticker.lateness.summary(), ticker.latest
+        print(f'{ticks} ticks in {running * 1e-9} s ({(ticks - 1) / running * 1e9} Hz)')
+        print(f'lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us')
+        node.destroy_node()
+        leave(0)
+
+
+def subscribe():
+    """Subscribe as users do, until a signal; tell when all topics are heard, and at the end how many messages came of each."""
+    import rclpy
+    from geometry_msgs.msg import PoseStamped, Vector3Stamped
+    from rclpy.executors import ExternalShutdownException
+    from std_msgs.msg import Float64
+    rclpy.init(args=[])
+    node = rclpy.create_node('subscriber')
+    counts = dict.fromkeys(TOPICS, 0)
+
+    def count(topic):
+        counts[topic] += 1
+        if counts[topic] == 1 and all(counts.values()):
+            print('heard', flush=True)
+    for topic, kind in zip(TOPICS, (PoseStamped, Vector3Stamped, Float64, Float64), strict=True):
+        node.create_subscription(kind, topic, lambda _, topic=topic: count(topic), 1000)
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        rclpy.spin(node)
+    print(json.dumps(counts), flush=True)
+    os._exit(0)
+
+
+def cpu_seconds(pid):
+    """Return the processor time that all threads of a process have taken, s."""
+    total = 0
+    for task in pathlib.Path(f'/proc/{pid}/task').iterdir():
+        with contextlib.suppress(OSError):
+            total += int((task / 'schedstat').read_text().split()[0])
+    return total * 1e-9
+
+
+def memory(pid):
+    """Return the resident memory of a process, bytes."""
+    return int(pathlib.Path(f'/proc/{pid}/statm').read_text().split()[1]) * os.sysconf('SC_PAGE_SIZE')
+
+
+def children(pid):
+    """Return the processes that a process has started."""
+    return [int(child) for task in pathlib.Path(f'/proc/{pid}/task').iterdir() for child in (task / 'children').read_text().split()]
+
+
+def spawn(*arguments):
+    """Start a python process."""
+    return subprocess.Popen([sys.executable, *map(str, arguments)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+
+
+def measure(row, rate, seconds, subscribers, folder):
+    """Run one row once; return its figures."""
+    listeners = [spawn(__file__, '--subscribe') for _ in range(subscribers)]
+    if row == 'floor':
+        process = spawn(__file__, '--floor', rate)
+    else:
+        record = str(row == 'node, recording').lower()
+        process = spawn('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'rate:={rate}', '-p', f'record:={record}', '-p',
+                        f'recording.directory:={folder}')
+    try:
+        for listener in listeners:
+            listener.stdout.readline()
+        time.sleep(SETTLED)
+        recorders = children(process.pid)
+        began, cpu, size = time.monotonic(), cpu_seconds(process.pid), memory(process.pid)
+        recording = sum(map(cpu_seconds, recorders))
+        time.sleep(seconds)
+        took, cpu, growth = time.monotonic() - began, cpu_seconds(process.pid) - cpu, memory(process.pid) - size
+        recording = sum(map(cpu_seconds, recorders)) - recording
+    finally:
+        for one in (process, *listeners):
+            one.send_signal(signal.SIGINT)
+    text, _ = process.communicate(timeout=10.0)
+    counts = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
+    p50, p99, worst = map(int, LATENESS.search(text).groups())
+    ticks, _, achieved = ACHIEVED.search(text).groups()
+    return {'cpu': 100.0 * cpu / took, 'recorder_cpu': 100.0 * recording / took, 'tick_us': cpu / took / rate * 1e6, 'rate': float(achieved),
+            'p50': p50, 'p99': p99, 'max': worst, 'growth_kib': growth / 1024,
+            'received': min(min(count.values()) for count in counts) / int(ticks) if counts else float('nan')}
+
+
+def main():
+    """Run the benchmark and print its table."""
+    parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('--seconds', type=float, default=20.0, help='measured time of each row in each turn (20)')
+    parser.add_argument('--turns', type=int, default=3, help='(3)')
+    parser.add_argument('--rates', type=float, nargs='+', default=[1000.0], help='Hz (1000)')
+    parser.add_argument('--subscribers', type=int, default=1, help='subscriber processes, at least 1 (1)')
+    parser.add_argument('--json', action='store_true')
+    parser.add_argument('--floor', type=float, help=argparse.SUPPRESS)
+    parser.add_argument('--subscribe', action='store_true', help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.floor:
+        return floor(options.floor)
+    if options.subscribe:
+        return subscribe()
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    os.environ.setdefault('ROS_DOMAIN_ID', '97')
+    from rigid_body_sim.node.engine import warm_up
+    from rigid_body_sim.simulation import Simulation
+    warm_up(Simulation('tennis_racket'))
+    results = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for rate in options.rates:
+            turns = [{row: measure(row, rate, options.seconds, options.subscribers, folder) for row in ROWS} for _ in range(options.turns)]
+            results[rate] = {row: {name: statistics.median(turn[row][name] for turn in turns) for name in turns[0][row]} for row in ROWS}
+            for row in ROWS[1:]:
+                results[rate][row]['over_floor'] = statistics.median(turn[row]['cpu'] / turn['floor']['cpu'] for turn in turns)
+    if options.json:
+        print(json.dumps(results, indent=2))
+        return 0
+    print(f'{options.subscribers} subscriber(s), medians of {options.turns} turns of {options.seconds:g} s, load {os.getloadavg()[0]:.1f}\n')
+    print(f'{"":>8} {"":16}{"CPU %":>7}{"/ floor":>9}{"us/tick":>9}{"recorder %":>12}{"rate Hz":>12}'
+          f'{"late p50":>10}{"p99":>7}{"max":>8}{"growth KiB":>12}{"received":>10}')
+    for rate, rows in results.items():
+        for row, found in rows.items():
+            ratio = f'{found["over_floor"]:.2f}' if 'over_floor' in found else ''
+            print(f'{rate:8.0f} {row:16}{found["cpu"]:7.1f}{ratio:>9}{found["tick_us"]:9.1f}{found["recorder_cpu"]:12.1f}{found["rate"]:12.3f}'
+                  f'{found["p50"]:10.0f}{found["p99"]:7.0f}{found["max"]:8.0f}{found["growth_kib"]:12.0f}{found["received"]:10.5f}')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
