@@ -145,7 +145,7 @@ def measure(row, rate, seconds, subscribers, folder):
         recording = sum(map(cpu_seconds, recorders)) - recording
     finally:
         for one in (process, *listeners):
-            one.send_signal(signal.SIGINT)
+            one.send_signal(signal.SIGTERM)
     text, _ = process.communicate(timeout=10.0)
     counts = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
     p50, p99, worst = map(int, LATENESS.search(text).groups())
