@@ -112,6 +112,7 @@ class Recording:
         """Yield (file, topic names by channel, Piece) with messages of the topics in [start, end], in the order of the pieces' times."""
         for name in topics or ():
             self.topic(name)
+        start, end = int(start), int(end)       # exact beside the file's unsigned times
         pieces = []
         for file in self._files:
             channels = {number: channel.topic for number, channel in file.channels.items() if topics is None or channel.topic in topics}

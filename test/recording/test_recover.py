@@ -17,7 +17,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import mcap_format
 from rigid_body_sim.recording.recover import main, recover
 
-OFFSETS = 1000 if SOAK else 40
+OFFSETS = 1000 if SOAK else 25
 
 
 def messages_of(path):
