@@ -1,5 +1,6 @@
 """The recorder in its own process: complete after a kill of the node, nothing important lost whatever happens, all gaps marked."""
 
+import contextlib
 import itertools
 import os
 import pathlib
@@ -118,6 +119,16 @@ def test_messages_of_another_size_are_an_error(tmp_path):
     recorder.close()
 
 
+@contextlib.contextmanager
+def stopped(recorder):
+    """Stop the recorder for a while."""
+    os.kill(recorder.process_id, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(recorder.process_id, signal.SIGCONT)
+
+
 @pytest.fixture
 def node(tmp_path):
     """Yield (process, pid of its recorder) of a process that records 1000 ticks a second until it is killed, and says '.' after each."""
@@ -210,13 +221,12 @@ def test_stopped_recorder_costs_bounded_memory_and_only_ticks(tmp_path, monkeypa
     recorder = start(tmp_path / 'bag')
     tick(recorder, 0, 100)
     wait_for(lambda: recorder.state_wanted, 'the first wish for a state')
-    os.kill(recorder.process_id, signal.SIGSTOP)
-    recorder.state_wanted = False
-    tick(recorder, 100, 9900)       # 2 MB: the pipe takes 1
-    status = recorder.status()
-    assert status.dropped > 2000
-    assert status.waiting < 100_000 + 990 * 100        # ticks up to the limit, journal entries beyond
-    os.kill(recorder.process_id, signal.SIGCONT)
+    with stopped(recorder):
+        recorder.state_wanted = False
+        tick(recorder, 100, 9900)       # 2 MB: the pipe takes 1
+        status = recorder.status()
+        assert status.dropped > 2000
+        assert status.waiting < 100_000 + 990 * 100        # ticks up to the limit, journal entries beyond
     for first in itertools.count(10_000, 100):
         tick(recorder, first, 100)
         if recorder.status().waiting == 0 and recorder.state_wanted:
@@ -307,11 +317,10 @@ def test_places_that_will_not_do_are_refused_before_anything_runs(tmp_path):
 def test_important_messages_beyond_the_limit_are_counted_not_hoarded(tmp_path, monkeypatch):
     monkeypatch.setattr(module, 'UNCONFIRMED', 5000)
     recorder = start(tmp_path / 'bag')
-    os.kill(recorder.process_id, signal.SIGSTOP)
-    for k in range(200):
-        recorder.journal('impulse', START + k, START + k, tick=k)
-    lost = recorder.status().lost
-    os.kill(recorder.process_id, signal.SIGCONT)
+    with stopped(recorder):
+        for k in range(200):
+            recorder.journal('impulse', START + k, START + k, tick=k)
+        lost = recorder.status().lost
     assert recorder.close().closed
     with Recording(tmp_path / 'bag') as recording:
         assert [entry['tick'] for entry in recording.journal() if entry['kind'] == 'impulse'] == list(range(200 - lost))
