@@ -192,8 +192,8 @@ def _fill_elliptic(w, omega, s, c, unit, out):
     put(out, RATE, scaled(f, unit))
     if cn < kc * abs(sn):
         # nearer to the quarter period: K - u has sn = cn/dn, cn = k' sn/dn, dn = k'/dn
-        out[PHASE] = math.copysign(0.25, sn)
-        out[PHASE_LOW] = -math.copysign(f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn), sn)
+        rest = f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn)
+        out[PHASE], out[PHASE_LOW] = two_sum(math.copysign(0.25, sn), -math.copysign(rest, sn))
     else:
         out[PHASE] = f[0] / x[0] * _argument(sn, cn, dn)
     if kc >= KC_HYPERBOLIC:
