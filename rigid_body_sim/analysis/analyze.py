@@ -29,10 +29,11 @@ def analyze(path, folder):
     BadInput
         Where there is no recording of a simulation, or the folder cannot be written.
     """
-    recording, folder = Recording(path), pathlib.Path(folder)
-    bodies = sources(recording)
-    with tqdm(total=recording.message_count, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
-        measured = measure(recording, bodies, progress.update)
+    folder = pathlib.Path(folder)
+    with Recording(path) as recording:
+        bodies = sources(recording)
+        with tqdm(total=recording.message_count, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
+            measured = measure(recording, bodies, progress.update)
     found = [summary(one) for one in measured]
     written = [folder / 'report.txt', folder / 'report.json']
     try:

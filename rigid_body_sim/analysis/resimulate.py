@@ -37,18 +37,18 @@ def resimulate(path, method=None):
     BadInput
         Where there is no recording that can be run again.
     """
-    recording = Recording(path)
     results = []
-    journal = recording.journal()
-    for source in sources(recording):
-        rerun = Rerun([entry for entry in journal if entry['topic'] == source.topics.get('journal')], method or {})
-        topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
-        comparison = Comparison(rerun, topics, source)
-        total = sum(recording.topics[topic].count for topic in topics.values())
-        with tqdm(total=total, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
-            for stretch in aligned(recording, list(topics.values()), progress.update):
-                comparison.take(stretch)
-        results.append((source, rerun, comparison))
+    with Recording(path) as recording:
+        journal = recording.journal()
+        for source in sources(recording):
+            rerun = Rerun([entry for entry in journal if entry['topic'] == source.topics.get('journal')], method or {})
+            topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
+            comparison = Comparison(rerun, topics, source)
+            total = sum(recording.topics[topic].count for topic in topics.values())
+            with tqdm(total=total, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
+                for stretch in aligned(recording, list(topics.values()), progress.update):
+                    comparison.take(stretch)
+            results.append((source, rerun, comparison))
     return results
 
 

@@ -117,7 +117,7 @@ class Recording:
         for file in self._files:
             channels = {number: channel.topic for number, channel in file.channels.items() if topics is None or channel.topic in topics}
             pieces += [(place.start_time, len(pieces) + index, file, channels, place) for index, place in enumerate(file.places())
-                       if place.end_time >= start and place.start_time <= end]
+                       if place.end_time >= start and place.start_time <= end and (not place.channels or place.channels & channels.keys())]
         for _, _, file, channels, place in sorted(pieces, key=lambda piece: piece[:2]):
             yield channels, file.piece(place, channels, start, end), place
 

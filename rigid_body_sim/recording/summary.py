@@ -13,12 +13,13 @@ _LARGEST_SUMMARY = 2**30
 
 
 class ChunkPlace(typing.NamedTuple):
-    """Where a chunk is, and the times in ns of its first and last message."""
+    """Where a chunk is, the times in ns of its first and last message, and the channels it has messages of (empty: not known)."""
 
     offset: int
     length: int
     start_time: int
     end_time: int
+    channels: frozenset = frozenset()
 
 
 def read_footer(stream):
@@ -95,9 +96,10 @@ def chunk_places(contents):
     while cursor.position < len(cursor.content):
         _, length = cursor.numbers('BQ')
         inner = mcap_format.Cursor(cursor.take(length))
-        start_time, end_time, offset, chunk_length = inner.numbers('QQQQ')
-        places.append(ChunkPlace(offset, chunk_length, start_time, end_time))
-    return sorted(places)
+        start_time, end_time, offset, chunk_length, indexes_length = inner.numbers('QQQQI')
+        channels = frozenset(number for number, _ in struct.iter_unpack('<HQ', inner.take(indexes_length // 10 * 10)))
+        places.append(ChunkPlace(offset, chunk_length, start_time, end_time, channels))
+    return sorted(places, key=lambda place: place.offset)
 
 
 def read_metadata_record(stream, contents, name):

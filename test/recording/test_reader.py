@@ -19,6 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.definitions import definition
+from rigid_body_sim.recording.file_reader import FileReader
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.topics import Topic, journal_message
 from rigid_body_sim.recording.writer import Writer
@@ -82,6 +83,18 @@ def test_messages_are_the_bytes_that_went_over_the_wire(recording):
         found = list(opened.messages(['/pose', '/scene']))
     assert found[0] == (START, '/scene', START + 5, 0, scene_text(ABOUT['scene']))
     assert [message.data for message in found[1:]] == [row.tobytes() for row in ticks.rows['/pose']]
+
+
+def test_chunks_without_a_topic_are_not_read_for_it(recording, monkeypatch):
+    with Recording(recording) as opened:
+        read = []
+        piece = FileReader.piece
+        monkeypatch.setattr(FileReader, 'piece', lambda file, place, *rest: read.append(place) or piece(file, place, *rest))
+        assert len(list(opened.decoded('/scene'))) == 1
+        assert len(read) == 1
+        read.clear()
+        list(opened.blocks(['/pose']))
+        assert len(read) > 3
 
 
 def test_journal_tells_in_order_what_happened(tmp_path):
