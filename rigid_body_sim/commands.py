@@ -6,6 +6,7 @@ status: 0 good, 1 a check failed, 2 bad input.
 
 COMMANDS = {
     'sim_node': ('rigid_body_sim.node.sim_node:main', 'run a scene as a ROS 2 node: topics, commands, recording'),
+    'lifecycle_sim_node': ('rigid_body_sim.node.lifecycle_sim_node:main', 'the node in its managed form: configure, activate, ...'),
     'run': ('rigid_body_sim.run:main', 'run the node for a while, record it, and report: what `make run` does'),
     'simulate': ('rigid_body_sim.simulate:main', 'run a scene to a recording as fast as it goes'),
     'analyze': ('rigid_body_sim.analysis.analyze:main', 'a recording to numbers and a figure'),

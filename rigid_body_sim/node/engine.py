@@ -49,21 +49,22 @@ class Engine:
         if 'clock' in settings.publish and settings.use_sim_time:
             raise BadInput('parameter publish', 'got clock together with use_sim_time', 'a node cannot follow the /clock that it publishes')
         self._node, self._settings = node, settings
-        self.simulation = self._prepare({})
-        scene = self.simulation.scene
+        self._entities_before = set(_entities(node))
+        simulation = self._prepare({})
         frames = frames_of(node, settings)
         # before anything is offered: who finds the topics finds them alive
-        warm_up(self.simulation)
+        warm_up(simulation)
         self.commands = Commands(node, frames)
-        self.publishing = Publishing(node, settings, frames, scene)
+        self.publishing = Publishing(node, settings, frames, simulation.scene)
         settings.refuse_unknown_qos()
-        self.journal = open_journal(node, settings, self.simulation, self.publishing, frames)
-        self.session = Session(self.simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
-        source = Followed(node.get_clock()) if settings.use_sim_time else Steady()
-        self.ticker = Ticker(self.session, source, settings.rate, settings.real_time_factor, settings.overrun == 'skip_publish', at_end)
+        self.journal = open_journal(node, settings, simulation, self.publishing, frames)
+        self.session = Session(simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
+        self._source = Followed(node.get_clock()) if settings.use_sim_time else Steady()
+        self.ticker = Ticker(self.session, self._source, settings.rate, settings.real_time_factor, settings.overrun == 'skip_publish', at_end)
         self.diagnostics = Diagnostics(node, settings, self.session, self.ticker, self.commands, self.journal)
-        self._services = [node.create_service(Trigger, '~/reset', self._reset), node.create_service(SetBool, '~/pause', self._pause),
-                          node.create_service(Trigger, '~/step', self._step)]
+        node.create_service(Trigger, '~/reset', self._reset)
+        node.create_service(SetBool, '~/pause', self._pause)
+        node.create_service(Trigger, '~/step', self._step)
         self._prepared = None
         settings.on_change(self._before_change, self._after_change)
 
@@ -143,25 +144,41 @@ class Engine:
     # -- the end ------------------------------------------------------------------------------------------------------------------------
 
     def close(self):
-        """End ticks and recording; return the exit status: 1 after one line if the simulation or the recording failed."""
+        """End ticks and recording, and say how it went; return the exit status: 1 after one line if simulation or recording failed."""
+        self._settings.on_change(lambda changes: None, lambda changes: None)
         if self.ticker.is_alive():
             self.ticker.stop()
             self.ticker.join(STOP_WITHIN)
+        self._source.close()
+        if not self.ticker.is_alive():
+            self.session.take_balance()
         self.journal.close(STOP_WITHIN)
-        failure = self.ticker.failure
-        if failure is not None:
-            say(f'{self._node.get_name()}: tick {self.session.next_tick}: {type(failure).__name__}: {failure}')
-            return 1
-        return 0
+        self._report()
+        status, name = 0, self._node.get_name()
+        if self.ticker.failure is not None:
+            say(f'{name}: tick {self.session.next_tick}: {type(self.ticker.failure).__name__}: {self.ticker.failure}')
+            status = 1
+        if self.journal.status is not None and self.journal.status.error:
+            say(f'{name}: recording: {self.journal.status.error}')
+            status = 1
+        return status
 
-    def report(self):
+    def remove(self):
+        """Take away from the node all that the engine gave it, after :meth:`close`."""
+        for entity in set(_entities(self._node)) - self._entities_before:
+            for destroy in (self._node.destroy_publisher, self._node.destroy_subscription, self._node.destroy_service,
+                            self._node.destroy_timer):
+                if destroy(entity):
+                    break
+
+    def _report(self):
         """Print how it went."""
         session, ticker, balance = self.session, self.ticker, self.session.balance
         ticks, running = ticker.latest
         late, recording = ticker.lateness.summary(), self.journal.status
         events = ''.join(f', {count} x {name}' for name, count in sorted(session.event_counts.items()))
         for line in (
-                f'{self._node.get_fully_qualified_name()}: {self.simulation.scene.name}, {ticks} ticks in {running * 1e-9:.3f} s'
+                f'{self._node.get_fully_qualified_name()}: {session.simulation.scene.name}, {ticks} ticks in {running * 1e-9:.3f} s'
                 f' ({(ticks - 1) / running * 1e9 if running else 0.0:.3f} Hz)',
                 f'  lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; '
                 f'{ticker.overruns} overruns, {ticker.skipped} ticks not published, {ticker.slipped * 1e-9:.3f} s slipped',
@@ -169,6 +186,10 @@ class Engine:
                 f'  recorded {recording.recorded} messages, {recording.dropped} ticks left out: {self.journal.path}' if recording else
                 '  not recorded'):
             tell(line)
+
+
+def _entities(node):
+    return (*node.publishers, *node.subscriptions, *node.services, *node.timers)
 
 
 def _result_soon(future):

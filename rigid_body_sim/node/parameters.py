@@ -94,23 +94,23 @@ class Entry:
             near = difflib.get_close_matches(word, self.choices, 1) if len(self.choices) > 3 else ()
             raise BadInput(where, f'got {word!r}', f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}')
 
-    def descriptor(self):
-        """Return the ROS descriptor: type, range, whether it can be changed."""
+    def descriptor(self, fixed):
+        """Return the ROS descriptor: type, range, whether it is fixed for good."""
         # a list is declared before it has its value, so rclpy must not hold it fixed: Settings refuses the change itself
-        fixed = not self.changeable and not isinstance(self.default, tuple)
-        descriptor = ParameterDescriptor(description=self.about, additional_constraints=self.limits, read_only=fixed)
+        read_only = fixed and not self.changeable and not isinstance(self.default, tuple)
+        descriptor = ParameterDescriptor(description=self.about, additional_constraints=self.limits, read_only=read_only)
         if isinstance(self.default, float):
             descriptor.floating_point_range = [FloatingPointRange(from_value=self.low, to_value=self.high)]
         return descriptor
 
-    def declare(self, node, value):
-        """Declare the parameter with a checked value."""
+    def declare(self, node, value, fixed):
+        """Declare the parameter with a checked value; `fixed`: those that do not change while the node runs never change."""
         if isinstance(value, tuple):
             # rclpy takes an empty list for one of bytes unless the type is said
-            node.declare_parameter(self.name, Parameter.Type.STRING_ARRAY, self.descriptor(), ignore_override=True)
+            node.declare_parameter(self.name, Parameter.Type.STRING_ARRAY, self.descriptor(fixed), ignore_override=True)
             node.set_parameters([Parameter(self.name, Parameter.Type.STRING_ARRAY, list(value))])
         else:
-            node.declare_parameter(self.name, value, self.descriptor(), ignore_override=True)
+            node.declare_parameter(self.name, value, self.descriptor(fixed), ignore_override=True)
 
 
 TABLE = (
@@ -153,6 +153,13 @@ class Settings:
     ----------
     node : rclpy.node.Node
         Its overrides are read and its parameters declared.
+    running : bool
+        Whether the node runs from the start to the end; a managed node sets :attr:`running` itself.
+
+    Attributes
+    ----------
+    running : bool
+        Whether parameters that are fixed while the node runs are fixed now.
 
     Raises
     ------
@@ -160,11 +167,12 @@ class Settings:
         For an override that is unknown or wrong.
     """
 
-    def __init__(self, node):
+    def __init__(self, node, running=True):
+        self.running = running
         with node.handle:
             self._overrides = node.handle.get_parameters(Parameter)
         self._node = node
-        self._before_change, self._after_change = [], []
+        self.on_change(lambda changes: None, lambda changes: None)
         for name, override in self._overrides.items():
             self._refuse_unknown(name, list(ENTRIES) + list(FOREIGN))
             if name == 'use_sim_time' and not isinstance(override.value, bool):
@@ -173,7 +181,7 @@ class Settings:
         for entry in TABLE:
             given = self._overrides[entry.name].value if entry.name in self._overrides else entry.default
             self.values[entry.name] = value = entry.checked(given)
-            entry.declare(node, value)
+            entry.declare(node, value, running)
         node.add_pre_set_parameters_callback(self._with_types)
         node.add_on_set_parameters_callback(self._check_change)
         node.add_post_set_parameters_callback(self._apply_change)
@@ -200,7 +208,7 @@ class Settings:
                 self._refuse_unknown(name, declared, ())
 
     def on_change(self, before, after):
-        """Register what a change does.
+        """Set what a change does from now on.
 
         Parameters
         ----------
@@ -209,8 +217,7 @@ class Settings:
         after : callable
             Called with the same dict once they hold.
         """
-        self._before_change.append(before)
-        self._after_change.append(after)
+        self._before_change, self._after_change = before, after
 
     @staticmethod
     def _refuse_unknown(name, known, prefixes=(FOREIGN_PREFIX,)):
@@ -235,8 +242,7 @@ class Settings:
     def _check_change(self, parameters):
         try:
             changes = self._changes(parameters)
-            for before in self._before_change:
-                before(changes)
+            self._before_change(changes)
         except BadInput as refusal:
             return SetParametersResult(successful=False, reason=str(refusal))
         return SetParametersResult(successful=True)
@@ -244,11 +250,9 @@ class Settings:
     def _apply_change(self, parameters):
         changes = self._changes(parameters)
         self.values.update(changes)
-        for after in self._after_change:
-            after(changes)
+        self._after_change(changes)
 
-    @staticmethod
-    def _changes(parameters):
+    def _changes(self, parameters):
         """Return the checked changes by name."""
         changes = {}
         for parameter in parameters:
@@ -257,7 +261,7 @@ class Settings:
                 raise BadInput(f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value')
             if entry is None:
                 continue
-            if not entry.changeable:
+            if self.running and not entry.changeable:
                 raise BadInput(f'parameter {entry.name}', 'it cannot change while the node runs', 'give it at the start')
             changes[entry.name] = entry.checked(parameter.value)
         return changes

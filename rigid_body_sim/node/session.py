@@ -37,6 +37,8 @@ class Session:
     ----------
     next_tick : int
         Number of the next tick to run.
+    timeline : Timeline or None
+        Stamps of the ticks; None before the first one.
     finished : bool
     balance : dict
         The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and ``time``.
@@ -46,7 +48,7 @@ class Session:
 
     def __init__(self, simulation, command_queue, publishing, journal, settings, epoch):
         self.simulation = simulation
-        self.timeline = Timeline(0, simulation.rate)
+        self.timeline = None
         self._commands, self._publishing, self._journal, self._epoch = command_queue, publishing, journal, epoch
         command_queue.report = self._report_refusal
         self.command_timeout = settings.command_timeout
@@ -58,7 +60,7 @@ class Session:
         self._release_tick = None
         self._reports = {}
         self._balance_wanted = False
-        self.balance = self._take_balance()
+        self.take_balance()
 
     # -- from other threads -------------------------------------------------------------------------------------------------------------
 
@@ -97,15 +99,17 @@ class Session:
         if publish:
             self._publish_state(tick)
         if self._balance_wanted:
-            self.balance = self._take_balance()
+            self.take_balance()
         self.next_tick = tick + 1
         self.finished = self._last_tick is not None and tick >= self._last_tick
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
+        if self.timeline is None:
+            return
         self._commands.take(self.simulation.scene.accepts_commands)
         if self._balance_wanted:
-            self.balance = self._take_balance()
+            self.take_balance()
 
     def _publish_state(self, tick):
         simulation, stamp = self.simulation, self.timeline.instant(tick)
@@ -216,6 +220,7 @@ class Session:
         self.event(ERROR, 'command refused', f'{topic}: {reason}: got {got}; right would be: {remedy}',
                    {'topic': topic, 'reason': reason, 'got': got, 'right': remedy, 'not_told_since': silent})
 
-    def _take_balance(self):
+    def take_balance(self):
+        """Take a fresh :attr:`balance`; while ticks run, only the tick thread may do so."""
         self._balance_wanted = False
-        return {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}
+        self.balance = {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}

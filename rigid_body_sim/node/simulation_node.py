@@ -40,7 +40,5 @@ class SimulationNode(Node):
         """End ticks and recording, and say how it went; return the exit status."""
         if self.engine is None:
             return 0
-        status = self.engine.close()
         self.status_line.close()
-        self.engine.report()
-        return status
+        return self.engine.close()

@@ -35,6 +35,10 @@ class Steady:
     now = staticmethod(time.monotonic_ns)
 
     @staticmethod
+    def close():
+        """Do nothing."""
+
+    @staticmethod
     def wait(nanoseconds):
         """Sleep for that long, or for LONGEST_SLEEP if that is less."""
         time.sleep(min(nanoseconds * 1e-9, LONGEST_SLEEP))
@@ -58,6 +62,10 @@ class Followed:
         """Return what /clock said last, ns; 0 before it said anything."""
         return self._clock.now().nanoseconds
 
+    def close(self):
+        """Hear no more of the clock."""
+        self._handle.unregister()
+
     def wait(self, _):
         """Wait until /clock moves, at most LONGEST_SLEEP."""
         self._moved.wait(LONGEST_SLEEP)
@@ -70,7 +78,7 @@ class Ticker(threading.Thread):
     Parameters
     ----------
     work : object
-        ``work.begin()`` is called once, before the first tick; ``work.next_tick`` is the number of the tick to run,
+        ``work.begin()`` is called once, just before the first tick; ``work.next_tick`` is the number of the tick to run,
         ``work.run_tick(publish)`` runs it, ``work.between_ticks()`` looks after commands while there is time, ``work.finished`` says that
         there are no more ticks to run.
     time_source : Steady or Followed
@@ -79,7 +87,7 @@ class Ticker(threading.Thread):
     skip_publish : bool
         The policy at an overrun, see above.
     at_end : callable
-        Called in this thread when it ends, for whatever reason.
+        Called in this thread when it ends by itself: finished or failed.
 
     Attributes
     ----------
@@ -103,7 +111,8 @@ class Ticker(threading.Thread):
     def __init__(self, work, time_source, rate, real_time_factor, skip_publish, at_end):
         super().__init__(name='ticks', daemon=True)
         self._work, self._source, self._at_end = work, time_source, at_end
-        self._stopping = self._paused = False
+        self._stopping = self._begun = False
+        self._pauses = frozenset()
         self._steps = collections.deque()
         self._rate, self._factor = rate, real_time_factor
         self._due = self._left_out = 0
@@ -120,15 +129,15 @@ class Ticker(threading.Thread):
     @property
     def paused(self):
         """Whether ticks wait for ``resume`` or ``step``."""
-        return self._paused
+        return bool(self._pauses)
 
-    def pause(self):
-        """Run no ticks until :meth:`resume`."""
-        self._paused = True
+    def pause(self, reason='pause'):
+        """Run no ticks until :meth:`resume` for the same reason."""
+        self._pauses |= {reason}
 
-    def resume(self):
-        """Go on ticking."""
-        self._paused = False
+    def resume(self, reason='pause'):
+        """Go on ticking, unless there is another reason to pause."""
+        self._pauses -= {reason}
 
     def step(self):
         """Run one tick while paused; return a Future of its number (None if the node is resumed before)."""
@@ -154,20 +163,19 @@ class Ticker(threading.Thread):
             self._take_priority()
             while not (self._source.now() or self._stopping):
                 self._source.wait(NANOSECONDS)
-                self._work.between_ticks()
             self.waiting_for_clock = False
-            self._work.begin()
             self._schedule(self._source.now())
             self._left_out = self._due
             while not (self._stopping or self._work.finished):
-                if self._paused:
+                if self._pauses:
                     self._idle()
                 else:
                     self._next_tick()
         except BaseException as failure:
             self.failure = failure
         finally:
-            self._at_end()
+            if not self._stopping:
+                self._at_end()
 
     def _take_priority(self):
         """Ask for exact timers, and for real-time scheduling where it is allowed and the thread sleeps between ticks."""
@@ -196,12 +204,15 @@ class Ticker(threading.Thread):
         self._left_out = due - running - (self._period if ticks else 0)
 
     def _run_tick(self, now, publish):
+        if not self._begun:
+            self._begun = True
+            self._work.begin()
         self._work.run_tick(publish)
         self.latest = (self.latest[0] + 1, now - self._left_out)
 
     def _idle(self):
         """Wait while paused; run a tick for each step asked for."""
-        while self._paused and not self._stopping:
+        while self._pauses and not self._stopping:
             if self._steps:
                 future = self._steps.popleft()
                 now = self._source.now()
@@ -235,7 +246,7 @@ class Ticker(threading.Thread):
             elif due - now > LONGEST_SLEEP * NANOSECONDS:
                 work.between_ticks()
             source.wait(due - now)
-            if self._stopping or self._paused:
+            if self._stopping or self._pauses:
                 return
             now = source.now()
         self._due = due

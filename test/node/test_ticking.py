@@ -58,7 +58,7 @@ class Work:
         self.finished = False
 
     def begin(self):
-        pass
+        assert not self.runs
 
     def run_tick(self, publish):
         self.runs.append((self.next_tick, self._clock.now(), publish))
