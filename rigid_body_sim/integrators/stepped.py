@@ -15,7 +15,7 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, adaptive, fixed, track, unroll
+from rigid_body_sim.integrators import METHODS, adaptive, fixed, table, track, unroll
 from rigid_body_sim.integrators.equations import Equations
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import STATE_SIZE, TIME
@@ -59,15 +59,20 @@ class Stepped:
             raise BadInput('accuracy', f'got {accuracy!r}', f'at least {FINEST!r}, what doubles carry')
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         self.accuracy, self.step, self.horizon = accuracy, step, horizon
-        self._plain = _Bound(scene, self.method, wrench, step is None, books=False)
+        self._plain = self._bind(books=False)
         self._with_books = None
+
+    def _bind(self, books):
+        if self.scene.constraint.kind == 'table':
+            return table.OnTable(self.scene, self.method, self.wrench, self.step)
+        return _Bound(self.scene, self.method, self.wrench, self.step is None, books)
 
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
         started = object.__new__(Stepped)
         started.__dict__.update(self.__dict__)
-        started.__dict__['_vector'] = np.array(vector, dtype=float)
-        started._course, started._booked_course = _Course(started, self._plain), None
+        started.vector = np.array(vector, dtype=float)
+        started._course, started._booked_course = self._plain.course(started), None
         started._watcher = None
         return started
 
@@ -81,18 +86,20 @@ class Stepped:
 
     def events(self, after, until):
         """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward."""
+        if self.scene.constraint.kind == 'table':
+            return self._course.events(after, until)
         if self._watcher is None:
-            self._watcher = Watcher(self, watches(self.scene), float(self._vector[TIME]))
+            self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]))
         return [event for event in self._watcher.events(until) if event[0] > after]
 
     def exchanged(self, time):
         """Return what commands and effects exchanged with the body from the start to a time, shape (5,)."""
-        if not self._plain.equations.acts:
+        if not self._plain.acts:
             return np.zeros(EXCHANGE_SIZE)
         if self._booked_course is None:
             if self._with_books is None:
-                self._with_books = _Bound(self.scene, self.method, self.wrench, self.step is None, books=True)
-            self._booked_course = _Course(self, self._with_books)
+                self._with_books = self._bind(books=True)
+            self._booked_course = self._with_books.course(self)
         row = np.empty((1, STATE_SIZE + EXCHANGE_SIZE))
         self._booked_course.states(np.array([time]), row)
         return row[0, STATE_SIZE:]
@@ -103,6 +110,7 @@ class _Bound:
 
     def __init__(self, scene, method, wrench, adapts, books):
         self.equations = equations = Equations(scene, wrench, books)
+        self.acts = equations.acts
         n, extra = equations.kind.UNKNOWNS, EXCHANGE_SIZE if books else 0
         groups = equations.kind.GROUPS
         kernels = equations.kernels.__name__
@@ -117,6 +125,10 @@ class _Bound:
         shared = {name: f'{self.march.__name__}:{name}' for name in ('march', 'rate', 'step', 'load', 'SIZE')}
         self.track = specialise(track, write=f'{kernels}:write', **shared)
 
+    def course(self, stepped):
+        """Return the course of a started solver."""
+        return _Course(stepped, self)
+
 
 class _Course:
     """One march from a start: a piece for each stretch between breakpoints, made when it is reached."""
@@ -124,11 +136,11 @@ class _Course:
     def __init__(self, stepped, bound):
         self._stepped, self._bound = stepped, bound
         equations = bound.equations
-        self._fixed, y = equations.start(stepped._vector)
+        self._fixed, y = equations.start(stepped.vector)
         self._size = len(y) + equations.extra
         values = np.zeros(NODE_HEAD + 2 * self._size)
         values[NODE_HEAD:NODE_HEAD + len(y)] = y
-        self._begin = float(stepped._vector[TIME])
+        self._begin = float(stepped.vector[TIME])
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
         self._pieces = [self._piece(self._begin, values)]
 
