@@ -19,7 +19,7 @@ COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
 PYTEST = python -m pytest --numprocesses 2 --timeout 120 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble pins pins-noble clean
+.PHONY: help run test lint package test-noble bench bench-node pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -41,6 +41,13 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 test-noble: .venv-noble/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, without and with numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble .venv-noble/bin/$(PYTEST)
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble PYTHONPATH=.venv-noble/numba .venv-noble/bin/$(PYTEST)
+
+bench: .venv/run.stamp ## cost of one state in closed form; recordings: writing, size, reading
+	.venv/bin/python bench/closed_forms.py
+	.venv/bin/python bench/recordings.py
+
+bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else
+	.venv/bin/python bench/node.py
 
 pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and test.in (with the oldest Python)
 	.venv/bin/python requirements/pin.py run

@@ -1,5 +1,6 @@
 #!/bin/sh
 # make_venv.sh FOLDER PINS VERSION...: a virtual environment with exactly the packages of PINS, by the first Python found of one of the versions.
+# In it this tree can be imported from any folder.
 # PYTHON=/path/to/python in the environment is taken instead of searching.
 set -eu
 folder=$1 pins=$2
@@ -58,3 +59,5 @@ fi
 echo "Setting up $folder with $("$folder/bin/python" -V) from $pins (the first time some 500 MB, about a minute) ..."
 "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps -r "$pins" ||
     fail "pip could not install $pins into $folder (its message is above); what is there stays, try again"
+
+(cd "$(dirname "$0")/.." && pwd) > "$(echo "$folder"/lib/python3.*/site-packages)/this_tree.pth"
