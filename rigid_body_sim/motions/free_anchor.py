@@ -8,7 +8,7 @@ equations are omega_1' = e1 omega_2 omega_3 ..., and
     k'^2 p^2 = e2 (I3 (I3 - I2) omega_3^2 - I1 (I2 - I1) omega_1^2)/(I1 I3),
 
 the last one decides by its sign which axis is polar: the largest moment's where it is positive or zero, else the smallest's, with 1 and 3
-exchanged. It is formed with 32 digits from the input doubles, as are the products of the e. The period follows from agm(p, k' p) = pi p/(2 K),
+exchanged. It is formed with 32 digits from the input doubles, as are the products of the e. The period follows from agm(1, k') = pi/(2 K),
 and chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
 """
 
@@ -20,6 +20,7 @@ import numpy as np
 from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import add, add_alike, divide, multiply, multiply_double, root, two_product
 from rigid_body_sim.elliptic import agm_pair, carlson_rf_pair, complete_k
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.motions import free_rotation
 from rigid_body_sim.motions.free_rotation import (
     AMPLITUDES,
@@ -54,13 +55,23 @@ TO_BODY, TO_WORLD, ROUNDING, TUMBLES = (free_rotation.SIZE + k for k in (0, 9, 2
 SIZE = TUMBLES + 1
 
 TURN, TURN_LOW = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi)
+LEAST_RATIO = 1e-130            # of a needle's moments
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
 
 
 def rotation_parameters(inertia):
-    """Return the numbers of an inertia that the kernels take, shape (PARAMETER_SIZE,)."""
+    """Return the numbers of an inertia that the kernels take, shape (PARAMETER_SIZE,).
+
+    Raises
+    ------
+    BadInput
+        A moment that is not zero but so small beside the others that its square would underflow.
+    """
     p = np.zeros(PARAMETER_SIZE)
     small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
+    if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
+        raise BadInput('body.inertia', f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
+                       f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
     unit = math.frexp(inertia.moments[large])[1]
     moments = [Fraction(math.ldexp(inertia.moments[k], -unit)) for k in order]
     least, mean, most = moments
@@ -103,11 +114,13 @@ def fill_rotation(p, start, out):
     wx, wy, wz = start[5], start[6], start[7]
     scale, unscale = 1.0, 1.0
     size = max(abs(wx), abs(wy), abs(wz))
-    if (size < 1e-70 and size > 0.0) or size > 1e70:
+    if size < 1e-250:
+        scale = 0.0     # it does not turn in 1e240 s; what omega there is, _fill_attitude keeps
+    elif size < 1e-70 or size > 1e70:
         # squares would leave the range; powers of two are exact
-        exponent = min(max(math.frexp(size)[1], -960), 960)
+        exponent = min(math.frexp(size)[1], 960)
         scale, unscale = math.ldexp(1.0, -exponent), math.ldexp(1.0, exponent)
-    wx, wy, wz = scale * wx, scale * wy, scale * wz
+    wx, wy, wz = _normal(scale * wx), _normal(scale * wy), _normal(scale * wz)
     small, _, large = _to_frame(p, BLOCKS, wx, wy, wz)
     gap, gap_low, lift = _discriminant(p, small, large)
     b = BLOCKS
@@ -149,6 +162,12 @@ def fill_rotation(p, start, out):
         out[AMPLITUDES + k] *= unscale
         out[UNIT + k] = per_momentum * p[b + MOMENTS + k]
     _fill_attitude(start, out)
+
+
+@compiled_inline
+def _normal(w):
+    """Return w, or 0 where it is next to the subnormal numbers, which have fewer digits."""
+    return w if abs(w) > 1e-304 else 0.0
 
 
 @compiled_inline
@@ -215,9 +234,8 @@ def _fill_periodic(p, b, w1, w2, w3, top, p2, p2_low, gap, gap_low, lift, out):
     A1 = larger * math.sqrt(1.0 + ratio * ratio)
     A2 = -p[b + SIDE] * A1 / p[b + ROOT12]
     x, x_low = root(p2, p2_low)
-    y, y_low = root(gap, gap_low)
-    y, y_low = lift * y, lift * y_low
-    kc = y / x
+    kc, kc_low = divide(*root(gap, gap_low), x, x_low)
+    kc, kc_low = lift * kc, lift * kc_low
     k2 = min((p[b + E23] * w1 * w1 + p[b + E13] * w2 * w2) / p2, 1.0)
     # u = sn R_F(cn^2, dn^2, 1) (DLMF 19.25.5), its first duplication written out for the sake of cn and dn of 1e-300;
     # the other one is K' less the argument a of the body's own constant: F of the complementary amplitude (DLMF 19.7(iii))
@@ -230,8 +248,8 @@ def _fill_periodic(p, b, w1, w2, w3, top, p2, p2_low, gap, gap_low, lift, out):
     shift *= math.sqrt(to_3) if to_1 > 0.0 else 0.0
     f, f_low = x / (2.0 * NEVER), x_low / (2.0 * NEVER)
     if kc > 0.0:
-        f, f_low = agm_pair(x, x_low, y, y_low)
-        f, f_low = multiply(f, f_low, TURN, TURN_LOW)
+        f, f_low = agm_pair(1.0, 0.0, kc, kc_low)
+        f, f_low = multiply(*multiply(f, f_low, x, x_low), TURN, TURN_LOW)
     out[RATE], out[RATE + 1], out[PHASE] = f, f_low, f * u / x
     if kc >= KC_HYPERBOLIC:
         out[FORM] = CIRCULAR

@@ -75,7 +75,7 @@ def cases():
     yield case('1e6 rad/s', (2.0, 3.0, 4.0), (7e5, -4e5, 1.1e6), (1e-3, 0.1, 10.0, 1e4))
     yield case('1e6 and 1e-12 rad/s', (2.0, 3.0, 4.0), (1e-12, 1e-12, 1.1e6), (1e-3, 0.1, 10.0, 1e4))
     yield case('1e6 rad/s along the middle, 1e-12 off it', (2.0, 3.0, 4.0), (1e-12, 1.1e6, 1e-12), (1e-5, 1e-3, 1.0), 80, (1, 2))
-    yield case('1e-300 rad/s', (2.0, 3.0, 4.0), (7e-301, -4e-301, 1.1e-300), (1e300,))
+    yield case('1e-200 rad/s', (2.0, 3.0, 4.0), (7e-201, -4e-201, 1.1e-200), (1e3, 1e200))
     for off in (1e-2, 1e-4, 1e-8, 1e-16, 1e-40):
         yield case(f'racket, {off:g} off the middle axis', (1.0, 2.0, 3.0), (off, 5.0, off), (0.1, 10.0, 100.0, 1e3, 1e4),
                    60 + int(-2.2 * np.log10(off)), (1, 2, 100))
@@ -159,7 +159,7 @@ def complete(entry):
     mp.mp.dps = entry.pop('digits')
     moments, omega = entry['moments'], entry['angular_velocity']
     size = mp.norm(mp.matrix(omega))
-    if size > 1e-200:
+    if size > 1e-100:
         early = 3.0 / size
         q, w = solved(entry, moments, omega, early)
         p, v = solved(entry, moments, omega, early, lambda *arguments: taylor(*arguments, order=60))

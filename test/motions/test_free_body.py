@@ -1,0 +1,169 @@
+"""Free body: against 36 digits for bodies of every kind (test/data/make_free_body.py), its flips, its flight."""
+
+import json
+import math
+import pathlib
+
+import mpmath as mp
+import numpy as np
+import pytest
+from near import near
+
+from rigid_body_sim.bodies import IDENTITY, Body, Inertia
+from rigid_body_sim.effects.gravity import Gravity
+from rigid_body_sim.motions import free_body as motion
+from rigid_body_sim.scenes import Constraint, Scene, parse_scene
+from rigid_body_sim.state import STATE_SIZE, State
+
+RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
+EPSILON = np.finfo(float).eps
+
+
+def parameters_of(moments, axes=IDENTITY, center_of_mass=(0.0, 0.0, 0.0), g=0.0):
+    inertia = Inertia(tuple(moments), tuple(axes))
+    body = Body(1.0, tuple(center_of_mass), inertia, inertia)
+    effects = (Gravity(g),) if g else ()
+    return motion.parameters(Scene('test', '', body, Constraint('free'), effects, State.of(), True, ''))
+
+
+def anchored(parameters, start):
+    anchor = np.empty(motion.ANCHOR_SIZE)
+    motion.anchor(parameters, start, anchor)
+    return anchor
+
+
+def of_record(record):
+    """Return the anchor of a reference case and its start."""
+    parameters = parameters_of(record['moments'], *(record.get(key, default) for key, default in (
+        ('axes', IDENTITY), ('center_of_mass', (0.0, 0.0, 0.0)), ('g', 0.0))))
+    nothing = (0.0, 0.0, 0.0)
+    start = State.of(0.0, record['orientation'], record['angular_velocity'], record.get('position', nothing), record.get('velocity', nothing))
+    return anchored(parameters, start.vector), start.vector
+
+
+def at(anchor, time):
+    out = np.empty(STATE_SIZE)
+    motion.state(anchor, time, out)
+    return out
+
+
+def angle(found, expected):
+    """Return the angle (rad) between an attitude and one given in digits."""
+    with mp.workdps(50):
+        p, q = [mp.mpf(float(x)) for x in found], [mp.mpf(x) for x in expected]
+        x = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1]
+        y = p[3] * q[1] - p[1] * q[3] - p[2] * q[0] + p[0] * q[2]
+        z = p[3] * q[2] - p[2] * q[3] - p[0] * q[1] + p[1] * q[0]
+        return float(2 * mp.atan2(mp.sqrt(x * x + y * y + z * z), abs(mp.fdot(p, q))))
+
+
+def difference(found, expected):
+    """Return the largest difference between numbers and numbers given in digits."""
+    with mp.workdps(50):
+        return float(max(abs(mp.mpf(float(a)) - mp.mpf(b)) for a, b in zip(found, expected, strict=True)))
+
+
+@pytest.mark.parametrize('record', RECORDS, ids=lambda record: record['name'])
+def test_reference(record):
+    """Errors stay at the floor, whatever one ulp on the inputs does (up to 3 rad on the separatrix): rates have more digits than a double."""
+    anchor, _ = of_record(record)
+    size = math.hypot(*record['angular_velocity'])
+    for state in record['states']:
+        found, turned = at(anchor, state['time']), size * abs(state['time'])
+        # measured: 1.1e-15 up to 100 rad; at most 0.25 eps |omega| t (racket, 1e-40 off the middle axis) beyond
+        assert angle(found[1:5], state['orientation']) < 2e-15 + 0.5 * EPSILON * turned, state['time']
+        # measured: 1e-15; 0.035 eps |omega| t for the turned principal axes, which round omega at the start
+        assert difference(found[5:8], state['angular_velocity']) <= (2e-15 + 0.05 * EPSILON * turned) * size, state['time']
+        if 'position' in state:
+            fall = 4.0 + 0.5 * 9.81 * state['time'] ** 2 + 6.0 * state['time']
+            assert difference(found[8:11], state['position']) < 4.0 * EPSILON * fall           # measured 1.1 ulp
+            assert difference(found[11:14], state['velocity']) < 4.0 * EPSILON * (10.0 + 9.81 * state['time'])
+
+
+@pytest.mark.parametrize('record', RECORDS, ids=lambda record: record['name'])
+def test_anchor_time_gives_the_start_back(record):
+    anchor, start = of_record(record)
+    found = at(anchor, start[0])
+    assert found[5:8].tobytes() == start[5:8].tobytes()
+    assert np.abs(found[1:5] - start[1:5]).max() <= 2.5e-16     # measured 1.7e-16
+    assert np.abs(found[8:] - start[8:]).max() <= 4.0 * EPSILON * 10.0
+
+
+@pytest.mark.parametrize('record', [record for record in RECORDS if record['flips']], ids=lambda record: record['name'])
+def test_flips_are_at_their_times(record):
+    anchor, _ = of_record(record)
+    time, count = 0.0, 0
+    for flip in record['flips']:
+        while count < flip['count']:
+            time, code = motion.next_event(anchor, time)
+            count += 1
+        assert motion.EVENTS[code] == 'flip'
+        assert time == near(float(mp.mpf(flip['time'])), 4.0 * EPSILON)     # measured 1.8 ulp
+
+
+def test_no_flip_is_lost_in_a_long_jump_or_counted_twice():
+    """Flips come every half period of omega_2, as the sampled motion shows, also when the motion is anchored anew just beside one."""
+    parameters = parameters_of((1.0, 2.0, 3.0))
+    start = State.of(0.0, angular_velocity=(0.01, 5.0, 0.01)).vector
+    anchor = anchored(parameters, start)
+    times = np.arange(0.0, 200.0, 1e-2)
+    states = np.empty((len(times), STATE_SIZE))
+    motion.states(anchor, times, states)
+    changes = np.flatnonzero(np.signbit(states[1:, 6]) != np.signbit(states[:-1, 6]))
+    found, time = [], 0.0
+    while (time := motion.next_event(anchor, time)[0]) <= times[-1]:
+        found.append(time)
+    assert len(found) == len(changes) > 30
+    assert all(times[change] <= flip <= times[change + 1] for change, flip in zip(changes, found, strict=True))
+    assert motion.next_event(anchor, 1e6)[0] == near(1e6 + math.fmod(found[0] - 1e6, found[1] - found[0]) + found[1] - found[0], 1e-9)
+    for beside, expected in ((-1e-9, found[3]), (1e-9, found[4])):
+        again = anchored(parameters, at(anchor, found[3] + beside))
+        assert motion.next_event(again, found[3] + beside)[0] == near(expected, 1e-8)    # 1e-16 on omega_1 there, magnified
+
+
+def test_a_wobble_is_no_flip():
+    """The middle component of m stays below L/2: its changes of sign are not events."""
+    start = State.of(0.0, angular_velocity=(0.1, 0.1, 5.0)).vector
+    assert motion.next_event(anchored(parameters_of((1.0, 2.0, 3.0)), start), 0.0)[0] == math.inf
+    assert motion.next_event(anchored(parameters_of((2.0, 2.0, 2.0)), start), 0.0)[0] == math.inf
+
+
+def test_on_the_separatrix_the_body_turns_over_once_and_never_returns():
+    """I = (3, 4, 6), omega = (2, c, 1): K is infinite; one bit lost would let it come back after 70 s."""
+    for c in (-5.0, 0.0, 0.7):
+        anchor = anchored(parameters_of((3.0, 4.0, 6.0)), State.of(0.0, angular_velocity=(2.0, c, 1.0)).vector)
+        flip = motion.next_event(anchor, 0.0)[0]
+        assert (flip < 10.0) == (c < 0.0)
+        assert motion.next_event(anchor, 10.0)[0] > 1e30
+        for time in (1e3, 1e9):
+            assert at(anchor, time)[5:8] == pytest.approx([0.0, math.sqrt(4.5 + c * c), 0.0], rel=1e-15, abs=1e-15)
+
+
+def test_scene_file_is_absorbed():
+    text = """
+scene: thrown
+body: {mass: 2.0, inertia: [[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]], center_of_mass: [0.1, 0.0, -0.2]}
+constraint: %s
+effects: [gravity: {g: 9.81}%s]
+initial: {angular_velocity: [0.3, 2.0, -0.4]}
+"""
+    scene = parse_scene(text % ('free', ''))
+    assert motion.absorbs(scene)
+    assert not motion.absorbs(parse_scene(text % ('pivot', '')))
+    assert not motion.absorbs(parse_scene(text % ('free', ', drag: {linear: 0.1, angular: 0.1}')))
+    # angular momentum about the centre of mass, by the tensor itself
+    anchor = anchored(motion.parameters(scene), scene.initial.vector)
+    tensor = np.array([[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]])
+    later = State(at(anchor, 7.0))
+    L = momentum_in_world(later, tensor)
+    assert pytest.approx(momentum_in_world(scene.initial, tensor), rel=2e-15) == L
+    assert later.position[2] + rotated(later, (0.1, 0.0, -0.2))[2] == near(-0.2 - 0.5 * 9.81 * 49.0 - 7.0 * 0.2, 1e-15)
+
+
+def rotated(state, vector):
+    u, w = state.orientation[:3], state.orientation[3]
+    return vector + 2.0 * np.cross(u, np.cross(u, vector) + w * np.asarray(vector))
+
+
+def momentum_in_world(state, tensor):
+    return rotated(state, tensor @ state.angular_velocity)
