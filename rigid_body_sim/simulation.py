@@ -9,6 +9,7 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
+import contextlib
 import math
 from dataclasses import dataclass
 
@@ -22,6 +23,8 @@ from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, 
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
 from rigid_body_sim.state import ORIENTATION, STATE_SIZE, State, States
+
+NOTHING = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,8 @@ class Simulation:
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = mechanics.parameters(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
+        self._immovable = 0.0 in self._mechanics[mechanics.MOMENTS:mechanics.MOMENTS + 3]
+        self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
 
@@ -114,6 +119,7 @@ class Simulation:
         given = span.given + span.solver.exchanged(now)
         self._spans = [_Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
         self._arrive()
+        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
     def _restart(self):
         self._origin, self._origin_time = self.tick, 0.0
@@ -193,9 +199,8 @@ class Simulation:
             Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
         """
         force, torque = self._in_world(force, torque, frame, 'impulse')
-        self._refuse_immovable(force, torque, 'impulse')
         base, total_force, total_torque, wrench = self._present_commands()
-        self._apply(base, total_force + force, total_torque + torque, wrench)
+        self._apply(base, _sum(total_force, force), _sum(total_torque, torque), wrench)
 
     def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
         """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
@@ -203,8 +208,7 @@ class Simulation:
         The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
         the axes turn with the body. The same errors as for :meth:`impulse`.
         """
-        force_world, torque_world = self._in_world(force, torque, frame, 'wrench')
-        self._refuse_immovable(force_world, torque_world, 'wrench')
+        self._in_world(force, torque, frame, 'wrench')
         base, force_sum, torque_sum, held = self._present_commands()
         wrench = Wrench(tuple(map(float, force)), tuple(map(float, torque)), frame)
         wrench = wrench if any(wrench.force) or any(wrench.torque) else Wrench()
@@ -214,6 +218,17 @@ class Simulation:
     def release(self):
         """Let go of the held wrench at the present tick."""
         self.hold()
+
+    @contextlib.contextmanager
+    def together(self):
+        """Gather commands of the present tick: they act at the end of the ``with`` block, to the bit as one by one, but computed once."""
+        self._gathering = True
+        try:
+            yield
+        finally:
+            self._gathering = False
+            if self._commands is not None:
+                self._settle()
 
     @property
     def wrench(self):
@@ -312,35 +327,45 @@ class Simulation:
     def _present_commands(self):
         """Return what the commands of this tick start from: the span before them, and what they add up to so far."""
         if self._commands is None:
-            nothing = np.zeros(3)
-            self._commands = len(self._spans), nothing, nothing, self._spans[-1].wrench
+            self._commands = len(self._spans), NOTHING, NOTHING, self._spans[-1].wrench
         return self._commands
 
-    def _apply(self, base, force, torque, wrench):
+    def _apply(self, *commands):
+        self._commands = commands
+        if not self._gathering:
+            self._settle()
+
+    def _settle(self):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""
+        base, force, torque, wrench = self._commands
         kept = self._spans[:base]
-        if force.any() or torque.any() or wrench != kept[-1].wrench:
-            kept = [*kept, self._next_span(kept[-1], self.time, force, torque, wrench, kept[-1].strikes)]
+        if any(force) or any(torque) or wrench != kept[-1].wrench:
+            kept = [*kept, self._next_span(kept[-1], self.time, np.array(force), np.array(torque), wrench, kept[-1].strikes)]
         self._spans = kept
-        self._commands = base, force, torque, wrench
         self._arrive()
 
-    def _refuse_immovable(self, force, torque, what):
-        if not mechanics.apply_impulse(self._mechanics, self.vector.copy(), force, torque, np.empty(mechanics.EXCHANGE_SIZE)):
-            raise BadInput(what, f'torque {torque.tolist()} (world axes) about an axis of zero moment',
-                           'leave that component 0: an axis without moment takes no angular momentum')
-
     def _in_world(self, force, torque, frame, what):
-        """Return a command's force and torque in world axes, checked."""
+        """Return a command's force and torque in world axes, two tuples, checked."""
         if not self.scene.accepts_commands:
             raise BadInput(what, f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
-        force, torque = np.array(force, dtype=float), np.array(torque, dtype=float)
-        if force.shape != (3,) or torque.shape != (3,) or not (np.isfinite(force).all() and np.isfinite(torque).all()):
-            raise BadInput(what, f'got force {force.tolist()}, torque {torque.tolist()}', 'three finite numbers each')
+        force, torque = tuple(map(float, force)), tuple(map(float, torque))
+        if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
+            raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
         if frame not in ('world', 'body'):
             raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
         if frame == 'body':
             # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
-            q = self._attitude_at_tick
-            force, torque = np.array(rotate(*q, *force)), np.array(rotate(*q, *torque))
+            force, torque = rotate(*self._attitude_at_tick, *force), rotate(*self._attitude_at_tick, *torque)
+        if self._immovable:
+            self._refuse_immovable(force, torque, what)
         return force, torque
+
+    def _refuse_immovable(self, force, torque, what):
+        if not mechanics.apply_impulse(self._mechanics, self.vector.copy(), np.array(force), np.array(torque),
+                                       np.empty(mechanics.EXCHANGE_SIZE)):
+            raise BadInput(what, f'torque {list(torque)} (world axes) about an axis of zero moment',
+                           'leave that component 0: an axis without moment takes no angular momentum')
+
+
+def _sum(p, q):
+    return p[0] + q[0], p[1] + q[1], p[2] + q[2]

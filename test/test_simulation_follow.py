@@ -49,3 +49,13 @@ def test_another_scene_begins_at_its_own_start():
     assert (second.tick, second.time) == (1000, 0.0)
     assert second.vector.tolist() == second.scene.initial.vector.tolist()
     assert not second.wrench
+
+
+def test_commands_in_body_axes_turn_with_the_attitude_that_was_taken_over():
+    first, undisturbed = half_way(), half_way()
+    second = Simulation('tennis_racket')
+    second.follow(first, keep_state=True)
+    for simulation in (second, undisturbed):
+        simulation.release()
+        simulation.impulse(torque=TORQUE, frame='body')
+    assert second.vector.tolist() == undisturbed.vector.tolist()

@@ -184,15 +184,16 @@ class Session:
         self.simulation.forget_past()
         applied = []
         queue = self._commands.queue
-        while queue:
-            command = queue.popleft()
-            try:
-                self._apply(command, tick)
-            except BadInput as refusal:
-                self._commands.refuse(command.topic, 'the body cannot take it', refusal.problem, refusal.remedy)
-                continue
-            self._commands.applied += 1
-            applied.append(command)
+        with self.simulation.together():
+            while queue:
+                command = queue.popleft()
+                try:
+                    self._apply(command, tick)
+                except BadInput as refusal:
+                    self._commands.refuse(command.topic, 'the body cannot take it', refusal.problem, refusal.remedy)
+                    continue
+                applied.append(command)
+        self._commands.applied += len(applied)
         if self._release_tick is not None and tick >= self._release_tick:
             self._release_tick = None
             self.simulation.release()
