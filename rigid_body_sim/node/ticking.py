@@ -54,8 +54,8 @@ class Followed:
         from rclpy.duration import Duration
         self._clock = clock
         self._moved = threading.Event()
-        nanosecond = Duration(nanoseconds=1)
-        threshold = JumpThreshold(min_forward=nanosecond, min_backward=-nanosecond, on_clock_change=True)
+        forward, backward = Duration(nanoseconds=1), Duration(nanoseconds=-1)
+        threshold = JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
         self._handle = clock.create_jump_callback(threshold, post_callback=lambda _: self._moved.set())
 
     def now(self):
