@@ -14,10 +14,11 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParam
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
+from rigid_body_sim import topics
 from rigid_body_sim.errors import BadInput
 
-EXTRA_TOPICS = ('odom', 'imu', 'joint_states', 'reaction', 'marker', 'tf', 'clock')
-STATE_TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
+STATE_TOPICS = tuple(output.name for output in topics.EVERY_TICK)
+EXTRA_TOPICS = tuple(output.name for output in topics.ON_REQUEST)
 
 
 @dataclasses.dataclass(frozen=True)
