@@ -133,11 +133,11 @@ def nome(k, kc):
 
 @compiled
 def agm_pair(x, x_low, y, y_low):
-    """Return the arithmetic-geometric mean of two pairs of doubles (double_double.py), x >= y > 0, to 1e-19 of itself or better.
+    """Return the arithmetic-geometric mean of two pairs of doubles (double_double.py), x >= y > 0, to 1e-19 of itself.
 
     Two steps of the mean take the modulus to that of nome q^4, and what is left of it is 1/theta_3(q^4)^2 (DLMF 20.9.2).
     """
-    while y < 0.17 * x:
+    while y < 0.7 * x:
         product, product_low = multiply(x, x_low, y, y_low)
         x, x_low = add_alike(x, x_low, y, y_low)
         x, x_low = 0.5 * x, 0.5 * x_low
@@ -226,3 +226,12 @@ def _jacobi_hyperbolic(u, k, kc):
     return (sign * theta1 * zero3 / (zero4 * theta2),
             sign * scale * (even - odd) / (zero4 * theta2),
             scale * (even + odd) / (zero3 * theta2))
+
+
+@compiled
+def root_nome(k, kc):
+    """Return the square root of the nome for k <= kc to full relative accuracy, also where the nome itself underflows."""
+    s = 1.0 + math.sqrt(kc)
+    half = 0.5 * k * k / ((1.0 + kc) * s * s)
+    x = half * half * half * half
+    return k * math.sqrt(0.5 / (1.0 + kc) * (1.0 + x * (2.0 + x * (15.0 + x * 150.0)))) / s

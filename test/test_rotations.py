@@ -1,12 +1,22 @@
-"""Rotations: what `normalised` promises about its rounding. The rest is used, and so tested, everywhere."""
+"""Rotations: against SciPy, through the poles of the Euler angles, and what `normalised` promises about its rounding."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from near import near
+from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.rotations import normalised
+from rigid_body_sim.rotations import (
+    angle_between,
+    from_euler_zyz,
+    from_rotation_vector,
+    multiply,
+    normalised,
+    rotate,
+    rotate_back,
+    to_euler_zyz,
+)
 
 ULP = 2.0**-52
 
@@ -31,3 +41,35 @@ def test_normalised_keeps_the_direction():
     q = normalised(0.3, -0.4, 1.2, 2.0)
     assert q == near(tuple(np.array([0.3, -0.4, 1.2, 2.0]) / np.sqrt(5.69)), 1e-15)
     assert normalised(0.0, 0.0, 0.0, -1.0) == (0.0, 0.0, 0.0, -1.0)
+
+
+def random_quaternions(count):
+    return Rotation.random(count, np.random.default_rng(5)).as_quat().tolist()
+
+
+def test_products_and_rotated_vectors_are_those_of_scipy():
+    for p, q in zip(random_quaternions(50), random_quaternions(60)[10:], strict=True):
+        expected = (Rotation.from_quat(p) * Rotation.from_quat(q)).as_quat()
+        found = np.array(multiply(*p, *q))
+        assert min(np.abs(found - expected).max(), np.abs(found + expected).max()) < 4e-16
+        vector = (0.3, -2.0, 1.1)
+        assert rotate(*p, *vector) == pytest.approx(Rotation.from_quat(p).apply(vector), rel=0.0, abs=2e-15)
+        assert rotate_back(*p, *rotate(*p, *vector)) == pytest.approx(vector, rel=0.0, abs=5e-15)
+
+
+def test_euler_angles_zyz():
+    for angles in ((0.3, 1.1, -2.0), (-3.0, 3.1, 3.0), (2.0, 1e-9, 0.5), (1.0, np.pi - 1e-9, -0.5)):
+        q = from_euler_zyz(*angles)
+        assert angle_between(*q, *Rotation.from_euler('ZYZ', angles).as_quat()) < 1e-15
+        assert angle_between(*q, *from_euler_zyz(*to_euler_zyz(*q))) < 1e-15
+        assert to_euler_zyz(*q)[1] == near(angles[1], 1e-15)
+    # at the poles only alpha + gamma or alpha - gamma is defined
+    assert to_euler_zyz(*from_euler_zyz(0.4, 0.0, 0.3)) == near((0.7, 0.0, 0.0), 1e-15)
+    assert to_euler_zyz(*from_euler_zyz(0.4, np.pi, 0.3))[1] == near(np.pi, 1e-15)
+
+
+def test_small_angles_keep_their_digits():
+    for angle in (1e-150, 1e-12, 1e-8, 0.9e-8, 1.0, 3.0):
+        q = from_rotation_vector(0.0, 0.6 * angle, -0.8 * angle)
+        assert angle_between(0.0, 0.0, 0.0, 1.0, *q) == near(angle, 4e-16)
+        assert q[1] * -0.8 == near(q[2] * 0.6, 4e-16)
