@@ -1,17 +1,26 @@
 """The table of methods: one file each, one line each.
 
-A method is a module with NAME, ORDER, PRESERVES (what it keeps exactly), SOURCE (where it is published) and NEEDS (the view of every
-effect that it asks for, rigid_body_sim/effects/views.py).
+A method is a module with NAME, ORDER, PRESERVES (what it keeps exactly), SOURCE (where it is published), NEEDS (the view of every effect
+that it asks for, rigid_body_sim/effects/views.py), HEAT (whether it runs scenes in which anything makes heat), TAKES (what controls it:
+accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
-from rigid_body_sim.integrators import dop8
+from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.integrators import dop8, lsoda, radau, rk4, semi_implicit_euler, split2, split4, split6, split8
 
-METHODS = {method.NAME: method for method in (dop8,)}
+METHODS = {method.NAME: method for method in (dop8, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 
 
 def runnable(scene):
-    """Return the names of the methods that can run a scene: those that find the view they need in every effect (strikes are impulses)."""
+    """Return the names of the methods that can run a scene.
+
+    Those that find the view they need in every effect (strikes are impulses), and bear the heat that the effects make.
+    """
     if scene.constraint.kind == 'table':
         return []
     effects = [effect for effect in scene.effects if effect.name != 'strike']
-    return [name for name, method in METHODS.items() if all(hasattr(effect, method.NEEDS) for effect in effects)]
+    frame = Frame.of(scene.body, scene.constraint)
+    acting = [one for effect in effects if hasattr(effect, 'acting') for one in effect.acting(frame, 0.0)]
+    hot = any(one.books == 'heat' for one in acting)
+    return [name for name, method in METHODS.items()
+            if all(hasattr(effect, method.NEEDS) for effect in effects) and (method.HEAT or not hot)]

@@ -7,10 +7,14 @@ nothing. The equations have no explicit time, so the nodes c are not needed.
 Caveat: energy and momentum are kept to the accuracy of the method only; the norm of the quaternion is restored after each step.
 """
 
+from rigid_body_sim.integrators import runge_kutta as FAMILY  # noqa: F401, N812
+
 NAME = 'dop8'
 ORDER = 8
 PRESERVES = ()
 NEEDS = 'acting'
+HEAT = True
+TAKES = ('accuracy', 'step')
 SOURCE = 'Hairer, Norsett, Wanner, Solving ODEs I (1993), II.5, DOP853'
 
 A = (

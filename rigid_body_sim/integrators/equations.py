@@ -39,6 +39,12 @@ class Equations:
         Times (s) at which the parameters jump.
     acts : bool
         Whether anything exchanges energy or angular momentum with the body.
+    calls : list
+        What acts, as text for the ..._source functions.
+    parameter_count : int
+        Of the parameters.
+    makes_heat : bool
+        Whether anything is booked as heat: it depends on velocities.
     """
 
     def __init__(self, scene, wrench=None, books=False):
@@ -55,14 +61,17 @@ class Equations:
                 raise BadInput(f'{scene.name}: constraint.hinge', 'the moment of inertia about the axis is zero', 'move the axis')
         else:
             self.kind = flying if any(one.gives == 'force' for one in acting) else turning
-        calls = list(_calls(acting, hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED))
+        fixed = hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED
+        self.calls = calls = list(_calls(acting, fixed))
+        self.parameter_count = fixed + sum(len(one.values) for one in acting)
+        self.makes_heat = any(one.books == 'heat' for one in acting)
         sources = {'booked': _booked(calls if books else None)}
         if self.kind is hinged:
-            sources['torque'] = _torque(calls)
+            sources['torque'] = torque_source(calls)
         else:
             sources |= {'omega_rate': _omega_rate(calls), 'axes_rate': _axes_rate(calls)}
         if self.kind is flying:
-            sources['force'] = _force(calls)
+            sources['force'] = force_source(calls)
         self.kernels = specialise(self.kind, **sources)
 
     def _acting(self, time):
@@ -133,14 +142,22 @@ def _sums(calls):
     return [' + '.join(getattr(call, axis) for call in calls) or '0.0' for axis in 'xyz']
 
 
-def _torque(calls):
+def torque_source(calls):
+    """Return the source of ``torque(p, q, omega, v)``, the sum of all torques."""
     calls = [call for call in calls if call.gives != 'force']
     return _kernel('torque', calls, _sums(calls))
 
 
-def _force(calls):
+def force_source(calls):
+    """Return the source of ``force(p, q, omega, v)``, the sum of all forces."""
     calls = [call for call in calls if call.gives == 'force']
     return _kernel('force', calls, _sums(calls))
+
+
+def turning_source(calls):
+    """Return the source of ``turning(p, q, omega, v)``, the extra rate at which the axes turn."""
+    calls = [call for call in calls if call.gives == 'turning']
+    return _kernel('turning', calls, ('ux', 'uy', 'uz') if calls else ('0.0', '0.0', '0.0'))
 
 
 def _omega_rate(calls):

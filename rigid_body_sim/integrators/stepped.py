@@ -15,8 +15,7 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, adaptive, fixed, table, track, unroll
-from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.integrators import METHODS, adaptive, fixed, scipy_methods, table, track, unroll
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
@@ -58,6 +57,10 @@ class Stepped:
         if accuracy is not None and not (math.isfinite(accuracy) and accuracy >= FINEST):
             raise BadInput('accuracy', f'got {accuracy!r}', f'at least {FINEST!r}, what doubles carry')
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
+        if step is None and 'accuracy' not in self.method.TAKES:
+            raise BadInput('step', f'{method} does not control its error, it needs a step', 'give a step, in seconds')
+        if step is not None and 'step' not in self.method.TAKES:
+            raise BadInput('step', f'got {step!r}, but {method} chooses its own steps', 'give an accuracy and no step')
         self.accuracy, self.step, self.horizon = accuracy, step, horizon
         self._plain = self._bind(books=False)
         self._with_books = None
@@ -65,6 +68,8 @@ class Stepped:
     def _bind(self, books):
         if self.scene.constraint.kind == 'table':
             return table.OnTable(self.scene, self.method, self.wrench, self.step)
+        if self.method.FAMILY is scipy_methods:
+            return scipy_methods.Bound(self, books)
         return _Bound(self.scene, self.method, self.wrench, self.step is None, books)
 
     def start(self, vector):
@@ -109,13 +114,13 @@ class _Bound:
     """The kernels of one method on the equations of one scene kind."""
 
     def __init__(self, scene, method, wrench, adapts, books):
-        self.equations = equations = Equations(scene, wrench, books)
+        self.equations = equations = method.FAMILY.equations(scene, wrench, books)
         self.acts = equations.acts
         n, extra = equations.kind.UNKNOWNS, EXCHANGE_SIZE if books else 0
         groups = equations.kind.GROUPS
         kernels = equations.kernels.__name__
         march = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled', 'SIZE': f'SIZE = {n + extra}\n',
-                 'step': unroll.step_source(method, n, extra),
+                 'step': method.FAMILY.step_source(method, equations),
                  'load': unroll.load_source('load', n + extra), 'put': unroll.put_source('put', n + extra)}
         if adapts:
             relative = sum(not absolute for _, _, absolute in groups)
