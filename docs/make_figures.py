@@ -1,5 +1,7 @@
 """Make the figures of README and docs anew: docs/images/*.png.
 
+::
+
     .venv/bin/python docs/make_figures.py
 """
 

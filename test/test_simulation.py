@@ -97,7 +97,7 @@ def test_held_wrench_does_not_depend_on_the_rate_or_on_how_often_it_is_sent(fram
 
 def test_torque_on_a_ball_held_and_released_by_hand():
     simulation = Simulation(parse_scene(SPHERE))
-    I = 0.4 * 2.0 * 0.01  # noqa: E741 - the moment, as everywhere
+    I = 0.4 * 2.0 * 0.01
     simulation.hold(torque=(0.0, 0.0, 0.016))
     simulation.advance(1000)
     simulation.release()

@@ -22,7 +22,8 @@ class SlidingFriction:
     g: float
     name: ClassVar = 'sliding_friction'
     SCHEMA: ClassVar = {
-        'type': 'object', 'properties': {'mu': {'type': 'number', 'minimum': 0}, 'g': POSITIVE}, 'required': ['mu', 'g'], 'additionalProperties': False}
+        'type': 'object', 'properties': {'mu': {'type': 'number', 'minimum': 0}, 'g': POSITIVE}, 'required': ['mu', 'g'],
+        'additionalProperties': False}
     constraints: ClassVar = ('table',)
     repeatable: ClassVar = False
     breakpoints: ClassVar = ()
