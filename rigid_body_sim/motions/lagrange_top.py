@@ -7,17 +7,18 @@ ordinary cases.
 Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the pivot; I1, I1, I3 moments about the pivot; k = M g h/I1;
 n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the vertical, u = cos(beta).
 
-A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate omega_3 - n = omega_3 (I1 - I3)/I1, so I3 enters
-nowhere else. The attitude is a pair of complex numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2,
-|b|^2 = (1 - u)/2, |a|^2 + |b|^2 = 1), so nothing happens at beta = 0 and pi where Euler's angles fail. a, b and omega_c = omega_2 - i omega_1
-are single-valued functions of time: a theta quotient times a phase that grows steadily (lagrange_top_theta.py), and with the same phases
+A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate omega_3 - n = omega_3 (I1 - I3)/I1, so I3
+enters nowhere else. The attitude is a pair of complex numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2,
+|b|^2 = (1 - u)/2), so nothing happens at beta = 0 and pi where Euler's angles fail. a, b and omega_c = omega_2 - i omega_1 are
+single-valued functions of time: a theta quotient times a phase that grows steadily (lagrange_top_theta.py). The phase of omega_c is that of
+b less that of a, because with gamma the vertical in body axes and c = omega . gamma across e3
 
-    omega_c = (c + i u')/(1 - u^2) gamma_c,     gamma_c = 2 i conj(a) b,     c = omega_c . gamma_c        (gamma: the vertical in body axes).
+    omega_c = (c + i u')/(1 - u^2) gamma_c,     gamma_c = 2 i conj(a) b.
 
-At u1 and u2 (lagrange_top_roots.py) u' = 0: there arg(a)' = sigma/(2 x), arg(b)' = delta/(2 y), which gives the rates of the phases as sums of
-terms of one sign.
+What grows with time has more digits than a double (lagrange_top_means.py), so errors do not grow.
 
-Kernels besides those of every motion: `turning_index`, `turning_time` (where the axis turns between rising and falling), `reaction`.
+Kernels besides those of every motion: `states`, the same operations as `state` on many times side by side; `next_event`, `turning_index`,
+`turning_time` (where beta turns); `reaction`. Nutation too slight to be seen in doubles (NOTICED in lagrange_top_anchor.py) is no event.
 """
 
 import math
@@ -26,18 +27,36 @@ from fractions import Fraction
 import numpy as np
 
 from rigid_body_sim import bodies
-from rigid_body_sim.compiled import compiled
+from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import multiply_double, two_sum
-from rigid_body_sim.motions.lagrange_top_anchor import NEVER, NUTATION_SIZE, PARITY, RATE, START, STRETCH, anchor_nutation, functions
+from rigid_body_sim.motions.lagrange_top_anchor import (
+    IS_HYPERBOLIC,
+    NEVER,
+    NUTATES,
+    NUTATION_SIZE,
+    PARITY,
+    RATE,
+    START,
+    STRETCH,
+    anchor_nutation,
+    circular_functions,
+    functions,
+    hyperbolic_functions,
+)
+from rigid_body_sim.motions.pairs import pair_at, pair_of
 from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
 
-# layout of the parameters: M, g, h, the pairs M g h/I1, I3/I1, (I1 - I3)/I1, quaternion that turns the top's axes (third: e3) into the body's
+# layout of the parameters: M, g, h; as pairs M g h/I1, I3/I1, (I1 - I3)/I1; quaternion that turns the axes of the top (third: e3) to the body
 MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = 0, 1, 2, 3, 5, 7, 9
 PARAMETER_SIZE = 13
 
 # layout of the anchor: functions of time, then what is constant
 TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE + 2, NUTATION_SIZE + 6
 ANCHOR_SIZE = NUTATION_SIZE + 9
+
+EVENTS = ('turning point',)
+BLOCK = 128         # states that `states` computes side by side
+FEW = 8             # below that it takes them one by one
 
 
 def absorbs(scene):
@@ -47,7 +66,7 @@ def absorbs(scene):
 
 
 def symmetry_axis(body):
-    """Return the number (0, 1, 2) of the principal axis that is e3, and the quaternion that turns the top's axes into the body's; or None.
+    """Return the number (0, 1, 2) of the principal axis that is e3, and the quaternion that turns the top's axes into the body's, or None.
 
     Two moments about the origin must be the same double and the centre of mass must lie on the third axis: to the last bit where principal
     axes and body axes coincide up to order and sign, else to the rounding of the turn between them. e3 points towards the centre of mass.
@@ -80,12 +99,7 @@ def parameters(scene):
     I1, I3 = Fraction(body.about_origin.moments[(axis + 1) % 3]), Fraction(body.about_origin.moments[axis])
     g, arm = gravity.g if gravity else 0.0, math.hypot(*body.center_of_mass)
     pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
-    return np.array([body.mass, g, arm, *_pair(pull), *_pair(I3 / I1), *_pair((I1 - I3) / I1), *frame])
-
-
-def _pair(number):
-    """Return an exact number as a pair of doubles."""
-    return float(number), float(number - Fraction(float(number)))
+    return np.array([body.mass, g, arm, *pair_of(pull), *pair_of(I3 / I1), *pair_of((I1 - I3) / I1), *frame])
 
 
 @compiled
@@ -95,49 +109,116 @@ def anchor(parameters, start, anchor):
     x, y, z, w = multiply(start[1], start[2], start[3], start[4], fx, fy, fz, fw)
     omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, start[5], start[6], start[7])
     anchor_nutation(w, z, y, -x, omega_2, -omega_1, multiply_double(parameters[RATIO], parameters[RATIO + 1], omega_3),
-                    (parameters[PULL], parameters[PULL + 1]), multiply_double(parameters[EXCESS], parameters[EXCESS + 1], omega_3), anchor)
+                    pair_at(parameters, PULL), multiply_double(parameters[EXCESS], parameters[EXCESS + 1], omega_3), anchor)
     anchor[TIME], anchor[SPIN] = start[0], omega_3
     anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3] = fx, fy, fz, fw
     anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2] = start[8], start[9], start[10]
 
 
+@compiled_inline
+def _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im):
+    """Return quaternion and angular velocity of the body from a, b, omega_c; the norm is 1 up to rounding, which is taken out."""
+    fx, fy, fz, fw = c[TOP_FRAME], c[TOP_FRAME + 1], c[TOP_FRAME + 2], c[TOP_FRAME + 3]
+    # summed near 0, where rounding has no side
+    excess = ((a_re * a_re - 0.25) + (a_im * a_im - 0.25)) + ((b_re * b_re - 0.25) + (b_im * b_im - 0.25))
+    scale = 1.0 - 0.5 * excess
+    x, y, z, w = multiply(scale * -b_im, scale * b_re, scale * a_im, scale * a_re, -fx, -fy, -fz, fw)
+    wx, wy, wz = rotate(fx, fy, fz, fw, -o_im, o_re, c[SPIN])
+    return x, y, z, w, wx, wy, wz
+
+
 @compiled
-def state(anchor, time, out):
-    """Fill out with the state at a time."""
-    elapsed, elapsed_low = two_sum(time, -anchor[TIME])
-    a_re, a_im, b_re, b_im, o_re, o_im = functions(anchor, elapsed, elapsed_low)
-    fx, fy, fz, fw = anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3]
-    x, y, z, w = multiply(-b_im, b_re, a_im, a_re, -fx, -fy, -fz, fw)
+def state(c, time, out):
+    """Fill out with the state (14 doubles) at a time before or after the anchor c."""
+    elapsed, elapsed_low = two_sum(time, -c[TIME])
+    a_re, a_im, b_re, b_im, o_re, o_im = functions(c, elapsed, elapsed_low)
     out[0] = time
-    out[1], out[2], out[3], out[4] = normalised(x, y, z, w)
-    out[5], out[6], out[7] = rotate(fx, fy, fz, fw, -o_im, o_re, anchor[SPIN])
-    out[8], out[9], out[10] = anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2]
+    out[1], out[2], out[3], out[4], out[5], out[6], out[7] = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
+    out[8], out[9], out[10] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
     out[11], out[12], out[13] = 0.0, 0.0, 0.0
 
 
 @compiled
-def turning_index(anchor, time):
+def states(c, times, out):
+    """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
+    if len(times) < FEW:
+        for k in range(len(times)):
+            state(c, times[k], out[k])
+        return
+    columns = np.empty(7 * BLOCK)
+    for first in range(0, len(times), BLOCK):
+        count = min(BLOCK, len(times) - first)
+        _fill_columns(c, times[first:first + count], columns)
+        for k in range(count):
+            row = out[first + k]
+            row[0] = times[first + k]
+            for j in range(7):
+                row[1 + j] = columns[j * BLOCK + k]
+            row[8], row[9], row[10] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
+            row[11], row[12], row[13] = 0.0, 0.0, 0.0
+
+
+@compiled
+def _fill_columns(c, times, columns):
+    if c[IS_HYPERBOLIC] == 0.0:
+        for k in range(len(times)):
+            elapsed, elapsed_low = two_sum(times[k], -c[TIME])
+            a_re, a_im, b_re, b_im, o_re, o_im = circular_functions(c, elapsed, elapsed_low)
+            x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
+            _keep(columns, k, x, y, z, w, wx, wy, wz)
+    else:
+        for k in range(len(times)):
+            elapsed, elapsed_low = two_sum(times[k], -c[TIME])
+            a_re, a_im, b_re, b_im, o_re, o_im = hyperbolic_functions(c, elapsed, elapsed_low)
+            x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
+            _keep(columns, k, x, y, z, w, wx, wy, wz)
+
+
+@compiled_inline
+def _keep(columns, k, x, y, z, w, wx, wy, wz):
+    b = BLOCK
+    columns[k], columns[b + k], columns[2 * b + k], columns[3 * b + k] = x, y, z, w
+    columns[4 * b + k], columns[5 * b + k], columns[6 * b + k] = wx, wy, wz
+
+
+@compiled
+def next_event(c, after):
+    """Return the time of the first turning point of beta later than `after`, infinite if there is none, and the code 0."""
+    if c[NUTATES] == 0.0:
+        return math.inf, 0
+    index = turning_index(c, after) - 1.0
+    time = turning_time(c, index)
+    while time <= after:
+        index += 1.0
+        if turning_time(c, index) == math.inf:
+            return math.inf, 0
+        time = turning_time(c, index)
+    return time, 0
+
+
+@compiled
+def turning_index(c, time):
     """Return the number (a whole float) of the last turning point of beta at or before a time; even: lowest, odd: highest position of e3.
 
     The turning points in (t1, t2] are those after turning_index(t1) up to turning_index(t2). In steady precession the number never changes.
     """
-    return math.floor(2.0 * (anchor[START] + anchor[RATE] * (time - anchor[TIME]))) + anchor[PARITY]
+    return math.floor(2.0 * (c[START] + c[RATE] * (time - c[TIME]))) + c[PARITY]
 
 
 @compiled
-def turning_time(anchor, index):
+def turning_time(c, index):
     """Return the time (s) of a turning point of beta by its number, infinite if the motion has no such one."""
-    turns = 0.5 * (index - anchor[PARITY])
-    if anchor[RATE] == 0.0 or (turns != 0.0 and anchor[STRETCH] >= NEVER):
+    turns = 0.5 * (index - c[PARITY])
+    if c[RATE] == 0.0 or (turns != 0.0 and c[STRETCH] >= NEVER):
         return math.inf
-    return anchor[TIME] + (turns - anchor[START]) / anchor[RATE]
+    return c[TIME] + (turns - c[START]) / c[RATE]
 
 
 @compiled
 def reaction(parameters, state, out):
     """Fill out, shape (3,), with the force of the pivot on the body (N, world axes): M (acceleration of the centre of mass + g z).
 
-    There is no couple. With c = h e3, I1 omega' = ... by Euler's equations: c'' = h (omega' x e3 + omega x (omega x e3)).
+    There is no couple. c = h e3, c'' = h (omega' x e3 + omega x (omega x e3)), omega' by Euler's equations.
     """
     fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
     x, y, z, w = multiply(state[1], state[2], state[3], state[4], fx, fy, fz, fw)

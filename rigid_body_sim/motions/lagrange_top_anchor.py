@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled
-from rigid_body_sim.elliptic import carlson_rf, complete_k, nome
-from rigid_body_sim.motions.lagrange_top_means import NEVER, TURN, mean_rates
+from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.elliptic import carlson_rf, complete_k, nome, root_nome
+from rigid_body_sim.motions.lagrange_top_means import NEVER, mean_rates
 from rigid_body_sim.motions.lagrange_top_roots import (
     ABOVE,
     CHI,
@@ -34,54 +34,69 @@ from rigid_body_sim.motions.lagrange_top_roots import (
     W,
     X,
     Y,
-    minus,
-    plus,
-    scaled,
-    times,
     turning_points,
 )
 from rigid_body_sim.motions.lagrange_top_theta import FORM_SIZE, circular, hyperbolic, set_circular, set_hyperbolic, set_nome
+from rigid_body_sim.motions.pairs import TURN, minus, plus, put, scaled, times
 from rigid_body_sim.turns import nearest, phase, sin_cos
 
 # layout: the theta functions; phase of nutation (a turn is a period) and phases of a and b (turns): value at the start, rate
 START, START_A, START_B, RATE, RATE_A, RATE_B = FORM_SIZE, FORM_SIZE + 1, FORM_SIZE + 2, FORM_SIZE + 3, FORM_SIZE + 5, FORM_SIZE + 7
 # hyperbolic phase per turn of nutation; phases of a and b (turns) per unit of it; 1 for an odd position at the start; see `functions`
-IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING = range(FORM_SIZE + 9, FORM_SIZE + 16)
-NUTATION_SIZE = FORM_SIZE + 16
+IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING, NUTATES = range(FORM_SIZE + 9, FORM_SIZE + 17)
+NUTATION_SIZE = FORM_SIZE + 17
 
 QUARTER_TURN = 0.5 * math.pi
+NOTICED = 1e-9
 TINY = 1e-60            # a tilt and swing below this follow linear equations, to far below round-off
 
 
-@compiled
-def functions(anchor, time, time_low):
+@compiled_inline
+def circular_functions(anchor, time, time_low):
     """Return real and imaginary part of a, b and omega_c at a time (s) after the start, the steady spin omega_3 - n included."""
     turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
-    turns += anchor[START]
-    turns -= nearest(turns)
     turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
     turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
-    turns_a, turns_b = turns_a + anchor[START_A], turns_b + anchor[START_B]
-    if anchor[IS_HYPERBOLIC] == 0.0:
-        c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, turns, low)
-        turn_re, turn_im = c1 if anchor[WINDING] != 0.0 else 1.0, anchor[WINDING] * s1
-    else:
-        # half a period on, the highest position stands for the lowest; the phases' mean rates are in RATE_A, RATE_B
-        half_turns = nearest(2.0 * turns)
-        odd = abs(half_turns)
-        along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + low)
-        turns_a -= anchor[DRIFT_A] * along
-        turns_b -= anchor[DRIFT_B] * along
-        ar, ai, br, bi, wr, wi = hyperbolic(anchor, along, odd != anchor[PARITY])
-        turn_re, turn_im = 1.0 - 2.0 * odd * anchor[WINDING], 0.0
-    sa, ca = sin_cos(turns_a, low_a)
-    sb, cb = sin_cos(turns_b, low_b)
-    # omega_c: i SIDE conj(e_a) e_b times the winding
+    c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, turns + anchor[START], low)
+    winding = anchor[WINDING]
+    return _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a, low_a, turns_b, low_b, c1 if winding != 0.0 else 1.0, winding * s1)
+
+
+@compiled_inline
+def hyperbolic_functions(anchor, time, time_low):
+    """Return what :func:`circular_functions` returns: hyperbolic form."""
+    turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
+    turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
+    turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
+    turns += anchor[START]
+    turns -= nearest(turns)
+    # half a period on, the highest position stands for the lowest; the phases' mean rates are in RATE_A, RATE_B
+    half_turns = nearest(2.0 * turns)
+    odd = abs(half_turns)
+    along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + low)
+    ar, ai, br, bi, wr, wi = hyperbolic(anchor, along, odd != anchor[PARITY])
+    return _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a - anchor[DRIFT_A] * along, low_a, turns_b - anchor[DRIFT_B] * along, low_b,
+                        1.0 - 2.0 * odd * anchor[WINDING], 0.0)
+
+
+@compiled_inline
+def _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a, low_a, turns_b, low_b, turn_re, turn_im):
+    """Multiply a, b and omega_c by their phase factors; that of omega_c is i SIDE conj(e_a) e_b times the winding."""
+    sa, ca = sin_cos(turns_a + anchor[START_A], low_a)
+    sb, cb = sin_cos(turns_b + anchor[START_B], low_b)
     cd, sd = anchor[SIDE] * (ca * cb + sa * sb), anchor[SIDE] * (ca * sb - sa * cb)
     to_re, to_im = -(sd * turn_re + cd * turn_im), cd * turn_re - sd * turn_im
     return (ar * ca - ai * sa, ar * sa + ai * ca,
             br * cb - bi * sb, br * sb + bi * cb,
             wr * to_re - wi * to_im, wr * to_im + wi * to_re)
+
+
+@compiled
+def functions(anchor, time, time_low):
+    """Return what :func:`circular_functions` returns, by the form that the motion has."""
+    if anchor[IS_HYPERBOLIC] == 0.0:
+        return circular_functions(anchor, time, time_low)
+    return hyperbolic_functions(anchor, time, time_low)
 
 
 @compiled
@@ -103,7 +118,7 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     own = max(abs(n[0]), 2.0 * math.sqrt(k[0]))
     scale = _scale(max(tilt, swing / own)) if own > 0.0 else 1.0
     unit_a, unit_b = (1.0, scale) if standing else (scale, 1.0)
-    roots = np.empty(2 * SIZE)
+    roots = np.empty(SIZE)
     turning_points(a_re / unit_a, a_im / unit_a, b_re / unit_b, b_im / unit_b, unit_a, unit_b, o_re / scale, o_im / scale, n, k, roots)
     mean, nutation, rate_a, rate_b = mean_rates(roots, scale if roots[SEPARATE] == 1.0 else 1.0)
 
@@ -120,9 +135,13 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
         _hyperbolic(roots, k[0], mean, scale, rate_unit, side_a, side_b, side_w, anchor)
     rate_a = times(plus(scaled(rate_a, rate_unit), scaled(own_spin, 0.5)), TURN)
     rate_b = times(minus(scaled(rate_b, rate_unit), scaled(own_spin, 0.5)), TURN)
-    anchor[RATE], anchor[RATE + 1] = scaled(nutation, rate_unit)
-    anchor[RATE_A], anchor[RATE_A + 1] = rate_a
-    anchor[RATE_B], anchor[RATE_B + 1] = rate_b
+    # counted as nutation (an event) if u' ever comes near NOTICED times the angular velocity
+    steepest = math.sqrt(roots[WIDE]) * roots[GAP] * (scale * scale if roots[SEPARATE] == 0.0 else 1.0)
+    fastest = math.sqrt(roots[W1]) + abs(n[0] + own_spin[0] / rate_unit)
+    anchor[NUTATES] = 1.0 if steepest > NOTICED * fastest and nutation[0] > 0.0 else 0.0
+    put(anchor, RATE, scaled(nutation, rate_unit))
+    put(anchor, RATE_A, rate_a)
+    put(anchor, RATE_B, rate_b)
 
     # phases at the start: from those two of the three functions that are farthest from their zeros there
     anchor[START_A], anchor[START_B] = 0.0, 0.0
@@ -204,17 +223,18 @@ def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w,
 @compiled
 def _hyperbolic(roots, k, mean, scale, rate_unit, side_a, side_b, side_w, anchor):
     gap, wide, narrow, lower, upper = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER]
-    per_argument = QUARTER_TURN / complete_k(math.sqrt(2.0 * k * gap / wide))
+    modulus, complement = math.sqrt(2.0 * k * gap / wide), scale * math.sqrt(narrow / wide)
+    per_argument = QUARTER_TURN / complete_k(modulus)       # hyperbolic phase of an argument of Jacobi's functions
     half_period = per_argument * QUARTER_TURN / mean if mean > 0.0 else NEVER
-    root_nome = math.exp(-half_period)
-    set_nome(root_nome * root_nome, anchor)
+    root = root_nome(complement, modulus)
+    set_nome(root * root, anchor)
     A, B, C_ = _shifts(roots, k)
     A, B, C_ = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN), min(per_argument * C_, QUARTER_TURN)
-    set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root_nome)
-    set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root_nome)
-    set_hyperbolic(anchor, 2, C_, 1.0, side_w, rate_unit * math.sqrt(roots[W1]), root_nome)
-    # from the lowest to the highest position the phases make a step beside their steady growth; that of omega_c is that of b less that of a,
-    # up to half a turn
+    set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root)
+    set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root)
+    set_hyperbolic(anchor, 2, C_, 1.0, side_w, rate_unit * math.sqrt(roots[W1]), root)
+    # from the lowest to the highest position the phases make a step beside their steady growth; that of omega_c is that of b less that of
+    # a, up to half a turn
     step_a, step_b, step_w = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B), side_w * (QUARTER_TURN - C_)
     anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 2.0 * half_period, TURN[0] * step_a / half_period, TURN[0] * step_b / half_period
     half_turns = nearest((step_w - step_b + step_a) / math.pi)

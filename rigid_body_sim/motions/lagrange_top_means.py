@@ -12,73 +12,42 @@ that r = 0, the passage through a pole, is an ordinary value; b is the same with
 import math
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.double_double import root
-from rigid_body_sim.motions.lagrange_top_roots import (
-    DELTA,
-    NARROW,
-    SIGMA,
-    SIZE,
-    STEADY,
-    WIDE,
-    X1,
-    X2,
-    X3,
-    Y1,
-    Y2,
-    Y3,
-    X,
-    Y,
-    over,
-    plus,
-    scaled,
-    times,
-)
+from rigid_body_sim.motions.lagrange_top_roots import DELTA, NARROW, SIGMA, STEADY, WIDE, X1, X2, X3, Y1, Y2, Y3
+from rigid_body_sim.motions.pairs import TURN, over, pair_at, plus, root_of, scaled, times
 
-TURN = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi)
-NEVER = 2.0 ** 200                                         # stands for the half period on the separatrix, in units of 2/sqrt(WIDE)
-
-
-@compiled
-def pair(roots, place):
-    """Return a stored pair."""
-    return roots[place], roots[SIZE + place]
-
-
-@compiled
-def root_of(p):
-    """Return the square root of a pair."""
-    return root(p[0], p[1])
+NEVER = 2.0 ** 200              # stands for the half period on the separatrix, in units of 2/sqrt(WIDE)
 
 
 @compiled
 def mean_rates(roots, scale):
     """Return pi/(2 K), and as pairs the rates of nutation (turns/s) and of arg(a), arg(b) (rad/s).
 
-    scale is the unit in which 1 - u2 and u3 - 1 are counted twice, where their squares would underflow (else 1). Without nutation pi/(2 K) is counted as 1; on the separatrix it
-    is 0, and the rates of the phases are those at the highest position.
+    scale^2 is the unit of 1 - u2 and u3 - 1, where they would underflow (else 1). Without nutation pi/(2 K) is counted as 1; on the
+    separatrix it is 0, and the rates of the phases are those at the highest position.
     """
-    narrow, wide = pair(roots, NARROW), pair(roots, WIDE)
-    side_a, side_b = math.copysign(0.5, roots[SIGMA]), math.copysign(0.5, roots[DELTA])
+    narrow, wide, x2, y1 = pair_at(roots, NARROW), pair_at(roots, WIDE), pair_at(roots, X2), pair_at(roots, Y1)
+    half_sigma, half_delta = scaled(pair_at(roots, SIGMA), 0.5), scaled(pair_at(roots, DELTA), 0.5)
     if roots[STEADY] == 1.0:
-        return 1.0, (0.0, 0.0), scaled(over(pair(roots, SIGMA), pair(roots, X)), 0.5), scaled(over(pair(roots, DELTA), pair(roots, Y)), 0.5)
+        return 1.0, (0.0, 0.0), over(half_sigma, x2), over(half_delta, y1)
     if narrow[0] == 0.0:
-        return 0.0, scaled(root_of(wide), 0.25 / NEVER), scaled(over(pair(roots, SIGMA), pair(roots, X2)), 0.5), (0.0, 0.0)
+        return 0.0, scaled(root_of(wide), 0.25 / NEVER), over(half_sigma, x2), (0.0, 0.0)
     kc = scaled(root_of(over(narrow, wide)), scale)
-    rho_a, rho_b = over(pair(roots, X1), pair(roots, X2)), over(pair(roots, Y2), pair(roots, Y1))
+    rho_a, rho_b = over(pair_at(roots, X1), x2), over(pair_at(roots, Y2), y1)
     one = (1.0, 0.0)
     m, e, share = one, kc, 1.0
     aa, ba, pa = one, one, one
     ab, bb, pb = one, kc, kc
     go_on = True
     while go_on:
-        go_on = abs(m[0] - kc[0]) > 1e-9 * m[0]
+        go_on = abs(m[0] - kc[0]) > 3e-11 * m[0]       # what is left after one more step is its square
         aa, ba, pa = _step(aa, ba, pa, rho_a, e)
         ab, bb, pb = _step(ab, bb, pb, rho_b, e)
         m, kc, share = plus(m, kc), scaled(root_of(e), 2.0), 0.5 * share
         e = times(m, kc)
-    mean = scaled(m, share)
-    return (mean[0], times(times(mean, root_of(wide)), TURN), scaled(times(_end(aa, ba, pa, rho_a, m), root_of(pair(roots, X3))), side_a * share),
-            scaled(times(_end(ab, bb, pb, rho_b, m), root_of(pair(roots, Y3))), side_b * share))
+    mean, share_a, share_b = scaled(m, share), math.copysign(0.5 * share, half_sigma[0]), math.copysign(0.5 * share, half_delta[0])
+    return (mean[0], times(times(mean, root_of(wide)), TURN),
+            scaled(times(_end(aa, ba, pa, rho_a, m), root_of(pair_at(roots, X3))), share_a),
+            scaled(times(_end(ab, bb, pb, rho_b, m), root_of(pair_at(roots, Y3))), share_b))
 
 
 @compiled

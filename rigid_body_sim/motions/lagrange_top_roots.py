@@ -1,7 +1,7 @@
-"""Turning points of the axis of a symmetric top with a fixed point, from one state, and its mean rates, to many more digits than a double.
+"""Turning points of the axis of a symmetric top with a fixed point, from one state, to more digits than a double has.
 
-Symbols (rates divided by I1): u = cos(beta), n = P_gamma/I1, k = M g h/I1 >= 0 with h > 0 towards the centre of mass, so that u = -1 is hanging;
-omega_c = omega_2 - i omega_1 across the axis, gamma the vertical in body axes, c = omega . gamma across the axis.
+Symbols (rates divided by I1): u = cos(beta), n = P_gamma/I1, k = M g h/I1 >= 0 with h > 0 towards the centre of mass, so that u = -1 is
+hanging; omega_c = omega_2 - i omega_1 across the axis, gamma the vertical in body axes, c = omega . gamma across the axis.
 
     u'^2 = 2 k (u - u1)(u - u2)(u - u3) = |omega_c|^2 (1 - u^2) - c^2,   -1 <= u1 <= u <= u2 <= 1 <= u3   (notes, "Symmetric Top", V_eff)
 
@@ -12,67 +12,22 @@ Three squares of moduli, linear in u, decide the motion; at the three roots each
     w = |omega_c|^2:    w1 w2 w3 = chi^2,       chi = 2 k c - n w,                            w3 = 2 k u3 - 2 E/I1
 
 From the product comes the factor that a subtraction would lose. What belongs to the third root carries the factor 2 k, so that k = 0 is an
-ordinary value. Here everything is a pair of doubles (double_double.py): differences like 4 k - n^2 decide region and modulus, and an error of the
-rates would grow with time. The kernels after these take the high parts.
+ordinary value. Everything is a pair of doubles (pairs.py): differences like 4 k - n^2 decide region and modulus, and the mean rates, whose
+errors would grow with time, need all digits. What comes after these takes the high parts.
 """
 
 import math
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.double_double import add, add_alike, divide, multiply, multiply_double, quick_two_sum, root, two_product
+from rigid_body_sim.double_double import multiply_double, quick_two_sum
+from rigid_body_sim.motions.pairs import minus, not_negative, over, plus, products, put, root_of, scaled, times
 
-# layout of what `turning_points` fills, low parts SIZE further on; index 1, 2, 3: value at that root
-X1, X2, X3, Y1, Y2, Y3, W1, W2, W3 = range(9)
-GAP, WIDE, NARROW = 9, 10, 11          # u2 - u1, 2 k (u3 - u1), 2 k (u3 - u2)
-LOWER, UPPER, ABOVE = 12, 13, 14       # u - u1, u2 - u, 2 k (u3 - u)
-SIGMA, DELTA, CHI, C, RISE = 15, 16, 17, 18, 19
-X, Y, W = 20, 21, 22                   # at the state itself
-SEPARATE, STEADY = 23, 24              # 1.0: u1 is the root apart from the other two (else u3 is); 1.0: u stays where it is
-SIZE = 25
-
-
-@compiled
-def plus(p, q):
-    """Return the sum of two pairs."""
-    return add_alike(p[0], p[1], q[0], q[1])
-
-
-@compiled
-def minus(p, q):
-    """Return the difference of two pairs."""
-    return add_alike(p[0], p[1], -q[0], -q[1])
-
-
-@compiled
-def times(p, q):
-    """Return the product of two pairs."""
-    return multiply(p[0], p[1], q[0], q[1])
-
-
-@compiled
-def scaled(p, factor):
-    """Return a pair times a power of two."""
-    return factor * p[0], factor * p[1]
-
-
-@compiled
-def over(p, q):
-    """Return the quotient of two pairs, or 0 where the divisor is 0."""
-    if q[0] == 0.0:
-        return 0.0, 0.0
-    return divide(p[0], p[1], q[0], q[1])
-
-
-@compiled
-def products(a, b, c, d):
-    """Return a b + c d for doubles, as a pair."""
-    return plus(two_product(a, b), two_product(c, d))
-
-
-@compiled
-def not_negative(p):
-    """Return the pair, or 0 if it is below."""
-    return p if p[0] > 0.0 else (0.0, 0.0)
+# layout of what `turning_points` fills: pairs, then their like as single doubles; index 1, 2, 3: value at that root
+X1, X2, X3, Y1, Y2, Y3, X, Y, WIDE, NARROW, SIGMA, DELTA = range(0, 24, 2)     # X, Y at the state; 2 k (u3 - u1), 2 k (u3 - u2)
+W1, W2, W3, W, CHI, C, RISE = range(24, 31)                                    # W, C, RISE = u' at the state
+GAP, LOWER, UPPER, ABOVE = range(31, 35)                                       # u2 - u1, u - u1, u2 - u, 2 k (u3 - u)
+SEPARATE, STEADY = 35, 36       # 1.0: u1 is the root apart from the other two (else u3 is); 1.0: u stays where it is
+SIZE = 37
 
 
 @compiled
@@ -93,7 +48,7 @@ def largest_root(b, c, d):
     if slope == 0.0:
         return r, 0.0
     slope = (3.0 * r + 2.0 * bh) * r - ch
-    value = add(b[0], b[1], r, 0.0)
+    value = plus(b, (r, 0.0))
     value = minus(multiply_double(value[0], value[1], r), c)
     value = plus(multiply_double(value[0], value[1], r), d)
     return quick_two_sum(r, -value[0] / slope)
@@ -104,7 +59,7 @@ def parts(difference, product):
     """Return p, m >= 0 with p - m = difference and p m = product >= 0, and p + m (pairs)."""
     half = scaled(difference, 0.5)
     square = plus(times(half, half), product)
-    mean = root(square[0], square[1])
+    mean = root_of(square)
     if half[0] >= 0.0:
         larger = plus(mean, half)
         return larger, over(product, larger), scaled(mean, 2.0)
@@ -118,12 +73,6 @@ def shared(first, second, product, weight):
     if weight * first[0] >= second[0]:
         return first, over(product, first)
     return over(product, second), second
-
-
-@compiled
-def put(out, place, pair):
-    """Store a pair."""
-    out[place], out[SIZE + place] = pair
 
 
 @compiled

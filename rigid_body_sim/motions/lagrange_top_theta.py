@@ -1,8 +1,8 @@
 """Single-valued functions of a heavy symmetric top's motion: quotients of theta functions, evaluated by four terms at any modulus.
 
-The Cayley-Klein parameters a, b and omega_c are elliptic functions of the second kind of time (F. Klein, A. Sommerfeld, Theorie des Kreisels,
-chapter VI): constant phase rate times one theta function of complex argument over one of real argument. Around u = u1, with v the phase that
-grows by pi in a period of nutation and nome q,
+The Cayley-Klein parameters a, b and omega_c are elliptic functions of the second kind of time (F. Klein, A. Sommerfeld, Theorie des
+Kreisels, chapter VI): a steady phase times one theta function of complex argument over one of real argument. Around u = u1, with v the phase
+that grows by pi in a period of nutation and nome q,
 
     a ~ theta_1(v + i A)/theta_4(v),     b ~ theta_2(v + i B)/theta_4(v),     omega_c ~ theta_2(v + i C)/theta_4(v)
 
@@ -19,6 +19,7 @@ the lowest and the highest position in turn, so that no term outgrows the leadin
 import math
 
 from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.exponential import decay
 from rigid_body_sim.turns import sin_cos
 
 # layout of what a form takes beside its coefficients
@@ -98,20 +99,17 @@ def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
     c3, s3, c5, s5 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2, c1 * c4 - s1 * s4, s1 * c4 + c1 * s4
     c6, s6, c7, s7 = c2 * c4 - s2 * s4, s2 * c4 + c2 * s4, c3 * c4 - s3 * s4, s3 * c4 + c3 * s4
     theta_4 = 1.0 - 2.0 * (q * c2 - form[NOME4] * c4 + form[NOME9] * c6)
-    at = 5 + BLOCK * place
     if sign < 0.0:      # odd about the lowest position: theta_1/theta_2; about the highest: theta_4/theta_3
-        odd_at, even_at = at, at + 8
         odd = even = modulus * theta_3(q) / theta_4
     else:               # about the lowest: theta_4/theta_2; about the highest: theta_1/theta_3; theta_2(0) = 2 q^(1/4) (1 + q^2 + ...)
-        odd_at, even_at = at + 8, at
         even = 2.0 * modulus * (1.0 + form[NOME2] + form[NOME6]) / theta_4
         odd = even * root_nome
-    turned = orientation * odd
-    form[odd_at], form[odd_at + 1], form[odd_at + 2], form[odd_at + 3] = odd * s1, -odd * s3, odd * s5, -odd * s7
-    form[odd_at + 4], form[odd_at + 5], form[odd_at + 6], form[odd_at + 7] = turned * c1, -turned * c3, turned * c5, -turned * c7
+    at, turned = 5 + BLOCK * place, orientation * odd
+    form[at], form[at + 1], form[at + 2], form[at + 3] = odd * s1, -odd * s3, odd * s5, -odd * s7
+    form[at + 4], form[at + 5], form[at + 6], form[at + 7] = turned * c1, -turned * c3, turned * c5, -turned * c7
     turned = orientation * even
-    form[even_at], form[even_at + 1], form[even_at + 2], form[even_at + 3] = even, -even * c2, even * c4, -even * c6
-    form[even_at + 4], form[even_at + 5], form[even_at + 6], form[even_at + 7] = 0.0, turned * s2, -turned * s4, turned * s6
+    form[at + 8], form[at + 9], form[at + 10], form[at + 11] = even, -even * c2, even * c4, -even * c6
+    form[at + 12], form[at + 13], form[at + 14] = turned * s2, -turned * s4, turned * s6
 
 
 @compiled_inline
@@ -124,32 +122,34 @@ def hyperbolic(form, phase, highest):
         From the lowest position, or from the highest one if `highest`, in size at most half the way between them.
     """
     q, q2, q4, q6, q9 = form[NOME], form[NOME2], form[NOME4], form[NOME6], form[NOME9]
-    loss = math.expm1(-abs(phase))
-    e = 1.0 + loss
+    e = decay(abs(phase))
     e2 = e * e
     f = q / e2 if e2 > 0.0 else 0.0
     turn = 1.0 if phase >= 0.0 else -1.0
     # products of the nome's powers with 2 cosh, 2 sinh: of odd multiples of the phase (times exp(-|phase|)), and of even ones
     up1, up2, up3, down1, down2 = q * f, q4 * f * f, q9 * f * f * f, q2 * e2 * e2, q6 * e2 * e2 * e2
     ch0, ch1, ch2 = 1.0 + e2, up1 + down1, up2 + down2
-    sh0, sh1, sh2, sh3 = -turn * loss * (1.0 + e), turn * (up1 - down1), turn * (up2 - down2), turn * up3
+    sh0, sh1, sh2, sh3 = turn * (1.0 - e2), turn * (up1 - down1), turn * (up2 - down2), turn * up3
     up4, up5, up6, down4, down5, down6 = f, q2 * f * f, q6 * f * f * f, q * e2, q4 * e2 * e2, q9 * e2 * e2 * e2
     ev1, ev2, ev3 = up4 + down4, up5 + down5, up6 + down6
     od1, od2, od3 = turn * (up4 - down4), turn * (up5 - down5), turn * (up6 - down6)
-    if highest:
-        even = 1.0 / (1.0 + ev1 + ev2 + ev3)
-        odd = even / e
-        return (even * (form[13] + form[14] * ev1 + form[15] * ev2 + form[16] * ev3),
-                even * (form[18] * od1 + form[19] * od2 + form[20] * od3),
-                odd * (form[29] * ch0 + form[30] * ch1 + form[31] * ch2 + form[32] * up3),
-                odd * (form[33] * sh0 + form[34] * sh1 + form[35] * sh2 + form[36] * sh3),
-                odd * (form[45] * ch0 + form[46] * ch1 + form[47] * ch2 + form[48] * up3),
-                odd * (form[49] * sh0 + form[50] * sh1 + form[51] * sh2 + form[52] * sh3))
-    odd = 1.0 / (ch0 + ch1 + ch2 + up3)
-    even = odd * e
-    return (odd * (form[5] * ch0 + form[6] * ch1 + form[7] * ch2 + form[8] * up3),
-            odd * (form[9] * sh0 + form[10] * sh1 + form[11] * sh2 + form[12] * sh3),
-            even * (form[21] + form[22] * ev1 + form[23] * ev2 + form[24] * ev3),
-            even * (form[26] * od1 + form[27] * od2 + form[28] * od3),
-            even * (form[37] + form[38] * ev1 + form[39] * ev2 + form[40] * ev3),
-            even * (form[42] * od1 + form[43] * od2 + form[44] * od3))
+    odd, even = ch0 + ch1 + ch2 + up3, 1.0 + ev1 + ev2 + ev3
+    # theta_1 of a about the lowest position, of b and omega_c about the highest; theta_4 otherwise
+    for_a = 1.0 / (even if highest else odd)
+    for_b = (1.0 if highest else e) / (even * e if highest else odd)
+    ar, ai = _theta_1_or_4(form, 5, not highest, for_a, ch0, ch1, ch2, up3, sh0, sh1, sh2, sh3, ev1, ev2, ev3, od1, od2, od3)
+    br, bi = _theta_1_or_4(form, 21, highest, for_b, ch0, ch1, ch2, up3, sh0, sh1, sh2, sh3, ev1, ev2, ev3, od1, od2, od3)
+    wr, wi = _theta_1_or_4(form, 37, highest, for_b, ch0, ch1, ch2, up3, sh0, sh1, sh2, sh3, ev1, ev2, ev3, od1, od2, od3)
+    return ar, ai, br, bi, wr, wi
+
+
+@compiled_inline
+def _theta_1_or_4(form, at, odd, scale, ch0, ch1, ch2, ch3, sh0, sh1, sh2, sh3, ev1, ev2, ev3, od1, od2, od3):
+    """Return one function; its coefficients for theta_1 stand at `at`, those for theta_4 behind them."""
+    a0, a1, a2, a3 = form[at], form[at + 1], form[at + 2], form[at + 3]
+    b0, b1, b2, b3 = form[at + 4], form[at + 5], form[at + 6], form[at + 7]
+    c0, c1, c2, c3 = form[at + 8], form[at + 9], form[at + 10], form[at + 11]
+    d1, d2, d3 = form[at + 12], form[at + 13], form[at + 14]
+    re = a0 * ch0 + a1 * ch1 + a2 * ch2 + a3 * ch3 if odd else c0 + c1 * ev1 + c2 * ev2 + c3 * ev3
+    im = b0 * sh0 + b1 * sh1 + b2 * sh2 + b3 * sh3 if odd else d1 * od1 + d2 * od2 + d3 * od3
+    return scale * re, scale * im
