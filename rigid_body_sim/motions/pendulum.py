@@ -27,7 +27,7 @@ import numpy as np
 from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import pendulum_anchor
-from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PHASE, RATE, START
+from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PERIOD, PHASE, RATE, START
 from rigid_body_sim.motions.pendulum_anchor import (
     ARM,
     COSINE,
@@ -35,6 +35,7 @@ from rigid_body_sim.motions.pendulum_anchor import (
     MASS,
     MIDDLE,
     MOMENTUM,
+    NEVER,
     NORMAL,
     PHASE_LOW,
     SINE,
@@ -128,7 +129,7 @@ def _keep(columns, k, time, pose):
 @compiled
 def next_event(c, after):
     """Return the time of the first turning point later than `after`, infinite if there is none, and the code 0."""
-    if c[SWINGS] == 0.0 or c[RATE] == 0.0:
+    if c[SWINGS] == 0.0 or (c[FORM] == HYPERBOLIC and c[PERIOD] >= NEVER):
         return math.inf, 0
     half_turns = math.floor(2.0 * (c[RATE] * (after - c[START]) + c[PHASE])) - 1.0
     time = _turning_time(c, half_turns)
