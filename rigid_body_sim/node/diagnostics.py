@@ -45,7 +45,7 @@ class Diagnostics:
 
     def publish(self):
         """Publish one array now, and ask the tick thread for a fresh balance for the next."""
-        statuses = [self._ledger(), self._timing(), self._command(), self._recording()]
+        statuses = [self._ledger(), self._timing(), self._command(), self._recording(), self._prediction()]
         message = DiagnosticArray(status=statuses)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
@@ -64,14 +64,9 @@ class Diagnostics:
         return grown
 
     def _ledger(self):
-        balance, settings = self._session.balance, self._settings
-        level, message = OK, 'energy and angular momentum balance'
-        for residual in ('energy_residual', 'momentum_residual'):
-            size = abs(balance[residual])
-            for reached, bound in ((WARN, 'warn'), (ERROR, 'error')):
-                if reached > level and size > settings[f'diagnostics.{residual}_{bound}']:
-                    level, message = reached, f'{residual.replace("_", " ")} {size:.3g}'
-        return self._status('ledger', level, message, balance)
+        balance = self._session.balance
+        level, message = self._bounded({name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')})
+        return self._status('ledger', level, message or 'energy and angular momentum balance', balance)
 
     def _timing(self):
         ticker, settings = self._ticker, self._settings
@@ -113,6 +108,25 @@ class Diagnostics:
         if status.error:
             level, message = ERROR, status.error
         return self._status('recording', level, message, {'path': self._journal.path, **dataclasses.asdict(status)})
+
+    def _prediction(self):
+        found = self._session.prediction.compared()
+        difference = abs(found.get('relative_difference', 0.0))
+        level, _ = self._bounded({'prediction': difference})
+        if level != OK:
+            message = f'the measured interval differs from the predicted one by {difference:.3g} of it'
+        else:
+            message = 'as predicted' if 'relative_difference' in found else 'nothing measured yet' if found else 'theory predicts no interval'
+        return self._status('prediction', level, message, found)
+
+    def _bounded(self, sizes):
+        """Return the level that quantities reach by their bounds, and a message that names the worst."""
+        level, message = OK, ''
+        for name, size in sizes.items():
+            for reached, bound in ((WARN, 'warn'), (ERROR, 'error')):
+                if reached > level and size > self._settings[f'diagnostics.{name}_{bound}']:
+                    level, message = reached, f'{name.replace("_", " ")} {size:.3g}'
+        return level, message
 
     def _look_for_same_name(self):
         """Warn once if another node has this one's name: their services and parameters would be mixed up."""

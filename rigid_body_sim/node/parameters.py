@@ -138,6 +138,10 @@ TABLE = (
     Entry('diagnostics.energy_residual_error', 1e-6, 'ERROR above this relative energy residual', 0.0, 1e9, changeable=True),
     Entry('diagnostics.momentum_residual_warn', 1e-11, 'WARN above this relative angular momentum residual', 0.0, 1e9, changeable=True),
     Entry('diagnostics.momentum_residual_error', 1e-6, 'ERROR above this relative angular momentum residual', 0.0, 1e9, changeable=True),
+    Entry('diagnostics.prediction_warn', 1e-6, 'WARN above this relative difference of a measured interval from theory', 0.0, 1e9,
+          changeable=True),
+    Entry('diagnostics.prediction_error', 1e-2, 'ERROR above this relative difference of a measured interval from theory', 0.0, 1e9,
+          changeable=True),
     Entry('diagnostics.lateness_warn', 0.002, 'WARN above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
     Entry('diagnostics.lateness_error', 0.1, 'ERROR above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
 )

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import commands
+from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 from rigid_body_sim.timeline import NANOSECONDS, Timeline
@@ -44,6 +45,8 @@ class Session:
         The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and ``time``.
     event_counts : collections.Counter
         Events so far, by name.
+    prediction : prediction.Prediction
+        Of the motion since the last disturbance.
     """
 
     def __init__(self, simulation, command_queue, publishing, journal, settings, epoch):
@@ -61,6 +64,7 @@ class Session:
         self._reports = {}
         self._balance_wanted = False
         self.take_balance()
+        self._disturbed()
 
     # -- from other threads -------------------------------------------------------------------------------------------------------------
 
@@ -127,6 +131,7 @@ class Session:
         """Put the state back; called at a tick. Held wrenches end with it."""
         self.simulation.reset()
         self._release_tick = None
+        self._disturbed()
         self._journal.entry('reset', self.stamp, tick=self.next_tick)
         return self.next_tick
 
@@ -138,6 +143,7 @@ class Session:
             self.timeline = self.timeline.from_tick(self.next_tick, simulation.rate)
             self._find_last_tick()
         self.simulation = simulation
+        self._disturbed()
         if not keep_state:
             self._release_tick = None
             self._publishing.use_scene(simulation.scene)
@@ -175,6 +181,7 @@ class Session:
     def _report_events(self):
         events, self.simulation.events[:] = list(self.simulation.events), []
         for event in events:
+            self.prediction.note(event.name, event.time)
             self.event(OK, event.name, *about.event_text(event))
 
     # -- commands -----------------------------------------------------------------------------------------------------------------------
@@ -200,7 +207,13 @@ class Session:
             applied.append(commands.RELEASE)
             self.event(WARN, 'command timed out', f'no cmd_wrench for {self.command_timeout:g} s: the held wrench ended')
         if applied:
+            self._disturbed()
             self._journal.commands(tick, self.stamp, applied)
+
+    def _disturbed(self):
+        """Begin to compare theory with the motion from here on."""
+        simulation = self.simulation
+        self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)
 
     def _apply(self, command, tick):
         if command.topic == commands.IMPULSE:
