@@ -82,22 +82,28 @@ def subscribe():
     """Subscribe as users do, until a signal; tell when all topics are heard, and at the end how many messages came of each."""
     import rclpy
     from geometry_msgs.msg import PoseStamped, Vector3Stamped
-    from rclpy.executors import ExternalShutdownException
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.signals import SignalHandlerOptions
     from std_msgs.msg import Float64
-    rclpy.init(args=[])
-    node = rclpy.create_node('subscriber')
+
+    from rigid_body_sim.node.shutdown import leave, signals
     counts = dict.fromkeys(TOPICS, 0)
 
     def count(topic):
         counts[topic] += 1
         if counts[topic] == 1 and all(counts.values()):
             print('heard', flush=True)
-    for topic, kind in zip(TOPICS, (PoseStamped, Vector3Stamped, Float64, Float64), strict=True):
-        node.create_subscription(kind, topic, lambda _, topic=topic: count(topic), 1000)
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        rclpy.spin(node)
-    print(json.dumps(counts), flush=True)
-    os._exit(0)
+    with signals() as stop:
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node('subscriber')
+        for topic, kind in zip(TOPICS, (PoseStamped, Vector3Stamped, Float64, Float64), strict=True):
+            node.create_subscription(kind, topic, lambda _, topic=topic: count(topic), 1000)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not stop.wanted:
+            executor.spin_once(timeout_sec=0.1)
+        print(json.dumps(counts), flush=True)
+        leave(0)
 
 
 def cpu_seconds(pid):
