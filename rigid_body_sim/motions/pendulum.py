@@ -37,7 +37,6 @@ from rigid_body_sim.motions.pendulum_anchor import (
     MOMENTUM,
     NEVER,
     NORMAL,
-    PHASE_LOW,
     SINE,
     SWINGS,
     TURNED,
@@ -142,7 +141,7 @@ def next_event(c, after):
 @compiled
 def _turning_time(c, half_turns):
     """Return when the phase is a quarter turn and that many half turns."""
-    return c[START] + ((0.25 + 0.5 * half_turns - c[PHASE]) - c[PHASE_LOW]) / c[RATE]
+    return c[START] + (0.25 + 0.5 * half_turns - c[PHASE]) / c[RATE]
 
 
 @compiled

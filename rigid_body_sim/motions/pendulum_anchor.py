@@ -37,9 +37,9 @@ from rigid_body_sim.turns import phase, sin_cos
 AXIS, SIDE, DOWN, PULL, UNIT, THROUGH, MASS, GRAVITY, ARM, MOMENTUM, WEIGHT = 0, 6, 12, 18, 20, 23, 26, 27, 28, 31, 34
 PARAMETER_SIZE = 35
 
-# layout of the anchor behind what the theta functions take: low part of the phase, 1 if it swings, unit of the rates, w if nothing turns it,
+# layout of the anchor behind what the theta functions take: 1 if it swings, unit of the rates, w if nothing turns it,
 # quaternions that c and s multiply, n, centre and radii (world) of the circle of the body's origin
-PHASE_LOW, SWINGS, SPEED, UPRIGHT, TURNED, NORMAL, MIDDLE, COSINE, SINE = (free_rotation.SIZE + k for k in (0, 1, 2, 3, 7, 11, 14, 17, 20))
+SWINGS, SPEED, UPRIGHT, TURNED, NORMAL, MIDDLE, COSINE, SINE = (free_rotation.SIZE + k for k in (0, 1, 2, 6, 10, 13, 16, 19))
 ANCHOR_SIZE = SINE + 3
 
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
@@ -112,7 +112,7 @@ def anchor(p, start, out):
     unit = max(abs(w[0]), omega[0])
     unit = math.ldexp(1.0, min(max(math.frexp(unit)[1], -900), 900)) if unit > 0.0 else 1.0      # powers of two are exact
     out[START], out[SWINGS], out[SPEED] = start[0], 0.0, unit
-    out[PHASE], out[PHASE_LOW], out[free_rotation.SIDE] = 0.0, 0.0, 1.0
+    out[PHASE], out[free_rotation.SIDE] = 0.0, 1.0
     w, omega = scaled(w, 1.0 / unit), scaled(omega, 1.0 / unit)
     if omega[0] == 0.0 or (w[0] == 0.0 and (s[0] == 0.0 or c[0] == 0.0)):
         out[FORM] = STEADY
@@ -192,8 +192,7 @@ def _fill_elliptic(w, omega, s, c, unit, out):
     put(out, RATE, scaled(f, unit))
     if cn < kc * abs(sn):
         # nearer to the quarter period: K - u has sn = cn/dn, cn = k' sn/dn, dn = k'/dn
-        rest = f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn)
-        out[PHASE], out[PHASE_LOW] = two_sum(math.copysign(0.25, sn), -math.copysign(rest, sn))
+        out[PHASE] = math.copysign(0.25 - f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn), sn)
     else:
         out[PHASE] = f[0] / x[0] * _argument(sn, cn, dn)
     if kc >= KC_HYPERBOLIC:
@@ -261,7 +260,7 @@ def _argument_at(c, dt, dt_low):
     """Return the phase of the elliptic functions as a pair."""
     v, v_low = phase(c[RATE], c[RATE + 1], dt, dt_low)
     v, low = two_sum(v, c[PHASE])
-    return v, v_low + (low + c[PHASE_LOW])
+    return v, v_low + low
 
 
 @compiled_inline
