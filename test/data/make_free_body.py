@@ -95,6 +95,9 @@ def cases():
         for sign in (1, -1):
             yield case(f'near the separatrix in a generic direction, {sign * gap:g}', (2.0, 3.1, 4.3),
                        (0.7 * float(np.sqrt(4.3 * 1.2 / (2.0 * 1.1))) * (1.0 + sign * gap), C, -0.7), digits=90, flips=(1, 2))
+    for kc in (0.1699, 0.1701):
+        yield case(f'where the series change their form, complementary modulus {kc}', (2.0, 3.0, 4.0),
+                   (0.8 * float(np.sqrt(2.0 * (1.0 - kc * kc))), 0.0, 0.8), tuple(float(t) for t in range(1, 16)))
     axes = (0.18257418583505536, 0.3651483716701107, 0.5477225575051661, 0.7302967433402214)
     yield case('principal axes turned', (2.0, 3.0, 4.0), (0.7, -0.4, 1.1), axes=list(axes))
     yield case('thrown, centre of mass off the origin', (2.0, 3.0, 4.0), (0.7, -0.4, 1.1), (0.0, 0.1, 10.0, 1e3),
