@@ -27,7 +27,7 @@ def prefix():
 def run(prefix, domain, folder, name, *arguments):
     """Run an installed executable in an empty folder."""
     return subprocess.run([prefix / 'lib' / 'rigid_body_sim' / name, *arguments], cwd=folder, env=domain.environment, capture_output=True,
-                          text=True, timeout=60)
+                          text=True, timeout=240)    # compiles first, beside whatever else the machine does
 
 
 def test_every_command_is_installed_and_shows_its_help(prefix, ros_domain, tmp_path):
