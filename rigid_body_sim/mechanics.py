@@ -47,6 +47,17 @@ def moment_about_hinge(body, constraint):
     return float(n @ body.about_center.matrix @ n + body.mass * (across @ across))
 
 
+def swing_rate(scene):
+    """Return what the weight can add to the rate of a pivoted or hinged body (rad/s): 2 sqrt(M g r/I) by the energy, r the arm."""
+    body, constraint, gravity = scene.body, scene.constraint, scene.effect('gravity')
+    if gravity is None or constraint.kind not in ('pivot', 'hinge'):
+        return 0.0
+    arm = np.subtract(body.center_of_mass, constraint.through if constraint.kind == 'hinge' else (0.0, 0.0, 0.0))
+    # of the moments across the arm of a symmetric body, whatever the third one is
+    across = moment_about_hinge(body, constraint) if constraint.kind == 'hinge' else sorted(body.about_origin.moments)[1]
+    return 2.0 * float(np.sqrt(body.mass * gravity.g * np.linalg.norm(arm) / across))
+
+
 @compiled
 def angular_momentum(p, omega_x, omega_y, omega_z):
     """Return I omega in body axes, I about the point of reference."""

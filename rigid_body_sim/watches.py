@@ -102,9 +102,12 @@ class Watcher:
     watched : sequence of Watch
     start : float
         Time of the solver's start, s.
+    swing : float
+        What may come to the rate at once, rad/s (mechanics.swing_rate): a body at rest soon is not.
     """
 
-    def __init__(self, solver, watched, start):
+    def __init__(self, solver, watched, start, swing):
+        self._swing = swing
         self._solver, self._watched = solver, watched
         self._vector = np.empty(STATE_SIZE)
         self._time = start
@@ -114,7 +117,7 @@ class Watcher:
     def _look(self, time):
         self._solver.state(time, self._vector)
         vector = self._vector.tolist()
-        self._spacing = RADIANS_BETWEEN_LOOKS / max(math.hypot(*vector[5:8]), 1e-300)
+        self._spacing = RADIANS_BETWEEN_LOOKS / max(math.hypot(*vector[5:8]) + self._swing, 1e-300)
         return [watch.value(vector) for watch in self._watched]
 
     def events(self, until):

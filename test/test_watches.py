@@ -42,3 +42,11 @@ def test_nodding_top_turns_at_the_same_times_in_both():
     assert len(exact.events) > 10
     assert {event.name for event in exact.events} == {'turning point'}
     assert [event.time for event in stepped.events] == pytest.approx([event.time for event in exact.events], abs=1e-10)
+
+
+def test_pendulum_let_go_from_rest_turns_in_one_long_jump():
+    exact, stepped = (Simulation('kater_pendulum', integrator=integrator, accuracy=1e-13) for integrator in ('exact', 'dop8'))
+    for simulation in (exact, stepped):
+        simulation.advance(10_000)
+    assert len(exact.events) == 9
+    assert [event.time for event in stepped.events] == pytest.approx([event.time for event in exact.events], abs=1e-10)

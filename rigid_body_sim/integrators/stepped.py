@@ -16,6 +16,7 @@ import numpy as np
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.integrators import METHODS, adaptive, fixed, scipy_methods, table, track, unroll
+from rigid_body_sim.mechanics import swing_rate
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
@@ -94,7 +95,7 @@ class Stepped:
         if self.scene.constraint.kind == 'table':
             return self._course.events(after, until)
         if self._watcher is None:
-            self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]))
+            self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]), swing_rate(self.scene))
         return [event for event in self._watcher.events(until) if event[0] > after]
 
     def exchanged(self, time):

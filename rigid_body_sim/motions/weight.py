@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.mechanics import swing_rate
 from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -37,10 +38,7 @@ class WeightImpulse:
         self._weight = body.mass * scene.effect('gravity').g
         self._axis = Rotation.from_quat(start[ORIENTATION]).apply(scene.constraint.axis) if scene.constraint.kind == 'hinge' else None
         self._impulse = np.zeros(3)
-        across = sorted(body.about_origin.moments)[1] if scene.constraint.kind == 'pivot' else sorted(body.about_center.moments)[1]
-        # by the energy, no component across the arm ever turns faster than this
-        swing = 2.0 * math.sqrt(self._weight * np.linalg.norm(self._arm) / across)
-        self._fastest = float(np.linalg.norm(start[ANGULAR_VELOCITY])) + swing
+        self._fastest = float(np.linalg.norm(start[ANGULAR_VELOCITY])) + swing_rate(scene)
 
     def until(self, time):
         """Return the angular impulse (N m s, world axes; for a hinge its part along the axis) from the start to a time (s)."""
