@@ -18,12 +18,12 @@ pytestmark = pytest.mark.skipif(not shutil.which('make'), reason='needs make')
 
 
 def make(*arguments, environment, extra=''):
-    return subprocess.run(['make', '-f', '-', *arguments], input=f'include Makefile\n{extra}', cwd=ROOT, env=environment,
+    return subprocess.run(['make', '--no-print-directory', '-f', '-', *arguments], input=f'include Makefile\n{extra}', cwd=ROOT, env=environment,
                           capture_output=True, text=True, timeout=30)
 
 
 def test_a_sourced_ros_is_unset_and_said_in_one_line():
-    clean = {name: value for name, value in os.environ.items() if name not in SOURCED and name != 'MAKEFLAGS'}
+    clean = {name: value for name, value in os.environ.items() if name not in SOURCED and name not in ('MAKEFLAGS', 'MFLAGS', 'MAKELEVEL')}
     shown = make('shown', environment={**clean, **SOURCED, 'ROS_DOMAIN_ID': '7'}, extra='shown: ; @env\n').stdout.splitlines()
     assert set(shown[0].partition(': ')[2].split()) == set(SOURCED)
     seen = dict(line.partition('=')[::2] for line in shown[1:])

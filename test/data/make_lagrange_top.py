@@ -3,7 +3,7 @@
     python test/data/make_lagrange_top.py [CASE ...]        (all: about an hour on two cores)
 
 A case's inputs are exact doubles: what `Body` and the state vector hold. `sensitivity` is the largest change (attitude: angle, rad; angular
-velocity: rad/s) under four random choices of plus or minus one ulp on every input that is not zero.
+velocity: rad/s) under four random choices (one where a thousand bits are carried) of plus or minus one ulp on every input that is not zero.
 """
 
 import json
@@ -81,12 +81,11 @@ CASES = {
     'at_threshold_kicked': case(ROUND, UPRIGHT, [1e-5, 0.0, 2.0], 1.0, 30.0),
     'ulp_below_threshold': case(ROUND, unit(1e-7, 0.0, 0.0, 1.0), [0.0, 0.0, 2.0 - 2.0 ** -52], 1.0, 30.0),
     'ulp_above_threshold': case(ROUND, unit(1e-7, 0.0, 0.0, 1.0), [0.0, 0.0, 2.0 + 2.0 ** -51], 1.0, 30.0),
-    'falling_1e-300': case(ROUND, [1e-300, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 400.0, 798.0, 802.0, bits=1300),
     'falling_1e-9': case(ROUND, unit(1e-9, 0.0, 0.0, 1.0), [0.0, 0.0, 1.0], 10.0, 25.0, 60.0),
     'falling_kicked_1e-12': case(HEAVY, UPRIGHT, [1e-12, 0.0, 20.0], 1.0, 8.0, 15.0),
     'falling_heavy_top': case(HEAVY, tilted(0.01), [0.0, 0.0, 30.0], 1.0, 3.0, 10.0, *LATER, step=0.03),
     'swinging_1e-9': case(HEAVY, unit(1.0, 0.0, 0.0, 1e-9), [0.0, 3e-9, 10.0], 0.1, 5.0),
-    'swinging_1e-300': case(HEAVY, [1.0, 0.0, 0.0, 1e-300], [0.0, 3e-300, 10.0], 1.0, bits=1300),
+    'swinging_1e-300': case(HEAVY, [1.0, 0.0, 0.0, 1e-300], [0.0, 3e-300, 10.0], 1.0, bits=1160),
     'spherical_pendulum': case(ROD, tilted(2.0), [2.0, 1.0, 0.0], 0.1, 1.0, 10.0, *LATER, step=0.05),
     'spherical_pendulum_nearly_flat': case(ROD, tilted(2.0), [1e-6, 4.0, 0.0], 0.1, 1.0, 10.0, *LATER, step=0.05),
     'rod_over_the_top': case(ROD, tilted(2.0), [0.0, 12.0, 0.0], 0.1, 10.0),
@@ -98,6 +97,8 @@ CASES = {
     'tiny_nutation': case(HEAVY, tilted(0.6), [CONE[0], 1e-9, 60.0], 0.1, 1.0, 5.0, *LATER, step=0.02),
     'fast_top': case(HEAVY, tilted(0.5), [0.0, 0.0, 1e6], 1e-5, 1e-3, 3e-3),
     'fast_top_kicked': case(HEAVY, tilted(1.5), [1e3, 0.0, 1e6], 1e-5, 1e-3),
+    'just_hyperbolic': case(ROUND, tilted(1.545), [0.02, 0.0, 0.3], 0.9, 0.95, 2.75, 2.8, 4.6, 4.7, step=0.2),
+    'just_circular': case(ROUND, tilted(1.56), [0.02, 0.0, 0.3], 0.9, 0.95, 2.75, 2.8, 4.6, 4.7, step=0.2),
     'light': case({**HEAVY, 'g': 1e-12}, tilted(0.5), [1.0, 2.0, 3.0], 1.0, 30.0),
     'weightless': case({**HEAVY, 'g': 0.0}, tilted(0.5), [1.0, 2.0, 3.0], 1.0, 30.0),
     'from_rest': case(HEAVY, tilted(1.2), [0.0, 0.0, 0.0], 0.1, 1.0, 5.0),
@@ -152,7 +153,7 @@ def make(name):
     given = CASES[name]
     bits = given['bits']
     found, turning_points = states(given, bits)
-    moved = [states(perturbed(given, seed), max(130, bits - 50))[0] for seed in range(PERTURBATIONS)]
+    moved = [states(perturbed(given, seed), max(130, bits - 50))[0] for seed in range(PERTURBATIONS if bits < 1000 else 1)]
     entry = {key: value for key, value in given.items() if key not in ('times', 'bits', 'step')}
     if turning_points:
         entry['turning_points'] = [mp.nstr(time, 40) for time in turning_points]

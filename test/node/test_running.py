@@ -38,6 +38,7 @@ def vector(v):
 @pytest.fixture
 def client(shared_node):
     """Return a client of the running node, with the state at its start."""
+    assert shared_node.client.call(SetBool, '/sim_node/pause', data=False).success
     assert shared_node.client.call(Trigger, '/sim_node/reset').success
     yield shared_node.client
     shared_node.client.forget()
@@ -178,14 +179,15 @@ def test_paused_node_queues_commands_and_steps_tick_by_tick(client):
     assert not client.call(Trigger, '/sim_node/step').success
     assert client.call(SetBool, '/sim_node/pause', data=True).success
     client.spin(0.2)
-    before, (_, momenta) = len(states.poses), states.momenta(INERTIA)
+    # the two topics may have been heard from different ticks on
+    before, spins_before, (_, momenta) = len(states.poses), len(states.spins), states.momenta(INERTIA)
     publisher.publish(wrench('world', torque=(1.0, 0.0, 0.0)))
     publisher.publish(wrench('world', torque=(0.0, 1.0, 0.0)))
     client.spin(0.2)
     assert len(states.poses) == before
     for _ in range(2):
         assert client.call(Trigger, '/sim_node/step').message.startswith('tick ')
-    client.until(lambda: len(states.poses) == before + 2 and len(states.spins) == before + 2, what='two steps')
+    client.until(lambda: len(states.poses) == before + 2 and len(states.spins) == spins_before + 2, what='two steps')
     stamps, stepped = states.momenta(INERTIA)
     assert (stamps[-1] - stamps[-2], stamps[-2] - stamps[-3]) == (PERIOD, PERIOD)
     np.testing.assert_allclose(stepped[-2] - momenta[-1], [1.0, 1.0, 0.0], rtol=0.0, atol=1e-14)
