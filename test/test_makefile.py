@@ -18,8 +18,8 @@ pytestmark = pytest.mark.skipif(not shutil.which('make'), reason='needs make')
 
 
 def make(*arguments, environment, extra=''):
-    return subprocess.run(['make', '--no-print-directory', '-f', '-', *arguments], input=f'include Makefile\n{extra}', cwd=ROOT, env=environment,
-                          capture_output=True, text=True, timeout=30)
+    return subprocess.run(['make', '--no-print-directory', '-f', '-', *arguments], input=f'include Makefile\n{extra}', cwd=ROOT,
+                          env=environment, capture_output=True, text=True, timeout=30)
 
 
 def test_a_sourced_ros_is_unset_and_said_in_one_line():
