@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.elliptic import carlson_rf, complete_k, nome, root_nome
 from rigid_body_sim.motions.lagrange_top_means import NEVER, mean_rates
 from rigid_body_sim.motions.lagrange_top_roots import (
@@ -68,12 +69,12 @@ def hyperbolic_functions(anchor, time, time_low):
     turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
     turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
     turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
-    turns += anchor[START]
+    turns, more = two_sum(turns, anchor[START])
     turns -= nearest(turns)
     # half a period on, the highest position stands for the lowest; the phases' mean rates are in RATE_A, RATE_B
     half_turns = nearest(2.0 * turns)
     odd = abs(half_turns)
-    along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + low)
+    along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + (more + low))
     ar, ai, br, bi, wr, wi = hyperbolic(anchor, along, odd != anchor[PARITY])
     return _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a - anchor[DRIFT_A] * along, low_a, turns_b - anchor[DRIFT_B] * along, low_b,
                         1.0 - 2.0 * odd * anchor[WINDING], 0.0)
@@ -110,7 +111,7 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     """
     # powers of two are exact: in the unit of time used here rates are of order 1, and a tiny tilt and swing are TINY
     largest = max(max(abs(n[0]), 2.0 * math.sqrt(k[0])), max(abs(o_re), abs(o_im)))
-    rate_unit = math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 1.0
+    rate_unit = math.ldexp(1.0, min(max(math.frexp(largest)[1], -900), 900)) if largest > 0.0 else 1.0
     n, k = scaled(n, 1.0 / rate_unit), scaled(scaled(k, 1.0 / rate_unit), 1.0 / rate_unit)
     o_re, o_im = o_re / rate_unit, o_im / rate_unit
     standing = b_re * b_re + b_im * b_im <= a_re * a_re + a_im * a_im

@@ -81,6 +81,7 @@ CASES = {
     'at_threshold_kicked': case(ROUND, UPRIGHT, [1e-5, 0.0, 2.0], 1.0, 30.0),
     'ulp_below_threshold': case(ROUND, unit(1e-7, 0.0, 0.0, 1.0), [0.0, 0.0, 2.0 - 2.0 ** -52], 1.0, 30.0),
     'ulp_above_threshold': case(ROUND, unit(1e-7, 0.0, 0.0, 1.0), [0.0, 0.0, 2.0 + 2.0 ** -51], 1.0, 30.0),
+    'falling_1e-300': case(ROUND, [1e-300, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 400.0, 798.0, bits=1160),
     'falling_1e-9': case(ROUND, unit(1e-9, 0.0, 0.0, 1.0), [0.0, 0.0, 1.0], 10.0, 25.0, 60.0),
     'falling_kicked_1e-12': case(HEAVY, UPRIGHT, [1e-12, 0.0, 20.0], 1.0, 8.0, 15.0),
     'falling_heavy_top': case(HEAVY, tilted(0.01), [0.0, 0.0, 30.0], 1.0, 3.0, 10.0, *LATER, step=0.03),

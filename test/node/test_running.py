@@ -156,9 +156,10 @@ def test_what_cannot_be_right_is_refused_with_the_line_that_would_be(client, mes
 
 def test_late_joiner_gets_the_scene_and_past_events(client):
     scenes, events = client.collect(String, 'scene', LATCHED), client.collect(DiagnosticStatus, 'events', LATCHED)
-    client.until(lambda: scenes and events, what='latched messages')
+    client.until(lambda: scenes, what='the latched scene')
     assert scenes[0].data.startswith('scene: free_body\n')
-    assert any(event.name == 'reset' for event in events)
+    # latched messages come one by one
+    client.until(lambda: [event for event in events if event.name == 'reset'], what='the event of the reset')
 
 
 def test_reset_puts_the_state_back_and_stamps_go_on(client):
