@@ -28,7 +28,7 @@ setup(
     maintainer=manifest.findtext('maintainer'),
     maintainer_email=manifest.find('maintainer').get('email'),
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={'': ['*.json']},
+    package_data={'': ['*.json', '*.css', '*.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         shared('.', 'package.xml'),

@@ -38,7 +38,7 @@ def _run(options):
     if not path.exists():
         raise BadInput(str(path), 'the node made no recording', 'see its messages above')
     from rigid_body_sim.analysis.analyze import analyze, report_folder, show
-    found, written = analyze(path, report_folder(path))
+    found, written = analyze(path, report_folder(path), short=True)
     if options.json:
         command_line.print_json({'recording': str(path), 'bodies': found, 'files': [str(one) for one in written]})
     else:

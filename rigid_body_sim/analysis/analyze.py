@@ -14,7 +14,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 
 
-def analyze(path, folder):
+def analyze(path, folder, short=False):
     """Analyse a recording; return (list of summaries, one a body; paths of what was written, the text first).
 
     Parameters
@@ -23,6 +23,8 @@ def analyze(path, folder):
         A recording's folder or an .mcap file.
     folder : path-like
         Where the report goes; made if need be, its files replaced.
+    short : bool
+        Only numbers and the overview figure.
 
     Raises
     ------
@@ -34,25 +36,44 @@ def analyze(path, folder):
         bodies = sources(recording)
         with tqdm(total=recording.message_count, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
             measured = measure(recording, bodies, progress.update)
-    found = [summary(one) for one in measured]
+    more = [(None, None) if short else (_spectrum(one), _ledger(one.source)) for one in measured]
+    found = [summary(one, *extra) for one, extra in zip(measured, more, strict=True)]
     written = [folder / 'report.txt', folder / 'report.json']
     try:
         folder.mkdir(parents=True, exist_ok=True)
         written[0].write_text('\n'.join(line for one in found for line in lines(one)) + '\n', encoding='utf-8')
         written[1].write_text(json.dumps({'recording': str(path), 'bodies': found}, indent=2, allow_nan=False) + '\n', encoding='utf-8')
-        written += [_figure(one, numbers, folder) for one, numbers in zip(measured, found, strict=True)]
+        written += _figures(folder, measured, found, more, short)
     except OSError as error:
         raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
     return found, written
 
 
-def _figure(measured, found, folder):
+def _spectrum(measured):
+    from rigid_body_sim.analysis.spectrum import Spectrum
+    return Spectrum(measured) if measured.motion else None
+
+
+def _ledger(source):
+    """Return the ledger of a Source, or None: a recording of others tells no commands, and without them there is no balance."""
+    from rigid_body_sim.analysis.ledger import ledger
+    return ledger(source) if source.run else None
+
+
+def _figures(folder, measured, found, more, short):
+    """Write what there is to look at; return the paths."""
     # matplotlib takes a second to import
-    from rigid_body_sim.analysis.overview import draw
-    name = '_'.join(filter(None, ('overview', *measured.source.namespace.split('/'))))
-    path = folder / f'{name}.png'
-    draw(measured, title(found)).savefig(path)
-    return path
+    from rigid_body_sim.analysis import figures
+    if short:
+        return [figures.draw_overview(folder, one, title(numbers)) for one, numbers in zip(measured, found, strict=True)]
+    from rigid_body_sim.analysis import page
+    written = []
+    if page.available():
+        page.write_page(folder / 'report.html', [(one, numbers, *extra) for one, numbers, extra in zip(measured, found, more, strict=True)])
+        written.append(folder / 'report.html')
+    for one, numbers, extra in zip(measured, found, more, strict=True):
+        written += figures.draw_all(folder, one, *extra, title(numbers))
+    return written
 
 
 def report_folder(path):
@@ -63,7 +84,7 @@ def report_folder(path):
 
 
 def show(found, written):
-    """Print the short report and the paths."""
+    """Print the report's text and the paths."""
     for one in found:
         print('\n'.join(lines(one)))
     for path in written:
@@ -91,6 +112,9 @@ def _run(options):
         results.append({'recording': path, 'bodies': found, 'files': [str(name) for name in written]})
         if not options.json:
             show(found, written)
+    from rigid_body_sim.analysis import page
+    if not page.available():
+        print('report.html was not made: it needs plotly (pip install plotly)', file=sys.stderr)
     if options.json:
         command_line.print_json(results)
     return command_line.GOOD

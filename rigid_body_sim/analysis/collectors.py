@@ -88,3 +88,26 @@ class Samples:
     def columns(self):
         """Return the columns kept."""
         return [np.concatenate(parts) for parts in zip(*self._parts, strict=True)] if self._parts else []
+
+
+class Head:
+    """The first samples, all columns, as many as are wanted.
+
+    Parameters
+    ----------
+    keep : int
+    """
+
+    def __init__(self, keep):
+        self._left = keep
+        self._parts = []
+
+    def add(self, *columns):
+        """Take samples: arrays of n rows each."""
+        if self._left:
+            self._parts.append([column[:self._left] for column in columns])
+            self._left -= len(self._parts[-1][0])
+
+    def columns(self):
+        """Return the columns kept."""
+        return [np.concatenate(parts) for parts in zip(*self._parts, strict=True)] if self._parts else []

@@ -18,40 +18,45 @@ class Residual:
     kept : callable
         Says of a Segment whether the quantity is constant there.
     scale : float
-        Least scale of the residual, in the unit of the quantity; it is relative to the largest of that and its value at the segment's start.
+        Least scale of the residual, in the unit of the quantity; it is relative to the largest of that and its size at the segment's start.
     count : int
         How many values will come, about.
+    size : int
+        Number of components; the residual of a vector is the length of its change, that of a number has a sign.
     """
 
-    def __init__(self, history, kept, scale, count):
+    def __init__(self, history, kept, scale, count, size=1):
         self._history = history
         self._kept = np.array([kept(segment) for segment in history.segments])
         self._scale = scale
-        self._place, self._reference = -1, 0.0
+        self._place, self._reference = -1, np.zeros(size)
         self._residuals = Curve(count)
         self.values = Curve(count)
         self.first = self.last = None
-        self.least, self.greatest = np.inf, -np.inf
+        self.least, self.greatest = np.full(size, np.inf), np.full(size, -np.inf)
         self.largest = self.last_residual = 0.0
         self.judged = 0
 
     def add(self, stamps, times, values):
-        """Take values (n,): their stamps (ns) and times from the start (s)."""
+        """Take values (n,) or (n, size): their stamps (ns) and times from the start (s)."""
+        values = values.reshape(len(times), -1)
         self.values.add(times, values)
-        self.first = float(values[0]) if self.first is None else self.first
-        self.last = float(values[-1])
-        self.least, self.greatest = min(self.least, float(values.min())), max(self.greatest, float(values.max()))
+        self.first = values[0] if self.first is None else self.first
+        self.last = values[-1]
+        self.least, self.greatest = np.minimum(self.least, values.min(axis=0)), np.maximum(self.greatest, values.max(axis=0))
         places = self._history.at(stamps)
         # for each value, which one before it (-1: of an earlier block) is the first of its segment
         begins = np.flatnonzero(np.diff(places, prepend=self._place))
         which = np.searchsorted(begins, np.arange(len(values)), side='right') - 1
-        references = np.append(values[begins], self._reference)[which]
+        references = np.concatenate([values[begins], [self._reference]])[which]
         self._place, self._reference = places[-1], references[-1]
         kept = self._kept[places]
         if not kept.any():
             return
-        scales = np.maximum(np.abs(references), self._scale)
-        residuals = np.divide(values - references, scales, out=np.zeros(len(values)), where=scales > 0.0)[kept]
+        scales = np.maximum(_length(references), self._scale)
+        changes = values - references
+        changes = changes[:, 0] if values.shape[1] == 1 else _length(changes)
+        residuals = np.divide(changes, scales, out=np.zeros(len(values)), where=scales > 0.0)[kept]
         self._residuals.add(times[kept], residuals)
         self.judged += len(residuals)
         self.largest = max(self.largest, float(np.abs(residuals).max()))
@@ -68,9 +73,18 @@ class Residual:
 
     def summary(self):
         """Return a dict: first, last, least and greatest value; the largest and the last residual (None where it is never constant)."""
-        return {'first': self.first, 'last': self.last, 'least': self.least, 'greatest': self.greatest,
-                'largest_residual': self.largest if self.judged else None, 'last_residual': self.last_residual if self.judged else None,
+        seen = {name: _plain(getattr(self, name)) if self.first is not None else None for name in ('first', 'last', 'least', 'greatest')}
+        return {**seen, 'largest_residual': self.largest if self.judged else None, 'last_residual': self.last_residual if self.judged else None,
                 'judged_ticks': self.judged}
+
+
+def _length(vectors):
+    return np.sqrt((vectors * vectors).sum(axis=1)) if vectors.shape[1] > 1 else np.abs(vectors[:, 0])
+
+
+def _plain(values):
+    """Return one number, or the list of several."""
+    return values.tolist() if len(values) > 1 else float(values[0])
 
 
 def scales(scene):

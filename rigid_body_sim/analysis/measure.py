@@ -1,8 +1,12 @@
 """One pass through a recording: every message is looked at once, and what the report tells of it is kept."""
 
+import numpy as np
+
+from rigid_body_sim.analysis.align import aligned
 from rigid_body_sim.analysis.collectors import Curve
 from rigid_body_sim.analysis.drift import Residual, scales
 from rigid_body_sim.analysis.flips import Flips, can_flip
+from rigid_body_sim.analysis.motion import Motion
 from rigid_body_sim.analysis.source import EVERY_TICK
 from rigid_body_sim.analysis.timing import Punctuality
 from rigid_body_sim.timeline import NANOSECONDS
@@ -20,6 +24,8 @@ class Measured:
         Components in body axes, rad/s.
     punctuality : Punctuality
     flips : Flips or None
+    motion : Motion or None
+        What needs pose and angular velocity.
     """
 
     def __init__(self, source):
@@ -30,29 +36,41 @@ class Measured:
         self.angular_velocity = Curve(source.ticks)
         self.punctuality = Punctuality(source.history)
         self.flips = Flips(source.scene) if can_flip(source.scene) and 'angular_velocity' in source.topics else None
-        self._paced_by = next((name for name in ('pose', 'angular_velocity') if name in source.topics), None)
+        self.motion = Motion(source) if {'pose', 'angular_velocity'} <= set(source.topics) else None
 
-    def take(self, name, columns):
-        """Take a block of the messages of a topic, by its name in source.EVERY_TICK."""
-        stamps = columns['log_time']
-        times = (stamps - self.source.start) / NANOSECONDS
-        if name == 'energy':
-            self.energy.add(stamps, times, columns['data'])
-        elif name == 'angular_momentum_squared':
-            self.momentum.add(stamps, times, columns['data'])
-        elif name == 'angular_velocity':
-            self.angular_velocity.add(times, columns['vector'])
-            if self.flips:
-                self.flips.add(columns['vector'])
-        if name == self._paced_by:
-            self.punctuality.add(columns['header.stamp'], columns['publish_time'])
+    def take(self, stretch):
+        """Take messages of one stretch of time: name in source.EVERY_TICK -> columns."""
+        for name, columns in stretch.items():
+            stamps = columns['log_time']
+            times = (stamps - self.source.start) / NANOSECONDS
+            if name == 'energy':
+                self.energy.add(stamps, times, columns['data'])
+            elif name == 'angular_momentum_squared':
+                self.momentum.add(stamps, times, columns['data'])
+            elif name == 'angular_velocity':
+                self.angular_velocity.add(times, columns['vector'])
+                if self.flips:
+                    self.flips.add(columns['vector'])
+        paced_by = stretch.get('pose', stretch.get('angular_velocity'))
+        if paced_by is not None:
+            self.punctuality.add(paced_by['header.stamp'], paced_by['publish_time'])
+        if self.motion and 'pose' in stretch and 'angular_velocity' in stretch:
+            self._take_motion(stretch['pose'], stretch['angular_velocity'])
+
+    def _take_motion(self, pose, omega):
+        """Take the ticks of which both messages are here: those with the same stamp in their headers."""
+        _, mine, theirs = np.intersect1d(pose['header.stamp'], omega['header.stamp'], assume_unique=True, return_indices=True)
+        if len(mine):
+            stamps = pose['log_time'][mine]
+            self.motion.add(stamps, (stamps - self.source.start) / NANOSECONDS, pose['pose.orientation'][mine], omega['vector'][theirs],
+                            pose['pose.position'][mine])
 
 
 def measure(recording, sources, progress=None):
     """Return a Measured for each Source of a Recording; `progress` is called with numbers of messages done."""
     measured = [Measured(source) for source in sources]
-    takers = {one.source.topics[name]: (one, name) for one in measured for name in EVERY_TICK if name in one.source.topics}
-    for topic, columns in recording.blocks(list(takers), progress=progress):
-        one, name = takers[topic]
-        one.take(name, columns)
+    names = {one.source.topics[name]: (one, name) for one in measured for name in EVERY_TICK if name in one.source.topics}
+    for stretch in aligned(recording, list(names), progress):
+        for one in measured:
+            one.take({names[topic][1]: columns for topic, columns in stretch.items() if names[topic][0] is one})
     return measured

@@ -77,6 +77,21 @@ class Rerun:
                         raise BadInput('recording', f'a message at {int(stamps[k])} ns, between two ticks', 'stamps of a simulation')
         return ticks
 
+    def stamp(self, tick):
+        """Return the stamp of a tick, ns."""
+        line = next(line for line in reversed(self._lines) if line.tick <= tick)
+        return line.instant(tick)
+
+    def to(self, tick):
+        """Run on to a tick, commands included."""
+        while self.simulation.tick < tick:
+            self.simulation.advance(self._next(tick) - self.simulation.tick)
+            self._act()
+            self.simulation.events.clear()
+
+    def _next(self, tick):
+        return min(tick, self._actions[-1]['tick']) if self._actions else tick
+
     def through(self, tick):
         """Run on to a tick; return all ticks not yet given (the first one is 0), their States after all commands, energies and L^2."""
         first, parts = self._given + 1, []
@@ -84,9 +99,8 @@ class Rerun:
             parts.append((self.simulation.vector[np.newaxis].copy(), [self.simulation.energy], [self.simulation.angular_momentum_squared]))
         self._given = max(tick, self.simulation.tick)
         while self.simulation.tick < tick:
-            until = min(tick, self._actions[-1]['tick']) if self._actions else tick
             simulation = self.simulation
-            vectors = simulation.advance_through(until - simulation.tick).vector
+            vectors = simulation.advance_through(self._next(tick) - simulation.tick).vector
             energies, momenta = simulation.diagnose(States(vectors))
             if self._act():
                 vectors[-1] = self.simulation.vector

@@ -39,9 +39,8 @@ def resimulate(path, method=None):
     """
     results = []
     with Recording(path) as recording:
-        journal = recording.journal()
         for source in sources(recording):
-            rerun = Rerun([entry for entry in journal if entry['topic'] == source.topics.get('journal')], method or {})
+            rerun = Rerun(source.entries, method or {})
             topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
             comparison = Comparison(rerun, topics, source)
             total = sum(recording.topics[topic].count for topic in topics.values())
@@ -92,7 +91,7 @@ def lines(found, changed):
         text += [f'  {name:12}{", ".join(map(repr, parting[name]))}' for name in ('recorded', 'resimulated')]
         text += [f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, {worst["since_start"]:.9g} s after the start'
                  for name, worst in found['largest'].items()]
-    if found['machine_differs'] and not found['identical']:
+    if found['machine_differs'] and not (found['identical'] or changed):
         text.append(f'  bits are promised on the same machine only; these differ: {", ".join(found["machine_differs"])}')
         text.append(f'  allowed are {found["tolerance"]:.1e} rad: the differences are {"less" if found["good"] else "more than that explains"}')
     return text
@@ -132,11 +131,13 @@ def _run(options):
 def _write(folder, source, comparison, found):
     """Write the curves of the differences; return the paths."""
     # matplotlib takes a second to import
-    from rigid_body_sim.analysis.difference_figure import draw
+    from rigid_body_sim.analysis import panels, plots
+    recorded, now = (f'{one["method"]} ({one["accuracy"]:g})' for one in (found['recorded'], found['resimulated']))
+    figure = plots.stack(panels.differences(comparison), f'Recorded by {recorded}, run again by {now}', source)
     path = folder / '_'.join(filter(None, ('difference', *source.namespace.split('/'))))
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        draw(comparison, found).savefig(path.with_suffix('.png'))
+        figure.savefig(path.with_suffix('.png'))
         with open(path.with_suffix('.csv'), 'w', encoding='utf-8') as stream:
             stream.write('quantity,seconds_since_start,difference\n')
             for quantity in comparison.largest:

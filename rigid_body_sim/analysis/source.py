@@ -35,8 +35,10 @@ class Source:
     made_by, version : str
         '' where unknown.
     history : History
-    start : int
-        Log time of the first tick, ns: t = 0 of all curves.
+    entries : list of dict
+        Its journal; empty in recordings of others.
+    start, end : int
+        Log times of the first tick, which is t = 0 of all curves, and of the last one, ns.
     ticks : int
         Messages on the topic of every tick that has most of them.
     """
@@ -47,7 +49,9 @@ class Source:
     made_by: str
     version: str
     history: History
+    entries: list
     start: int
+    end: int
     ticks: int
 
     @property
@@ -83,12 +87,21 @@ def _source(recording, namespace, topics):
     events = recording.decoded(topics['events']) if 'events' in topics else ()
     rate = run['rate'] if run else _estimated_rate(recording, topics)
     happened = history(entries, events, Segment(start, scene, rate, pace, held))
-    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, start,
-                  max(topic.count for topic in ticking))
+    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, entries, start,
+                  _last_time(recording, ticking[0].name), max(topic.count for topic in ticking))
 
 
 def _first_time(recording, topic):
     return int(next(recording.blocks([topic], []))[1]['log_time'].min())
+
+
+def _last_time(recording, topic):
+    """Return the last log time of a topic, from the last second of the recording if it has it, else from all of it."""
+    for start in (recording.end_time - NANOSECONDS, recording.start_time):
+        times = [int(columns['log_time'].max()) for _, columns in recording.blocks([topic], [], start)]
+        if times:
+            return max(times)
+    return recording.end_time
 
 
 def _estimated_rate(recording, topics):

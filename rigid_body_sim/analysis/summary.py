@@ -5,9 +5,9 @@ import collections
 from rigid_body_sim.analysis.drift import FLOOR
 
 
-def summary(measured):
-    """Return all numbers of a Measured as plain data."""
-    source = measured.source
+def summary(measured, spectrum=None, balance=None):
+    """Return all numbers as plain data: of a Measured, and if they were made, of its Spectrum and its ledger (see ledger.ledger)."""
+    source, motion = measured.source, measured.motion
     segment = source.history.segments[0]
     marks = collections.Counter(mark.kind for mark in source.history.marks)
     events = collections.Counter(mark.name for mark in source.history.marks if mark.kind == 'event')
@@ -28,6 +28,10 @@ def summary(measured):
         'parameter_changes': marks['parameters'],
         'timing': measured.punctuality.summary(),
         'left_out_by_recorder': sum(mark.values['ticks'] for mark in source.history.marks if mark.kind == 'gap'),
+        'momentum': {'of': motion.conserved.name, **motion.momentum.summary()} if motion and motion.momentum else None,
+        'lines': [{'name': line.name, 'axes': line.axes, 'source': line.source, 'predicted': line.frequency, 'measured': found}
+                  for line, found in (spectrum.lines if spectrum else ())],
+        'ledger': {name: float(values[-1]) for name, values in balance[1].items()} if balance else None,
     }
 
 
@@ -46,8 +50,11 @@ def lines(found):
     text = [f'{title(found)}; {timing["ticks"]} ticks']
     for name, label, unit in (('energy', 'energy', 'J'), ('angular_momentum_squared', 'L^2', '(kg m^2/s)^2')):
         text.append(f'  {label:9}{_quantity(found[name], unit)}')
+    if found['momentum'] and found['momentum']['largest_residual'] is not None:
+        text.append(f'  {found["momentum"]["of"]:9}{_residual(found["momentum"])}')
     if found['flips'] is not None:
         text.append(f'  flips    {found["flips"]}')
+    text += [f'  {line["name"]}: {_line(line)}' for line in found['lines'] if line['measured'] is not None]
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
     others += [f'{found[kind]} {name}' for kind, name in
                (('commands', 'ticks with commands'), ('parameter_changes', 'changes of parameters')) if found[kind]]
@@ -67,9 +74,17 @@ def _quantity(values, unit):
         return 'not recorded'
     if values['largest_residual'] is None:
         return f'{values["first"]:.9g} to {values["last"]:.9g} {unit} (not constant in this scene)'
+    return f'{values["first"]:.9g} {unit}; {_residual(values)}'
+
+
+def _residual(values):
     floor = ', round-off' if values['largest_residual'] <= FLOOR else ''
-    return (f'{values["first"]:.9g} {unit}; drift {values["last_residual"]:+.1e}, '
-            f'largest residual {values["largest_residual"]:.1e} (relative{floor})')
+    return f'drift {values["last_residual"]:+.1e}, largest residual {values["largest_residual"]:.1e} (relative{floor})'
+
+
+def _line(line):
+    error = line['measured'] / line['predicted'] - 1.0
+    return f'{line["measured"]:.6g} Hz measured, {line["predicted"]:.6g} Hz predicted ({error:+.1e} relative; {line["source"]})'
 
 
 def _drops(found):

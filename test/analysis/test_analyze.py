@@ -5,16 +5,16 @@ import shutil
 
 import numpy as np
 import pytest
+from analysis import made
 
-made = pytest.importorskip('analysis.made', reason='needs rosbags')
+from rigid_body_sim.analysis import panels, plots
+from rigid_body_sim.analysis.analyze import analyze, main, report_folder
+from rigid_body_sim.analysis.measure import measure
+from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.simulation import Simulation
 
-from rigid_body_sim.analysis.analyze import analyze, main, report_folder  # noqa: E402
-from rigid_body_sim.analysis.measure import measure  # noqa: E402
-from rigid_body_sim.analysis.overview import draw  # noqa: E402
-from rigid_body_sim.analysis.source import sources  # noqa: E402
-from rigid_body_sim.recording.reader import Recording  # noqa: E402
-from rigid_body_sim.simulation import Simulation  # noqa: E402
-
+FIGURES = ('overview', 'motion', 'ledger', 'spectrum', 'polhode', 'axis')
 LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)
 
 
@@ -33,8 +33,12 @@ def eventful(tmp_path_factory):
 def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
     assert main([str(eventful), '--output', str(tmp_path)]) == 0
     printed = capsys.readouterr().out.splitlines()
-    assert printed[:-3] == (tmp_path / 'report.txt').read_text().splitlines()
-    assert [line.strip() for line in printed[-3:]] == [str(tmp_path / name) for name in ('report.txt', 'report.json', 'overview.png')]
+    text = (tmp_path / 'report.txt').read_text().splitlines()
+    assert printed[:len(text)] == text
+    files = ['report.txt', 'report.json', 'report.html', *(f'{name}.png' for name in FIGURES)]
+    assert [line.strip() for line in printed[len(text):]] == [str(tmp_path / name) for name in files]
+    assert all((tmp_path / name).stat().st_size > 10_000 for name in files[2:])
+    assert all((tmp_path / f'{name}.svg').read_text().startswith('<?xml') for name in FIGURES)
     [found] = json.loads((tmp_path / 'report.json').read_text())['bodies']
     assert (found['scene'], found['made_by'], found['rate'], found['run']['method']) == ('tennis_racket', 'sim_node', 1000.0, 'exact')
     assert (found['commands'], found['resets'], found['left_out_by_recorder'], found['events']['reset']) == (3, 1, 40, 1)
@@ -54,7 +58,7 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
 def test_the_figure_shows_what_was_recorded(eventful):
     recording = Recording(eventful)
     [one] = measure(recording, sources(recording))
-    figure = draw(one, 'title')
+    figure = plots.stack(panels.overview(one), 'title', one.source)
     omega, energy, momentum, late = figure.axes
     recorded = recording.read('/angular_velocity')
     for k, line in enumerate(omega.lines[:3]):
@@ -74,7 +78,7 @@ def test_the_figure_shows_what_was_recorded(eventful):
 
 def test_flips_are_counted_without_looking_at_events(tmp_path):
     made.record(tmp_path / 'run', 'tennis_racket', 6000, rate=300.0)
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     omega = Recording(tmp_path / 'run').read('/angular_velocity')['vector']
     assert found['flips'] == np.count_nonzero(np.diff(omega[:, 1] > 0.0)) == 4
     assert found['events'].get('flip', 4) == 4
@@ -85,7 +89,7 @@ def test_drift_that_is_there_is_found(tmp_path):
     simulation = Simulation('tennis_racket', integrator='dop8', accuracy=1e-4, rate=100.0)
     states = made.record_foreign(tmp_path / 'run', simulation, 2000, 0.01)
     energies, momenta = simulation.diagnose(states)
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert found['energy']['largest_residual'] == pytest.approx(np.abs(energies / energies[0] - 1.0).max(), rel=1e-12)
     assert found['angular_momentum_squared']['last_residual'] == pytest.approx(momenta[-1] / momenta[0] - 1.0, rel=1e-9)
     assert found['energy']['largest_residual'] > 1e-9
@@ -94,6 +98,7 @@ def test_drift_that_is_there_is_found(tmp_path):
 def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
     states = made.record_foreign(tmp_path / 'run', Simulation('tennis_racket', rate=200.0), 2001, 0.005)
     [found], files = analyze(tmp_path / 'run', tmp_path / 'report')
+    assert found['ledger'] is None      # the commands are not known
     assert (found['namespace'], found['scene'], found['made_by'], found['run']) == ('/lab', 'tennis_racket', '', {})
     assert found['rate'] == pytest.approx(200.0, rel=1e-9)
     assert found['flips'] == np.count_nonzero(np.diff(states.angular_velocity[:, 1] > 0.0)) == 2
@@ -101,34 +106,35 @@ def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
     assert (found['timing']['ticks'], found['timing']['missing']) == (2001, 0)
     # written at once at its time of arrival, 20 to 90 us after the stamp
     assert found['timing']['lateness']['max'] == pytest.approx(70e-6, abs=3e-6)
-    assert files[-1].name == 'overview_lab.png' and files[-1].stat().st_size > 10_000
+    assert [path.name for path in files[2:]] == ['report.html', *(f'{name}_lab.png' for name in FIGURES if name != 'ledger')]
 
 
 def test_without_a_scene_nothing_is_judged_by_it(tmp_path):
     made.record_foreign(tmp_path / 'run', Simulation('tennis_racket'), 500, 0.001, with_scene=False)
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert found['scene'] is None and found['flips'] is None
     assert found['energy']['largest_residual'] is None and found['energy']['first'] == pytest.approx(25.0002)
 
 
 def test_two_bodies_in_one_recording(tmp_path):
     made.record(tmp_path / 'run', 'tennis_racket', 300, namespace='/left', bodies=['/right'])
-    found, files = analyze(tmp_path / 'run', tmp_path / 'report')
+    found, files = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert [one['namespace'] for one in found] == ['/left', '/right']
     assert found[0]['energy'] == found[1]['energy'] and found[0]['energy']['judged_ticks'] == 301
     assert {path.name for path in files} == {'report.txt', 'report.json', 'overview_left.png', 'overview_right.png'}
 
 
-def test_the_report_lies_beside_the_recording(tmp_path, capsys):
-    for name in ('one', 'two'):
-        made.record(tmp_path / name, 'tennis_racket', 50)
-    assert main([str(tmp_path / 'one'), str(tmp_path / 'two' / 'two_0.mcap'), '--json']) == 0
+def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
+    made.record(tmp_path / 'one.a', 'tennis_racket', 20)
+    file = tmp_path / 'one.a' / 'one.a_0.mcap'
+    assert report_folder(tmp_path / 'one.a') == tmp_path / 'one.a_report'
+    assert report_folder(file) == tmp_path / 'one.a' / 'one.a_0_report'
+    monkeypatch.chdir(tmp_path / 'one.a')
+    assert report_folder('.') == tmp_path / 'one.a_report'
+    assert main(['.', str(file), '--output', str(tmp_path / 'all'), '--json']) == 0
     results = json.loads(capsys.readouterr().out)
-    assert report_folder(tmp_path / 'one') == tmp_path / 'one_report' and (tmp_path / 'one_report' / 'report.json').is_file()
-    assert (tmp_path / 'two' / 'two_0_report' / 'overview.png').is_file()
-    assert [len(result['bodies']) for result in results] == [1, 1]
-    assert main([str(tmp_path / 'one'), str(tmp_path / 'two'), '--output', str(tmp_path / 'all')]) == 0
-    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one_report', 'two_report']
+    assert [len(result['bodies']) for result in results] == [1, 1] and results[0]['bodies'] == results[1]['bodies']
+    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report']
 
 
 def test_bad_input_is_one_line(tmp_path, capsys):

@@ -4,14 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from analysis import made
 
-made = pytest.importorskip('analysis.made', reason='needs rosbags')
-
-from rigid_body_sim.analysis.resimulate import main  # noqa: E402
-from rigid_body_sim.recording import metadata  # noqa: E402
-from rigid_body_sim.recording.reader import Recording  # noqa: E402
-from rigid_body_sim.simulate import main as simulate  # noqa: E402
-from rigid_body_sim.simulation import Simulation  # noqa: E402
+from rigid_body_sim.analysis.resimulate import main
+from rigid_body_sim.recording import metadata
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.simulate import main as simulate
+from rigid_body_sim.simulation import Simulation
 
 ZERO = (0.0, 0.0, 0.0)
 ACTS = {0: [('cmd_impulse', ZERO, (0.1, 0.0, 0.2), 'body')],

@@ -1,0 +1,93 @@
+"""What follows from attitude and angular velocity together, tick by tick: world axes, Euler angles, conserved momenta, slip."""
+
+import warnings
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.analysis.collectors import Curve, Head, Samples
+from rigid_body_sim.analysis.drift import Residual
+
+SAMPLES, HEAD = 8192, 65536
+
+
+class Motion:
+    """Takes the ticks of which both pose and angular velocity were recorded.
+
+    Parameters
+    ----------
+    source : source.Source
+
+    Attributes
+    ----------
+    angular_velocity_world : Curve
+        rad/s.
+    euler : Curve
+        z-y-z angles alpha, beta, gamma, rad.
+    momentum : Residual or None
+        Of the angular momentum that the scene conserves, see `conserved`.
+    slip : Curve or None
+        Speed of the point of contact of a sphere on the table, m/s; from differences of neighbouring positions.
+    samples, head : collectors
+        Times (s), quaternions, angular velocities, positions: over the whole recording, and of the first ticks without a hole.
+    """
+
+    def __init__(self, source):
+        self._scene = scene = source.scene
+        self._rate = source.history.segments[0].rate
+        self.angular_velocity_world, self.euler = Curve(source.ticks), Curve(source.ticks)
+        self.conserved = conserved(scene)
+        self.momentum = None
+        if self.conserved:
+            self.momentum = Residual(source.history, self.conserved.kept, self.conserved.scale, source.ticks, self.conserved.size)
+        self.slip = Curve(source.ticks) if scene is not None and scene.constraint.kind == 'table' else None
+        self.samples, self.head = Samples(source.ticks, SAMPLES), Head(HEAD)
+
+    def add(self, stamps, times, orientation, angular_velocity, position):
+        """Take ticks: stamps (ns) and times from the start (s), (n,); (n, 4) quaternions; (n, 3) rad/s in body axes; (n, 3) m."""
+        attitude = Rotation.from_quat(orientation)
+        world = attitude.apply(angular_velocity)
+        self.angular_velocity_world.add(times, world)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')     # upright, alpha and gamma are not unique: any pair that fits will do
+            self.euler.add(times, attitude.as_euler('ZYZ'))
+        if self.momentum:
+            self.momentum.add(stamps, times, self.conserved.of(attitude, angular_velocity))
+        if self.slip:
+            self._add_slip(times, world, position)
+        self.samples.add(times, orientation, angular_velocity, position)
+        self.head.add(times, orientation, angular_velocity, position)
+
+    def _add_slip(self, times, world, position):
+        """Slip velocity of the contact: v + omega x (-a e_z)."""
+        steps = times[2:] - times[:-2]
+        whole = steps < 2.5 / self._rate if self._rate else steps > 0.0
+        if whole.any():
+            v = (position[2:] - position[:-2])[whole] / steps[whole, None]
+            omega, a = world[1:-1][whole], self._scene.body.radius
+            self.slip.add(times[1:-1][whole], np.hypot(v[:, 0] - a * omega[:, 1], v[:, 1] + a * omega[:, 0]))
+
+
+class Conserved:
+    """An angular momentum that a scene conserves: `name`, number of components (`size`), |L| at the start (`scale`), where it is `kept`."""
+
+    def __init__(self, name, scene, inertia, kept):
+        self.name, self._inertia, self._vertical = name, inertia.matrix, name == 'L_z'
+        self.size = 1 if self._vertical else 3
+        self.scale = float(np.linalg.norm(self._inertia @ scene.initial.angular_velocity))
+        self.kept = lambda segment: segment.scene is not None and segment.scene.text == scene.text and kept(segment)
+
+    def of(self, attitude, angular_velocity):
+        """Return it, (n,) or (n, 3), for attitudes and angular velocities (body axes)."""
+        momentum = attitude.apply(angular_velocity @ self._inertia)
+        return momentum[:, 2] if self._vertical else momentum
+
+
+def conserved(scene):
+    """Return the Conserved of a scene: L of a free body, L or its vertical part about a fixed point; None if there is none."""
+    if scene is None or scene.constraint.kind not in ('free', 'pivot'):
+        return None
+
+    if scene.constraint.kind == 'free':
+        return Conserved('L', scene, scene.body.about_center, lambda segment: segment.keeps_momentum)
+    return Conserved('L_z' if scene.effect('gravity') else 'L', scene, scene.body.about_origin, lambda segment: segment.keeps_energy)

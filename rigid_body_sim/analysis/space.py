@@ -1,0 +1,123 @@
+"""Paths and surfaces in space: the polhode on its two ellipsoids, the trace of an axis on the sphere, the body as a box."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.topics import box_of
+
+FLATTEST = 1e-6
+"""Below this ratio of moments an ellipsoid is a cylinder for all that can be seen, and is not drawn."""
+MOST_FRAMES, TURN_A_FRAME = 4000, 0.15
+
+
+@dataclass(frozen=True)
+class Space:
+    """A path and what it lies on.
+
+    Attributes
+    ----------
+    name, title : str
+    axes : tuple of str
+        Labels with units.
+    times, path : arrays (n,), (n, 3)
+    surfaces : dict
+        Name -> points of a net of latitudes and longitudes, (m, k, 3).
+    """
+
+    name: str
+    title: str
+    axes: tuple
+    times: np.ndarray
+    path: np.ndarray
+    surfaces: dict
+
+
+def spaces(measured):
+    """Return the Spaces of a Measured."""
+    if measured.motion is None or not measured.motion.samples.columns():
+        return []
+    return [space for space in (_polhode(measured), _trace(measured)) if space]
+
+
+def _sphere(rows=25, columns=49):
+    latitude, longitude = np.meshgrid(np.linspace(0.0, np.pi, rows), np.linspace(0.0, 2.0 * np.pi, columns), indexing='ij')
+    return np.stack([np.sin(latitude) * np.cos(longitude), np.sin(latitude) * np.sin(longitude), np.cos(latitude)], axis=2)
+
+
+def _polhode(measured):
+    """Return omega in the body, with the ellipsoids omega . I omega = 2 T and |I omega| = L of the first tick; of free bodies only."""
+    scene = measured.source.scene
+    if scene is None or scene.constraint.kind != 'free':
+        return None
+    times, _, omega, _ = measured.motion.samples.columns()
+    inertia = scene.body.about_center
+    moments = np.array(inertia.moments)
+    first = Rotation.from_quat(inertia.axes).inv().apply(omega[0])
+    surfaces = {}
+    if first.any() and moments.min() > FLATTEST * moments.max():
+        energy, momentum = np.sqrt(moments @ first**2 / moments), np.linalg.norm(moments * first) / moments
+        for name, axes in (('energy ellipsoid, 2T', energy), ('momentum ellipsoid, L', momentum)):
+            net = _sphere() * axes
+            surfaces[name] = Rotation.from_quat(inertia.axes).apply(net.reshape(-1, 3)).reshape(net.shape)
+    labels = tuple(f'ω{name} (rad/s)' for name in 'xyz')
+    return Space('polhode', 'Polhode: ω in the body, on the ellipsoids of its energy and its momentum', labels, times, omega, surfaces)
+
+
+def _trace(measured):
+    """Return the path of an axis of the body on the unit sphere of the world."""
+    times, orientation, _, _ = measured.motion.samples.columns()
+    what, axis = traced_axis(measured.source.scene)
+    return Space('axis', f'Trace of the {what} on the sphere', ('x', 'y', 'z'), times, Rotation.from_quat(orientation).apply(axis),
+                 {'unit sphere': _sphere()})
+
+
+def traced_axis(scene):
+    """Return (what it is, unit vector in body axes): the symmetry axis, else the way to the centre of mass, else the middle principal axis."""
+    if scene is None:
+        return 'body z axis', np.array([0.0, 0.0, 1.0])
+    held = scene.constraint.kind in ('pivot', 'hinge')
+    inertia = scene.body.about_origin if scene.constraint.kind == 'pivot' else scene.body.about_center
+    axes = Rotation.from_quat(inertia.axes).as_matrix()
+    moments = list(inertia.moments)
+    if len(set(moments)) == 2:
+        distinct = next(k for k in range(3) if moments.count(moments[k]) == 1)
+        return 'symmetry axis', axes[:, distinct]
+    center = np.array(scene.body.center_of_mass)
+    if held and center.any():
+        return 'direction to the centre of mass', center / np.linalg.norm(center)
+    if len(set(moments)) == 3:
+        return 'middle axis', axes[:, int(np.argsort(moments)[1])]
+    return 'body z axis', np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Playback:
+    """The body as it moves: times (n,) s and quaternions (n, 4), and the corners (8, 3) of a box with its mass and moments, body axes, m."""
+
+    times: np.ndarray
+    orientation: np.ndarray
+    corners: np.ndarray
+
+
+def playback(measured):
+    """Return the Playback of a Measured, or None: of the whole recording where its samples are dense enough, else of its beginning."""
+    if measured.motion is None or not measured.motion.samples.columns():
+        return None
+    times, orientation, omega, _ = measured.motion.samples.columns()
+    fastest = float(np.sqrt((omega * omega).sum(axis=1)).max())
+    if len(times) > 1 and fastest * float(np.diff(times).max()) > 2.0 * TURN_A_FRAME:
+        times, orientation, _, _ = measured.motion.head.columns()
+    step = max(1, int(TURN_A_FRAME / (fastest * (times[1] - times[0])))) if fastest > 0.0 and len(times) > 1 else 1
+    step = min(step, max(1, len(times) // 200))
+    return Playback(times[::step][:MOST_FRAMES], orientation[::step][:MOST_FRAMES], _corners(measured.source.scene))
+
+
+def _corners(scene):
+    signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    if scene is None:
+        return signs * (1.0, 0.6, 0.2)
+    edges = np.array(box_of(scene.body))
+    edges = np.maximum(edges, 0.02 * edges.max()) if edges.max() > 0.0 else np.ones(3)
+    return Rotation.from_quat(scene.body.about_center.axes).apply(signs * edges) + scene.body.center_of_mass

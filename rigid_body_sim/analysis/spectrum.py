@@ -1,0 +1,91 @@
+"""Spectra of omega over the first ticks, and the lines that theory predicts in them."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.analysis.lines import predicted_lines
+
+FEWEST = 64
+PADDING = 4         # zeros that are added, times the length: a finer curve
+SMALLEST = 1e-9     # amplitude that is shown, of the largest
+SEARCH = 0.1
+"""A line is looked for within this part of its frequency."""
+
+
+class Spectrum:
+    """Amplitudes of omega in body and world axes.
+
+    Parameters
+    ----------
+    measured : measure.Measured
+        Its first ticks up to the first change from outside are taken (at least a tenth of them, or else all).
+
+    Attributes
+    ----------
+    seconds : float
+        How long the stretch is; 0 where there is too little.
+    frequencies : array (n,)
+        Hz.
+    amplitudes : dict
+        ``body``, ``world`` -> (n, 3), rad/s: a sine of amplitude A shows as A.
+    lines : list of (SpectralLine, measured frequency in Hz or None)
+    """
+
+    def __init__(self, measured):
+        times, orientation, omega, _ = measured.motion.head.columns()
+        stop = _undisturbed(measured.source, times)
+        times, orientation, omega = times[:stop], orientation[:stop], omega[:stop]
+        self.seconds, self.frequencies, self.amplitudes, self.lines = 0.0, np.empty(0), {}, []
+        if len(times) < FEWEST:
+            return
+        step = (times[-1] - times[0]) / (len(times) - 1)
+        self.seconds = float(step * len(times))
+        size = PADDING * len(times)
+        self.frequencies = np.fft.rfftfreq(size, step)
+        window = np.hanning(len(times))
+        for axes, values in (('body', omega), ('world', Rotation.from_quat(orientation).apply(omega))):
+            weighted = (values - values.mean(axis=0)) * window[:, None]
+            self.amplitudes[axes] = 2.0 * np.abs(np.fft.rfft(weighted, size, axis=0)) / window.sum()
+        self.lines = [(line, self._measured(line)) for line in predicted_lines(measured.source.scene)
+                      if line.frequency < self.frequencies[-1]]
+
+    def seen(self, axes):
+        """Return the amplitudes without the mean, none smaller than SMALLEST of the largest: for logarithmic axes."""
+        amplitudes = self.amplitudes[axes][1:]
+        return np.maximum(amplitudes, SMALLEST * max(float(amplitudes.max()), np.finfo(float).tiny / SMALLEST))
+
+    @property
+    def top(self):
+        """The frequency (Hz) up to which there is something to see: the predicted lines, or amplitudes above a thousandth of the largest."""
+        size = sum(amplitudes.max(axis=1) for amplitudes in self.amplitudes.values())[PADDING:]
+        above = np.flatnonzero(size > 1e-3 * size.max()) if len(size) else ()
+        highest = self.frequencies[above[-1] + PADDING] if len(above) else 0.0
+        predicted = max((line.frequency for line, _ in self.lines), default=0.0)
+        return min(1.5 * max(highest, 2.0 * predicted) + 10.0 / self.seconds, self.frequencies[-1])
+
+    def _measured(self, line):
+        """Return the frequency of the largest peak near a line, by a parabola through the logarithms; None where there is none."""
+        f, resolution = self.frequencies, 1.0 / self.seconds
+        power = (self.amplitudes[line.axes] ** 2).sum(axis=1)
+        near = np.flatnonzero(np.abs(f - line.frequency) <= max(SEARCH * line.frequency, 1.5 * resolution))
+        near = near[(near > 1) & (near < len(f) - 1)]
+        if not len(near) or line.frequency < 3.0 * resolution:
+            return None
+        peak = near[power[near].argmax()]
+        left, top, right = power[peak - 1:peak + 2]
+        if not (top > 0.0 and top >= left and top >= right):
+            return None
+        left, top, right = np.log(np.maximum((left, top, right), np.finfo(float).tiny))
+        curvature = left - 2.0 * top + right
+        return float(f[peak] + (0.5 * (left - right) / curvature if curvature < 0.0 else 0.0) * f[1])
+
+
+def _undisturbed(source, times):
+    """Return how many of the first ticks come before the first change from outside and the first hole."""
+    stop = len(times)
+    if len(source.history.segments) > 1:
+        stop = int(np.searchsorted(times, (source.history.segments[1].stamp - source.start) * 1e-9))
+    stop = stop if stop > 0.1 * len(times) else len(times)
+    steps = np.diff(times[:stop])
+    holes = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else ()
+    return int(holes[0]) + 1 if len(holes) else stop
