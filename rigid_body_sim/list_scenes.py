@@ -8,7 +8,7 @@ from rigid_body_sim.scenes import load_scene, scene_names
 def describe(scene):
     """Return name, text, constraint, effects and runnable methods of a scene as plain data."""
     return {'scene': scene.name, 'about': scene.about, 'constraint': scene.constraint.kind,
-            'effects': [effect.name for effect in scene.effects], 'methods': methods_for(scene)}
+            'effects': [effect.name for effect in scene.effects], 'methods': methods_for(scene), 'notes': scene.notes}
 
 
 def main(arguments=None):
@@ -27,4 +27,6 @@ def _list(options):
     for scene in described:
         print(f'{scene["scene"]}: {scene["about"]}')
         print(f'    {scene["constraint"]}; effects: {", ".join(scene["effects"]) or "none"}; methods: {", ".join(scene["methods"])}')
+        for line in scene['notes']:
+            print(f'    note: {line}')
     return command_line.GOOD

@@ -8,6 +8,9 @@ from rigid_body_sim.errors import BadInput
 
 MAXIMUM_BYTES = 256 * 1024
 MAXIMUM_DEPTH = 12
+ALTERNATIVES = (('orientation', 'euler_zyz', 'tilt'), ('angular_velocity', 'spin'), ('through', 'distance'), ('point', 'height', 'distance'),
+                ('impulse', 'speed'))
+"""Keys that say the same thing in different ways: an override by one of them takes the place of the others."""
 
 
 class _SceneLoader(yaml.SafeLoader):
@@ -76,7 +79,8 @@ def override(mapping, assignment, where):
         A parsed scene, changed in place.
     assignment : str
         ``key.path=value``: keys from the top (``body.mass=2``), a number for a place in a list (``initial.angular_velocity.1=3``), or from the
-        name of an effect (``strike.height=0.02``). The value is read as YAML.
+        name of an effect (``strike.height=0.02``). The value is read as YAML. A key takes the place of its ALTERNATIVES: ``initial.tilt=1``
+        of an ``initial.euler_zyz``.
     """
     path, equals, value = assignment.partition('=')
     keys = [key for key in path.strip().replace('[', '.').replace(']', '').split('.') if key]
@@ -138,6 +142,8 @@ def _put(target, key, value, where):
     if isinstance(target, list):
         target[_place(target, key, where)] = value
     elif isinstance(target, dict):
+        for other in {other for way in ALTERNATIVES if key in way for other in way}:
+            target.pop(other, None)
         target[key] = value
     else:
         raise BadInput(where, f'{key!r} lies inside a plain value', 'end the path at the value itself')

@@ -51,7 +51,7 @@ SCENE = _mapping(
     ['scene', 'body', 'constraint', 'effects', 'initial'], scene={'type': 'string', 'pattern': r'^[A-Za-z][A-Za-z0-9_]{0,63}$'},
     about={'type': 'string'}, body=BODY, constraint={'type': ['string', 'object']}, effects={'type': 'array', 'maxItems': 32}, initial=INITIAL,
     commands={'enum': ['accept', 'refuse']})
-HINGE = _mapping(['axis'], axis=VECTOR, through=VECTOR)
+HINGE = _mapping(['axis'], axis=VECTOR, through=VECTOR, distance=NUMBER)
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,16 @@ class Scene:
     initial: State
     accepts_commands: bool
     text: str
+
+    @property
+    def notes(self):
+        """What is allowed but hardly meant, a list of lines."""
+        held = {'pivot': 'pivot', 'hinge': 'hinge'}.get(self.constraint.kind)
+        if not held or self.effect('gravity') is None:
+            return []
+        n, arm = np.array(self.constraint.axis), np.subtract(self.body.center_of_mass, self.constraint.through)
+        arm = arm - n * (n @ arm) if held == 'hinge' else arm
+        return [] if arm.any() else [f'the {held} holds the body at its centre of mass: gravity does nothing there']
 
     def effect(self, name):
         """Return the effect of that name, or None if the scene does not list it."""
@@ -263,7 +273,24 @@ def _constraint(value, body, where):
     length = np.linalg.norm(axis)
     if not length > 0.0 or not math.isfinite(length):
         raise BadInput(f'{where}.hinge.axis', f'got {settings["axis"]}', 'a direction: three numbers, not all zero')
-    return Constraint('hinge', tuple((axis / length).tolist()), tuple(float(x) for x in settings.get('through', (0.0, 0.0, 0.0))))
+    axis = tuple((axis / length).tolist())
+    if 'distance' in settings:
+        return Constraint('hinge', axis, _suspension(settings, axis, body, f'{where}.hinge'))
+    return Constraint('hinge', axis, tuple(float(x) for x in settings.get('through', (0.0, 0.0, 0.0))))
+
+
+def _suspension(settings, axis, body, where):
+    """Return the point (body axes, m) at a distance from the centre of mass along body axis z, made square to the hinge's axis."""
+    distance, upward = float(settings['distance']), np.array([0.0, 0.0, 1.0]) - axis[2] * np.array(axis)
+    if 'through' in settings:
+        raise BadInput(f'{where}.distance', 'stands beside through', 'give one of them')
+    if distance == 0.0:
+        raise BadInput(f'{where}.distance', f'got {settings["distance"]!r}', 'hung at its centre of mass a body does not swing: a distance '
+                       'above 0, or below 0 on the other side, in m')
+    length = np.linalg.norm(upward)
+    if not length > 1e-8:
+        raise BadInput(f'{where}.distance', f'got an axis {list(axis)} along z', 'distance is measured along body axis z: give through')
+    return tuple((np.array(body.center_of_mass) + upward * (distance / length)).tolist())
 
 
 def _effects(entries, body, constraint, where):

@@ -169,6 +169,8 @@ def _run(options):
     finished = time.perf_counter()
     cost = {'set_up': prepared - began, 'run': finished - prepared, 'ticks': simulation.tick,
             'messages': recording.messages if recording else 0}
+    for line in simulation.scene.notes:
+        print(f'{simulation.scene.name}: {line}', file=sys.stderr)
     result = {'state': _plain(simulation.state), 'ledger': simulation.ledger(), 'method': about.run_of(simulation), 'events': dict(events),
               'cost': cost}
     if options.json:

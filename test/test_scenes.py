@@ -3,6 +3,7 @@
 import math
 import pathlib
 
+import numpy as np
 import pytest
 
 from rigid_body_sim import scenes
@@ -124,3 +125,59 @@ initial: {velocity: [1, 0, 0]}
     assert parse_scene(text).initial.position.tolist() == [0.0, 0.0, 0.028575]
     with pytest.raises(BadInput, match='the ball lies on the table'):
         parse_scene(text, ['initial.position=[0, 0, 1]'])
+
+
+@pytest.mark.parametrize(('scene', 'assignment', 'found', 'expected'), [
+    ('billiard_follow', 'strike.speed=2.0', lambda scene: scene.effect('strike').impulse, (0.34, 0.0, 0.0)),
+    ('billiard_follow', 'strike.height=-0.02', lambda scene: scene.effect('strike').height, -0.02),
+    ('billiard_follow', 'strike.impulse=[0, 0.1, 0]', lambda scene: scene.effect('strike').impulse, (0.0, 0.1, 0.0)),
+    ('baseball_bat', 'strike.distance=0.3', lambda scene: scene.effect('strike').point, (0.3, 0.0, 0.0)),
+    ('baseball_bat', 'strike.point=[0.4, 0, 0]', lambda scene: scene.effect('strike').point, (0.4, 0.0, 0.0)),
+    ('kater_pendulum', 'constraint.hinge.distance=0.25', lambda scene: scene.constraint.through, (0.0, 0.0, -0.15)),
+    ('kater_pendulum_from_p', 'constraint.hinge.distance=-0.25', lambda scene: scene.constraint.through, (0.0, 0.0, -0.65)),
+    ('kater_pendulum', 'constraint.hinge.through=[0, 0, 0.1]', lambda scene: scene.constraint.through, (0.0, 0.0, 0.1)),
+    ('heavy_top', 'initial.spin=80', lambda scene: scene.initial.angular_velocity, (0.0, 0.0, 80.0)),
+    ('heavy_top', 'initial.tilt=0.6', lambda scene: scene.initial.orientation, (0.0, math.sin(0.3), 0.0, math.cos(0.3))),
+])
+def test_what_a_reader_turns_is_one_override(scene, assignment, found, expected):
+    """A key takes the place of another one that says the same thing: a tilt that of euler_zyz, a distance that of a point."""
+    assert np.atleast_1d(found(load_scene(scene, [assignment]))) == pytest.approx(expected, abs=1e-16)
+
+
+@pytest.mark.parametrize(('scene', 'assignment', 'line'), [
+    ('billiard_follow', 'strike.height=0.03',
+     'billiard_follow.yaml: effects.strike.height: got 0.03; at most the radius, 0.028575, above or below the middle'),
+    ('billiard_follow', 'strike.hight=0.01', "billiard_follow.yaml: effects.strike: unknown key 'hight'; did you mean 'height'?"),
+    ('billiard_follow', 'strik.height=0.01', "billiard_follow.yaml: unknown key 'strik'; the keys are"),
+    ('billiard_follow', 'strike.distance=0.01', "billiard_follow.yaml: effects.strike.distance: has no meaning on constraint 'table'"),
+    ('billiard_follow', 'strike={height: 0}', 'billiard_follow.yaml: effects.strike: got the keys height; give one of impulse (N s) and'),
+    ('billiard_follow', 'strike={speed: 1, height: 0, point: [0, 0, 0]}', 'billiard_follow.yaml: effects.strike.height: stands beside point'),
+    ('baseball_bat', 'strike.speed=1', "baseball_bat.yaml: effects.strike.speed: has no meaning on constraint 'hinge'"),
+    ('baseball_bat', 'strike.height=1', "baseball_bat.yaml: effects.strike.height: has no meaning on constraint 'hinge'"),
+    ('baseball_bat', 'constraint.hinge.through=[0.55, 0, 0]', 'baseball_bat.yaml: effects.strike.distance: got 0.6227272727272727 on a hinge'),
+    ('kater_pendulum', 'constraint.hinge.distance=0',
+     'kater_pendulum.yaml: constraint.hinge.distance: got 0; hung at its centre of mass a body does not swing'),
+    ('kater_pendulum', 'constraint.hinge={axis: [0, 0, 1], distance: 1}', 'kater_pendulum.yaml: constraint.hinge.distance: got an axis'),
+    ('kater_pendulum', 'constraint.hinge={axis: [0, 1, 0], distance: 1, through: [0, 0, 1]}',
+     'kater_pendulum.yaml: constraint.hinge.distance: stands beside through'),
+    ('heavy_top', 'initial={tilt: 1, euler_zyz: [0, 0, 0]}', 'heavy_top.yaml: initial.tilt: stands beside euler_zyz'),
+])
+def test_a_wrong_turn_gets_one_line(scene, assignment, line):
+    with pytest.raises(BadInput) as caught:
+        load_scene(scene, [assignment])
+    assert str(caught.value).startswith(line)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(('scene', 'overrides'), [
+    ('heavy_top', ['body.center_of_mass=[0, 0, 0]']), ('kater_pendulum', ['constraint.hinge.through=[0, 0, -0.4]'])])
+def test_held_at_its_centre_of_mass_a_body_runs_with_a_note(scene, overrides, capsys):
+    from rigid_body_sim import list_scenes, simulate
+    assert load_scene(scene).notes == []
+    [note] = load_scene(scene, overrides).notes
+    assert note.endswith('holds the body at its centre of mass: gravity does nothing there')
+    assert simulate.main(['--scene', scene, '--set', *overrides, '--duration', '0.1', '--json']) == 0
+    said = capsys.readouterr()
+    assert note in said.err
+    assert '"potential": 0.0' in said.out
+    assert list_scenes.describe(load_scene(scene, overrides))['notes'] == [note]

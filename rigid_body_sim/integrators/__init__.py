@@ -6,7 +6,7 @@ accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
 from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.integrators import dop8, lsoda, radau, rk4, semi_implicit_euler, split2, split4, split6, split8
+from rigid_body_sim.integrators import dop8, lsoda, radau, rk4, runge_kutta, semi_implicit_euler, split2, split4, split6, split8
 
 METHODS = {method.NAME: method for method in (dop8, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 
@@ -14,10 +14,11 @@ METHODS = {method.NAME: method for method in (dop8, split2, split4, split6, spli
 def runnable(scene):
     """Return the names of the methods that can run a scene.
 
-    Those that find the view they need in every effect (strikes are impulses), and bear the heat that the effects make.
+    Those that find the view they need in every effect (strikes are impulses), and bear the heat that the effects make. A ball on the table
+    needs steps that end where sliding does, so a Runge-Kutta method that controls its error.
     """
     if scene.constraint.kind == 'table':
-        return []
+        return [name for name, method in METHODS.items() if method.FAMILY is runge_kutta and 'accuracy' in method.TAKES]
     effects = [effect for effect in scene.effects if effect.name != 'strike']
     frame = Frame.of(scene.body, scene.constraint)
     acting = [one for effect in effects if hasattr(effect, 'acting') for one in effect.acting(frame, 0.0)]

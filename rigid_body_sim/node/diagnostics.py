@@ -114,9 +114,9 @@ class Diagnostics:
         difference = abs(found.get('relative_difference', 0.0))
         level, _ = self._bounded({'prediction': difference})
         if level != OK:
-            message = f'the measured interval differs from the predicted one by {difference:.3g} of it'
+            message = f'what was measured differs from what is predicted by {difference:.3g} of it'
         else:
-            message = 'as predicted' if 'relative_difference' in found else 'nothing measured yet' if found else 'theory predicts no interval'
+            message = 'as predicted' if 'relative_difference' in found else 'nothing measured yet' if found else 'theory has no prediction'
         return self._status('prediction', level, message, found)
 
     def _bounded(self, sizes):

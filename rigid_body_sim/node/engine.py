@@ -51,6 +51,8 @@ class Engine:
         self._node, self._settings = node, settings
         self._entities_before = set(_entities(node))
         simulation = self._prepare({})
+        for line in simulation.scene.notes:
+            node.get_logger().info(line)
         frames = frames_of(node, settings)
         # before anything is offered: who finds the topics finds them alive
         warm_up(simulation)

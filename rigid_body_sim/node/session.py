@@ -63,8 +63,8 @@ class Session:
         self._release_tick = None
         self._reports = {}
         self._balance_wanted = False
-        self.take_balance()
         self._disturbed()
+        self.take_balance()
 
     # -- from other threads -------------------------------------------------------------------------------------------------------------
 
@@ -237,4 +237,5 @@ class Session:
     def take_balance(self):
         """Take a fresh :attr:`balance`; while ticks run, only the tick thread may do so."""
         self._balance_wanted = False
+        self.prediction.look(self.simulation.state)
         self.balance = {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}

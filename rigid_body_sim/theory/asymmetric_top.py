@@ -6,7 +6,10 @@ eta2, eta3) small deviations of omega (rad/s).
 Errata: the notes carry I1 into the second and third linear equation; they are I2 and I3 (`linear_rates_as_written`). Omega^2 is right.
 """
 
+import math
+
 import numpy as np
+from scipy.special import ellipkm1
 
 
 def linear_rates(eta, omega0, I1, I2, I3):
@@ -42,3 +45,24 @@ def growth_rate(omega0, I1, I2, I3):
 def growing_ratio(I1, I2, I3):
     """Return eta2/eta1 of the growing solution about the intermediate axis (omega0 > 0)."""
     return np.sign(I2 - I3) * np.sqrt(I1 * (I3 - I1) / (I2 * (I2 - I3)))
+
+
+def time_between_flips(moments, omega):
+    """Return the time between two changes of sign of omega2 of a free body with I1 < I2 < I3, 2 K(k)/lambda, s; every second one is a period.
+
+    Beyond the notes: Landau and Lifshitz, Mechanics, section 37. `omega` in principal axes (rad/s), at any time. Discriminants are sums of
+    like-signed terms, and the modulus is taken by 1 - k^2. None where there are no flips: moments not rising, or a steady rotation.
+    """
+    I1, I2, I3 = moments
+    if not 0.0 < I1 < I2 < I3:
+        return None
+    w1, w2, w3 = np.square(omega)
+    above_least = I2 * (I2 - I1) * w2 + I3 * (I3 - I1) * w3         # L^2 - 2 E I1
+    below_greatest = I1 * (I3 - I1) * w1 + I2 * (I3 - I2) * w2      # 2 E I3 - L^2
+    middle = I3 * (I3 - I2) * w3 - I1 * (I2 - I1) * w1              # L^2 - 2 E I2
+    around_third, around_first = (I3 - I2) * above_least, (I2 - I1) * below_greatest
+    lead, side = (around_third, around_first) if middle > 0.0 else (around_first, around_third)
+    complement = (I3 - I1) * abs(middle) / lead if lead > 0.0 else 0.0
+    if not (side > 0.0 and complement > 0.0):
+        return None
+    return 2.0 * ellipkm1(complement) / math.sqrt(lead / (I1 * I2 * I3))

@@ -35,12 +35,25 @@ def angular_acceleration(h, a, mu, g):
     return -friction_direction(h, a) * 2.5 * mu * g / a
 
 
+def sliding_time(slip, mu, g, share=2.0 / 5.0):
+    """Return how long a ball slides whose lowest point slips at a speed (m/s): 2 slip/(7 mu g), s; share = I/(M a^2) of another ball."""
+    return slip * share / ((1.0 + share) * mu * g)
+
+
+def speed_when_rolling(speed, rim_speed, share=2.0 / 5.0):
+    """Return the speed (m/s) of a ball that began with a speed and a rim speed a omega, (5/7) (speed + (2/5) rim_speed).
+
+    Friction does not enter: the angular momentum about a point of the table stays. share = I/(M a^2) of another ball.
+    """
+    return (speed + share * rim_speed) / (1.0 + share)
+
+
 def onset_of_rolling(v0, h, a, mu, g):
     """Return when rolling begins, on both sides of 2 a/5: t = 2 |v0 - a omega0|/(7 mu g), s.
 
     For h = 0 it is 2 v0/(7 mu g), below 2 a/5 it is 2 v0/(7 mu g) (1 - 5 h/(2 a)): right in the notes.
     """
-    return 2.0 * np.abs(v0 - a * spin_after_strike(v0, h, a)) / (7.0 * mu * g)
+    return sliding_time(np.abs(v0 - a * spin_after_strike(v0, h, a)), mu, g)
 
 
 def onset_of_rolling_above_as_written(v0, h, a, mu, g):
@@ -65,4 +78,4 @@ def sliding_distance(t, v0, h, a, mu, g):
 
 def rolling_speed(v0, h, a):
     """Return the final speed, (5/7) v0 (1 + h/a), m/s; friction does not enter."""
-    return 5.0 / 7.0 * v0 * (1.0 + h / a)
+    return speed_when_rolling(v0, a * spin_after_strike(v0, h, a))

@@ -8,6 +8,8 @@ Errata: P_x, P_y of the scan are P_alpha, P_gamma; the prefactor in I1 beta'' re
 equilibrium only and is singular at beta_0 = 90 degrees (`curvature` holds everywhere).
 """
 
+import math
+
 import numpy as np
 
 
@@ -47,10 +49,15 @@ def beta_acceleration(beta, P_alpha, P_gamma, I1, Mgl):
     return (turning - P_alpha * P_gamma / (I1 * s) + Mgl * s) / I1
 
 
+def spin_energy(P_gamma, I3):
+    """Return P_gamma^2/(2 I3), the constant in V_eff, J; 0 for a body without spin, also one without moment about its axis."""
+    return P_gamma**2 / (2.0 * I3) if P_gamma else 0.0
+
+
 def effective_potential(beta, P_alpha, P_gamma, I1, I3, Mgl):
     """Return V_eff = (P_alpha - P_gamma cos(beta))^2/(2 I1 sin^2(beta)) + M g l cos(beta) + P_gamma^2/(2 I3), J."""
     centrifugal = (P_alpha - P_gamma * np.cos(beta)) ** 2 / (2.0 * I1 * np.sin(beta) ** 2)
-    return centrifugal + Mgl * np.cos(beta) + P_gamma**2 / (2.0 * I3)
+    return centrifugal + Mgl * np.cos(beta) + spin_energy(P_gamma, I3)
 
 
 def energy(beta, beta_rate, P_alpha, P_gamma, I1, I3, Mgl):
@@ -156,7 +163,32 @@ def turning_points(E, P_alpha, P_gamma, I1, I3, Mgl):
     With u = cos(beta): 2 I1 (E - P_gamma^2/(2 I3) - M g l u) (1 - u^2) = (P_alpha - P_gamma u)^2, a cubic of which two roots lie in
     [-1, 1].
     """
-    K, left = 2.0 * I1 * Mgl, 2.0 * I1 * (E - P_gamma**2 / (2.0 * I3))
+    K, left = 2.0 * I1 * Mgl, 2.0 * I1 * (E - spin_energy(P_gamma, I3))
     roots = np.roots([K, -(left + P_gamma**2), 2.0 * P_alpha * P_gamma - K, left - P_alpha**2])
     low, high = np.sort(np.sort(roots.real)[:2] if K > 0.0 else np.sort(roots.real)[-2:])
     return np.arccos(np.clip(high, -1.0, 1.0)), np.arccos(np.clip(low, -1.0, 1.0))
+
+
+def time_between_turning_points(omega, up, I1, I3, Mgl):
+    """Return half the period of the nutation, s, from omega and the upward vertical in body axes at any time; None where there is none.
+
+    Beyond the notes: with w = 1 - cos(beta), (I1 w')^2 = K (w3 - w)(w - w1)(w - w2) or its like with K = 2 I1 M g l, so that the time is
+    I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3))); Whittaker and Watson, Modern Analysis, 22.7. The coefficients in w keep their
+    digits near the upright top.
+    """
+    across = up[0] ** 2 + up[1] ** 2
+    w = across / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - up[2]
+    K, P_gamma = 2.0 * I1 * Mgl, I3 * omega[2]
+    surplus = I1**2 * (omega[0] ** 2 + omega[1] ** 2) - K * w           # 2 I1 (E - P_gamma^2/(2 I3) - M g l)
+    lead = I1 * (omega[0] * up[0] + omega[1] * up[1]) - P_gamma * w     # P_alpha - P_gamma
+    cubic = [-K, 2.0 * K - surplus - P_gamma**2, 2.0 * (surplus - lead * P_gamma), -(lead**2)]
+    roots = np.sort(np.roots(cubic).real) if K != 0.0 else []
+    if len(roots) < 3:
+        return None
+    third, first, second = roots if K > 0.0 else roots[[2, 1, 0]]
+    a, b = math.sqrt(abs(second - third)), math.sqrt(abs(first - third))
+    if not b > 0.0:
+        return None
+    while abs(a - b) > 1e-15 * a:
+        a, b = 0.5 * (a + b), math.sqrt(a * b)
+    return I1 * math.pi / (math.sqrt(abs(K)) * 0.5 * (a + b))
