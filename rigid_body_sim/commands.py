@@ -9,6 +9,7 @@ COMMANDS = {
     'lifecycle_sim_node': ('rigid_body_sim.node.lifecycle_sim_node:main', 'the node in its managed form: configure, activate, ...'),
     'run': ('rigid_body_sim.run:main', 'run the node for a while, record it, and report: what `make run` does'),
     'simulate': ('rigid_body_sim.simulate:main', 'run a scene to a recording as fast as it goes'),
+    'replay': ('rigid_body_sim.node.replay:main', 'a recording back onto its topics, at its pace or another'),
     'analyze': ('rigid_body_sim.analysis.analyze:main', 'recordings to reports: an interactive page, figures, numbers'),
     'resimulate': ('rigid_body_sim.analysis.resimulate:main', "a recording's scene and commands run again: the same bits, or where they part"),
     'recover': ('rigid_body_sim.recording.recover:main', 'make a cut recording whole'),

@@ -2,8 +2,6 @@
 
 import concurrent.futures
 import contextlib
-import gc
-import sys
 import threading
 
 from std_srvs.srv import SetBool, Trigger
@@ -12,6 +10,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.journal import open_journal
+from rigid_body_sim.node.priority import quicken
 from rigid_body_sim.node.publishing import Publishing, frames_of
 from rigid_body_sim.node.session import Session
 from rigid_body_sim.node.shutdown import say, tell
@@ -20,8 +19,6 @@ from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
 from rigid_body_sim.scenes import load_scene
 from rigid_body_sim.simulation import Simulation
 
-SWITCH_INTERVAL = 1e-4
-"""How long another thread may keep the interpreter from the tick thread, s."""
 ANSWER_WITHIN = 0.2
 """How long a service waits for the tick that does what it asks, s; later it answers what will happen."""
 STOP_WITHIN = 0.4
@@ -72,10 +69,7 @@ class Engine:
 
     def start(self):
         """Start ticking."""
-        # what is there now stays: the collector need not look at it again, and its pauses stay short
-        gc.collect()
-        gc.freeze()
-        sys.setswitchinterval(SWITCH_INTERVAL)
+        quicken()
         self.ticker.start()
 
     def _epoch(self):

@@ -7,15 +7,13 @@ policy, when the backlog passes a tenth of a second, the schedule slips: simulat
 
 import collections
 import concurrent.futures
-import contextlib
-import ctypes
 import math
-import os
 import threading
 import time
 from fractions import Fraction
 
 from rigid_body_sim.node.lateness import Lateness
+from rigid_body_sim.node.priority import ask_for_priority
 from rigid_body_sim.timeline import NANOSECONDS, Timeline
 
 LONGEST_SLEEP = 0.01
@@ -24,8 +22,6 @@ BACKLOG = 100_000_000
 """How far behind its deadlines the thread may be before the schedule slips, ns (never less than two ticks)."""
 CLOCK_JUMP = 10 * NANOSECONDS
 """A step of /clock forward by more than this is a jump, not the passing of time, ns."""
-PRIORITY = 10
-PR_SET_TIMERSLACK = 29
 
 
 class Steady:
@@ -178,16 +174,8 @@ class Ticker(threading.Thread):
                 self._at_end()
 
     def _take_priority(self):
-        """Ask for exact timers, and for real-time scheduling where it is allowed and the thread sleeps between ticks."""
-        with contextlib.suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
-        self.scheduling = 'normal'
-        with contextlib.suppress(OSError, AttributeError):
-            if self._factor > 0.0:
-                os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-                self.scheduling = f'SCHED_FIFO {PRIORITY}'
-            else:
-                os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        """Ask for exact timers, and for real-time scheduling where the thread sleeps between ticks."""
+        self.scheduling = ask_for_priority(self._factor > 0.0)
 
     def _schedule(self, due):
         """Make the next tick due at that instant, and those after it follow at the pace wanted."""

@@ -28,7 +28,8 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
     packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
     ticking = [(Topic(f'{space}/{output.name}', output.type), packer.size)
                for space in spaces for output, packer in zip(EVERY_TICK, packers, strict=True)]
-    others = [topic for space in spaces for topic in (Topic(f'{space}/events', about.STATUS_TYPE), Topic(f'{space}/scene', about.STRING_TYPE))]
+    others = [Topic(f'{space}/{name}', kind, depth, durability='transient_local')
+              for space in spaces for name, kind, depth in (('events', about.STATUS_TYPE, 100), ('scene', about.STRING_TYPE, 1))]
     line = Timeline(START, rate)
     parameters = {'rate': rate, 'real_time_factor': 1.0}
     journal = journal_topic(namespace)
