@@ -38,11 +38,10 @@ def floor(rate):
     from rigid_body_sim.node.shutdown import leave, signals
     from rigid_body_sim.node.ticking import Steady, Ticker
     from rigid_body_sim.simulation import Simulation
-    from rigid_body_sim.topics import EVERY_TICK, VECTOR, Frames, TickMessages
+    from rigid_body_sim.topics import EVERY_TICK, Frames, TickMessages
     simulation = Simulation('tennis_racket')
     ticking = TickMessages(EVERY_TICK, simulation.scene, Frames())
-    ticking.moment[VECTOR] = simulation.vector
-    messages = ticking.messages(0)
+    [messages] = ticking.messages(simulation.vector[None], [simulation.energy], [simulation.angular_momentum_squared], [0])
 
     class Publish:
         next_tick, finished = 0, False

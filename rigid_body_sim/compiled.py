@@ -1,7 +1,8 @@
 """Compilation of kernels: numba where it is installed, plain Python where it is not, and a cache that never lies.
 
 numba looks at the time stamp of one file only, so a cached caller would go on with the old body of a callee in another file. Here the cache
-folder is named by a hash of every source file of the package, of numba's version and of the processor: after any edit it is another folder.
+folder is named by a hash of every source file that kernels could depend on, of numba's version and of the processor: after any edit it is
+another folder. Kernels live at the top of the package, in effects, integrators and motions, and depend on nothing in the other folders.
 
 Kernels follow four rules, so that they mean the same with and without numba: scalars and small arrays only, functions of ``math`` only, no
 division by zero (plain Python would raise), no ``**`` (its rounding differs between the two).
@@ -23,6 +24,7 @@ except ImportError:
 
 HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
 PACKAGE = pathlib.Path(__file__).resolve().parent
+WITHOUT_KERNELS = ('analysis', 'messages', 'node', 'recording', 'study', 'theory')
 KEEP_UNUSED = 30 * 86400.0    # s
 
 
@@ -35,11 +37,13 @@ def processor():
 
 
 def sources_key():
-    """Return a hash of all that compiled code depends on: the package's sources, Python's and numba's version, the processor."""
+    """Return a hash of all that compiled code depends on: the sources, Python's and numba's version, the processor."""
     digest = hashlib.sha256()
     for path in sorted(PACKAGE.rglob('*.py')):
-        digest.update(str(path.relative_to(PACKAGE)).encode())
-        digest.update(path.read_bytes())
+        place = path.relative_to(PACKAGE)
+        if place.parts[0] not in WITHOUT_KERNELS:
+            digest.update(str(place).encode())
+            digest.update(path.read_bytes())
     versions = (sys.version, numba.__version__ if numba else 'no numba', processor())
     digest.update(repr(versions).encode())
     return digest.hexdigest()[:16]

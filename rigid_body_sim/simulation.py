@@ -37,7 +37,6 @@ class Event:
     values: dict
 
 
-@dataclass(frozen=True)
 class _Span:
     """A stretch of the motion that one solver covers, from its start to the next impulse, hold or strike.
 
@@ -45,11 +44,18 @@ class _Span:
     reference (world axes, N m s), dissipated energy (J).
     """
 
-    time: float
-    solver: object
-    wrench: Wrench
-    strikes: int
-    given: np.ndarray
+    def __init__(self, time, solver, wrench, strikes, given):
+        self.time, self.solver, self.wrench, self.strikes, self.given = time, solver, wrench, strikes, given
+        self._told, self._looked_until = [], time
+
+    def events(self, after, until):
+        """Return the (time, name, values) after one time (s), which never falls from call to call, and not later than another, in order."""
+        # a solver looks for events once, going forward: what it found beyond `until` in an earlier look is kept
+        if until > self._looked_until:
+            self._told += self.solver.events(self._looked_until, until)
+            self._looked_until = until
+        self._told = [event for event in self._told if event[0] > after]
+        return [event for event in self._told if event[0] <= until]
 
 
 class Simulation:
@@ -134,7 +140,11 @@ class Simulation:
     @property
     def time(self):
         """Simulated time since the start or the last reset, s: ticks over rate, never a sum."""
-        return self._origin_time + (self.tick - self._origin) / self.rate
+        return self.time_at(self.tick)
+
+    def time_at(self, tick):
+        """Return the simulated time of a tick since the start or the last reset, s."""
+        return self._origin_time + (tick - self._origin) / self.rate
 
     @property
     def state(self):
@@ -148,15 +158,23 @@ class Simulation:
         self._commands = None
         self._arrive()
         self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
-        self._note_events(before)
+        self.events.extend(self._events_between(self._spans, before, self.time))
 
     def advance_through(self, ticks):
         """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
-        times = self._origin_time + np.arange(self.tick - self._origin + 1, self.tick - self._origin + ticks + 1) / self.rate
         self._commands = None
-        states = self.states(times)
+        states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
         self.advance(ticks)
         return states
+
+    def foresee(self, ticks):
+        """Return the States at the next ticks, to the bit what :meth:`advance` meets if no command comes, without going there.
+
+        There are `ticks` of them, or as many as come before the tick of the next event.
+        """
+        times = self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1))
+        event = next(self._events_between(self._spans_until(times[-1]), self.time, times[-1]), None)
+        return self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
 
     def diagnose(self, states):
         """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
@@ -288,15 +306,15 @@ class Simulation:
         self._spans[-1].solver.state(time, self.vector)
         self._diagnosed_tick = None
 
-    def _note_events(self, before):
-        """Append the events after `before` (s) up to now, in the order of their times."""
-        now = self.time
-        for k, span in enumerate(self._spans):
-            end = self._spans[k + 1].time if k + 1 < len(self._spans) else now
+    def _events_between(self, spans, before, now):
+        """Yield the events after `before` up to the tick at `now` (s), in the order of their times."""
+        last_tick = self._origin + round((now - self._origin_time) * self.rate)
+        for k, span in enumerate(spans):
+            end = spans[k + 1].time if k + 1 < len(spans) else now
             if end > before:
-                for time, name, values in span.solver.events(max(span.time, before), min(end, now)):
+                for time, name, values in span.events(before, min(end, now)):
                     tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
-                    self.events.append(Event(min(tick, self.tick), time, name, values))
+                    yield Event(min(tick, last_tick), time, name, values)
 
     def _spans_until(self, time):
         """Return the spans up to a time, with the scene's strikes on the way."""

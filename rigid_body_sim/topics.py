@@ -83,7 +83,7 @@ class Output:
 
 
 class TickMessages:
-    """Makes all messages of a tick at once.
+    """Makes all messages of a tick at once, for one tick or many.
 
     Each message is kept in a buffer such that its doubles lie on multiples of eight bytes (CDR aligns them so after its four bytes of
     encapsulation); those of all topics are set by one indexed assignment.
@@ -98,8 +98,6 @@ class TickMessages:
     ----------
     sizes : list of int
         Bytes of each message.
-    moment : array (40,)
-        To be filled before :meth:`messages`.
 
     Raises
     ------
@@ -120,24 +118,39 @@ class TickMessages:
             seconds += [(start + place) // 4 for place in stamps]
             sources += [place for entry in output.places
                         for place in (range(entry.start, entry.stop) if isinstance(entry, slice) else [entry])]
-        self._words = np.frombuffer(buffer + bytes(-len(buffer) % 8), dtype=np.float64).copy()
-        self._halves = self._words.view(np.uint32)
+        self._blank = np.frombuffer(buffer + bytes(-len(buffer) % 8), dtype=np.float64)
         self._targets, self._sources, self._seconds = (np.array(places, dtype=np.intp) for places in (targets, sources, seconds))
         self._nanoseconds = self._seconds + 1
         if len(self._targets) != len(self._sources):
             raise TypeError('an Output names more or fewer places than it has doubles')
         self.sizes = [part.stop - part.start for part in self._parts]
-        self.moment = np.zeros(MOMENT_SIZE)
         self._derive = [output.derive(scene) for output in outputs if output.derive]
 
-    def messages(self, stamp):
-        """Return the messages (bytes) for the moment at a stamp (ns), in the order of the outputs."""
+    def messages(self, vectors, energies, squares, stamps):
+        """Return for each tick the list of its messages (bytes), in the order of the outputs.
+
+        Parameters
+        ----------
+        vectors : array (n, 14)
+            States, see state.py.
+        energies, squares : array (n,)
+            Energy (J) and L . L ((kg m^2/s)^2).
+        stamps : sequence of int
+            ns.
+        """
+        count = len(vectors)
+        moments = np.zeros((count, MOMENT_SIZE))
+        moments[:, VECTOR], moments[:, ENERGY], moments[:, SQUARE] = vectors, energies, squares
         for derive in self._derive:
-            derive(self.moment)
-        self._words[self._targets] = self.moment[self._sources]
-        self._halves[self._seconds], self._halves[self._nanoseconds] = divmod(stamp, NANOSECONDS)
-        data = self._words.tobytes()
-        return [data[part] for part in self._parts]
+            for moment in moments:
+                derive(moment)
+        words = np.empty((count, len(self._blank)))
+        words[:] = self._blank
+        words[:, self._targets] = moments[:, self._sources]
+        halves = words.view(np.uint32)
+        halves[:, self._seconds], halves[:, self._nanoseconds] = np.divmod(np.array(stamps, dtype=np.int64)[:, None], NANOSECONDS)
+        data, size = words.tobytes(), words.itemsize * len(self._blank)
+        return [[data[start + part.start:start + part.stop] for part in self._parts] for start in range(0, count * size, size)]
 
 
 def _places(output, blank):

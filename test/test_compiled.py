@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -59,6 +60,12 @@ def test_without_a_writable_home_the_cache_is_in_the_temporary_folder(copy_of_pa
     code = 'from rigid_body_sim import compiled\nprint(compiled.CACHE_FOLDER)'
     where = run(code, copy_of_package, XDG_CACHE_HOME='/proc/none', TMPDIR=str(copy_of_package))
     assert where.startswith(str(copy_of_package))
+
+
+def test_no_kernel_lives_where_the_cache_does_not_look():
+    for folder in compiled.WITHOUT_KERNELS:
+        for path in (PACKAGE / folder).rglob('*.py'):
+            assert not re.search(r'rigid_body_sim\.(compiled|specialise) import (?!HAVE_NUMBA)|@compiled', path.read_text()), path
 
 
 def test_without_numba_the_same_code_runs(copy_of_package):

@@ -190,3 +190,24 @@ def test_exact_and_stepped_agree():
         each.advance(10_000)
     # the racket magnifies an error e^(lambda t) between flips: measured 3e-13 rad at 10 s
     assert angle_between(*exact.state.orientation, *stepped.state.orientation) < 1e-11
+
+
+@pytest.mark.parametrize('scene', ['tennis_racket', 'billiard_low'])
+def test_foreseen_states_are_those_met_up_to_the_next_event(scene):
+    simulation = Simulation(scene, rate=100.0)
+    met = foreseen = 0
+    while simulation.tick < 1500:
+        states = simulation.foresee(16)
+        tick, events = simulation.tick, len(simulation.events)
+        for state in states.vector:
+            simulation.advance()
+            foreseen += 1
+            assert simulation.vector.tobytes() == state.tobytes()
+        assert len(simulation.events) == events
+        simulation.advance()
+        if len(states) < 16:
+            met += len(simulation.events) > events
+        assert simulation.tick == tick + len(states) + 1
+    assert met == len({event.tick for event in simulation.events})
+    assert met > 0
+    assert foreseen > 1300

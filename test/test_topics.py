@@ -25,13 +25,11 @@ def ros(kind, data):
 
 
 def messages(scene, *names, moments=(STATE,), stamp=STAMP):
-    """Return the messages of the last of some moments, by name, decoded by ROS."""
+    """Return the messages of the last of some states, by name, decoded by ROS."""
     outputs = [topics.OUTPUTS[name] for name in names]
     made = topics.TickMessages(outputs, load_scene(scene), FRAMES)
     for state in moments:
-        made.moment[topics.VECTOR] = state.vector
-        made.moment[topics.ENERGY], made.moment[topics.SQUARE] = 0.1, 0.2
-        data = made.messages(stamp)
+        [data] = made.messages(state.vector[None], [0.1], [0.2], [stamp])
     assert [len(one) for one in data] == made.sizes
     return [ros(output.type, one) for output, one in zip(outputs, data, strict=True)]
 
@@ -57,11 +55,15 @@ def test_topics_of_every_tick():
 def test_many_at_once_are_the_same_bytes():
     scene = load_scene('free_body')
     made = topics.TickMessages(topics.EVERY_TICK, scene, FRAMES)
-    made.moment[topics.VECTOR] = STATE.vector
-    made.moment[topics.ENERGY], made.moment[topics.SQUARE] = 0.1, 0.2
-    columns = (np.array([STAMP]), States(STATE.vector[np.newaxis]), np.array([0.1]), np.array([0.2]))
-    for output, data in zip(topics.EVERY_TICK, made.messages(STAMP), strict=True):
-        assert output.packer(scene, FRAMES).pack_many(output.columns(*columns)).tobytes() == data, output.name
+    stamps = np.array([STAMP, STAMP + 1_000_000])
+    states = States(np.array([STATE.vector, -STATE.vector]))
+    energies, squares = np.array([0.1, 0.3]), np.array([0.2, 0.4])
+    ticks = made.messages(states.vector, energies, squares, stamps)
+    alone = [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1], stamps[k:k + 1])[0] for k in range(2)]
+    assert ticks == alone
+    for output, data in zip(topics.EVERY_TICK, zip(*ticks, strict=True), strict=True):
+        columns = output.columns(stamps, states, energies, squares)
+        assert output.packer(scene, FRAMES).pack_many(columns).tobytes() == b''.join(data), output.name
 
 
 def test_odometry_has_its_twist_in_body_axes():
@@ -101,8 +103,9 @@ def test_joint_state_counts_the_angle_as_the_scene_does(angle):
     axis = np.array(scene.constraint.axis)
     turned = from_rotation_vector(*((angle - start) * axis))
     made = topics.TickMessages([topics.OUTPUTS['joint_states']], scene, FRAMES)
-    made.moment[topics.VECTOR] = State.of(1.0, multiply(*scene.initial.orientation, *turned), 0.7 * axis).vector
-    joint = ros('sensor_msgs/msg/JointState', made.messages(STAMP)[0])
+    vector = State.of(1.0, multiply(*scene.initial.orientation, *turned), 0.7 * axis).vector
+    [[data]] = made.messages(vector[None], [0.1], [0.2], [STAMP])
+    joint = ros('sensor_msgs/msg/JointState', data)
     assert list(joint.name) == ['hinge']
     assert joint.position[0] == pytest.approx(angle, abs=1e-14)
     assert joint.velocity[0] == pytest.approx(0.7, abs=1e-15)
@@ -131,8 +134,8 @@ def test_transform_is_the_pose():
     """No class for tf2_msgs among the wheels: decoded by our own codec."""
     kind = 'tf2_msgs/msg/TFMessage'
     made = topics.TickMessages([topics.OUTPUTS['energy'], topics.OUTPUTS['tf']], load_scene('free_body'), FRAMES)
-    made.moment[topics.VECTOR] = STATE.vector
-    [transform] = cdr.decode(definitions.schema(kind), kind, made.messages(STAMP)[1])['transforms']
+    [[_, data]] = made.messages(STATE.vector[None], [0.1], [0.2], [STAMP])
+    [transform] = cdr.decode(definitions.schema(kind), kind, data)['transforms']
     assert transform['header'] == {'stamp': {'sec': STAMP // 10**9, 'nanosec': STAMP % 10**9}, 'frame_id': 'map'}
     assert transform['child_frame_id'] == 'racket'
     assert list(transform['transform']['translation'].values()) == STATE.position.tolist()

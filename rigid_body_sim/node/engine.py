@@ -210,11 +210,13 @@ def warm_up(simulation):
 def _use_everything(simulation):
     trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate)
     trial.advance()
+    trial.diagnose(trial.foresee(2))
     if trial.scene.accepts_commands:
         for act in (trial.impulse, trial.hold):
             with contextlib.suppress(BadInput):
                 act(torque=(1e-9, 1e-9, 1e-9))
                 trial.advance()
+                trial.foresee(2)
         trial.forget_past()
         trial.release()
     trial.ledger()

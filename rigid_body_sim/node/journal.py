@@ -68,13 +68,19 @@ class Journal:
 
     # -- the tick thread ----------------------------------------------------------------------------------------------------------------
 
-    def tick(self, simulation, stamp, messages):
-        """Record the messages of a tick, and the full state where the recorder wants one."""
-        now = time.time_ns()
-        self._record_tick(stamp, now, messages)
-        if self._recorder.state_wanted:
-            self._recorder.state_wanted = False
-            self._recorder.journal('state', stamp, now, **about.state_entry(simulation.tick, simulation))
+    @property
+    def state_wanted(self):
+        """Whether the recorder wants the full state (:meth:`state`), as it does after a gap."""
+        return self._recorder.state_wanted
+
+    def tick(self, stamp, messages):
+        """Record the messages of a tick."""
+        self._record_tick(stamp, time.time_ns(), messages)
+
+    def state(self, simulation, stamp):
+        """Record the full state of a tick, after its messages."""
+        self._recorder.state_wanted = False
+        self._recorder.journal('state', stamp, time.time_ns(), **about.state_entry(simulation.tick, simulation))
 
     def message(self, topic, stamp, data):
         """Record a message on `events` or `scene`; it is never lost."""
@@ -108,6 +114,7 @@ class NoJournal:
     """Stands for the recording of a node that does not record."""
 
     path = status = None
+    state_wanted = False
 
     def __getattr__(self, name):
         return self._nothing

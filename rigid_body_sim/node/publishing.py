@@ -68,16 +68,10 @@ class Publishing:
         """Return the TickMessages for a scene; BadInput where a topic that is published has no meaning for it."""
         return topics.TickMessages(self._outputs, scene, self._frames)
 
-    def state(self, simulation, stamp):
-        """Publish a tick; return its messages in the order of :meth:`every_tick`."""
-        ticking = self.ticking
-        moment = ticking.moment
-        moment[topics.VECTOR] = simulation.vector
-        moment[topics.ENERGY], moment[topics.SQUARE] = simulation.energy, simulation.angular_momentum_squared
-        messages = ticking.messages(stamp)
+    def tick(self, messages):
+        """Publish the messages of a tick, as `ticking` made them."""
         for publish, message in zip(self._publish, messages):
             publish(message)
-        return messages
 
     def event(self, level, name, message, values):
         """Publish an event; return the topic's complete name and its bytes. `values` maps names to texts or numbers."""

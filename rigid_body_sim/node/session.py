@@ -3,6 +3,10 @@
 At tick k, in this order: the state moves on to tick k; requests (reset, changes of parameters) take effect; then commands, in the order in
 which they came; then the state is published and recorded. So whatever reaches the node between two ticks takes effect at the next one, and is
 recorded with its number.
+
+While the body is left to itself, states and messages of the ticks to come are made ahead, many at once, after a tick has been published: the
+next ones have only to send them. The simulation then stays behind; whatever needs it (a request, a command, an event, a balance) has it catch
+up with the present tick, and what was made ahead is dropped. The bits are the same either way.
 """
 
 import collections
@@ -10,15 +14,18 @@ import concurrent.futures
 import time
 from fractions import Fraction
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.node import commands
 from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
+from rigid_body_sim.state import States
 from rigid_body_sim.timeline import NANOSECONDS, Timeline
 
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
+AHEAD = 16
+"""How many ticks are made ahead; a disturbance stops it for as many."""
 
 
 class Session:
@@ -56,7 +63,9 @@ class Session:
         command_queue.report = self._report_refusal
         self.command_timeout = settings.command_timeout
         self._duration, self._last_tick = settings.duration, None
-        self.next_tick = simulation.tick
+        self._tick = self.next_tick = simulation.tick
+        self._ahead = collections.deque()
+        self._look_ahead_from = self._tick
         self.finished = False
         self.event_counts = collections.Counter()
         self._requests = collections.deque()
@@ -89,23 +98,51 @@ class Session:
 
     def run_tick(self, publish):
         """Run the next tick; `publish` says whether its state is published and recorded."""
-        tick, simulation = self.next_tick, self.simulation
-        if tick > simulation.tick:
-            simulation.advance(tick - simulation.tick)
+        self._tick = tick = self.next_tick
         if self._requests:
+            self._catch_up()
             self._serve_requests()
-            simulation = self.simulation
-        self._commands.take(simulation.scene.accepts_commands)
+        self._commands.take(self.simulation.scene.accepts_commands)
         if self._commands.queue or self._release_tick is not None:
+            self._catch_up()
             self._command(tick)
-        if simulation.events:
+        if not self._ahead:
+            self._catch_up()
+        if self.simulation.events:
             self._report_events()
+        messages = self._ahead.popleft() if self._ahead else self._messages(self.simulation.vector[None], tick)[0]
         if publish:
-            self._publish_state(tick)
+            self._publish_tick(tick, messages)
         if self._balance_wanted:
             self.take_balance()
         self.next_tick = tick + 1
         self.finished = self._last_tick is not None and tick >= self._last_tick
+        if not self._ahead and tick >= self._look_ahead_from:
+            self._look_ahead(tick)
+
+    def _catch_up(self):
+        """Have the simulation stand at the tick that is being run; drop what was made ahead."""
+        self._ahead.clear()
+        if self._tick > self.simulation.tick:
+            self.simulation.advance(self._tick - self.simulation.tick)
+
+    def _look_ahead(self, tick):
+        """Make the messages of the ticks after this one, up to the next event."""
+        self._catch_up()
+        try:
+            states = self.simulation.foresee(AHEAD)
+        except NotConverged:
+            # said when its tick comes, if it comes
+            states = ()
+        if len(states):
+            self._ahead.extend(self._messages(states.vector, tick + 1))
+        else:
+            self._look_ahead_from = tick + AHEAD
+
+    def _messages(self, vectors, tick):
+        """Return the messages of consecutive ticks from that one on."""
+        energies, squares = self.simulation.diagnose(States(vectors))
+        return self._publishing.ticking.messages(vectors, energies, squares, [self.timeline.instant(tick + k) for k in range(len(vectors))])
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
@@ -115,9 +152,13 @@ class Session:
         if self._balance_wanted:
             self.take_balance()
 
-    def _publish_state(self, tick):
-        simulation, stamp = self.simulation, self.timeline.instant(tick)
-        self._journal.tick(simulation, stamp, self._publishing.state(simulation, stamp))
+    def _publish_tick(self, tick, messages):
+        stamp = self.timeline.instant(tick)
+        self._publishing.tick(messages)
+        self._journal.tick(stamp, messages)
+        if self._journal.state_wanted:
+            self._catch_up()
+            self._journal.state(self.simulation, stamp)
 
     def _serve_requests(self):
         while self._requests:
@@ -174,7 +215,7 @@ class Session:
     def event(self, level, name, message, values=None):
         """Publish and record an event of the tick that is being run."""
         self.event_counts[name] += 1
-        values = {'tick': self.next_tick, 'time': self.simulation.time, **(values or {})}
+        values = {'tick': self.next_tick, 'time': self.simulation.time_at(self.next_tick), **(values or {})}
         topic, data = self._publishing.event(level, name, message, values)
         self._journal.message(topic, self.stamp, data)
 
@@ -211,7 +252,8 @@ class Session:
             self._journal.commands(tick, self.stamp, applied)
 
     def _disturbed(self):
-        """Begin to compare theory with the motion from here on."""
+        """Begin to compare theory with the motion from here on, and wait for quiet before looking ahead."""
+        self._look_ahead_from = self._tick + AHEAD
         simulation = self.simulation
         self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)
 
@@ -237,5 +279,6 @@ class Session:
     def take_balance(self):
         """Take a fresh :attr:`balance`; while ticks run, only the tick thread may do so."""
         self._balance_wanted = False
+        self._catch_up()
         self.prediction.look(self.simulation.state)
         self.balance = {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}
