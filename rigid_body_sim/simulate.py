@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording import about
+from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
 from rigid_body_sim.recording.writer import Writer
 from rigid_body_sim.scenes import load_scene
@@ -41,14 +41,16 @@ class Recording:
     simulation : Simulation
     parameters : dict
         What the command was told.
+    writing : dict
+        ``compression_name``, ``split_bytes``, ``split_seconds`` of the Writer.
     """
 
-    def __init__(self, path, simulation, parameters):
+    def __init__(self, path, simulation, parameters, **writing):
         self._simulation = simulation
         self._packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
         self._journal = journal_topic()
         ticking = [(Topic(f'/{output.name}', output.type), packer.size) for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
-        self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal, about.about(SOURCE, simulation, parameters))
+        self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal, about.about(SOURCE, simulation, parameters), **writing)
         self._timeline = Timeline(time.time_ns(), simulation.rate)
         self._message(SCENE, self._timeline.instant(0), about.scene_message(simulation.scene))
 
@@ -146,6 +148,9 @@ def main(arguments=None):
     parser.add_argument('--accuracy', type=float, default=1e-12, help='error of the attitude that is asked for, rad (1e-12)')
     parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE', help='change of the scene, key.path=value; may be repeated')
     parser.add_argument('--output', metavar='FOLDER', help='recording to make; it must not exist yet')
+    parser.add_argument('--compression', choices=compression.NAMES, default=compression.DEFAULT, help=f'of chunks ({compression.DEFAULT})')
+    parser.add_argument('--split-bytes', type=float, default=0.0, metavar='BYTES', help='a new file begins after so many bytes (4 GB)')
+    parser.add_argument('--split-seconds', type=float, default=0.0, metavar='SECONDS', help='a new file begins after so much simulated time')
     parser.add_argument('--json', action='store_true', help='print final state, ledger, method and cost, with 17 digits')
     return command_line.run(_run, parser.parse_args(arguments))
 
@@ -157,7 +162,7 @@ def _run(options):
         raise BadInput('--duration', f'got {options.duration!r}', f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
-        recording = Recording(options.output, simulation, _parameters(options)) if options.output else None
+        recording = Recording(options.output, simulation, _parameters(options), **_writing(options)) if options.output else None
         prepared = time.perf_counter()
         try:
             with contextlib.closing(recording) if recording else contextlib.nullcontext():
@@ -188,6 +193,14 @@ def _parameters(options):
     """Return what was asked, by the names that the node's parameters have."""
     return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate, 'integrator': options.integrator,
             'accuracy': options.accuracy, 'duration': options.duration}
+
+
+def _writing(options):
+    """Return how the files are to be written; BadInput where that makes no sense."""
+    for name in ('split_bytes', 'split_seconds'):
+        if not 0.0 <= getattr(options, name) <= LONGEST * 4.0:
+            raise BadInput(f'--{name.replace("_", "-")}', f'got {getattr(options, name):g}', f'a number from 0 to {LONGEST * 4.0:g}')
+    return {'compression_name': options.compression, 'split_bytes': options.split_bytes, 'split_seconds': options.split_seconds}
 
 
 def _plain(state):

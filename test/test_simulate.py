@@ -183,3 +183,14 @@ def test_a_full_disk_loses_nothing_recorded(tmp_path):
     assert count > 5000
     with rosbags.AnyReader([path]) as reader:
         assert reader.message_count == Recording(path).message_count
+
+
+def test_files_are_split_and_compressed_as_asked(tmp_path, capsys):
+    run = ['--duration', '3', '--rate', '100', '--output', str(tmp_path / 'run')]
+    assert main([*run, '--split-seconds', '-1']) == 2 and '--split-seconds: got -1; a number from 0' in capsys.readouterr().err
+    assert main([*run, '--split-seconds', '0.5', '--compression', 'lz4']) == 0
+    names = sorted(path.name for path in (tmp_path / 'run').glob('*.mcap'))
+    assert len(names) > 1
+    with rosbags.AnyReader([tmp_path / 'run']) as reader:
+        assert sum(connection.msgcount for connection in reader.connections if connection.topic == '/pose') == 301
+    assert len([entry for entry in Recording(tmp_path / 'run').journal() if entry['kind'] == 'state']) == len(names)

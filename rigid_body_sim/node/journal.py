@@ -12,7 +12,7 @@ import time
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.layout import Packer
 from rigid_body_sim.node.commands import IMPULSE, RELEASE, WRENCH
-from rigid_body_sim.recording import about
+from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.topics import Topic, journal_topic
 from rigid_body_sim.timeline import NANOSECONDS
@@ -54,10 +54,12 @@ class Journal:
         self._pack_command = {axes: packer.pack for axes, packer in packers.items()}
         ticking = list(zip(publishing.every_tick(), publishing.ticking.sizes, strict=True))
         told = about.about('sim_node', simulation, settings.values)
+        asked = settings['recording.compression']
+        options = (compression.DEFAULT if asked == 'auto' else asked, settings['recording.split_bytes'], settings['recording.split_seconds'])
         for attempt in range(ATTEMPTS):
             self.path = _free_path(node, settings, simulation.scene.name)
             try:
-                self._recorder = Recorder(self.path, ticking, others, journal, told)
+                self._recorder = Recorder(self.path, ticking, others, journal, told, *options)
                 break
             except BadInput:
                 # another node of this name may have begun its recording in this moment

@@ -16,6 +16,7 @@ from rclpy.parameter import Parameter
 
 from rigid_body_sim import topics
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording import compression
 
 STATE_TOPICS = tuple(output.name for output in topics.EVERY_TICK)
 EXTRA_TOPICS = tuple(output.name for output in topics.ON_REQUEST)
@@ -134,6 +135,10 @@ TABLE = (
     Entry('record', True, 'record to MCAP'),
     Entry('recording.directory', 'recordings', 'folder in which each run makes a recording of its own'),
     Entry('recording.name', '', 'name of the recording; empty: node, scene, date and time'),
+    Entry('recording.compression', 'auto', 'of chunks; auto: zstd if it is installed, else lz4, else none',
+          choices=('auto', *compression.NAMES)),
+    Entry('recording.split_bytes', 0.0, 'a new file begins after so many bytes; 0: after 4 GB', 0.0, 4e9),
+    Entry('recording.split_seconds', 0.0, 'a new file begins after so much time of stamps (s); 0: never', 0.0, 1e9),
     Entry('diagnostics.energy_residual_warn', 1e-11, 'WARN above this relative energy residual', 0.0, 1e9, changeable=True),
     Entry('diagnostics.energy_residual_error', 1e-6, 'ERROR above this relative energy residual', 0.0, 1e9, changeable=True),
     Entry('diagnostics.momentum_residual_warn', 1e-11, 'WARN above this relative angular momentum residual', 0.0, 1e9, changeable=True),

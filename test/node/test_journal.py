@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, Vector3, Wrench, WrenchStamped
+from mcap.reader import make_reader
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Trigger
@@ -23,7 +24,8 @@ def command(frame, **torque):
 def recording(tmp_path_factory, run_node_in):
     """Return the recording of a node that was commanded, reset and changed."""
     folder = tmp_path_factory.mktemp('journal')
-    with run_node_in(folder, '-p', f'rate:={RATE}', '-p', 'stamp_origin:=zero', '-p', 'command_timeout:=0.1') as node:
+    with run_node_in(folder, '-p', f'rate:={RATE}', '-p', 'stamp_origin:=zero', '-p', 'command_timeout:=0.1',
+                     '-p', 'recording.split_seconds:=0.4', '-p', 'recording.compression:=lz4') as node:
         client = node.client
         poses = client.collect(PoseStamped, 'pose')
         impulses, wrenches = client.publisher(WrenchStamped, 'cmd_impulse'), client.publisher(WrenchStamped, 'cmd_wrench')
@@ -42,6 +44,19 @@ def recording(tmp_path_factory, run_node_in):
         assert node.process.wait(5.0) == 0
     [path] = (folder / 'recordings').iterdir()
     return Recording(path)
+
+
+def test_files_are_split_and_compressed_as_asked(recording):
+    files = sorted(recording.path.glob('*.mcap'))
+    assert len(files) > 1
+    for path in files:
+        with open(path, 'rb') as stream:
+            summary = make_reader(stream).get_summary()
+        assert {index.compression for index in summary.chunk_indexes} == {'lz4'}
+        assert summary.statistics.message_end_time - summary.statistics.message_start_time < 1.4e9      # and what came in a last chunk
+    # each tells all about the run, and a moment later the full state: the last one may have ended before
+    assert len(entries(recording, 'begin')) == len(files)
+    assert len(entries(recording, 'state')) in (len(files) - 1, len(files))
 
 
 def entries(recording, kind):
