@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble bench bench-node pins pins-noble clean
+.PHONY: help run test lint package test-noble bench bench-node study study-full pins pins-peers pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -50,15 +50,24 @@ bench: .venv/run.stamp ## cost of one state in closed form; recordings: writing,
 bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else
 	.venv/bin/python bench/node.py
 
+study: .venv/run.stamp ## what accuracy costs in time: four problems, our methods; table, JSON and figure in study/
+	.venv/bin/python -m rigid_body_sim work_precision --quick --output study
+
+study-full: .venv-peers/stamp ## the whole suite with the peers, about an hour; in study-full/
+	.venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
+
 pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and test.in (with the oldest Python)
 	.venv/bin/python requirements/pin.py run
 	.venv/bin/python requirements/pin.py test
+
+pins-peers: .venv/run.stamp ## requirements/peers.txt anew from peers.in
+	.venv/bin/python requirements/pin.py peers
 
 pins-noble: .venv-noble/stamp ## requirements/noble.txt anew from noble.in
 	.venv-noble/bin/python requirements/pin.py noble
 
 clean: ## remove the environments and what was built; recordings stay
-	rm -rf .venv .venv-noble .venv-noble-numba .cache
+	rm -rf .venv .venv-noble .venv-noble-numba .venv-peers .cache
 
 .venv/run.stamp: requirements/run.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv requirements/run.txt $(PYTHON_VERSIONS)
@@ -66,6 +75,10 @@ clean: ## remove the environments and what was built; recordings stay
 
 .venv/test.stamp: requirements/test.txt .venv/run.stamp
 	@requirements/make_venv.sh .venv requirements/test.txt $(PYTHON_VERSIONS)
+	@touch $@
+
+.venv-peers/stamp: requirements/peers.txt requirements/make_venv.sh
+	@requirements/make_venv.sh .venv-peers requirements/peers.txt $(PYTHON_VERSIONS)
 	@touch $@
 
 .venv-noble/stamp: requirements/noble.txt requirements/make_venv.sh

@@ -28,12 +28,15 @@ class Choice:
         ``exact`` or a name of METHODS.
     accuracy, step : float or None
         What the method was asked for.
+    horizon : float
+        Over which the accuracy holds, s.
     """
 
     scene: object
     method: str
     accuracy: float | None
     step: float | None
+    horizon: float
     _prototype: object
 
     def solver(self, start, wrench):
@@ -41,10 +44,10 @@ class Choice:
         if wrench == Wrench():
             return self._prototype.start(start)
         method = 'dop8' if self.method == 'exact' else self.method
-        return Stepped(self.scene, method, self.accuracy, self.step, wrench).start(start)
+        return Stepped(self.scene, method, self.accuracy, self.step, wrench, self.horizon).start(start)
 
 
-def choose(scene, integrator='auto', accuracy=1e-12, step=None):
+def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=100.0):
     """Return the Choice for a scene.
 
     Raises
@@ -63,10 +66,10 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None):
                        f'did you mean {near[0]!r}?' if near else f'one of auto, exact, {", ".join(METHODS)}')
     motion = absorbing_motion(scene)
     if integrator in ('auto', 'exact') and motion and step is None:
-        return Choice(scene, 'exact', accuracy, None, Exact(scene, motion))
+        return Choice(scene, 'exact', accuracy, None, horizon, Exact(scene, motion))
     able = runnable(scene)
     method = 'dop8' if integrator == 'auto' else integrator
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
-    return Choice(scene, method, accuracy, step, Stepped(scene, method, accuracy, step))
+    return Choice(scene, method, accuracy, step, horizon, Stepped(scene, method, accuracy if step is None else None, step, horizon=horizon))

@@ -14,5 +14,6 @@ COMMANDS = {
     'resimulate': ('rigid_body_sim.analysis.resimulate:main', "a recording's scene and commands run again: the same bits, or where they part"),
     'recover': ('rigid_body_sim.recording.recover:main', 'make a cut recording whole'),
     'export': ('rigid_body_sim.recording.export:main', 'a recording to CSV, Parquet or NumPy'),
+    'work_precision': ('rigid_body_sim.study.precision.work_precision:main', 'error against CPU time: every method, and the peers'),
     'scenes': ('rigid_body_sim.list_scenes:main', 'list the scenes, their effects and the methods that can run them'),
 }

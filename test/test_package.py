@@ -19,12 +19,14 @@ SOURCES = sorted(PACKAGE.rglob('*.py'))
 
 # import name -> key of package.xml; without a key: optional, imported only where it is used and absent without harm
 KEYS = {
-    'yaml': 'python3-yaml', **{name: f'python3-{name}' for name in ('jsonschema', 'matplotlib', 'numpy', 'scipy', 'tqdm')},
+    'yaml': 'python3-yaml', **{name: f'python3-{name}' for name in ('jsonschema', 'matplotlib', 'mpmath', 'numpy', 'scipy', 'tqdm')},
     **{name: name for name in (
         'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'lifecycle_msgs', 'nav_msgs', 'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
         'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
 }
 OPTIONAL = {'llvmlite', 'lz4', 'numba', 'plotly', 'pyarrow', 'zstandard'}
+# what work_precision --peers measures, by import name; requirements/peers.in has them
+PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
 
 
 def dependencies(tag):
@@ -41,7 +43,7 @@ def imported(path):
             names |= {alias.name.partition('.')[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and not node.level:
             names.add(node.module.partition('.')[0])
-    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'}
+    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'} - (set(PEERS) if path.parent.name == 'peers' else set())
 
 
 def test_package_xml_names_what_is_imported_and_nothing_else():
@@ -57,6 +59,13 @@ def test_requirements_name_what_is_imported():
     named = (ROOT / 'requirements' / 'run.in').read_text().lower()
     for name in used - set(KEYS) | {name for name in used if KEYS.get(name, '').startswith('python3-')}:
         assert re.search(rf'^(py)?{name}==', named, re.MULTILINE) or name == 'llvmlite', name
+
+
+def test_requirements_name_the_peers():
+    used = {name for path in SOURCES if path.parent.name == 'peers' for name in PEERS if name in path.read_text()}
+    named = (ROOT / 'requirements' / 'peers.in').read_text()
+    for name in used:
+        assert re.search(rf'^{PEERS[name]}==', named, re.MULTILINE), name
 
 
 def test_every_folder_is_a_package_that_gets_installed():

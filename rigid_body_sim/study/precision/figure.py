@@ -1,0 +1,54 @@
+"""The work-precision figure: error against CPU time per simulated second, one line a method, readable in print and by the colour-blind."""
+
+import math
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); markers tell the lines apart without colour, dashes mark the peers
+COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000', '#7F7F7F')
+MARKERS = 'osD^v<>PXh'
+SHADE = '#E3E3E3'
+LEAST, MOST = 1e-16, 4.0
+
+
+def draw(results):
+    """Return the Figure of a list of results (work_precision.py), a panel for each problem."""
+    columns = min(2, len(results))
+    rows = math.ceil(len(results) / columns)
+    figure = Figure(figsize=(7.6 * columns, 4.9 * rows), dpi=110, layout='constrained')
+    FigureCanvasAgg(figure)
+    for result, axes in zip(results, figure.subplots(rows, columns, squeeze=False).flat):
+        panel(axes, result)
+    for axes in figure.axes[len(results):]:
+        axes.remove()
+    return figure
+
+
+def panel(axes, result):
+    """Draw one problem."""
+    floor = result['floor']
+    axes.axhspan(LEAST, floor, color=SHADE, linewidth=0.0, zorder=0)
+    axes.text(0.99, floor, 'half an ulp on the inputs ', ha='right', va='top', fontsize=7.5, transform=axes.get_yaxis_transform())
+    ours = [line for line in result['lines'] if not line['is_peer']]
+    peers = [line for line in result['lines'] if line['is_peer']]
+    for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
+        for k, line in enumerate(lines):
+            colour = COLOURS[k % len(COLOURS)]
+            times = [point['cpu']['median'] for point in line['points']]
+            spread = [[t - point['cpu']['least'] for t, point in zip(times, line['points'])],
+                      [point['cpu']['most'] - t for t, point in zip(times, line['points'])]]
+            errors = [min(MOST, max(LEAST, point['error'])) for point in line['points']]
+            single = len(times) == 1
+            axes.errorbar(times, errors, xerr=spread, linestyle=dashes, color=colour, marker='*' if single else MARKERS[k % len(MARKERS)],
+                          markersize=15 if single else 5, markerfacecolor=colour if filled else 'white', linewidth=1.3, elinewidth=0.6,
+                          label=line['name'], zorder=4 if single else 3)
+    axes.set_xscale('log')
+    axes.set_yscale('log')
+    axes.set_ylim(LEAST, MOST)
+    axes.set_title(f'{result["problem"]}: {result["about"]}'.rstrip(': '), fontsize=10, loc='left')
+    axes.set_xlabel('CPU seconds per simulated second')
+    axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
+    axes.grid(color='#dddddd', linewidth=0.5)
+    axes.spines[['top', 'right']].set_visible(False)
+    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8, handlelength=3.0)

@@ -1,0 +1,134 @@
+"""The numbers of a scene in multiple precision, as the reference integrators take them: exact doubles, or moved by half an ulp.
+
+Only the inputs are shared with the package's own methods; the equations and the arithmetic of a reference are its own.
+"""
+
+import math
+import random
+from dataclasses import dataclass
+
+from mpmath import mp, mpf
+
+ZERO = (mpf(0),) * 3
+
+
+def exactly(x):
+    """Return a double as it is."""
+    return mpf(float(x))
+
+
+class Moved:
+    """Move every double by half an ulp, up or down by chance; equal numbers together, so that symmetric bodies stay so. Zero stays."""
+
+    def __init__(self, seed):
+        self._source, self._signs = random.Random(seed), {}
+
+    def __call__(self, x):
+        """Return a double moved."""
+        x = float(x)
+        if x == 0.0:
+            return mpf(0)
+        sign = self._signs.setdefault(abs(x), self._source.choice((-1, 1)))
+        return mpf(x) + sign * mpf(math.ulp(x)) / 2
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """A scene's numbers.
+
+    Attributes
+    ----------
+    kind : str
+        free, pivot, hinge or table.
+    mass, g, linear, angular, inner, mu, radius : mpf
+        kg, m/s^2; coefficients of drag, internal dissipation and sliding friction; 0 where the scene has none.
+    moments : tuple of 3 mpf
+        Principal, about the point of reference, kg m^2.
+    axes : tuple of 4 mpf
+        Unit quaternion, principal axes -> body axes.
+    arm : tuple of 3 mpf
+        Point of reference -> centre of mass, body axes, m.
+    axis : tuple of 3 mpf or None
+        Of a hinge, body axes, unit length.
+    couples : tuple
+        (times (floats), values (mpf), 'body' or 'world') of the torque effects.
+    strikes : tuple
+        (time (float), impulse (mpf), lever from the centre of mass (mpf, body axes), height (mpf), 'body' or 'world'), by time.
+    orientation, omega, velocity : tuples of mpf
+        Start: unit quaternion body -> world, rad/s in body axes, m/s in the world.
+    """
+
+    kind: str
+    mass: object
+    moments: tuple
+    axes: tuple
+    arm: tuple
+    axis: tuple | None
+    g: object
+    linear: object
+    angular: object
+    inner: object
+    mu: object
+    radius: object
+    couples: tuple
+    strikes: tuple
+    orientation: tuple
+    omega: tuple
+    velocity: tuple
+
+
+def unit(vector):
+    """Return a vector or quaternion divided by its length."""
+    size = mp.sqrt(mp.fsum(x * x for x in vector))
+    return tuple(x / size for x in vector)
+
+
+def of(scene, move):
+    """Return the Inputs of a scene, its doubles taken through `move` (`exactly` or Moved(seed)), at mpmath's present precision."""
+    body, constraint, kind = scene.body, scene.constraint, scene.constraint.kind
+    inertia = body.about_origin if kind == 'pivot' else body.about_center
+    center, through = tuple(map(move, body.center_of_mass)), tuple(map(move, constraint.through))
+    arm = {'pivot': center, 'hinge': tuple(c - p for c, p in zip(center, through))}.get(kind, ZERO)
+    gravity, drag, inner, friction = map(scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction'))
+    couples = tuple((effect.times, tuple(tuple(map(move, value)) for value in effect.values), effect.frame)
+                    for effect in scene.effects if effect.name == 'torque')
+    strikes = []
+    for strike in sorted((effect for effect in scene.effects if effect.name == 'strike'), key=lambda effect: effect.time):
+        lever = ZERO if strike.point is None else tuple(p - c for p, c in zip(map(move, strike.point), center))
+        strikes.append((strike.time, tuple(map(move, strike.impulse)), lever, move(strike.height), strike.frame))
+    initial = scene.initial
+    return Inputs(
+        kind, move(body.mass), tuple(map(move, inertia.moments)), unit(tuple(map(move, inertia.axes))), arm,
+        unit(tuple(map(move, constraint.axis))) if kind == 'hinge' else None,
+        move(gravity.g if gravity else friction.g if friction else 0.0), move(drag.linear if drag else 0.0),
+        move(drag.angular if drag else 0.0), move(inner.coefficient if inner else 0.0), move(friction.mu if friction else 0.0),
+        move(body.radius if kind == 'table' else 0.0), couples, tuple(strikes), unit(tuple(map(move, initial.orientation))),
+        tuple(map(move, initial.angular_velocity)), tuple(map(move, initial.velocity)))
+
+
+def cross(a, b):
+    """Return a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def dot(a, b):
+    """Return a . b."""
+    return mp.fsum(x * y for x, y in zip(a, b))
+
+
+def product(p, q):
+    """Return the quaternion p q, (x, y, z, w)."""
+    (ax, ay, az, aw), (bx, by, bz, bw) = p, q
+    return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz)
+
+
+def turned(q, v):
+    """Return R v for a unit quaternion."""
+    t = tuple(2 * x for x in cross(q[:3], v))
+    return tuple(a + q[3] * b + c for a, b, c in zip(v, t, cross(q[:3], t)))
+
+
+def turned_back(q, v):
+    """Return R^T v for a unit quaternion."""
+    return turned((-q[0], -q[1], -q[2], q[3]), v)

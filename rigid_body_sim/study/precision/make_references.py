@@ -1,0 +1,25 @@
+"""Make references/*.json: the suite's references by Taylor series in fixed point, and the floors of the problems.
+
+::
+
+    .venv/bin/python -m rigid_body_sim.study.precision.make_references [NAME ...]
+"""
+
+import sys
+from concurrent.futures import ProcessPoolExecutor
+
+from rigid_body_sim.study.precision import reference, suite
+
+
+def make(name):
+    """Compute and write one reference; return what to say about it."""
+    problem = suite.problem(name)
+    found = reference.compute(problem.scene, problem.duration)
+    reference.save(name, problem, found)
+    return f'{name}: {found.digits:.1f} digits, floor at the end {found.floor[-1]:.2e} rad, {found.floor_omega[-1]:.2e} rad/s'
+
+
+if __name__ == '__main__':
+    with ProcessPoolExecutor(2) as pool:
+        for line in pool.map(make, sys.argv[1:] or suite.NAMES):
+            print(line, flush=True)

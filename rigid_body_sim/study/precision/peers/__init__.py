@@ -1,0 +1,40 @@
+"""Peers: other programs that turn bodies, one file each, run as their users run them, in the fastest way they offer.
+
+A module has NAME, `version()` (ImportError where it is not installed) and `runners(problem, reference)`, which yields a runner.Runner for each
+way to run it or raises RefusedError with the reason. requirements/peers.txt installs them all.
+"""
+
+import contextlib
+import importlib
+
+from rigid_body_sim.study.precision.runner import RefusedError, Runner
+
+MODULES = ('heyoka_taylor', 'numba_rk4', 'scipy_dop853')
+
+
+def installed():
+    """Return the modules of the peers that can be imported here."""
+    found = []
+    for name in MODULES:
+        module = importlib.import_module(f'{__name__}.{name}')
+        with contextlib.suppress(ImportError):
+            module.version()
+            found.append(module)
+    return found
+
+
+def runners(problem, reference):
+    """Return the Runners of all installed peers; one that refuses is a Runner that says so when it is made."""
+    found = []
+    for module in installed():
+        try:
+            found += list(module.runners(problem, reference))
+        except RefusedError as error:
+            found.append(Runner(module.NAME, 'none', (None,), _refusing(error), True))
+    return found
+
+
+def _refusing(error):
+    def make(_):
+        raise error
+    return make

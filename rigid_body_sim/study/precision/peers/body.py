@@ -1,0 +1,111 @@
+"""The equations that a peer's user would write down: numbers of a scene in principal axes, and their right-hand side for numba."""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from rigid_body_sim.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.study.precision.runner import RefusedError
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A turning body, axes principal about the point of reference.
+
+    Attributes
+    ----------
+    moments : array (3,)
+    axes : tuple
+        Quaternion, principal axes -> body axes.
+    torque : array (3,)
+        Constant in the body, N m.
+    push : array (3,)
+        Couple constant in the world, N m.
+    weight_arm : array (3,)
+        M g r, principal axes, N m; gravity along -z.
+    damping : array (3, 3)
+        torque = -damping omega.
+    inner : float
+        Coefficient of internal dissipation.
+    start : array (7,)
+        q (principal axes -> world), omega (principal axes).
+    """
+
+    moments: np.ndarray
+    axes: tuple
+    torque: np.ndarray
+    push: np.ndarray
+    weight_arm: np.ndarray
+    damping: np.ndarray
+    inner: float
+    start: np.ndarray
+
+    def state(self, values):
+        """Return q (normalised, body axes -> world) and omega in body axes, of unknowns in principal axes."""
+        q = np.array(values[:4]) / np.linalg.norm(values[:4])
+        if self.axes == IDENTITY:
+            return *q, *values[4:7]
+        x, y, z, w = self.axes
+        return *multiply(*q, -x, -y, -z, w), *rotate(*self.axes, *values[4:7])
+
+    def numbers(self):
+        """Return everything but the start as one flat array for compiled right-hand sides."""
+        i = self.moments
+        return np.concatenate([i, 1.0 / i, self.torque, self.push, self.weight_arm, self.damping.ravel(), [self.inner]])
+
+
+def of(problem):
+    """Return the Body of a free or pivoted problem whose torques are smooth; RefusedError says what is not given to peers."""
+    scene = problem.scene
+    body, kind = scene.body, scene.constraint.kind
+    if kind not in ('free', 'pivot'):
+        raise RefusedError(f'constraint {kind}: its user would have to derive other equations')
+    if any(effect.name == 'strike' for effect in scene.effects):
+        raise RefusedError('a strike: the harness gives this peer smooth motions only')
+    inertia = body.about_origin if kind == 'pivot' else body.about_center
+    if min(inertia.moments) <= 0.0:
+        raise RefusedError('a zero moment of inertia: its equations divide by it')
+    torque, push = np.zeros(3), np.zeros(3)
+    for effect in scene.effects:
+        if effect.name == 'torque':
+            if len(effect.times) > 1 or effect.times[0] > 0.0:
+                raise RefusedError('a torque that jumps: the harness gives this peer smooth motions only')
+            if effect.frame == 'body':
+                torque += rotate_back(*inertia.axes, *effect.values[0])
+            else:
+                push += effect.values[0]
+    gravity, drag, inner = map(scene.effect, ('gravity', 'drag', 'internal_dissipation'))
+    arm = np.array(rotate_back(*inertia.axes, *body.center_of_mass)) if kind == 'pivot' else np.zeros(3)
+    damping = np.zeros((3, 3))
+    if drag:
+        damping = drag.angular * np.eye(3) + drag.linear * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    initial = scene.initial
+    q = multiply(*initial.orientation, *inertia.axes) if tuple(inertia.axes) != IDENTITY else tuple(initial.orientation)
+    return Body(np.array(inertia.moments), tuple(inertia.axes), torque, push, body.mass * (gravity.g if gravity else 0.0) * arm, damping,
+                inner.coefficient if inner else 0.0, np.array([*q, *rotate_back(*inertia.axes, *initial.angular_velocity)]))
+
+
+@numba.njit(cache=True)
+def rates(p, x, y, z, w, w1, w2, w3):
+    """Return the rates of q and omega; p as Body.numbers gives it."""
+    i1, i2, i3 = p[0], p[1], p[2]
+    u1, u2, u3 = p[24] * (i2 - i3) * w2 * w3, p[24] * (i3 - i1) * w3 * w1, p[24] * (i1 - i2) * w1 * w2
+    a1, a2, a3 = w1 + u1, w2 + u2, w3 + u3
+    r11, r12, r13 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
+    r21, r22, r23 = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
+    r31, r32, r33 = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+    m1 = p[6] + r11 * p[9] + r21 * p[10] + r31 * p[11] - (p[13] * r33 - p[14] * r32) - (p[15] * w1 + p[16] * w2 + p[17] * w3)
+    m2 = p[7] + r12 * p[9] + r22 * p[10] + r32 * p[11] - (p[14] * r31 - p[12] * r33) - (p[18] * w1 + p[19] * w2 + p[20] * w3)
+    m3 = p[8] + r13 * p[9] + r23 * p[10] + r33 * p[11] - (p[12] * r32 - p[13] * r31) - (p[21] * w1 + p[22] * w2 + p[23] * w3)
+    return (0.5 * (w * a1 + y * a3 - z * a2), 0.5 * (w * a2 + z * a1 - x * a3), 0.5 * (w * a3 + x * a2 - y * a1),
+            -0.5 * (x * a1 + y * a2 + z * a3), p[3] * (m1 + i2 * w2 * a3 - i3 * w3 * a2), p[4] * (m2 + i3 * w3 * a1 - i1 * w1 * a3),
+            p[5] * (m3 + i1 * w1 * a2 - i2 * w2 * a1))
+
+
+def whole_steps(time, step):
+    """Return how many steps reach a time."""
+    return math.floor(time / step + 0.5)

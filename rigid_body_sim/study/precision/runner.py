@@ -1,0 +1,116 @@
+"""What is measured: a method (ours or a peer's) on one problem, from coarse to fine.
+
+A peer is a module in peers/ with NAME, `version()` and `runners(problem)`; ours come from the table of methods. A Runner's `make(setting)` does
+what a user does once (compile, allocate); the Run it returns is what is timed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_body_sim.choice import choose, methods_for
+from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.mechanics import swing_rate
+from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+
+TOLERANCES = tuple(10.0 ** -k for k in range(1, 16))
+STEPS_OF_A_RADIAN = tuple(2.0 ** k for k in range(-1, 16))
+ONE_MORE = 'exact, one more state'
+"""The line of the exact method without its anchor: what a state costs once the start is known, at whatever time."""
+GRID = 32
+"""The number of steps is a multiple of it: references have so many times, and a step ends at each."""
+
+
+class RefusedError(Exception):
+    """What cannot run a problem, or gets it wrong by its design; the text says why."""
+
+
+@dataclass(frozen=True)
+class Runner:
+    """One line of the figure.
+
+    Attributes
+    ----------
+    name : str
+    control : str
+        accuracy, tolerance, step or none: what a setting is.
+    settings : tuple
+        From coarse to fine.
+    make : callable
+        setting -> Run.
+    is_peer : bool
+    """
+
+    name: str
+    control: str
+    settings: tuple
+    make: object
+    is_peer: bool = False
+
+
+class Run:
+    """A method made ready.
+
+    `start()` goes (back) to the start and `to(time)` goes on; these are timed. `state()` returns q and omega there, 7 numbers.
+    """
+
+    def __init__(self, start, to, state):
+        self.start, self.to, self.state = start, to, state
+
+
+def steps_for(problem, reference):
+    """Return steps (s) from coarse to fine that end at the duration, by the fastest rate of the motion."""
+    fastest = max(float(sum(x * x for x in omega)) ** 0.5 for omega in reference.omega)
+    fastest = max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity))) + swing_rate(problem.scene) / 2.0
+    counts = {GRID * max(1, round(problem.duration * fastest * k / GRID)) for k in STEPS_OF_A_RADIAN}
+    return tuple(problem.duration / count for count in sorted(counts))
+
+
+def ours(problem, reference):
+    """Yield a Runner for every method that can run the problem, from the table of methods."""
+    steps = steps_for(problem, reference)
+    for name in methods_for(problem.scene):
+        if name == 'exact':
+            yield Runner(name, 'none', (None,), lambda _: _our_run(problem, 'exact', {}))
+            yield Runner(ONE_MORE, 'none', (None,), lambda _: _one_more(_our_run(problem, 'exact', {})))
+            continue
+        for control in METHODS[name].TAKES:
+            label = name if len(METHODS[name].TAKES) == 1 or control == 'accuracy' else f'{name}, fixed step'
+            yield Runner(label, control, TOLERANCES if control == 'accuracy' else steps,
+                         lambda setting, name=name, control=control: _our_run(problem, name, {control: setting}))
+
+
+def _our_run(problem, method, control):
+    scene, end = problem.scene, problem.duration
+    choice = choose(scene, method, horizon=end, **control)
+    start, out, still = scene.initial.vector, np.empty(STATE_SIZE), Wrench()
+    result = out[ORIENTATION.start:ANGULAR_VELOCITY.stop]
+    if any(effect.name == 'strike' for effect in scene.effects):
+        return _struck_run(scene, method, control)
+    solver = None
+
+    def begin():
+        nonlocal solver
+        solver = choice.solver(start, still)
+
+    def to(time):
+        solver.state(time, out)
+    return Run(begin, to, lambda: result)
+
+
+def _one_more(run):
+    """Return a Run that keeps the start of another one."""
+    run.start()
+    return Run(lambda: None, run.to, run.state)
+
+
+def _struck_run(scene, method, control):
+    """Return the Run of a scene with strikes, which are the business of Simulation."""
+    simulation = Simulation(scene, method, **control)
+    result = np.empty((1, STATE_SIZE))
+
+    def to(time):
+        result[:] = simulation.states(np.array([time])).vector
+    return Run(simulation.reset, to, lambda: result[0, ORIENTATION.start:ANGULAR_VELOCITY.stop])

@@ -1,0 +1,45 @@
+"""The table of a study: what each method needs for 1e-3, 1e-6, 1e-9 and 1e-12 rad, and the best it reaches."""
+
+LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
+
+
+def cost_at(line, level, error='error'):
+    """Return the least CPU time per simulated second (s) at which a line's error is at most a level, or None."""
+    return min((point['cpu']['median'] for point in line['points'] if point[error] <= level), default=None)
+
+
+def best(line):
+    """Return the smallest error of a line (rad)."""
+    return min(point['error'] for point in line['points'])
+
+
+def ratios(result):
+    """Return our best cost over the best peer's at each level: None where either does not get there."""
+    found = []
+    for level in LEVELS:
+        costs = [min((c for line in result['lines'] if line['is_peer'] == peers and (c := cost_at(line, level)) is not None), default=None)
+                 for peers in (False, True)]
+        found.append(costs[0] / costs[1] if None not in costs else None)
+    return found
+
+
+def lines(result):
+    """Return the lines of a problem's table."""
+    text = [f'{result["problem"]}: {result["about"]}, {result["duration"]:g} s; half an ulp on the inputs: {result["floor"]:.1e} rad',
+            f'  {"CPU us per simulated second for":34}{"".join(f"{level:>10.0e}" for level in LEVELS)}{"best rad":>11}{"omega":>10}'
+            f'{"energy":>10}{"L":>10}{"set-up s":>10}']
+    for line in result['lines']:
+        costs = ''.join(f'{_micro(cost_at(line, level)):>10}' for level in LEVELS)
+        point = min(line['points'], key=lambda one: one['error'])
+        name = f'{line["name"]}{" (peer)" if line["is_peer"] else ""}'
+        text.append(f'  {name:34}{costs}{point["error"]:11.1e}{point["omega_error"]:10.1e}{point["energy_residual"]:10.1e}'
+                    f'{point["momentum_residual"]:10.1e}{line["points"][0]["set_up"]:10.2f}')
+    text += [f'  {name} does not run it: {reason}' for name, reason in result['refused'].items()]
+    if any(line['is_peer'] for line in result['lines']):
+        found = ''.join(f'{"-" if ratio is None else f"1/{1 / ratio:.3g}":>10}' for ratio in ratios(result))
+        text.append(f'  {"ours of the best peer":34}{found}')
+    return text
+
+
+def _micro(seconds):
+    return '-' if seconds is None else f'{seconds * 1e6:.3g}'

@@ -1,0 +1,113 @@
+"""The harness: errors it must find, refusals it must keep, the table, the figure and the command."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.study.precision import figure, measure, peers, reference, runner, suite, table, work_precision
+
+OFF = 1e-5
+
+
+@pytest.fixture(scope='module')
+def racket():
+    problem = suite.problem('racket')
+    return problem, reference.load(problem)
+
+
+def turned(q, angle):
+    """Return q turned by an angle about the body's z axis."""
+    x, y, z, w = q
+    s, c = np.sin(angle / 2), np.cos(angle / 2)
+    return np.array([x * c + y * s, y * c - x * s, z * c + w * s, w * c - z * s])
+
+
+def made_up(problem, truth, name, angle):
+    """Return the Runner of a method whose attitude is off by an angle at the end and by twice that half-way."""
+    rows = {time: (np.array([float(x) for x in q]), np.array([float(x) for x in omega]))
+            for time, q, omega in zip(truth.times.tolist(), truth.orientation, truth.omega)}
+    place = [None]
+
+    def to(time):
+        place[0] = time
+
+    def state():
+        q, omega = rows[place[0]]
+        return *turned(q, angle * (2.0 if place[0] == problem.duration / 2 else 1.0)), *omega
+    return runner.Runner(name, 'step', (0.1,), lambda _: runner.Run(lambda: None, to, state))
+
+
+def test_errors_are_rotation_angles_at_the_end_and_along_the_way(racket):
+    found = measure.measure(*racket, [made_up(*racket, 'made up', OFF)], 1.0, 5)
+    point, = found['lines'][0]['points']
+    assert abs(point['error'] / OFF - 1.0) < 1e-9
+    assert abs(point['largest_error'] / (2.0 * OFF) - 1.0) < 1e-9
+    assert point['omega_error'] < 1e-15
+    assert point['energy_residual'] < 1e-15
+    assert OFF / 10.0 < point['momentum_residual'] < 2.0 * OFF
+    assert point['cpu']['least'] <= point['cpu']['median'] <= point['cpu']['most']
+
+
+def test_refusals_are_recorded_and_nan_is_one(racket):
+    def refuses(_):
+        raise runner.RefusedError('a rod has no inverse')
+
+    def gives_up(_):
+        raise NotConverged('too far')
+    silent = runner.Run(lambda: None, lambda time: None, lambda: [np.nan] * 7)
+    found = measure.measure(*racket, [runner.Runner('no', 'none', (None,), refuses), runner.Runner('silent', 'none', (None,), lambda _: silent),
+                                      runner.Runner('weak', 'none', (None,), gives_up)], 1.0, 5)
+    assert found['lines'] == []
+    assert found['refused']['no'] == 'a rod has no inverse'
+    assert 'NaN' in found['refused']['silent']
+    assert found['refused']['weak'] == 'too far'
+
+
+def test_exact_is_at_the_floor_of_the_racket(racket):
+    lines = [one for one in runner.ours(*racket) if one.control == 'none']
+    found = measure.measure(*racket, lines, 1.0, 5)
+    for line in found['lines']:
+        assert line['points'][0]['error'] < racket[1].floor[-1]
+    result = {'problem': 'racket', 'about': '', 'duration': 100.0, 'floor': 5e-14, **found}
+    assert table.cost_at(found['lines'][0], 1e-12) is not None
+    assert 'exact' in '\n'.join(table.lines(result))
+    assert len(figure.draw([result, result, result]).axes) == 3
+
+
+def test_methods_come_from_the_table(racket, monkeypatch):
+    names = {one.name for one in runner.ours(*racket)}
+    assert {'exact', 'dop8', 'rk4'} <= names
+    monkeypatch.delitem(runner.METHODS, 'rk4')
+    assert 'rk4' not in {one.name for one in runner.ours(*racket)}
+
+
+def test_peers_solve_the_same_equations(racket):
+    """Numba RK4 and SciPy are always here: SciPy's error on the top tells whether weight, damping and heat have the right signs."""
+    problem = suite.problem('damped_body')
+    truth = reference.load(problem)
+    fine = next(one for one in peers.runners(problem, truth) if one.name == 'SciPy DOP853')
+    run = fine.make(1e-10)
+    run.start()
+    run.to(truth.times[0])
+    truth_then = reference.Reference(truth.times[:1], truth.orientation[:1], truth.omega[:1], truth.floor[:1], truth.floor_omega[:1], 34.0)
+    angles, omegas = truth_then.errors(np.array([run.state()]))
+    assert angles[0] < 1e-8
+    assert omegas[0] < 1e-8
+
+
+def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(runner, 'methods_for', lambda scene: ['exact'])
+    monkeypatch.chdir(tmp_path)
+    assert work_precision.main(['--scene', 'billiard_follow', '--duration', '1', '--quick', '--json', '--output', 'made']) == 0
+    found = json.loads(capsys.readouterr().out)
+    result, = found['results']
+    assert result['reference_digits'] > 25.0
+    assert result['lines'][0]['points'][0]['largest_error'] < 4.0 * result['largest_floor']
+    assert (tmp_path / 'made' / 'work_precision.png').stat().st_size > 10000
+    assert json.loads((tmp_path / 'made' / 'work_precision.json').read_text()) == found
+    for arguments in (['--duration', '-1', '--scene', 'heavy_top'], ['--duration', '3'], ['--scene', 'nowhere'],
+                      ['--scene', 'racket', '--duration', '3']):
+        assert work_precision.main(arguments) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
