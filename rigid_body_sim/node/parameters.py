@@ -78,9 +78,10 @@ class Entry:
                 raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
             return float(value)
         if isinstance(self.default, tuple):
-            # an empty list arrives without a type
-            words = () if value is None else value if isinstance(value, (list, tuple)) else None
-            if words is None or not all(isinstance(word, str) for word in words):
+            # an empty list arrives without a type; one word alone is a list of one
+            words = [word for word in (value,) if word] if value is None or isinstance(value, str) else value
+            words = words if isinstance(words, (list, tuple)) else [None]
+            if not all(isinstance(word, str) for word in words):
                 raise BadInput(where, f'got {value!r}', f'needs a list of words{f", each one of {self.limits}" if self.choices else ""}')
             for word in words:
                 self._refuse_unknown_word(word, where)
@@ -244,8 +245,8 @@ class Settings:
             default = getattr(ENTRIES.get(parameter.name), 'default', None)
             if isinstance(default, float) and parameter.type_ == Parameter.Type.INTEGER:
                 parameter = Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
-            elif isinstance(default, tuple) and (parameter.value is None or parameter.value == []):
-                parameter = Parameter(parameter.name, Parameter.Type.STRING_ARRAY, [])
+            elif isinstance(default, tuple) and (parameter.value in (None, []) or isinstance(parameter.value, str)):
+                parameter = Parameter(parameter.name, Parameter.Type.STRING_ARRAY, [parameter.value] if parameter.value else [])
             typed.append(parameter)
         return typed
 

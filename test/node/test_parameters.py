@@ -73,7 +73,8 @@ def test_empty_list_arrives_as_one(make):
     ('scene:=3', 'parameter scene: got 3; needs a text'),
     ('overrun:=skip', "parameter overrun: got 'skip'; needs one of slip, skip_publish"),
     ('publish:=[odo]', "parameter publish: got 'odo'; did you mean 'odom'?"),
-    ('publish:=odom', "parameter publish: got 'odom'; needs a list of words, each one of pose"),
+    ('publish:=odo', "parameter publish: got 'odo'; did you mean 'odom'?"),
+    ('publish:=5', 'parameter publish: got 5; needs a list of words, each one of pose'),
 ])
 def test_wrong_override_is_refused_by_name_and_value(make, override, line):
     with pytest.raises(BadInput) as refusal:
@@ -98,6 +99,15 @@ def test_wrong_change_is_refused_with_the_reason(make, name, value, reason):
     assert not result.successful
     assert result.reason.startswith(reason)
     assert settings.values == before
+
+
+def test_one_word_alone_is_a_list_of_one(make):
+    node, settings = make('scene_overrides:=strike.height=0.02', 'publish:=odom')
+    assert (settings.scene_overrides, settings.publish) == (('strike.height=0.02',), ('odom',))
+    assert all(result.successful for result in node.set_parameters([Parameter('scene_overrides', value='strike.height=0.01')]))
+    assert settings.scene_overrides == ('strike.height=0.01',)
+    assert all(result.successful for result in node.set_parameters([Parameter('scene_overrides', value='')]))
+    assert settings.scene_overrides == ()
 
 
 def test_unknown_change_is_refused_with_the_nearest_name(make):
