@@ -109,6 +109,9 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     n, k, own_spin : pair of floats (double_double.py)
         I3 omega_3/I1 (rad/s), M g h/I1 (1/s^2, not negative), omega_3 - n (rad/s).
     """
+    if o_re == 0.0 and o_im == 0.0 and n[0] == 0.0 and (k[0] == 0.0 or (a_re == 0.0 and a_im == 0.0) or (b_re == 0.0 and b_im == 0.0)):
+        _rest(a_re, a_im, b_re, b_im, anchor)
+        return
     # powers of two are exact: in the unit of time used here rates are of order 1, and a tiny tilt and swing are TINY
     largest = max(max(abs(n[0]), 2.0 * math.sqrt(k[0])), max(abs(o_re), abs(o_im)))
     rate_unit = math.ldexp(1.0, min(max(math.frexp(largest)[1], -900), 900)) if largest > 0.0 else 1.0
@@ -154,6 +157,19 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     elif share_b < min(share_a, share_w):
         phase_b = phase_a + phase_w
     anchor[START_A], anchor[START_B] = phase_a - nearest(phase_a), phase_b - nearest(phase_b)
+
+
+@compiled
+def _rest(a_re, a_im, b_re, b_im, anchor):
+    """Fill the anchor of a top at rest that stays so: upright, hanging, or without weight. Every attitude is a root of its own there."""
+    for place in range(NUTATION_SIZE):
+        anchor[place] = 0.0
+    norm = math.sqrt(a_re * a_re + a_im * a_im + b_re * b_re + b_im * b_im)
+    set_nome(0.0, anchor)
+    set_circular(anchor, 0, 0.0, -1.0, 1.0, math.sqrt(a_re * a_re + a_im * a_im) / norm)
+    set_circular(anchor, 1, 0.0, 1.0, 1.0, math.sqrt(b_re * b_re + b_im * b_im) / norm)
+    set_circular(anchor, 2, 0.0, 1.0, 1.0, 0.0)
+    anchor[SIDE], anchor[START_A], anchor[START_B] = 1.0, _angle(a_re, a_im, 1.0, 0.0), _angle(b_re, b_im, 1.0, 0.0)
 
 
 @compiled

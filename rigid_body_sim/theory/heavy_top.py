@@ -35,7 +35,8 @@ def alpha_rate(beta, P_alpha, P_gamma, I1):
 
 def gamma_rate(beta, P_alpha, P_gamma, I1, I3):
     """Return the spin gamma' = p_gamma (1/(I1 tan^2(beta)) + 1/I3) - p_alpha cos(beta)/(I1 sin^2(beta)), rad/s."""
-    return P_gamma * (1.0 / (I1 * np.tan(beta) ** 2) + 1.0 / I3) - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha
+    omega3 = P_gamma / I3 if P_gamma else 0.0       # also of a body without moment about its axis
+    return P_gamma / (I1 * np.tan(beta) ** 2) + omega3 - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha
 
 
 def beta_acceleration(beta, P_alpha, P_gamma, I1, Mgl):

@@ -138,3 +138,14 @@ def test_a_composite_with_turned_axes_is_absorbed():
     tensor = scene.body.about_origin.matrix
     energy = [0.5 * s[5:8] @ tensor @ s[5:8] + 2.0 * 9.81 * rotate(*s[1:5], *scene.body.center_of_mass)[2] for s in states]
     assert np.ptp(energy) <= 4e-14      # 1.4e-14 of terms of 6 J
+
+
+@pytest.mark.parametrize(('overrides', 'tilt'), [
+    ({}, 0.0), ({}, math.pi), ({'g': 0.0}, 0.0), ({'g': 0.0}, 0.7), ({'center': [0.0, 0.0, 0.0]}, 2.0)])
+def test_top_at_rest_where_nothing_turns_it_stays(overrides, tilt):
+    start = (1.0, 0.0, 0.0, 0.0) if tilt == math.pi else from_euler_zyz(0.3, tilt, 0.7)
+    _, anchor = anchored(HEAVY | overrides, start, (0.0, 0.0, 0.0))
+    for state in many(anchor, [0.0, 1.0, 1e6]):
+        np.testing.assert_allclose(state[1:5], start, rtol=0.0, atol=4e-16)
+        assert not state[5:8].any()
+    assert motion.next_event(anchor, 0.0) == (math.inf, 0)
