@@ -6,9 +6,9 @@ accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
 from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.integrators import dop8, lsoda, radau, rk4, runge_kutta, semi_implicit_euler, split2, split4, split6, split8
+from rigid_body_sim.integrators import dop8, gauss16, lsoda, radau, rk4, runge_kutta, semi_implicit_euler, split2, split4, split6, split8
 
-METHODS = {method.NAME: method for method in (dop8, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
+METHODS = {method.NAME: method for method in (dop8, gauss16, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 
 
 def runnable(scene):

@@ -77,3 +77,12 @@ def march(p, control, node, following, target, end, limit):
     put(y, node, VALUES)
     put(c, node, VALUES + SIZE)
     return moved, good
+
+
+@compiled
+def between(p, control, node, following, dt):
+    """Return the unknowns a time dt after a node and within the step from it: one step of the method."""
+    y = load(node, VALUES)
+    if dt > 0.0:
+        y, _ = step(p, y, load(node, VALUES + SIZE), rate(p, y), dt)
+    return y

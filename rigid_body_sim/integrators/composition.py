@@ -20,6 +20,7 @@ import numpy as np
 from rigid_body_sim.bodies import IDENTITY, Inertia
 from rigid_body_sim.integrators import composed, flows_flying, flows_hinged, flows_turning, flying, hinged, quadrature
 from rigid_body_sim.integrators.equations import Equations, force_source, torque_source, turning_source
+from rigid_body_sim.integrators.one_step import begin, march  # noqa: F401
 from rigid_body_sim.motions import free_body
 from rigid_body_sim.motions.free_anchor import rotation_parameters
 from rigid_body_sim.specialise import specialise

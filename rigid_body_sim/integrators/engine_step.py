@@ -11,6 +11,7 @@ dissipation the axes turn with omega1 + c m1 x omega1, as the equations have it.
 
 from rigid_body_sim.integrators import flying, hinged, quadrature
 from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.integrators.one_step import begin, march  # noqa: F401
 
 TURN = """
     w1, w2, w3 = y[4] + h * k0[4], y[5] + h * k0[5], y[6] + h * k0[6]

@@ -2,6 +2,7 @@
 
 from rigid_body_sim.integrators import unroll
 from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.integrators.one_step import begin, march  # noqa: F401
 
 
 def equations(scene, wrench, books):

@@ -15,15 +15,17 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, adaptive, fixed, scipy_methods, table, track, unroll
+from rigid_body_sim.integrators import METHODS, scipy_methods, table, track
+from rigid_body_sim.integrators.adaptive import TIME as NODE_TIME
+from rigid_body_sim.integrators.adaptive import VALUES
 from rigid_body_sim.mechanics import swing_rate
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
 
-CHECKPOINTS = 1024
-NODE_HEAD = adaptive.VALUES
+CHECKPOINTS, SPACING = 128, 32    # of a march: how many are kept, and at first every which node is one
 FINEST = 1e-15          # accuracy below this is not in the doubles
+ONLY = np.zeros(1, dtype=np.intp)    # the order of a single time
 
 
 class Stepped:
@@ -117,19 +119,9 @@ class _Bound:
     def __init__(self, scene, method, wrench, adapts, books):
         self.equations = equations = method.FAMILY.equations(scene, wrench, books)
         self.acts = equations.acts
-        n, extra = equations.kind.UNKNOWNS, EXCHANGE_SIZE if books else 0
-        groups = equations.kind.GROUPS
-        kernels = equations.kernels.__name__
-        march = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled', 'SIZE': f'SIZE = {n + extra}\n',
-                 'step': method.FAMILY.step_source(method, equations),
-                 'load': unroll.load_source('load', n + extra), 'put': unroll.put_source('put', n + extra)}
-        if adapts:
-            relative = sum(not absolute for _, _, absolute in groups)
-            march |= {'trial': unroll.trial_source(method, n, extra, groups), 'ORDER': f'ORDER = {method.ORDER}\n',
-                      'load_scales': unroll.load_source('load_scales', relative), 'put_scales': unroll.put_source('put_scales', relative)}
-        self.march = specialise(adaptive if adapts else fixed, **march)
-        shared = {name: f'{self.march.__name__}:{name}' for name in ('march', 'rate', 'step', 'load', 'SIZE')}
-        self.track = specialise(track, write=f'{kernels}:write', **shared)
+        self.march = method.FAMILY.march(method, equations, adapts)
+        shared = {name: f'{self.march.__name__}:{name}' for name in ('march', 'between', 'SIZE')}
+        self.track = specialise(track, write=f'{equations.kernels.__name__}:write', **shared)
 
     def course(self, stepped):
         """Return the course of a started solver."""
@@ -143,59 +135,40 @@ class _Course:
         self._stepped, self._bound = stepped, bound
         equations = bound.equations
         self._fixed, y = equations.start(stepped.vector)
-        self._size = len(y) + equations.extra
-        values = np.zeros(NODE_HEAD + 2 * self._size)
-        values[NODE_HEAD:NODE_HEAD + len(y)] = y
         self._begin = float(stepped.vector[TIME])
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
-        self._pieces = [self._piece(self._begin, values)]
+        self._pieces = [self._piece(self._begin, np.array([*y, *np.zeros(equations.extra)]))]
 
-    def _piece(self, begin, values):
-        stepped, equations = self._stepped, self._bound.equations
-        p = equations.parameters(self._fixed, begin)
-        node = values.copy()
-        node[adaptive.TIME] = begin
-        if stepped.step is not None:
-            control = np.array([stepped.step, begin])
-            node[fixed.COUNT] = 0.0
-        else:
-            control = np.array([stepped.accuracy / stepped.horizon])
-            node[adaptive.STEP] = self._first_step(p, node, control[0])
-        return p, control, node, node.copy(), np.array([node]).repeat(CHECKPOINTS, axis=0), np.array([1, 1, 0])
-
-    def _first_step(self, p, node, tolerance):
-        """Return a step that is not too long by much; the control mends it."""
-        y = node[NODE_HEAD:NODE_HEAD + self._size]
-        rates = np.array(self._bound.equations.kernels.rate(p, tuple(y.tolist())))
-        fastest = 0.0
-        for first, last, absolute in self._bound.equations.kind.GROUPS:
-            size, change = np.linalg.norm(y[first:last]), np.linalg.norm(rates[first:last])
-            scale = 1.0 if absolute else size
-            fastest = max(fastest, change / scale if scale > 0.0 else 0.0)
-        return (0.1 if fastest == 0.0 else 1.0 / fastest) * math.pow(tolerance, 1.0 / self._stepped.method.ORDER)
+    def _piece(self, begin, y):
+        bound = self._bound
+        p = bound.equations.parameters(self._fixed, begin)
+        control, node = self._stepped.method.FAMILY.begin(self._stepped, bound.equations, bound.march, p, y, begin)
+        checkpoints = np.empty((CHECKPOINTS, len(node)))
+        checkpoints[0] = node
+        return p, control, node, node.copy(), checkpoints, np.array([1, SPACING, 0])
 
     def states(self, times, out):
         """Fill out with the states at times."""
         if len(times) == 0:
             return
-        order = np.argsort(times, kind='stable')
+        order = np.argsort(times, kind='stable') if len(times) > 1 else ONLY
         first, last = times[order[0]], times[order[-1]]
         if not (first >= self._begin and math.isfinite(last)):
             raise BadInput('time', f'asked from {first!r} to {last!r} s', f'finite times from the start, {self._begin!r} s, on')
-        done, k = 0, 0
+        bound, done, k = self._bound, 0, 0
         while done < len(order):
             end = self._ends[k]
-            until = len(order) if end == math.inf else int(np.searchsorted(times[order], end, side='left'))
+            until = len(order) if last < end else int(np.searchsorted(times[order], end, side='left'))
             piece = self._pieces[k]
-            filled = done + self._bound.track.states(*piece, times, order[done:until], end, out)
+            filled = done + bound.track.states(*piece, times, order[done:until], end, out)
             self._check(filled == until, piece)
             done, k = until, k + 1
             if done < len(order) and k == len(self._pieces):
-                self._check(self._bound.track.follow(*piece, end, end), piece)
-                self._pieces.append(self._piece(end, piece[2]))
+                self._check(bound.track.follow(*piece, end, end), piece)
+                self._pieces.append(self._piece(end, piece[2][VALUES:VALUES + bound.march.SIZE]))
 
     def _check(self, good, piece):
         if not good:
             method, scene = self._stepped.method.NAME, self._stepped.scene.name
-            raise NotConverged(f'{method} on {scene}: at t = {piece[2][adaptive.TIME]!r} s the state is no longer finite, '
+            raise NotConverged(f'{method} on {scene}: at t = {float(piece[2][NODE_TIME])!r} s the state is no longer finite, '
                                'or the step fell below what the clock resolves')

@@ -9,13 +9,11 @@ from rigid_body_sim.compiled import compiled
 from rigid_body_sim.specialise import UNBOUND
 
 march = UNBOUND
-rate = UNBOUND
-step = UNBOUND
+between = UNBOUND
 write = UNBOUND
-load = UNBOUND
 SIZE = UNBOUND
 
-TIME, VALUES = 0, 5
+TIME = 0
 STORED, STRIDE, COUNT = 0, 1, 2     # layout of `counts`
 
 
@@ -65,10 +63,7 @@ def states(p, control, node, following, store, counts, times, order, end, out):
         k = order[i]
         if not follow(p, control, node, following, store, counts, times[k], end):
             return i
-        dt = times[k] - node[TIME]
-        y = load(node, VALUES)
-        if dt > 0.0:
-            y, _ = step(p, y, load(node, VALUES + SIZE), rate(p, y), dt)
+        y = between(p, control, node, following, times[k] - node[TIME])
         write(p, times[k], y, out[k])
         for book in range(14, out.shape[1]):
             out[k, book] = y[SIZE - out.shape[1] + book]

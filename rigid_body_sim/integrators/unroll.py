@@ -15,7 +15,7 @@ def step_source(method, n, extra):
     the new sum loses is returned.
     """
     return '\n'.join(['@compiled', 'def step(p, y, c, k0, h):', *_stages(method, n), *_increment(method, n + extra),
-                      f'    return {_sums(n + extra)}, {_losses(n + extra)}', ''])
+                      f'    return {sums(n + extra)}, {losses(n + extra)}', ''])
 
 
 def trial_source(method, n, extra, groups):
@@ -51,7 +51,7 @@ def trial_source(method, n, extra, groups):
         lines.append(f'    moved += {weight}({" + ".join(f"d{u} * d{u}" for u in members)})')
     return '\n'.join([*lines, '    fifth, third = h * h * fifth, h * h * third', '    below = fifth + 0.01 * third',
                       f'    error = fifth / math.sqrt(below) if not fifth <= {ROUNDING * ROUNDING!r} * moved else 0.0',
-                      f'    return {_sums(n + extra)}, {_losses(n + extra)}, ({"".join(f"{square}, " for square in squares)}), error', ''])
+                      f'    return {sums(n + extra)}, {losses(n + extra)}, ({"".join(f"{square}, " for square in squares)}), error', ''])
 
 
 def load_source(name, size):
@@ -91,9 +91,11 @@ def _sum(row, u):
     return ' + '.join(f'{e!r} * k{j}[{u}]' for j, e in row.items())
 
 
-def _sums(size):
+def sums(size):
+    """Return the text of the tuple of new unknowns, s0, s1, ..."""
     return f'({"".join(f"s{u}, " for u in range(size))})'
 
 
-def _losses(size):
+def losses(size):
+    """Return the text of the tuple of what s = y + d has lost of the increments d."""
     return f'({"".join(f"d{u} - (s{u} - y[{u}]), " for u in range(size))})'

@@ -1,0 +1,87 @@
+"""Gauss nodes and the polynomials through them, for eight stages, to the last bit of a double (formed once, with 60 digits)."""
+
+from decimal import Decimal, localcontext
+from math import comb
+
+import numpy as np
+
+STAGES = 8
+DIGITS = 60
+
+
+def _legendre(n):
+    """Return the coefficients (ascending) of P_n(2 x - 1), the Legendre polynomial on [0, 1]."""
+    return [Decimal((-1) ** (n + k) * comb(n, k) * comb(n + k, k)) for k in range(n + 1)]
+
+
+def _value(polynomial, x):
+    result = Decimal(0)
+    for coefficient in reversed(polynomial):
+        result = result * x + coefficient
+    return result
+
+
+def _nodes():
+    polynomial = _legendre(STAGES)
+    slope = [k * coefficient for k, coefficient in enumerate(polynomial)][1:]
+    for guess in np.polynomial.legendre.leggauss(STAGES)[0]:
+        x = (Decimal(float(guess)) + 1) / 2
+        for _ in range(3):
+            x -= _value(polynomial, x) / _value(slope, x)
+        yield x
+
+
+def _through(nodes):
+    """Yield the polynomials that are 1 at one node and 0 at the others."""
+    for j, own in enumerate(nodes):
+        polynomial = [Decimal(1)]
+        for other in nodes[:j] + nodes[j + 1:]:
+            gap = own - other
+            polynomial = [(low - other * high) / gap for low, high in zip([Decimal(0), *polynomial], [*polynomial, Decimal(0)], strict=True)]
+        yield polynomial
+
+
+def _integral(polynomial):
+    return [Decimal(0), *(coefficient / (k + 1) for k, coefficient in enumerate(polynomial))]
+
+
+def _continued(polynomial):
+    """Return the polynomial in x - 1: the same curve beyond the end of the interval."""
+    return [sum(coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m) for m in range(len(polynomial))]
+
+
+def _in_legendre(polynomial):
+    """Return the coefficients of the Legendre polynomials P_k(x), from those of the powers of x."""
+    power, result = [Decimal(1)], [Decimal(0)] * len(polynomial)
+    for coefficient in polynomial:
+        result = [r + coefficient * p for r, p in zip(result, power + [Decimal(0)] * len(result), strict=False)]
+        higher = [Decimal(0)] * (len(power) + 1)    # of x times that: x P_k = ((k + 1) P_(k+1) + k P_(k-1))/(2 k + 1)
+        for k, p in enumerate(power):
+            higher[k + 1] += p * (k + 1) / (2 * k + 1)
+            if k:
+                higher[k - 1] += p * k / (2 * k + 1)
+        power = higher
+    return result
+
+
+def _floats(rows):
+    return np.array([[float(x) for x in row] for row in rows])
+
+
+with localcontext() as _context:
+    _context.prec = DIGITS
+    _C = list(_nodes())
+    _BASIS = list(_through(_C))
+    _INTEGRALS = [_integral(polynomial) for polynomial in _BASIS]
+    _B = [_value(integral, Decimal(1)) for integral in _INTEGRALS]
+    C, B = np.array([float(c) for c in _C]), np.array([float(b) for b in _B])
+    # A[i, j]: integral of the j-th basis polynomial from 0 to c_i
+    A = _floats([[_value(integral, c) for integral in _INTEGRALS] for c in _C])
+    # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)
+    AHEAD = _floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS])
+    # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before (on [-1, 0]) and of this one (on [0, 1])
+    # that is 1 at the j-th, as a sum over k of DENSE[j, k] P_k(x)
+    DENSE = _floats([_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)])
+    # TAILS: rows that give the last four Legendre coefficients, the last one first, of a function from its values at the nodes
+    TAILS = _floats([[(2 * n + 1) * b * _value(_legendre(n), c) for b, c in zip(_B, _C, strict=True)]
+                     for n in range(STAGES - 1, STAGES - 5, -1)])
