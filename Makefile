@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble bench bench-node study study-full pins pins-peers pins-noble clean
+.PHONY: help run test lint package test-noble bench bench-node study study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -59,9 +59,6 @@ study-full: .venv-peers/stamp ## the whole suite with the peers, about an hour; 
 pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and test.in (with the oldest Python)
 	.venv/bin/python requirements/pin.py run
 	.venv/bin/python requirements/pin.py test
-
-pins-peers: .venv/run.stamp ## requirements/peers.txt anew from peers.in
-	.venv/bin/python requirements/pin.py peers
 
 pins-noble: .venv-noble/stamp ## requirements/noble.txt anew from noble.in
 	.venv-noble/bin/python requirements/pin.py noble

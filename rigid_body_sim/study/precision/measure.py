@@ -39,22 +39,23 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
 
     Returns
     -------
-    dict
-        ``lines``: for each runner name, control, is_peer and ``points``: setting, set_up (s), errors, residuals, cpu per simulated second:
-        median, least, most; ``refused``: name -> reason.
+        ``lines``: for each runner name, control, is_peer, ``notes`` (what went wrong at some settings) and ``points``: setting, set_up (s),
+        errors, residuals, cpu per simulated second: median, least, most; ``refused``: name -> reason.
     """
     balance = Balance(problem.scene)
     lines, refused, timed = [], {}, []
     for runner in tqdm(runners, desc=f'{problem.name}: errors', disable=None if watch is None else not watch, leave=False):
-        points = []
+        points, notes = [], []
         try:
-            for point, run in _sweep(problem, reference, runner, limit, balance):
+            for point, run in _sweep(problem, reference, runner, limit, balance, notes):
                 points.append(point)
                 timed.append((point, run))
-        except (RefusedError, BadInput, NotConverged) as error:
-            refused[runner.name] = str(error)
+        except (RefusedError, BadInput) as error:
+            notes.append(str(error))
         if points:
-            lines.append({'name': runner.name, 'control': runner.control, 'is_peer': runner.is_peer, 'points': points})
+            lines.append({'name': runner.name, 'control': runner.control, 'is_peer': runner.is_peer, 'points': points, 'notes': notes})
+        else:
+            refused[runner.name] = notes[0]
     samples = [[] for _ in timed]
     gc.collect()
     gc.disable()
@@ -70,13 +71,13 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
     return {'lines': lines, 'refused': refused}
 
 
-def _sweep(problem, reference, runner, limit, balance):
-    """Yield (point, run) from coarse to fine."""
+def _sweep(problem, reference, runner, limit, balance, notes):
+    """Yield (point, run) from coarse to fine; what went wrong on the way is added to notes."""
     best, worse = math.inf, 0
     for setting in runner.settings:
         began = time.process_time()
-        run = runner.make(setting)
         try:
+            run = runner.make(setting)
             _go(run, problem.duration)    # compiles
             set_up = time.process_time() - began
             began = time.process_time()
@@ -84,11 +85,12 @@ def _sweep(problem, reference, runner, limit, balance):
             first_run = time.process_time() - began
             final = np.array(run.state())
             states = np.array(list(_along(run, reference.times.tolist())))
-        except NotConverged:
-            continue    # too coarse to hold; a finer one may do
-        states[-1] = final
-        if not np.isfinite(states).all():
-            raise RefusedError(f'{runner.control} {setting!r}: returns NaN in silence')
+            states[-1] = final
+            if not np.isfinite(states).all():
+                raise NotConverged(f'at {runner.control} {setting!r} it returns NaN in silence')
+        except NotConverged as error:    # too coarse to hold; a finer one may do
+            notes.append(str(error))
+            continue
         angles, omegas = reference.errors(states)
         yield {'setting': setting, 'set_up': set_up, 'first_run': first_run, 'error': float(angles[-1]), 'largest_error': float(angles.max()),
                'omega_error': float(omegas[-1]), 'largest_omega_error': float(omegas.max()), **balance.residuals(final, reference)}, run

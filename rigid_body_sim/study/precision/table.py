@@ -34,6 +34,7 @@ def lines(result):
         name = f'{line["name"]}{" (peer)" if line["is_peer"] else ""}'
         text.append(f'  {name:34}{costs}{point["error"]:11.1e}{point["omega_error"]:10.1e}{point["energy_residual"]:10.1e}'
                     f'{point["momentum_residual"]:10.1e}{line["points"][0]["set_up"]:10.2f}')
+    text += [f'  {line["name"]}: {note}' for line in result['lines'] for note in line['notes'][-1:]]
     text += [f'  {name} does not run it: {reason}' for name, reason in result['refused'].items()]
     if any(line['is_peer'] for line in result['lines']):
         found = ''.join(f'{"-" if ratio is None else f"1/{1 / ratio:.3g}":>10}' for ratio in ratios(result))

@@ -1,5 +1,6 @@
 """The command `work_precision`: error against CPU time of every method that can run a scene, and of peers."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -45,15 +46,19 @@ def _run(options):
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise BadInput('--output', f'{folder} cannot be made ({error.strerror})', 'another folder') from None
-    results, began = [], time.time()
+    results, began, versions = [], time.time(), {}
+    if options.peers:
+        with peers.quiet():
+            versions = {module.NAME: module.version() for module in peers.installed()}
     for problem in problems:
-        results.append(study(problem, options.peers, limit, repeats))
+        with peers.quiet() if options.peers else contextlib.nullcontext():
+            results.append(study(problem, options.peers, limit, repeats))
         if not options.json:
             print('\n'.join(table.lines(results[-1])), end='\n\n', flush=True)
     found = {'made': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()), 'took': time.time() - began, 'version': version(),
              'machine': machine(), 'cores': os.cpu_count(), 'load': os.getloadavg(), 'interpreter': platform.python_implementation(),
              'clock': 'time.process_time', 'limit': limit, 'repeats': repeats, 'sample': measure.SAMPLE,
-             'peers': {module.NAME: module.version() for module in peers.installed()} if options.peers else {}, 'results': results}
+             'peers': versions, 'results': results}
     if options.json:
         command_line.print_json(found)
     if folder:

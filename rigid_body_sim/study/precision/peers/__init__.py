@@ -6,10 +6,27 @@ way to run it or raises RefusedError with the reason. requirements/peers.txt ins
 
 import contextlib
 import importlib
+import os
+import sys
 
 from rigid_body_sim.study.precision.runner import RefusedError, Runner
 
-MODULES = ('heyoka_taylor', 'numba_rk4', 'scipy_dop853')
+MODULES = ('heyoka_taylor', 'numba_rk4', 'scipy_dop853', 'mujoco_engine', 'drake_engine', 'pybullet_engine', 'pinocchio_engine',
+           'basilisk_engine')
+
+
+@contextlib.contextmanager
+def quiet():
+    """Send what libraries print on standard output, from C too, to standard error: ours is the table or JSON."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def installed():

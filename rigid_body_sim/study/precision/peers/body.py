@@ -52,6 +52,14 @@ class Body:
         x, y, z, w = self.axes
         return *multiply(*q, -x, -y, -z, w), *rotate(*self.axes, *values[4:7])
 
+    def about_center(self, scene):
+        """Return the inertia tensor about the centre of mass (3, 3) and where that is from the point of reference, in the latter's axes."""
+        if scene.constraint.kind == 'free':
+            return np.diag(self.moments), np.zeros(3)
+        mass = scene.body.mass
+        arm = np.array(rotate_back(*self.axes, *scene.body.center_of_mass))
+        return np.diag(self.moments) - mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)), arm
+
     def numbers(self):
         """Return everything but the start as one flat array for compiled right-hand sides."""
         i = self.moments
