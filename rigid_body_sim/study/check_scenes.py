@@ -1,0 +1,107 @@
+"""The command `check_scenes`: every system of the notes run by the simulator and measured, beside what theory predicts."""
+
+import time
+
+import numpy as np
+from tqdm import tqdm
+
+from rigid_body_sim import command_line
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
+from rigid_body_sim.study.scenes.systems import SYSTEMS
+
+SHAPES = 'inertia_tensors'
+
+
+def main(arguments=None):
+    """Run the command; return the exit status: 1 if a quantity is not as predicted."""
+    parser = command_line.parser(
+        'check_scenes', 'Run every scene by its exact motion and by dop8 on the full equations, measure what the notes predict, compare.',
+        'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80')
+    parser.add_argument('--scene', action='append', metavar='NAME', help=f'only this scene (name or .yaml file), or {SHAPES}; may be repeated')
+    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE', help='change of the scene, key.path=value; may be repeated')
+    parser.add_argument('--json', action='store_true', help='every quantity with 17 digits')
+    return command_line.run(_check, parser.parse_args(arguments))
+
+
+def _check(options):
+    if options.set and (options.scene is None or SHAPES in options.scene):
+        raise BadInput('--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME')
+    names = options.scene or [SHAPES, *SYSTEMS]
+    scenes = {name: None if name == SHAPES else load_scene(name, options.set) for name in names}
+    began, tables = time.perf_counter(), []
+    progress = tqdm(scenes.items(), disable=None, leave=False, unit=' scenes')
+    for name, scene in progress:
+        progress.set_postfix_str(name)
+        rows = confirm(scene) if scene else confirm_shapes()
+        about = scene.about if scene else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
+        tables.append({'scene': scene.name if scene else name, 'about': about, 'notes': scene.notes if scene else [],
+                       'quantities': [_plain(row) for row in rows]})
+        if not options.json:
+            progress.clear()
+            _tell(tables[-1])
+    quantities = [quantity for table in tables for quantity in table['quantities']]
+    failed = sum(quantity['verdict'] != CONFIRMED for quantity in quantities)
+    if options.json:
+        command_line.print_json({'scenes': tables, 'quantities': len(quantities), 'failed': failed, 'seconds': time.perf_counter() - began})
+    else:
+        print(f'{len(quantities)} quantities of {len(tables)} systems: {len(quantities) - failed} confirmed, {failed} not; '
+              f'{time.perf_counter() - began:.1f} s')
+    return command_line.CHECK_FAILED if failed else command_line.GOOD
+
+
+CONFIRMED, REFUTED = 'confirmed', 'NOT CONFIRMED'
+
+
+def _plain(row):
+    """Return a row, {method: Quantity}, as plain data."""
+    first = next(iter(row.values()))
+    plain = {'quantity': first.name, 'unit': first.unit, 'predicted': _number(first.predicted),
+             'measured': {way: _number(quantity.measured) for way, quantity in row.items()},
+             'error': {way: _finite(quantity.error) for way, quantity in row.items()}, 'tolerance': first.tolerance,
+             'kind': ('bound, ' if first.bound else '') + ('absolute' if first.absolute else 'relative'),
+             'verdict': CONFIRMED if all(quantity.passed for quantity in row.values()) else REFUTED}
+    if first.as_written is not None:
+        plain |= {'as_written': _number(first.as_written), 'error_as_written': _finite(first.error_as_written)}
+    return plain | ({'detail': first.detail} if first.detail else {})
+
+
+def _number(value):
+    """Return a float or a list of floats; what is not finite as its name, which JSON can hold."""
+    return [_finite(entry) for entry in np.ravel(value)] if np.ndim(value) else _finite(value)
+
+
+def _finite(value):
+    return float(value) if np.isfinite(value) else str(float(value))
+
+
+def _tell(table):
+    """Print the table of a scene for people."""
+    print(f'{table["scene"]}: {table["about"]}')
+    for note in table['notes']:
+        print(f'  note: {note}')
+    for row in table['quantities']:
+        unit = f' ({row["unit"]})' if row['unit'] else ''
+        measured = next(iter(row['measured'].values()))
+        errors = ', '.join(f'{way} {_short(error)}' for way, error in row['error'].items())
+        print(f'  {row["quantity"]}{unit}')
+        print(f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  {row["kind"]} error: {errors}  '
+              f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}')
+        if 'as_written' in row:
+            print(f'      uncorrected, the notes give {_digits(row["as_written"])}: off by {_short(row["error_as_written"])}')
+        if 'detail' in row:
+            print(f'      {row["detail"]}')
+    print()
+
+
+def _digits(value):
+    """Return a number, or the first of many, with 15 digits."""
+    if isinstance(value, list):
+        shown = ', '.join(_digits(entry) for entry in value[:3])
+        return f'({shown}{", ..." if len(value) > 3 else ""})'
+    return value if isinstance(value, str) else f'{value:.15g}'
+
+
+def _short(error):
+    return error if isinstance(error, str) else f'{error:.1e}'

@@ -1,0 +1,63 @@
+"""The table of systems: which check confirms which scene, and how long the two ways of solving it are compared."""
+
+from dataclasses import dataclass
+
+from rigid_body_sim.study.scenes import (
+    asymmetric_top,
+    baseball_bat,
+    billiard,
+    chandler_wobble,
+    degenerate,
+    driven_body,
+    fast_top,
+    free_body,
+    heavy_top,
+    kater_pendulum,
+    major_axis_relaxation,
+    sleeping_top,
+    steady_precession,
+    symmetric_top,
+    tennis_racket,
+)
+from rigid_body_sim.study.scenes.experiment import ACCURACY
+
+
+@dataclass(frozen=True)
+class System:
+    """How a scene is checked.
+
+    Attributes
+    ----------
+    check : callable
+        (Experiment) -> Quantities.
+    seconds : float
+        Over which the exact motion and the smooth method on the full equations are compared.
+    tolerance : float
+        Of that comparison: attitude in rad, omega relative to its largest size.
+    accuracy : float
+        Asked of the smooth method, rad in 100 s.
+    """
+
+    check: object
+    seconds: float
+    tolerance: float = 1e-9
+    accuracy: float = ACCURACY
+
+
+SYSTEMS = {
+    **{f'billiard_{name}': System(billiard.check, 2.0) for name in ('center', 'low', 'natural_roll', 'follow')},
+    **dict.fromkeys(('kater_pendulum', 'kater_pendulum_from_p'), System(kater_pendulum.check, 20.0)),
+    'baseball_bat': System(baseball_bat.check, 10.0),
+    'driven_body': System(driven_body.check, 10.0),
+    'free_body': System(free_body.check, 100.0),
+    'symmetric_top': System(symmetric_top.check, 100.0),
+    'chandler_wobble': System(chandler_wobble.check, 3.0 * 305.0 * 86164.0905, accuracy=1e-15),
+    'asymmetric_top': System(asymmetric_top.check, 100.0),
+    'tennis_racket': System(tennis_racket.check, 40.0),
+    'major_axis_relaxation': System(major_axis_relaxation.check, 100.0),
+    'heavy_top': System(heavy_top.check, 20.0),
+    'steady_precession': System(steady_precession.check, 20.0),
+    'fast_top': System(fast_top.check, 20.0),
+    **dict.fromkeys(('sleeping_top', 'falling_top'), System(sleeping_top.check, 40.0)),
+    **{name: System(getattr(degenerate, name), 20.0) for name in ('thin_rod', 'sphere', 'needle', 'spherical_pendulum')},
+}
