@@ -22,9 +22,13 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, WORK
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
-from rigid_body_sim.state import ORIENTATION, STATE_SIZE, State, States
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, State, States
 
 NOTHING = (0.0, 0.0, 0.0)
+LARGEST_WORK = 1e250
+"""Work (J) of one command: the energies of all that a tick takes stay far below what a double holds."""
+LARGEST_TURN = 1e7
+"""Angle (rad) through which a held wrench may turn the body within a tick: beyond, a tick would take minutes."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +52,11 @@ class _Span:
         self.time, self.solver, self.wrench, self.strikes, self.given = time, solver, wrench, strikes, given
         self._told, self._looked_until = [], time
 
-    def events(self, after, until):
+    def events(self, after, until, tick):
         """Return the (time, name, values) after one time (s), which never falls from call to call, and not later than another, in order."""
         # a solver looks for events once, going forward: what it found beyond `until` in an earlier look is kept
         if until > self._looked_until:
-            self._told += self.solver.events(self._looked_until, until)
+            self._told += self.solver.events(self._looked_until, until, tick)
             self._looked_until = until
         self._told = [event for event in self._told if event[0] > after]
         return [event for event in self._told if event[0] <= until]
@@ -101,7 +105,6 @@ class Simulation:
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = mechanics.parameters(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
-        self._immovable = 0.0 in self._mechanics[mechanics.MOMENTS:mechanics.MOMENTS + 3]
         self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
@@ -131,6 +134,9 @@ class Simulation:
         self._origin, self._origin_time = self.tick, 0.0
         start = self.scene.initial.vector
         mechanics.diagnose(self._mechanics, start, self._diagnosis)
+        if not np.isfinite(self._diagnosis).all():
+            raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
+                           'a smaller angular velocity, velocity or height')
         self._initial = self._diagnosis.copy()
         self._spans = [_Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
         self._commands = None
@@ -312,7 +318,7 @@ class Simulation:
         for k, span in enumerate(spans):
             end = spans[k + 1].time if k + 1 < len(spans) else now
             if end > before:
-                for time, name, values in span.events(before, min(end, now)):
+                for time, name, values in span.events(before, min(end, now), 1.0 / self.rate):
                     tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
                     yield Event(min(tick, last_tick), time, name, values)
 
@@ -374,15 +380,24 @@ class Simulation:
         if frame == 'body':
             # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
             force, torque = rotate(*self._attitude_at_tick, *force), rotate(*self._attitude_at_tick, *torque)
-        if self._immovable:
-            self._refuse_immovable(force, torque, what)
+        self._refuse_what_the_body_cannot_take(force, torque, what)
         return force, torque
 
-    def _refuse_immovable(self, force, torque, what):
-        if not mechanics.apply_impulse(self._mechanics, self.vector.copy(), np.array(force), np.array(torque),
-                                       np.empty(mechanics.EXCHANGE_SIZE)):
+    def _refuse_what_the_body_cannot_take(self, force, torque, what):
+        """Try a command on a copy of the present state: an impulse as it is, a wrench as what it gives in a tick."""
+        span = 1.0 if what == 'impulse' else 1.0 / self.rate
+        after, exchange = self.vector.copy(), np.empty(mechanics.EXCHANGE_SIZE)
+        movable = mechanics.apply_impulse(self._mechanics, after, span * np.array(force), span * np.array(torque), exchange)
+        if not movable:
             raise BadInput(what, f'torque {list(torque)} (world axes) about an axis of zero moment',
                            'leave that component 0: an axis without moment takes no angular momentum')
+        if not abs(exchange[mechanics.WORK]) <= LARGEST_WORK:
+            raise BadInput(what, f'force {list(force)}, torque {list(torque)} would do a work of {float(exchange[mechanics.WORK])!r} J',
+                           f'at most {LARGEST_WORK:g} J: energies are doubles')
+        turn = float(np.abs(after[ANGULAR_VELOCITY]).max()) / self.rate
+        if what == 'wrench' and (any(force) or any(torque)) and turn > LARGEST_TURN:
+            raise BadInput(what, f'torque {list(torque)} would turn the body by {turn:.3g} rad within a tick',
+                           f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
 
 
 def _sum(p, q):

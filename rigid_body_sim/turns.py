@@ -8,6 +8,7 @@ from rigid_body_sim.compiled import compiled_inline
 from rigid_body_sim.double_double import two_product, two_sum
 
 ROUNDER = 6755399441055744.0     # 1.5 * 2^52: adding and subtracting it rounds to the nearest integer
+COUNTABLE = 2.0 ** 51             # half turns: beyond, doubles do not tell the times of two events apart
 
 
 @compiled_inline

@@ -16,6 +16,8 @@ from typing import ClassVar
 from rigid_body_sim.compiled import compiled
 from rigid_body_sim.effects.views import Acting
 
+ENDED = 2.0 ** -54    # rad
+
 
 @dataclass(frozen=True)
 class InternalDissipation:
@@ -46,7 +48,16 @@ class InternalDissipation:
 
 @compiled
 def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return c m x omega, rad/s: component 1 is c (I2 - I3) omega2 omega3."""
+    """Return c m x omega, rad/s: component 1 is c (I2 - I3) omega2 omega3.
+
+    At the end state (m within ENDED of the largest axis, less than the attitude can show) it is 0: what is left there would only keep the
+    steps of a strong dissipation at 1/c for ever.
+    """
+    m1, m2, m3 = I1 * wx, I2 * wy, I3 * wz
+    most = max(I1, I2, I3)
+    across = (m1 * m1 if most > I1 else 0.0) + (m2 * m2 if most > I2 else 0.0) + (m3 * m3 if most > I3 else 0.0)
+    if across <= ENDED * ENDED * (m1 * m1 + m2 * m2 + m3 * m3):
+        return 0.0, 0.0, 0.0
     return c * (I2 - I3) * wy * wz, c * (I3 - I1) * wz * wx, c * (I1 - I2) * wx * wy
 
 

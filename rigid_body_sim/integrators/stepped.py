@@ -92,8 +92,11 @@ class Stepped:
         """Fill out, shape (n, 14), with the states at n times (s)."""
         self._course.states(np.asarray(times, dtype=float), out)
 
-    def events(self, after, until):
-        """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward."""
+    def events(self, after, until, tick=0.0):
+        """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward.
+
+        `tick` (s) is for motions in closed form, whose events may crowd: a method that steps has a step or more for each.
+        """
         if self.scene.constraint.kind == 'table':
             return self._course.events(after, until)
         if self._watcher is None:

@@ -1,11 +1,15 @@
 """The exact solver: a motion in closed form, evaluated at any time from its anchor."""
 
+import math
+
 import numpy as np
 
 from rigid_body_sim.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE
 from rigid_body_sim.motions import bulk
 from rigid_body_sim.motions.weight import WeightImpulse
 from rigid_body_sim.specialise import specialise
+
+CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
 
 
 def loops(motion):
@@ -43,6 +47,7 @@ class Exact:
         started.anchor = np.empty(self.motion.ANCHOR_SIZE)
         self.motion.anchor(self._parameters, vector, started.anchor)
         started._next_event = started._weight = None
+        started._last_events = (-math.inf,) * CROWD
         started._start = np.array(vector)
         return started
 
@@ -65,8 +70,11 @@ class Exact:
             out[ANGULAR_IMPULSE] = self._weight.until(time)
         return out
 
-    def events(self, after, until):
-        """Return the (time, name, values) of what happens after one time and not later than another, in order."""
+    def events(self, after, until, tick=0.0):
+        """Return the (time, name, values) of what happens after one time and not later than another, in order.
+
+        Where more than CROWD happen within the length of a tick (s), the rest of that time is passed over.
+        """
         found = []
         if not hasattr(self.motion, 'next_event'):
             return found
@@ -74,6 +82,7 @@ class Exact:
             if self._next_event is not None:
                 time, code = self._next_event
                 found.append((time, self.motion.EVENTS[code], {}))
-                after = time
+                self._last_events = (*self._last_events[1:], time)
+                after = max(time, self._last_events[0] + tick)
             self._next_event = self.motion.next_event(self.anchor, after)
         return found

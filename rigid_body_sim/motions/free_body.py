@@ -19,6 +19,7 @@ from rigid_body_sim.motions.free_anchor import ROUNDING, TO_BODY, TO_WORLD, TUMB
 from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PHASE, RATE, START, circular, hyperbolic, steady, turned
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.turns import COUNTABLE
 
 EVENTS = ('flip',)
 
@@ -172,6 +173,8 @@ def next_event(c, after):
         return math.inf, 0
     start, rate, phase = c[START], c[RATE], c[PHASE]
     half_turns = math.floor(2.0 * (rate * (after - start) + phase)) - 1.0
+    if not abs(half_turns) < COUNTABLE:
+        return math.inf, 0
     time = start + (0.5 * half_turns - phase) / rate
     while time <= after:
         half_turns += 1.0

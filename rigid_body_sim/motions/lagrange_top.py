@@ -45,6 +45,7 @@ from rigid_body_sim.motions.lagrange_top_anchor import (
 )
 from rigid_body_sim.motions.pairs import pair_at, pair_of
 from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
+from rigid_body_sim.turns import COUNTABLE
 
 # layout of the parameters: M, g, h; as pairs M g h/I1, I3/I1, (I1 - I3)/I1; quaternion that turns the axes of the top (third: e3) to the body
 MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = 0, 1, 2, 3, 5, 7, 9
@@ -187,6 +188,8 @@ def next_event(c, after):
     if c[NUTATES] == 0.0:
         return math.inf, 0
     index = turning_index(c, after) - 1.0
+    if not abs(index) < COUNTABLE:
+        return math.inf, 0
     time = turning_time(c, index)
     while time <= after:
         index += 1.0

@@ -212,6 +212,8 @@ def _shifts(roots, k):
     """Return how far the zeros of a (from u1), b and omega_c (from u2) lie along imaginary time, in arguments of Jacobi's functions."""
     gap, wide, narrow = roots[GAP], roots[WIDE], roots[NARROW]
     gap2 = 2.0 * k * gap
+    if gap == 0.0:    # steady: none has a zero, also where it is 0 all the time
+        return math.inf, math.inf, math.inf
     return (_shift(roots[X1], gap, gap * roots[X3] / wide, roots[X2]),
             _shift(roots[Y2] * wide, roots[Y3] * gap, gap * narrow, roots[Y1] * narrow),
             _shift(roots[W2] * wide, roots[W3] * gap2, gap2 * narrow, roots[W1] * narrow))

@@ -36,7 +36,8 @@ def mean_rates(roots, scale):
     one = (1.0, 0.0)
     m, e, share = one, kc, 1.0
     aa, ba, pa = one, one, one
-    ab, bb, pb = one, kc, kc
+    # with y2 counted in scale^2, p is in scale and b in its inverse: the same steps
+    ab, bb, pb = one, scaled(kc, scale), scaled(kc, 1.0 / scale)
     go_on = True
     while go_on:
         go_on = abs(m[0] - kc[0]) > 3e-11 * m[0]       # what is left after one more step is its square

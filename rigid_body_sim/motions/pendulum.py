@@ -50,6 +50,7 @@ from rigid_body_sim.motions.pendulum_anchor import (
 )
 from rigid_body_sim.rotations import rotate, rotate_back
 from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.turns import COUNTABLE
 
 EVENTS = ('turning point',)
 BLOCK = 128         # states that `states` computes side by side
@@ -131,6 +132,8 @@ def next_event(c, after):
     if c[SWINGS] == 0.0 or (c[FORM] == HYPERBOLIC and c[PERIOD] >= NEVER):
         return math.inf, 0
     half_turns = math.floor(2.0 * (c[RATE] * (after - c[START]) + c[PHASE])) - 1.0
+    if not abs(half_turns) < COUNTABLE:
+        return math.inf, 0
     time = _turning_time(c, half_turns)
     while time <= after:
         half_turns += 1.0

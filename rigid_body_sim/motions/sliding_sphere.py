@@ -243,9 +243,10 @@ def exchanged(anchor, time, out):
     if anchor[SLIP] == 0.0 or anchor[DECELERATION] == 0.0:
         return
     slid_for = min(time - anchor[START], anchor[DURATION])
+    share = slid_for / anchor[DURATION] if anchor[DURATION] > 0.0 else 0.0
     push = anchor[MASS] * anchor[DECELERATION]
     impulse = anchor[RADIUS] * push * slid_for
-    out[DISSIPATED] = push * anchor[SLIP] * slid_for * (1.0 - 0.5 * slid_for / anchor[DURATION])
+    out[DISSIPATED] = push * anchor[SLIP] * slid_for * (1.0 - 0.5 * share)
     out[2], out[3] = -impulse * anchor[DIRECTION + 1], impulse * anchor[DIRECTION]
 
 

@@ -16,6 +16,8 @@ from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 RADIANS_A_PANEL = 8.0
 PANELS_AT_ONCE = 1024
+MOST_PANELS = 2 ** 14
+"""Of one stretch. Beyond a million radians the weight hardly changes the momentum, and panels spread over the stretch give its mean."""
 
 
 class WeightImpulse:
@@ -44,7 +46,7 @@ class WeightImpulse:
         """Return the angular impulse (N m s, world axes; for a hinge its part along the axis) from the start to a time (s)."""
         if time < self._time:
             self._time, self._impulse = self._from, np.zeros(3)
-        panels = max(1, math.ceil((time - self._time) * self._fastest / RADIANS_A_PANEL))
+        panels = max(1, math.ceil(min(MOST_PANELS, (time - self._time) * self._fastest / RADIANS_A_PANEL)))
         edges = self._time + (time - self._time) * (np.arange(panels + 1) / panels)
         for first in range(0, panels, PANELS_AT_ONCE):
             part = edges[first:first + PANELS_AT_ONCE + 1]
