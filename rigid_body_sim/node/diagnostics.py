@@ -14,6 +14,8 @@ from rigid_body_sim.recording.about import ERROR, OK, WARN
 PERIOD = 1.0
 LOOK = 0.25
 """How often the recorder is looked after, s."""
+SHORTEST = 200_000_000
+"""The stretch of running over which a rate is formed, ns."""
 SAME_NAME_CHECKS = 10
 
 
@@ -71,8 +73,10 @@ class Diagnostics:
     def _timing(self):
         ticker, settings = self._ticker, self._settings
         ticks, running = ticker.latest
-        new_ticks, new_running = self._since('ticks', ticks), self._since('running', running)
-        self.rate = new_ticks / new_running * 1e9 if new_running > 0 else 0.0
+        # a rate needs a stretch of time: the first ticks of all come in a burst
+        if running - self._before['running'] >= SHORTEST or ticks == self._before['ticks']:
+            new_ticks, new_running = self._since('ticks', ticks), self._since('running', running)
+            self.rate = new_ticks / new_running * 1e9 if new_running > 0 else 0.0
         self.lateness = lateness = ticker.lateness.since_last()
         slipped, overruns = self._since('slipped', ticker.slipped), self._since('overruns', ticker.overruns)
         level, message = OK, 'paused' if ticker.paused else 'on time'

@@ -1,0 +1,75 @@
+"""What others do wrong, and what may fail inside: the node goes on, or ends in order."""
+
+import os
+import pathlib
+import signal
+
+from diagnostic_msgs.msg import DiagnosticArray
+from node.test_load import diagnosis
+from node.test_shutdown import messages_in, recording_of
+from std_msgs.msg import Float64
+
+READER = """
+import rclpy
+from std_msgs.msg import Float64
+rclpy.init()
+node = rclpy.create_node('reader')
+heard = [0]
+def count(message):
+    heard[0] += 1
+    if heard[0] % 100 == 0:
+        print(heard[0], flush=True)
+node.create_subscription(Float64, 'energy', count, 10)
+rclpy.spin(node)
+"""
+FAILING = """
+import sys
+from rigid_body_sim.node import engine, sim_node
+start = engine.Engine.start
+def fail():
+    raise RuntimeError('on purpose')
+def start_and_fail(self):
+    start(self)
+    self._node.create_timer(0.5, fail)
+engine.Engine.start = start_and_fail
+sim_node.main(sys.argv[1:])
+"""
+
+
+def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
+    """A reliable subscriber is stopped by a signal: its queue fills, the other one goes on hearing every tick, and no tick is skipped."""
+    with run_node('-p', 'rate:=200', '-p', 'record:=false') as node, node.domain.process('-c', READER) as reader:
+        energies, arrays = node.client.collect(Float64, 'energy', 1000), node.client.collect(DiagnosticArray, '/diagnostics')
+        assert reader.stdout.readline() == '100\n'
+        reader.send_signal(signal.SIGSTOP)
+        before = len(energies)
+        node.client.until(lambda: len(energies) > before + 600, what='three seconds of ticks')
+        arrays.clear()
+        node.client.until(lambda: diagnosis(arrays, 'timing'), what='diagnostics')
+        assert diagnosis(arrays, 'timing')['skipped'] == '0'
+        reader.send_signal(signal.SIGCONT)
+        assert reader.stdout.readline() == '200\n'
+
+
+def test_callback_that_fails_ends_it_with_a_whole_recording(ros_domain, tmp_path, compiled_kernels):
+    node = ros_domain.run('-c', FAILING, '--ros-args', '-p', 'rate:=200', '-p', f'recording.directory:={tmp_path / "recordings"}',
+                          timeout=90)
+    assert (node.returncode, node.stderr) == (1, 'sim_node: a callback failed: RuntimeError: on purpose\n')
+    [folder] = (tmp_path / 'recordings').iterdir()
+    assert messages_in(folder)['/energy'] > 10
+
+
+def test_nothing_of_its_own_is_left_in_shared_memory(run_node):
+    with run_node('-p', 'rate:=200') as node:
+        energies = node.client.collect(Float64, 'energy')
+        node.client.until(lambda: len(energies) > 10, what='ticks')
+        maps = pathlib.Path(f'/proc/{node.process.pid}/maps').read_text().splitlines()
+        own = {line.split()[-1] for line in maps if '/dev/shm/' in line}
+        opened = {os.readlink(link) for link in pathlib.Path(f'/proc/{node.process.pid}/fd').iterdir() if link.exists()}
+        own |= {path for path in opened if path.startswith('/dev/shm/')}
+        node.process.terminate()
+        assert node.process.wait(5.0) == 0
+        recording_of(node)
+        clients = {line.split()[-1] for line in pathlib.Path('/proc/self/maps').read_text().splitlines() if '/dev/shm/' in line}
+    assert own
+    assert not {path for path in own - clients if pathlib.Path(path).exists()}
