@@ -95,6 +95,21 @@ def test_held_wrench_does_not_depend_on_the_rate_or_on_how_often_it_is_sent(fram
     assert final[0].tobytes() == final[1].tobytes()
 
 
+def test_body_at_rest_held_at_every_tick_by_another_wrench_by_hand():
+    body = 'body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}'
+    simulation = Simulation(parse_scene(f'scene: still\n{body}\nconstraint: free\neffects: []\ninitial: {{}}'))
+    for k in range(50):
+        simulation.hold(force=(0.0, 0.0, float(k)), torque=(0.0, 0.0, 3e-3 * k))
+        simulation.advance()
+    h = 1e-3
+    speed = h * sum(range(50))                                                  # v = sum of F h/M
+    place = h * h * sum(k * (49 - k) + 0.5 * k for k in range(50))              # each F/M h goes on for the ticks left
+    assert simulation.state.velocity == pytest.approx([0.0, 0.0, speed], abs=1e-15)
+    assert simulation.state.position == pytest.approx([0.0, 0.0, place], abs=1e-17)
+    assert simulation.state.angular_velocity == pytest.approx([0.0, 0.0, 1e-3 * speed], abs=1e-18)
+    assert angle_between(*simulation.state.orientation, *Rotation.from_rotvec([0.0, 0.0, 1e-3 * place]).as_quat()) < 1e-16
+
+
 def test_torque_on_a_ball_held_and_released_by_hand():
     simulation = Simulation(parse_scene(SPHERE))
     I = 0.4 * 2.0 * 0.01

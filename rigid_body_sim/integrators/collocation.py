@@ -45,7 +45,7 @@ def begin(stepped, bound, kernels, p, y, time):
     control[kernels.TOLERANCE] = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     control[kernels.FIXED], control[kernels.ORIGIN] = stepped.step or 0.0, time
     rates = np.array(bound.kernels.rate(p, tuple(y.tolist())))
-    sizes = [(absolute, np.linalg.norm(y[first:last]), np.linalg.norm(rates[first:last])) for first, last, absolute in bound.kind.GROUPS]
+    sizes = [(absolute, math.hypot(*y[first:last]), math.hypot(*rates[first:last])) for first, last, absolute in bound.kind.GROUPS]
     fastest = max(change if absolute else change / size if size > 0.0 else 0.0 for absolute, size, change in sizes)
     h = FIRST / fastest if fastest > 0.0 else 1e-3
     node[kernels.TIME], node[kernels.STEP], node[kernels.KEPT - 1] = time, 0.0 if stepped.step else h, 1.0

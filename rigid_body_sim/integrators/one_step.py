@@ -38,6 +38,6 @@ def fastest_rate(bound, p, y):
     rates = np.array(bound.kernels.rate(p, tuple(y.tolist())))
     found = [0.0]
     for first, last, absolute in bound.kind.GROUPS:
-        scale, change = 1.0 if absolute else np.linalg.norm(y[first:last]), np.linalg.norm(rates[first:last])
+        scale, change = 1.0 if absolute else math.hypot(*y[first:last]), math.hypot(*rates[first:last])
         found.append(change / scale if scale > 0.0 else 0.0)
     return max(found) or 10.0

@@ -41,10 +41,10 @@ class _Course:
         self._scales = np.ones(len(y) + equations.extra)
         for first, last, absolute in equations.kind.GROUPS:
             if not absolute:
-                self._scales[first:last] = max(1.0, np.linalg.norm(y[first:last]))
+                self._scales[first:last] = max(1.0, math.hypot(*y[first:last]))
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
         self._reached, self._steps, self._parameters = [], [], []
-        self._enter(self._begin, np.array([*y, *np.zeros(equations.extra)]))
+        self._solver, self._y = None, np.array([*y, *np.zeros(equations.extra)])
 
     def _enter(self, begin, y):
         """Start the solver of the stretch that begins at a time."""
@@ -72,6 +72,8 @@ class _Course:
             return
         if not (times.min() >= self._begin and math.isfinite(times.max())):
             raise BadInput('time', f'asked from {times.min()!r} to {times.max()!r} s', f'finite times from the start, {self._begin!r} s, on')
+        if self._solver is None:
+            self._enter(self._begin, self._y)
         while not self._reached or self._reached[-1] < times.max():
             self._advance()
         write, extra = self._equations.kernels.write, self._equations.extra

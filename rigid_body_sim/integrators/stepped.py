@@ -15,16 +15,17 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, scipy_methods, table, track
+from rigid_body_sim.integrators import METHODS, runnable, scipy_methods, table, track
 from rigid_body_sim.integrators.adaptive import TIME as NODE_TIME
 from rigid_body_sim.integrators.adaptive import VALUES
 from rigid_body_sim.mechanics import swing_rate
 from rigid_body_sim.specialise import specialise
-from rigid_body_sim.state import STATE_SIZE, TIME
+from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
 
 CHECKPOINTS, SPACING = 128, 32    # of a march: how many are kept, and at first every which node is one
 FINEST = 1e-15          # accuracy below this is not in the doubles
+ULP = float(np.finfo(float).eps)
 ONLY = np.zeros(1, dtype=np.intp)    # the order of a single time
 
 
@@ -70,6 +71,9 @@ class Stepped:
 
     def _bind(self, books):
         if self.scene.constraint.kind == 'table':
+            if self.method.NAME not in runnable(self.scene):
+                raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table under a wrench',
+                               f'those that can: {", ".join(runnable(self.scene))}')
             return table.OnTable(self.scene, self.method, self.wrench, self.step)
         if self.method.FAMILY is scipy_methods:
             return scipy_methods.Bound(self, books)
@@ -86,11 +90,25 @@ class Stepped:
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s)."""
-        self._course.states(np.array([time]), out[np.newaxis])
+        self.states(np.array([time]), out[np.newaxis])
 
     def states(self, times, out):
-        """Fill out, shape (n, 14), with the states at n times (s)."""
-        self._course.states(np.asarray(times, dtype=float), out)
+        """Fill out, shape (n, 14), with the states at n times (s).
+
+        Raises
+        ------
+        BadInput
+            A time before the start, or not finite.
+        NotConverged
+            With the time and the cause; also where the body turns so often that doubles no longer carry a part of a turn.
+        """
+        times = np.asarray(times, dtype=float)
+        if len(times) and math.isfinite(last := times.max()):
+            begin, speed = float(self.vector[TIME]), math.hypot(*self.vector[ANGULAR_VELOCITY].tolist())
+            if speed * (float(last) - begin) * ULP > 1.0:
+                raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {begin!r} s the body turns with {speed!r} rad/s; '
+                                   f'until {float(last)!r} s that is more radians than doubles can count')
+        self._course.states(times, out)
 
     def events(self, after, until, tick=0.0):
         """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward.

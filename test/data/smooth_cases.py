@@ -27,6 +27,7 @@ CASES = {
     'held_free_body_world': (BOX, 'free', '[]', '{angular_velocity: [0.4, 3.0, 0.2], velocity: [1, 0, 0]}',
                     ([2.0, 1.0, -1.0], [0.5, -1.0, 2.0], 'world'),
                              [0.1, 3.0]),
+    'held_from_rest': ('{mass: 1.0, inertia: [1.0, 2.0, 3.0]}', 'free', '[]', '{}', ([0.0, 0.0, 2.0], [0.0, 0.0, 0.0], 'world'), [1e-3, 1.0]),
     'held_top': (SKEW, 'pivot', '[gravity: {g: 9.81}]', '{tilt: 0.7, spin: 25.0}',
                     ([3.0, -1.0, 2.0], [0.02, 0.05, 0.1], 'world'), [0.1, 1.5]),
     'held_top_body': (SKEW, 'pivot', '[gravity: {g: 9.81}]', '{tilt: 0.7, spin: 25.0}',

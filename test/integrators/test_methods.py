@@ -1,6 +1,8 @@
 """The methods beside dop8: documented, of the order they say, and what each keeps or refuses."""
 
+import json
 import math
+import pathlib
 
 import numpy as np
 import pytest
@@ -8,13 +10,15 @@ from data import smooth_cases
 from integrators.order_conditions import largest_defect
 
 from rigid_body_sim.choice import choose, methods_for
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, rk4, runnable
 from rigid_body_sim.integrators.stepped import Stepped
 from rigid_body_sim.mechanics import DIAGNOSIS_SIZE, diagnose, parameters
 from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.scenes import load_scene, parse_scene
 
+REFERENCE = json.loads((pathlib.Path(smooth_cases.__file__).parent / 'smooth.json').read_text())
 BY_STEP = ('dop8', 'rk4', 'semi_implicit_euler', 'split2', 'split4', 'split6', 'split8')
 SPLITS = ('split2', 'split4', 'split6', 'split8')
 
@@ -136,3 +140,27 @@ def test_energy_walks_at_round_off():
     start = energy(scene, out[0])
     residual = np.array([energy(scene, row) / start - 1.0 for row in out])
     assert np.abs(residual).max() < 4e-13    # 1.7e-13; 6e5 drifts, each rounded to 1.1e-16
+
+
+@pytest.mark.parametrize('name', ['dop8', 'lsoda', 'radau'])
+def test_too_many_turns_to_count_end_with_one_error(name):
+    scene = parse_scene(smooth_cases.text('driven_body').replace('[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+200]'))
+    with pytest.raises(NotConverged, match=r'at t = 0\.0 s the body turns with 1e\+200 rad/s'):
+        state(scene, name, 1.0, accuracy=1e-6)
+
+
+@pytest.mark.parametrize(('name', 'accuracy', 'bound'), [('lsoda', 1e-10, 5e-9), ('radau', 1e-7, 5e-7)])    # 4.9e-10; 5.4e-8
+def test_solvers_of_scipy_are_as_good_as_asked(name, accuracy, bound):
+    scene = scene_of('driven_body')
+    found, coarse = state(scene, name, 1.0, accuracy=accuracy), state(scene, name, 1.0, accuracy=1e3 * accuracy)
+    exact = np.array([float(x) for x in REFERENCE['driven_body']['1.0']['state']])
+    assert error(found, [0.0, *exact]) < bound
+    assert error(coarse, [0.0, *exact]) > 10.0 * error(found, [0.0, *exact])
+
+
+@pytest.mark.parametrize('name', ['rk4', 'gauss16', 'split4', 'lsoda'])
+def test_ball_under_a_wrench_is_refused_where_steps_cannot_end_with_sliding(name):
+    ball = load_scene('billiard_center')
+    control = {'accuracy': 1e-6} if 'accuracy' in METHODS[name].TAKES else {'step': 1e-3}
+    with pytest.raises(BadInput, match='those that can: dop8'):
+        Stepped(ball, name, wrench=Wrench((1.0, 0.0, 0.0)), **control)

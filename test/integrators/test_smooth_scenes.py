@@ -39,7 +39,7 @@ def check(name, states):
         floor = ULP * (4.0 + speed * float(time))
         assert state[:4] @ exact[:4] > 0.0, 'the sign of q is continuous'
         assert angle_between(*state[:4], *exact[:4]) < floor
-        assert np.linalg.norm(state[4:7] - exact[4:7]) < floor * speed
+        assert np.linalg.norm(state[4:7] - exact[4:7]) <= floor * speed
         for part in (slice(7, 10), slice(10, 13)):
             assert np.abs(state[part] - exact[part]).max() <= floor * (1.0 + np.abs(exact[part]).max())
         assert np.abs(exchanged - books).max() <= floor * max(np.abs(books).max(), ULP)
