@@ -5,23 +5,24 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.special import ellipk
 
 from rigid_body_sim import mechanics
-from rigid_body_sim.theory import fast_top, symmetric_top
-
-SLOW_ENOUGH = 0.05
-"""Up to this I1 M g l/P_gamma^2 a top is a fast top."""
+from rigid_body_sim.bodies import IDENTITY
+from rigid_body_sim.theory import asymmetric_top, heavy_top, kater_pendulum, symmetric_top
 
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """A frequency (Hz) at which something periodic is to be found in omega, in ``body`` or ``world`` axes; `source`: where it comes from."""
+    """A frequency (Hz) at which something periodic is to be found in omega, in ``body`` or ``world`` axes.
+
+    `source`: where it comes from; `components`: those of omega in which it shows.
+    """
 
     name: str
     frequency: float
     axes: str
     source: str
+    components: tuple = (0, 1, 2)
 
 
 def predicted_lines(scene):
@@ -35,7 +36,7 @@ def predicted_lines(scene):
     if kind == 'pivot' and not gravity:
         return tuple(_free(scene.body.about_origin, omega))
     if kind == 'pivot':
-        return tuple(_fast_top(scene, gravity.g, omega))
+        return tuple(_heavy_top(scene, gravity.g, omega))
     if kind == 'hinge' and gravity:
         return tuple(_pendulum(scene, gravity.g))
     return ()
@@ -45,37 +46,33 @@ def _free(inertia, omega):
     order = np.argsort(inertia.moments)
     I1, I2, I3 = np.array(inertia.moments)[order]
     w1, w2, w3 = Rotation.from_quat(inertia.axes).inv().apply(omega)[order]
-    L = math.hypot(I1 * w1, I2 * w2, I3 * w3)
     if len({I1, I2, I3}) == 2:
         equal, distinct, along = (I1, I3, w3) if I1 == I2 else (I2, I1, w1)
         section = 'notes, Symmetric top (no gravity)'
         yield SpectralLine('Ω = ω₃(I₃-I₁)/I₁', abs(symmetric_top.precession_rate(along, equal, distinct)) / math.tau, 'body', section)
+        L = math.hypot(I1 * w1, I2 * w2, I3 * w3)
         yield SpectralLine('L/I₁', symmetric_top.precession_rate_in_space(L, equal) / math.tau, 'world', section)
-    elif len({I1, I2, I3}) == 3 and I1 > 0.0:
-        yield from _asymmetric(I1, I2, I3, w1, w2, w3)
-
-
-def _asymmetric(I1, I2, I3, w1, w2, w3):
-    """Period of omega in the body, T = 4 K(k)/p (Landau and Lifshitz, Mechanics, section 37): odd harmonics in sn and cn, even ones in dn."""
-    low = I2 * (I2 - I1) * w2 * w2 + I3 * (I3 - I1) * w3 * w3       # L^2 - 2 E I1
-    high = I1 * (I3 - I1) * w1 * w1 + I2 * (I3 - I2) * w2 * w2      # 2 E I3 - L^2
-    about_smallest, about_largest = (I2 - I1) * high, (I3 - I2) * low
-    large, small = max(about_smallest, about_largest), min(about_smallest, about_largest)
-    if 0.0 < small < large:
-        frequency = math.sqrt(large / (I1 * I2 * I3)) / (4.0 * ellipk(small / large))
+    elif seconds := asymmetric_top.time_between_flips((I1, I2, I3), (w1, w2, w3)):
+        # odd harmonics in sn and cn, even ones in dn
         for harmonic in (1, 2, 3):
-            yield SpectralLine(f'{harmonic}/T', harmonic * frequency, 'body', 'Landau and Lifshitz, Mechanics, section 37')
+            yield SpectralLine(f'{harmonic}/T', 0.5 * harmonic / seconds, 'body', 'Landau and Lifshitz, Mechanics, section 37')
 
 
-def _fast_top(scene, g, omega):
+def _heavy_top(scene, g, omega):
+    """Nutation shows in the vertical part of omega, precession in the horizontal one; of a body with its centre of mass on its third axis."""
     body = scene.body
     I1, I2, I3 = body.about_origin.moments
     x, y, l = body.center_of_mass
-    if x == y == 0.0 < l and I1 == I2 and omega[2] != 0.0:
-        P_gamma, Mgl, section = abs(I3 * omega[2]), body.mass * g * l, 'notes, Fast top: P_gamma/I1 and M g l/P_gamma'
-        if fast_top.slowness(P_gamma, I1, Mgl) <= SLOW_ENOUGH:
-            yield SpectralLine('nutation', fast_top.nutation_frequency(P_gamma, I1) / math.tau, 'world', section)
-            yield SpectralLine('precession', fast_top.precession_rate(P_gamma, Mgl) / math.tau, 'world', section)
+    if I1 != I2 or x or y or not l or body.about_origin.axes != IDENTITY:
+        return
+    up = Rotation.from_quat(scene.initial.orientation).inv().apply([0.0, 0.0, 1.0])
+    top = (omega, up, I1, I3, body.mass * g * l)
+    section = 'notes, Symmetric Top: the motion in V_eff'
+    half, precession = heavy_top.time_between_turning_points(*top), heavy_top.mean_precession(*top)
+    if half and precession is not None:
+        yield SpectralLine('nutation', 0.5 / half, 'world', section, (2,))
+    if precession:
+        yield SpectralLine('precession', abs(precession) / math.tau, 'world', section, (0, 1))
 
 
 def _pendulum(scene, g):
@@ -89,5 +86,5 @@ def _pendulum(scene, g):
     if Mgl > 0.0:
         k2 = (0.5 * moment * rate * rate + body.mass * g * attitude.apply(across)[2] + Mgl) / (2.0 * Mgl)
         if 0.0 < k2 < 1.0:
-            frequency = math.sqrt(Mgl / moment) / (4.0 * ellipk(k2))
-            yield SpectralLine('1/T', frequency, 'body', 'physical pendulum at this amplitude, T = 4 K(k) sqrt(I/(M g l))')
+            seconds = kater_pendulum.period(math.sqrt(Mgl / moment), 2.0 * math.asin(math.sqrt(k2)))
+            yield SpectralLine('1/T', 1.0 / seconds, 'body', 'physical pendulum at this amplitude, T = 4 K(k) sqrt(I/(M g l))')

@@ -9,6 +9,9 @@ from rigid_body_sim.analysis.collectors import Curve, Head, Samples
 from rigid_body_sim.analysis.drift import Residual
 
 SAMPLES, HEAD = 8192, 65536
+MOST_PHASES = 1000
+ROLLS = 1e-9
+"""A contact that is slower than this part of the ball's speed and rim speed does not slip: differences of positions tell no more."""
 
 
 class Motion:
@@ -28,6 +31,10 @@ class Motion:
         Of the angular momentum that the scene conserves, see `conserved`.
     slip : Curve or None
         Speed of the point of contact of a sphere on the table, m/s; from differences of neighbouring positions.
+    phases : list of (str, float)
+        Of a sphere on the table, at most MOST_PHASES: ``slip`` or ``roll``, and when it begins (s).
+    until : float
+        Time of the last tick, s.
     samples, head : collectors
         Times (s), quaternions, angular velocities, positions: over the whole recording, and of the first ticks without a hole.
     """
@@ -41,6 +48,7 @@ class Motion:
         if self.conserved:
             self.momentum = Residual(source.history, self.conserved.kept, self.conserved.scale, source.ticks, self.conserved.size)
         self.slip = Curve(source.ticks) if scene is not None and scene.constraint.kind == 'table' else None
+        self.phases, self.until = [], 0.0
         self.samples, self.head = Samples(source.ticks, SAMPLES), Head(HEAD)
 
     def add(self, stamps, times, orientation, angular_velocity, position):
@@ -55,6 +63,7 @@ class Motion:
             self.momentum.add(stamps, times, self.conserved.of(attitude, angular_velocity))
         if self.slip:
             self._add_slip(times, world, position)
+        self.until = float(times[-1])
         self.samples.add(times, orientation, angular_velocity, position)
         self.head.add(times, orientation, angular_velocity, position)
 
@@ -65,7 +74,14 @@ class Motion:
         if whole.any():
             v = (position[2:] - position[:-2])[whole] / steps[whole, None]
             omega, a = world[1:-1][whole], self._scene.body.radius
-            self.slip.add(times[1:-1][whole], np.hypot(v[:, 0] - a * omega[:, 1], v[:, 1] + a * omega[:, 0]))
+            at, slip = times[1:-1][whole], np.hypot(v[:, 0] - a * omega[:, 1], v[:, 1] + a * omega[:, 0])
+            self.slip.add(at, slip)
+            self._add_phases(at, slip > ROLLS * (np.hypot(v[:, 0], v[:, 1]) + a * np.hypot(omega[:, 0], omega[:, 1])))
+
+    def _add_phases(self, times, slips):
+        last = self.phases[-1][0] == 'slip' if self.phases else not slips[0]
+        for k in np.flatnonzero(np.diff(slips, prepend=last))[:MOST_PHASES - len(self.phases)].tolist():
+            self.phases.append(('slip' if slips[k] else 'roll', float(times[k]) if self.phases else 0.0))
 
 
 class Conserved:

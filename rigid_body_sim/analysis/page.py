@@ -111,6 +111,9 @@ def _over_time(over_time, source):
                             type='log' if panel.log else 'linear')
         if panel.band:
             figure.add_hrect(-panel.band, panel.band, fillcolor='#bbbbbb', opacity=0.3, line_width=0, row=row, col=1)
+        for name, begin, end in panel.spans:
+            figure.add_vrect(begin, end, fillcolor='#E69F00', opacity=0.15, line_width=0, annotation_text=name,
+                             annotation_position='top left', row=row, col=1)
     figure.update_yaxes(visible=bool(marks), row=1, col=1)
     figure.update_xaxes(title_text='time since the first tick (s)', row=rows, col=1)
     return _layout(figure, PANEL_HEIGHT * rows, hovermode='x')

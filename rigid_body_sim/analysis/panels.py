@@ -5,9 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_body_sim.analysis.drift import FLOOR
+from rigid_body_sim.analysis.summary import phases
 
 LABELS = {'orientation': 'attitude (rad)', 'angular_velocity': 'ω (rad/s)', 'position': 'position (m)', 'energy': 'energy (J)',
           'angular_momentum_squared': 'L² ((kg m²/s)²)'}
+MOST_SPANS = 100
 SMALLEST_DIFFERENCE = 1e-18     # what is less, zero included, is drawn as this
 
 
@@ -39,6 +41,8 @@ class Panel:
         A value holds up to the next x.
     band : float
         A band of plus and minus this is shaded: what round-off explains.
+    spans : tuple of (str, float, float)
+        Stretches of time with a name, which are shaded.
     """
 
     name: str
@@ -48,6 +52,7 @@ class Panel:
     limits: tuple | None = None
     steps: bool = False
     band: float = 0.0
+    spans: tuple = ()
 
 
 def overview(measured):
@@ -68,7 +73,8 @@ def motion(measured):
     if follows.momentum and follows.momentum.judged:
         panels.append(residual(follows.momentum, measured.source, {'L': 'vector L', 'L_z': 'vertical L'}[follows.conserved.name], ''))
     if follows.slip:
-        panels.append(Panel('slip', 'speed of the\ncontact (m/s)', (Line('slip', *follows.slip.curve()),)))
+        spans = tuple((phase['kind'], phase['from'], phase['to']) for phase in phases(follows) if phase['kind'] == 'slip')
+        panels.append(Panel('slip', 'speed of the\ncontact (m/s)', (Line('slip', *follows.slip.curve()),), spans=spans[:MOST_SPANS]))
     return panels
 
 

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 # Okabe and Ito's colours (https://jfly.uni-koeln.de/color/), which also differ in lightness; line styles tell them apart without colour
 COLORS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7')
 DASHES = ('-', '--', '-.', ':')
+SHADE = '#fbe8c0'
 GREY, BLACK = '#777777', '#000000'
 MARKS = {'event': ('v', BLACK), 'commands': ('|', COLORS[1]), 'reset': ('D', COLORS[1]), 'parameters': ('s', COLORS[0]), 'gap': ('x', BLACK)}
 MOST_MARKS = 500    # of each kind
@@ -74,6 +75,9 @@ def _figure(height, title):
 def _draw(axes, panel):
     if panel.band:
         axes.axhspan(-panel.band, panel.band, color='#e8e8e8', linewidth=0)
+    for name, begin, end in panel.spans:
+        axes.axvspan(begin, end, color=SHADE, linewidth=0)
+        axes.annotate(name, (begin, 1.0), xycoords=('data', 'axes fraction'), xytext=(3, -10), textcoords='offset points', fontsize=8)
     for k, line in enumerate(panel.lines):
         axes.plot(line.x, line.y, linewidth=0.7 if panel.band else 1.1, color=COLORS[k], linestyle='-' if len(panel.lines) == 1 else DASHES[k],
                   label=line.name, drawstyle='steps-post' if panel.steps else 'default', marker='.' if len(line.x) < 100 else '', markersize=3)

@@ -8,8 +8,10 @@ from rigid_body_sim.analysis.lines import predicted_lines
 FEWEST = 64
 PADDING = 4         # zeros that are added, times the length: a finer curve
 SMALLEST = 1e-9     # amplitude that is shown, of the largest
-SEARCH = 0.1
-"""A line is looked for within this part of its frequency."""
+SEARCH = 1.5
+"""A line is looked for this far from where it is predicted, in units of the resolution, one over the length."""
+RISES = 30.0
+"""So many times the power around it a line must have: the side lobes of stronger lines have no more than a few times that."""
 
 
 class Spectrum:
@@ -64,16 +66,18 @@ class Spectrum:
         return min(1.5 * max(highest, 2.0 * predicted) + 10.0 / self.seconds, self.frequencies[-1])
 
     def _measured(self, line):
-        """Return the frequency of the largest peak near a line, by a parabola through the logarithms; None where there is none."""
+        """Return the frequency of the peak at a line, by a parabola through the logarithms; None where no line rises above its surroundings."""
         f, resolution = self.frequencies, 1.0 / self.seconds
-        power = (self.amplitudes[line.axes] ** 2).sum(axis=1)
-        near = np.flatnonzero(np.abs(f - line.frequency) <= max(SEARCH * line.frequency, 1.5 * resolution))
+        power = (self.amplitudes[line.axes][:, line.components] ** 2).sum(axis=1)
+        away = np.abs(f - line.frequency) / resolution
+        near = np.flatnonzero(away <= SEARCH)
         near = near[(near > 1) & (near < len(f) - 1)]
         if not len(near) or line.frequency < 3.0 * resolution:
             return None
         peak = near[power[near].argmax()]
         left, top, right = power[peak - 1:peak + 2]
-        if not (top > 0.0 and top >= left and top >= right):
+        around = np.median(power[(away > 3.0) & (away < 12.0)])
+        if not (top > RISES * around and top > SMALLEST**2 * power.max() and top >= left and top >= right):
             return None
         left, top, right = np.log(np.maximum((left, top, right), np.finfo(float).tiny))
         curvature = left - 2.0 * top + right

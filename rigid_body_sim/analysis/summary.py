@@ -4,6 +4,8 @@ import collections
 
 from rigid_body_sim.analysis.drift import FLOOR
 
+TOLD = 6     # phases named in the short report
+
 
 def summary(measured, spectrum=None, balance=None):
     """Return all numbers as plain data: of a Measured, and if they were made, of its Spectrum and its ledger (see ledger.ledger)."""
@@ -29,10 +31,17 @@ def summary(measured, spectrum=None, balance=None):
         'timing': measured.punctuality.summary(),
         'left_out_by_recorder': sum(mark.values['ticks'] for mark in source.history.marks if mark.kind == 'gap'),
         'momentum': {'of': motion.conserved.name, **motion.momentum.summary()} if motion and motion.momentum else None,
+        'phases': phases(motion) if motion and motion.slip else None,
         'lines': [{'name': line.name, 'axes': line.axes, 'source': line.source, 'predicted': line.frequency, 'measured': found}
                   for line, found in (spectrum.lines if spectrum else ())],
         'ledger': {name: float(values[-1]) for name, values in balance[1].items()} if balance else None,
     }
+
+
+def phases(motion):
+    """Return the phases of a sphere on the table as data: ``kind``, ``from``, ``to`` (s)."""
+    ends = [begin for _, begin in motion.phases[1:]] + [motion.until]
+    return [{'kind': kind, 'from': begin, 'to': end} for (kind, begin), end in zip(motion.phases, ends, strict=True)]
 
 
 def title(found):
@@ -54,6 +63,10 @@ def lines(found):
         text.append(f'  {found["momentum"]["of"]:9}{_residual(found["momentum"])}')
     if found['flips'] is not None:
         text.append(f'  flips    {found["flips"]}')
+    if found['phases']:
+        told = [f'{phase["kind"]} {phase["from"]:.6g} to {phase["to"]:.6g} s' for phase in found['phases'][:TOLD]]
+        more = len(found['phases']) - TOLD
+        text.append(f'  phases   {", ".join(told)}{f" and {more} more" if more > 0 else ""}')
     text += [f'  {line["name"]}: {_line(line)}' for line in found['lines'] if line['measured'] is not None]
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
     others += [f'{found[kind]} {name}' for kind, name in

@@ -177,19 +177,54 @@ def time_between_turning_points(omega, up, I1, I3, Mgl):
     I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3))); Whittaker and Watson, Modern Analysis, 22.7. The coefficients in w keep their
     digits near the upright top.
     """
-    across = up[0] ** 2 + up[1] ** 2
-    w = across / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - up[2]
-    K, P_gamma = 2.0 * I1 * Mgl, I3 * omega[2]
-    surplus = I1**2 * (omega[0] ** 2 + omega[1] ** 2) - K * w           # 2 I1 (E - P_gamma^2/(2 I3) - M g l)
-    lead = I1 * (omega[0] * up[0] + omega[1] * up[1]) - P_gamma * w     # P_alpha - P_gamma
-    cubic = [-K, 2.0 * K - surplus - P_gamma**2, 2.0 * (surplus - lead * P_gamma), -(lead**2)]
-    roots = np.sort(np.roots(cubic).real) if K != 0.0 else []
-    if len(roots) < 3:
+    heights = _turning_heights(omega, up, I1, I3, Mgl)
+    if heights is None:
         return None
-    third, first, second = roots if K > 0.0 else roots[[2, 1, 0]]
+    first, second, third = heights
     a, b = math.sqrt(abs(second - third)), math.sqrt(abs(first - third))
     if not b > 0.0:
         return None
     while abs(a - b) > 1e-15 * a:
         a, b = 0.5 * (a + b), math.sqrt(a * b)
-    return I1 * math.pi / (math.sqrt(abs(K)) * 0.5 * (a + b))
+    return I1 * math.pi / (math.sqrt(abs(2.0 * I1 * Mgl)) * 0.5 * (a + b))
+
+
+def _turning_heights(omega, up, I1, I3, Mgl):
+    """Return the roots w1, w2, w3 of the cubic of :func:`time_between_turning_points`, the one that is no turning point last; or None."""
+    surplus, P_gamma, lead = _constants(omega, up, I1, I3, Mgl)
+    K = 2.0 * I1 * Mgl
+    cubic = [-K, 2.0 * K - surplus - P_gamma**2, 2.0 * (surplus - lead * P_gamma), -(lead**2)]
+    roots = np.sort(np.roots(cubic).real) if K != 0.0 else []
+    if len(roots) < 3:
+        return None
+    third, first, second = roots if K > 0.0 else roots[[2, 1, 0]]
+    return first, second, third
+
+
+def _constants(omega, up, I1, I3, Mgl):
+    """Return 2 I1 (E - P_gamma^2/(2 I3) - M g l), P_gamma and P_alpha - P_gamma, with their digits also near the upright top."""
+    across = up[0] ** 2 + up[1] ** 2
+    w = across / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - up[2]
+    P_gamma = I3 * omega[2]
+    surplus = I1**2 * (omega[0] ** 2 + omega[1] ** 2) - 2.0 * I1 * Mgl * w
+    return surplus, P_gamma, I1 * (omega[0] * up[0] + omega[1] * up[1]) - P_gamma * w
+
+
+def mean_precession(omega, up, I1, I3, Mgl):
+    """Return the mean of alpha' over a nutation, rad/s, from omega and the upward vertical in body axes; None where it is not defined.
+
+    Beyond the notes: alpha' = (P_alpha - P_gamma + P_gamma w)/(I1 w (2 - w)) with w = 1 - cos(beta), averaged over time by w = (w1 + w2)/2
+    - (w2 - w1)/2 cos(theta), where dt is proportional to dtheta/sqrt(|w - w3|): the rule of midpoints then converges geometrically. None for
+    a top that passes (nearly) through the vertical.
+    """
+    heights = _turning_heights(omega, up, I1, I3, Mgl)
+    if heights is None:
+        return None
+    low, high, third = *sorted(heights[:2]), heights[2]
+    if min(low, 2.0 - high) < 1e-4 * (high - low) or low <= 0.0 or high >= 2.0:
+        return None
+    _, P_gamma, lead = _constants(omega, up, I1, I3, Mgl)
+    theta = (np.arange(4096) + 0.5) * np.pi / 4096
+    w = 0.5 * (low + high) - 0.5 * (high - low) * np.cos(theta)
+    weight = 1.0 / np.sqrt(np.abs(w - third))
+    return float(np.sum(weight * (lead + P_gamma * w) / (I1 * w * (2.0 - w))) / np.sum(weight))

@@ -72,3 +72,6 @@ def test_slip_falls_as_the_notes_say_and_ends_when_rolling_begins():
     assert slip[sliding] == pytest.approx(np.abs(expected[sliding]), abs=1e-11)    # 2e-13: differences of positions
     assert slip[times > onset + 2e-3].max() < 1e-11
     assert 300 < np.count_nonzero(sliding) < 500
+    [(first, begin), (second, rolls)] = motion.phases
+    assert (first, begin, second, motion.until) == ('slip', 0.0, 'roll', 0.999)
+    assert rolls == pytest.approx(onset, abs=2.1e-3)    # to a tick, and the differences reach one further

@@ -49,7 +49,8 @@ def test_what_comes_after_a_command_or_a_hole_is_left_out():
     ('asymmetric_top', 10_000, 250.0, {'1/T'}, 1e-4),                   # 2e-6
     ('symmetric_top', 20_000, 100.0, {'Ω = ω₃(I₃-I₁)/I₁', 'L/I₁'}, 1e-4),
     ('kater_pendulum', 10_000, 100.0, {'1/T'}, 1e-4),
-    ('fast_top', 20_000, 1000.0, {'nutation'}, 1e-3),                   # 1.5e-5; theory's own error is of first order in I1 M g l/P_gamma^2
+    ('fast_top', 20_000, 1000.0, {'nutation'}, 1e-4),
+    ('heavy_top', 20_000, 250.0, {'nutation', 'precession'}, 1e-4),
 ])
 def test_predicted_lines_are_found(name, ticks, rate, expected, tolerance):
     spectrum = of_scene(load_scene(name), ticks, rate)
@@ -57,6 +58,11 @@ def test_predicted_lines_are_found(name, ticks, rate, expected, tolerance):
     assert expected <= set(found)
     for line in expected:
         assert abs(found[line]) < tolerance
+
+
+def test_a_line_that_is_not_there_is_not_found_in_the_side_lobes_of_others():
+    found = {line.name: measured for line, measured in of_scene(load_scene('steady_precession'), 20_000, 100.0).lines}
+    assert found['nutation'] is None and found['precession'] is not None
 
 
 def test_the_racket_s_odd_harmonics():

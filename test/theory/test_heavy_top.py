@@ -134,6 +134,31 @@ def test_turning_points():
         greatest + 0.01, P_alpha, P_gamma, I1, I3, MGL)
 
 
+@pytest.mark.parametrize(('beta', 'P_alpha', 'P_gamma'), STATES)
+def test_period_and_mean_precession_of_a_nutation(beta, P_alpha, P_gamma):
+    """Against integrals over beta of dt = dbeta/beta' and of alpha' dt, beta' from the energy; started at rest in beta."""
+    rate = theory.alpha_rate(beta, P_alpha, P_gamma, I1)
+    omega, up = (-rate * np.sin(beta), 0.0, P_gamma / I3), (-np.sin(beta), 0.0, np.cos(beta))
+    E = potential(beta, P_alpha, P_gamma)
+    low, high = map(mpmath.mpf, theory.turning_points(float(E), P_alpha, P_gamma, I1, I3, MGL))
+
+    def over(quantity):
+        """Return the integral over half a period; beta = middle - reach cos(theta) takes the roots at its ends away."""
+        def integrand(theta):
+            at = (low + high) / 2 - (high - low) / 2 * mpmath.cos(theta)
+            speed = mpmath.sqrt(abs(2 * (E - potential(at, P_alpha, P_gamma)) / I1))
+            return quantity(at) * (high - low) / 2 * mpmath.sin(theta) / speed
+        with mpmath.workdps(20):
+            return mpmath.quad(integrand, [mpmath.mpf('1e-6'), mpmath.pi / 2, mpmath.pi - mpmath.mpf('1e-6')])
+
+    half = over(lambda at: 1)
+    turned = over(lambda at: (P_alpha - P_gamma * mpmath.cos(at)) / (I1 * mpmath.sin(at) ** 2))
+    top = (omega, up, I1, I3, MGL)
+    # the ends of the integrals are left out: 1e-6 of pi
+    assert theory.time_between_turning_points(*top) == near(float(half), 2e-6)
+    assert theory.mean_precession(*top) == near(float(turned / half), 5e-6)
+
+
 def test_sleeping_top_expansion():
     """V_eff about 0: stiffness by differentiation; at the threshold the quartic term is M g l/8, so equality is stable."""
     P_gamma = 0.3
