@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble bench bench-node study study-full pins pins-noble clean
+.PHONY: help run test lint package test-noble soak bench bench-node study study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -38,6 +38,9 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) build --base-paths . $(COLCON_FOLDERS)
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
+
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 16,000 damaged ones, @mcap/core
+	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 test/recording test/analysis/test_damaged.py
 
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)
@@ -77,6 +80,12 @@ clean: ## remove the environments and what was built; recordings stay
 .venv-peers/stamp: requirements/peers.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv-peers requirements/peers.txt $(PYTHON_VERSIONS)
 	@touch $@
+
+# a reader of recordings in another language; without npm its tests are skipped
+.cache/mcap_core/stamp: test/recording/mcap_core/package.json test/recording/mcap_core/read.mjs
+	@mkdir -p .cache/mcap_core
+	@cp $^ .cache/mcap_core
+	@npm install --silent --no-fund --no-audit --prefix .cache/mcap_core && touch $@ || echo '@mcap/core cannot be installed here (npm): its tests are skipped'
 
 .venv-noble/stamp: requirements/noble.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv-noble requirements/noble.txt 3.12 || $(NO_NOBLE)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from rigid_body_sim.analysis.collectors import Curve
+from rigid_body_sim.analysis.measure import check_numbers
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME
 from rigid_body_sim.timeline import NANOSECONDS
@@ -15,6 +16,10 @@ QUANTITIES = {
     'angular_momentum_squared': (('angular_momentum_squared', 'data'),),
 }
 SLICES = {'orientation': ORIENTATION, 'angular_velocity': ANGULAR_VELOCITY, 'position': POSITION}
+
+
+GAP, SPAN = 1000, 100_000
+"""So many missing ticks are skipped, not computed one by one; so many ticks are compared at once."""
 
 
 class Comparison:
@@ -51,18 +56,29 @@ class Comparison:
     def take(self, stretch):
         """Compare a stretch (see align.aligned)."""
         ticks_of = {topic: self._rerun.ticks(columns['log_time']) for topic, columns in stretch.items()}
+        for topic, ticks in ticks_of.items():
+            check_numbers(topic, stretch[topic])
+            if ticks.min() < self._rerun.next_tick:
+                raise BadInput(topic, f'tick {int(ticks.min())} comes too late', 'messages in the order of time')
         recorded = np.unique(np.concatenate(list(ticks_of.values())))
-        ticks, states, energies, momenta = self._rerun.through(int(recorded[-1]))
         self.ticks += len(recorded)
+        for first, last in _runs(recorded):
+            inside = {topic: (ticks >= first) & (ticks <= last) for topic, ticks in ticks_of.items()}
+            self._take_run({topic: {name: column[inside[topic]] for name, column in columns.items()} for topic, columns in stretch.items()},
+                           {topic: ticks[inside[topic]] for topic, ticks in ticks_of.items()}, first, last)
+
+    def _take_run(self, stretch, ticks_of, first, last):
+        """Compare the messages of the ticks from `first` to `last`, of which few are missing."""
+        if first > self._rerun.next_tick + GAP:
+            self._rerun.skip_to(first)
+        ticks, states, energies, momenta = self._rerun.through(last)
         vectors = states.vector
         self.turned += float(np.sqrt((states.angular_velocity ** 2).sum(axis=1)).sum()) / self._rerun.simulation.rate
         found = {'energy': energies, 'angular_momentum_squared': momenta, **{name: vectors[:, part] for name, part in SLICES.items()}}
         for name, topic in self._topics.items():
-            if topic not in stretch:
+            if topic not in stretch or not len(ticks_of[topic]):
                 continue
             rows = ticks_of[topic] - ticks[0]
-            if rows.min() < 0:
-                raise BadInput(topic, f'tick {int(ticks_of[topic].min())} comes too late', 'messages in the order of time')
             self.messages += len(rows)
             for quantity, column in QUANTITIES[name]:
                 self._compare(quantity, ticks_of[topic], vectors[rows, TIME], stretch[topic], column, found[quantity][rows])
@@ -88,6 +104,18 @@ class Comparison:
     def curve(self, quantity):
         """Return times (s, since the first tick) and differences of a quantity."""
         return self._curves[quantity].curve()
+
+
+def _runs(ticks):
+    """Yield (first, last) of runs of ticks, which are unique and rising: without long gaps, and not too many."""
+    jumps = np.flatnonzero(np.diff(ticks) > GAP) + 1
+    begin = 0
+    while begin < len(ticks):
+        end = int(np.searchsorted(ticks, ticks[begin] + SPAN))
+        place = np.searchsorted(jumps, begin, side='right')
+        end = min(end, int(jumps[place])) if place < len(jumps) else end
+        yield int(ticks[begin]), int(ticks[end - 1])
+        begin = end
 
 
 def within(largest, limit):

@@ -9,7 +9,12 @@ from rigid_body_sim.analysis.flips import Flips, can_flip
 from rigid_body_sim.analysis.motion import Motion
 from rigid_body_sim.analysis.source import EVERY_TICK
 from rigid_body_sim.analysis.timing import Punctuality
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.timeline import NANOSECONDS
+
+LARGEST = 1e150     # its square is finite
+UNIT = 1e-6
+"""By how much the square of a quaternion's length may differ from 1: one that went through single precision is off by 1e-7."""
 
 
 class Measured:
@@ -39,8 +44,9 @@ class Measured:
         self.motion = Motion(source) if {'pose', 'angular_velocity'} <= set(source.topics) else None
 
     def take(self, stretch):
-        """Take messages of one stretch of time: name in source.EVERY_TICK -> columns."""
+        """Take messages of one stretch of time: name in source.EVERY_TICK -> columns. BadInput where they hold no sensible numbers."""
         for name, columns in stretch.items():
+            check_numbers(self.source.topics[name], columns)
             stamps = columns['log_time']
             times = (stamps - self.source.start) / NANOSECONDS
             if name == 'energy':
@@ -64,6 +70,16 @@ class Measured:
             stamps = pose['log_time'][mine]
             self.motion.add(stamps, (stamps - self.source.start) / NANOSECONDS, pose['pose.orientation'][mine], omega['vector'][theirs],
                             pose['pose.position'][mine])
+
+
+def check_numbers(topic, columns):
+    """Raise BadInput where the columns of a topic of every tick hold what no motion has."""
+    for name in ('data', 'vector', 'pose.orientation', 'pose.position'):
+        if name in columns and not (np.abs(columns[name]) < LARGEST).all():     # false for NaN
+            raise BadInput(topic, f'holds a number that is not finite, or beyond {LARGEST:g}', 'a recording of a simulation that went well')
+    q = columns.get('pose.orientation')
+    if q is not None and not (np.abs((q * q).sum(axis=1) - 1.0) < UNIT).all():
+        raise BadInput(topic, 'holds an orientation that is no unit quaternion', 'a recording of a rigid body')
 
 
 def measure(recording, sources, progress=None):

@@ -11,6 +11,8 @@ from rigid_body_sim.simulation import Simulation
 from rigid_body_sim.state import States
 from rigid_body_sim.timeline import NANOSECONDS, Timeline
 
+LONGEST = 10**12     # ticks
+
 
 class Rerun:
     """A run as its journal tells it.
@@ -72,6 +74,8 @@ class Rerun:
             mine = places == place
             if mine.any():
                 ticks[mine] = line.tick + np.rint((stamps[mine] - line.origin) * float(line.rate) / NANOSECONDS).astype(np.int64)
+                if not -1 < ticks[mine].min() <= ticks[mine].max() <= LONGEST:
+                    raise BadInput('recording', 'has a stamp before its first tick, or years after it', 'stamps of a simulation')
                 for k in np.flatnonzero(mine)[[0, -1]]:
                     if line.instant(int(ticks[k])) != stamps[k]:
                         raise BadInput('recording', f'a message at {int(stamps[k])} ns, between two ticks', 'stamps of a simulation')
@@ -109,6 +113,16 @@ class Rerun:
             parts.append((vectors, energies, momenta))
         vectors, energies, momenta = (np.concatenate(columns) for columns in zip(*parts, strict=True))
         return np.arange(first, first + len(vectors)), States(vectors), energies, momenta
+
+    @property
+    def next_tick(self):
+        """The first tick that :meth:`through` has not given yet."""
+        return self._given + 1
+
+    def skip_to(self, tick):
+        """Run on to a tick, the next one that :meth:`through` gives."""
+        self.to(tick)
+        self._given = tick - 1
 
     def _act(self):
         """Do what was done at the present tick, in its order; return whether anything was."""

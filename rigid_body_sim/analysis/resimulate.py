@@ -15,7 +15,7 @@ from rigid_body_sim.analysis.align import aligned
 from rigid_body_sim.analysis.analyze import report_folder
 from rigid_body_sim.analysis.compare import QUANTITIES, Comparison, within
 from rigid_body_sim.analysis.rerun import Rerun
-from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.analysis.source import journal_of, sources
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.reader import Recording
@@ -40,13 +40,15 @@ def resimulate(path, method=None):
     results = []
     with Recording(path) as recording:
         for source in sources(recording):
-            rerun = Rerun(source.entries, method or {})
+            with journal_of(recording.path):
+                rerun = Rerun(source.entries, method or {})
             topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
             comparison = Comparison(rerun, topics, source)
             total = sum(recording.topics[topic].count for topic in topics.values())
             with tqdm(total=total, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
                 for stretch in aligned(recording, list(topics.values()), progress.update):
-                    comparison.take(stretch)
+                    with journal_of(recording.path):
+                        comparison.take(stretch)
             results.append((source, rerun, comparison))
     return results
 

@@ -4,6 +4,7 @@ A recording may hold several bodies, each in a namespace of its own, and it may 
 the scene is known only if its topic was recorded.
 """
 
+import contextlib
 import json
 from dataclasses import dataclass
 
@@ -75,9 +76,17 @@ def sources(recording):
 
 def _source(recording, namespace, topics):
     entries = [entry for entry in recording.journal() if entry['topic'] == topics.get('journal')]
-    begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {})
     ticking = [recording.topics[topics[name]] for name in EVERY_TICK if name in topics]
     start = min(_first_time(recording, topic.name) for topic in ticking)
+    with journal_of(recording.path):
+        run, begin, happened = _run(recording, topics, entries, start)
+    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, entries, start,
+                  _last_time(recording, ticking[0].name), max(topic.count for topic in ticking))
+
+
+def _run(recording, topics, entries, start):
+    """Return what the run was asked for, the journal's first entry and the History."""
+    begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {})
     text = begin.get('scene') or _latched_scene(recording, topics)
     scene = parse_scene(text, where=f'{recording.path}: scene') if text else None
     run = json.loads(begin.get('simulation', '{}'))
@@ -87,8 +96,17 @@ def _source(recording, namespace, topics):
     events = recording.decoded(topics['events']) if 'events' in topics else ()
     rate = run['rate'] if run else _estimated_rate(recording, topics)
     happened = history(entries, events, Segment(start, scene, rate, pace, held))
-    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, entries, start,
-                  _last_time(recording, ticking[0].name), max(topic.count for topic in ticking))
+    return run, begin, happened
+
+
+@contextlib.contextmanager
+def journal_of(where):
+    """Turn whatever a journal of strange content leads to into BadInput: it is read as what we wrote, though anybody may have written it."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        raise BadInput(str(where), f'the journal makes no sense ({type(error).__name__}: {" ".join(str(error).split())[:200]})',
+                       'an undamaged recording') from error
 
 
 def _first_time(recording, topic):

@@ -5,6 +5,10 @@ import json
 import numpy as np
 import pytest
 from analysis import made
+from recording.damage import without_checksums
+from rosbags.rosbag2 import Reader, StoragePlugin
+from rosbags.rosbag2 import Writer as ForeignWriter
+from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.analysis.resimulate import main
 from rigid_body_sim.recording import metadata
@@ -95,6 +99,34 @@ def test_a_converted_recording_without_our_metadata_is_reproduced(commanded, tmp
     status, found = outcome(capsys, copy, '--output', tmp_path)
     assert status == 1 and found['parting']['tick'] == 7 and found['states'] == 2161
     assert found['largest']['orientation']['difference'] == 0.0
+
+
+def test_gaps_of_any_length_are_skipped_not_computed(tmp_path, capsys, monkeypatch):
+    """1500 ticks are missing, with commands among them; and runs are compared piece by piece."""
+    from rigid_body_sim.analysis import compare
+    made.record(tmp_path / 'run', 'tennis_racket', 2200, acts=ACTS, left_out=range(400, 1900))
+    assert main([str(tmp_path / 'run')]) == 0
+    assert capsys.readouterr().out == 'identical, 701 states (2804 messages)\n'
+    monkeypatch.setattr(compare, 'SPAN', 7)
+    assert main([str(tmp_path / 'run')]) == 0
+    assert capsys.readouterr().out == 'identical, 701 states (2804 messages)\n'
+
+
+@pytest.mark.parametrize('writer', ['mcap', 'rosbags'])
+def test_a_recording_written_again_by_others_is_reproduced(commanded, tmp_path, capsys, writer):
+    """Other chunks, other channel numbers, no metadata of ours: as after `ros2 bag convert`."""
+    if writer == 'mcap':
+        path = tmp_path / 'again.mcap'
+        path.write_bytes((commanded / f'{commanded.name}_0.mcap').read_bytes())
+        without_checksums(path)
+    else:
+        path, store = tmp_path / 'again', get_typestore(Stores.ROS2_JAZZY)
+        with Reader(commanded) as reader, ForeignWriter(path, version=9, storage_plugin=StoragePlugin.MCAP) as copy:
+            numbers = {one.topic: copy.add_connection(one.topic, one.msgtype, typestore=store) for one in reader.connections}
+            for connection, stamp, data in reader.messages():
+                copy.write(numbers[connection.topic], stamp, data)
+    assert main([str(path)]) == 0
+    assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
 
 
 def test_another_method_shows_what_it_would_have_changed(commanded, tmp_path, capsys):
