@@ -34,6 +34,7 @@ setup(
         shared('.', 'package.xml'),
         shared('config', '*.yaml', '*.rviz', '*.json'),
         shared('config/scenes', '*.yaml'),
+        shared('config/security', '*.xml'),
         shared('launch', '*.launch.py'),
     ],
     entry_points={'console_scripts': [f'{name} = {target}' for name, (target, _) in COMMANDS.items()]},

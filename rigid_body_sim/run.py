@@ -5,6 +5,7 @@ The node is a process of its own, so that nothing here disturbs its ticks, and w
 
 import contextlib
 import datetime
+import os
 import pathlib
 import signal
 import subprocess
@@ -53,7 +54,9 @@ def _node(options, name):
     assignments = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
     command = [sys.executable, '-m', 'rigid_body_sim', 'sim_node', '--ros-args', *assignments]
     with forwarding() as forwarder:
-        process = subprocess.Popen(command, stdout=sys.stderr if options.json else None)
+        # who only looks at a demonstration does not open a door to the network
+        environment = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', **os.environ}
+        process = subprocess.Popen(command, env=environment, stdout=sys.stderr if options.json else None)
         forwarder.to(process)
         return process.wait(), forwarder.number
 

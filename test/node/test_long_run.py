@@ -22,10 +22,10 @@ from std_srvs.srv import SetBool, Trigger
 from rigid_body_sim.analysis.resimulate import resimulate
 
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
-SECONDS = float(os.environ.get('RIGID_BODY_SIM_SOAK_SECONDS', '7200')) if SOAK else 6.0
+SECONDS = float(os.environ.get('RIGID_BODY_SIM_SOAK_SECONDS', '7200')) if SOAK else 3.0
 RATE = 1000.0 if SOAK else 200.0
 DISK_FULL = 60.0 if SOAK else 1.5
-ROUNDS = 10_000 if SOAK else 100
+ROUNDS = 10_000 if SOAK else 40
 
 VALUES = {
     'scene': ['tennis_racket', 'sphere', 'no_such_scene', '../etc/passwd', ''],
