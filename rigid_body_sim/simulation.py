@@ -17,6 +17,7 @@ import numpy as np
 
 from rigid_body_sim import mechanics
 from rigid_body_sim.choice import choose
+from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, WORK
@@ -104,6 +105,7 @@ class Simulation:
         self.events = []
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = mechanics.parameters(self.scene)
+        self._dynamics = Dynamics(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
         self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
@@ -268,6 +270,35 @@ class Simulation:
         """Drop what is needed for :meth:`states` before the present; a simulation that takes commands for days calls it now and then."""
         if self._commands is None:
             self._spans = self._spans_until(self.time)[-1:]
+
+    @property
+    def acceleration(self):
+        """The (linear, angular) acceleration at the present: of the body's origin (world axes, m/s^2), and omega' (body axes, rad/s^2).
+
+        Exact, by the balance of forces (rigid_body_sim/dynamics.py), with the held wrench; an impulse has none.
+        """
+        balance = self._dynamics.balance(self.vector, self.wrench)
+        return balance.acceleration, balance.angular_acceleration
+
+    def reactions(self, times):
+        """Return what the constraint exerts on the body at times (s) as in :meth:`states`, as dynamics.Reactions.
+
+        Force (N) and torque (N m) in world axes; the torque about `point` (m, world): the fixed point (torque 0), the point `through` of a
+        hinge, the point of contact with the table (torque 0).
+
+        Of a strike or an impulse the reaction is an impulse too and not among these.
+
+        Raises
+        ------
+        BadInput
+            A free body; times as in :meth:`states`.
+        """
+        if self.scene.constraint.kind == 'free':
+            raise BadInput('reactions', f'nothing holds the body of {self.scene.name}', 'a scene with a pivot, a hinge or a table')
+        states = self.states(times)
+        spans = self._spans_until(states.time.max()) if len(states) else []
+        place = np.searchsorted([span.time for span in spans], states.time, side='right') - 1
+        return self._dynamics.reactions(states.vector, [spans[k].wrench for k in place])
 
     @property
     def energy(self):

@@ -11,9 +11,9 @@ place    name                     meaning
 14, 15   ENERGY, SQUARE           energy (J) and L . L ((kg m^2/s)^2)
 16:19    BODY_VELOCITY            velocity of the body's origin in body axes (m/s)
 19:22    ACCELERATION             proper acceleration of the body's origin in body axes (m/s^2)
-22:31    ACCELERATION_COVARIANCE  as sensor_msgs/Imu has it: begins with -1 where the acceleration is not known
-31:33    HINGE                    angle (rad) and rate (rad/s) of a hinged body
-33:40    BOX                      position (m) and quaternion of the principal axes at the centre of mass
+22:28    REACTION                 force (N) and torque (N m) of the constraint on the body, world axes
+28:30    HINGE                    angle (rad) and rate (rad/s) of a hinged body
+30:37    BOX                      position (m) and quaternion of the principal axes at the centre of mass
 ======== ======================== ====================================================================================
 """
 
@@ -25,16 +25,18 @@ import numpy as np
 import yaml
 
 from rigid_body_sim import rotations
+from rigid_body_sim.dynamics import Dynamics
+from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr, definitions
 from rigid_body_sim.messages.layout import Layout, Packer
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, TIME, VELOCITY
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, VELOCITY
 from rigid_body_sim.timeline import NANOSECONDS
 
 VECTOR = slice(0, STATE_SIZE)
 ENERGY, SQUARE = 14, 15
-BODY_VELOCITY, ACCELERATION, ACCELERATION_COVARIANCE, HINGE, BOX = slice(16, 19), slice(19, 22), slice(22, 31), slice(31, 33), slice(33, 40)
-MOMENT_SIZE = 40
+BODY_VELOCITY, ACCELERATION, REACTION, HINGE, BOX = slice(16, 19), slice(19, 22), slice(22, 28), slice(28, 30), slice(30, 37)
+MOMENT_SIZE = 37
 STAMPS = ('header.stamp.sec', 'transforms[0].header.stamp.sec', 'clock.sec')
 
 
@@ -62,7 +64,7 @@ class Output:
     columns : callable, optional
         (stamps, states, energies, momenta) -> columns of many messages, for Packer.pack_many.
     derive : callable, optional
-        scene -> function that fills its part of the moment from the rest of it.
+        scene -> function (moment, held wrench) that fills its part of the moment from the rest of it.
     absolute : bool
         Whether its name is not below the node's namespace.
     """
@@ -126,7 +128,7 @@ class TickMessages:
         self.sizes = [part.stop - part.start for part in self._parts]
         self._derive = [output.derive(scene) for output in outputs if output.derive]
 
-    def messages(self, vectors, energies, squares, stamps):
+    def messages(self, vectors, energies, squares, stamps, wrench=Wrench()):    # noqa: B008 (immutable)
         """Return for each tick the list of its messages (bytes), in the order of the outputs.
 
         Parameters
@@ -137,13 +139,15 @@ class TickMessages:
             Energy (J) and L . L ((kg m^2/s)^2).
         stamps : sequence of int
             ns.
+        wrench : Wrench
+            Held at these ticks.
         """
         count = len(vectors)
         moments = np.zeros((count, MOMENT_SIZE))
         moments[:, VECTOR], moments[:, ENERGY], moments[:, SQUARE] = vectors, energies, squares
         for derive in self._derive:
             for moment in moments:
-                derive(moment)
+                derive(moment, wrench)
         words = np.empty((count, len(self._blank)))
         words[:] = self._blank
         words[:, self._targets] = moments[:, self._sources]
@@ -181,30 +185,36 @@ def _odometry(scene, frames):
 
 
 def _velocity_in_body(scene):
-    def derive(moment):
+    def derive(moment, wrench):
         moment[BODY_VELOCITY] = rotations.rotate_back(*moment[ORIENTATION], *moment[VELOCITY])
     return derive
 
 
-class Accelerometer:
-    """The proper acceleration a - g of the body's origin (REP 145): the mean since the tick before, as a real one gives it.
+def _proper_acceleration(scene):
+    """Derive the proper acceleration a - g of the body's origin (REP 145), exact at the tick."""
+    gravity, dynamics = scene.effect('gravity'), Dynamics(scene)
+    friction = scene.effect('sliding_friction')
+    g = np.array([0.0, 0.0, gravity.g if gravity else friction.g if friction else 0.0])
 
-    It is not known at the first tick and when time does not go forward (after a reset).
-    """
+    def derive(moment, wrench):
+        moment[ACCELERATION] = rotations.rotate_back(*moment[ORIENTATION], *(dynamics.balance(moment, wrench).acceleration + g))
+    return derive
 
-    def __init__(self, scene):
-        gravity = scene.effect('gravity')
-        self._g = np.array([0.0, 0.0, gravity.g if gravity else 0.0])
-        self._time, self._velocity = math.inf, np.zeros(3)
 
-    def __call__(self, moment):
-        """Fill acceleration and covariance."""
-        span = moment[TIME] - self._time
-        known = span > 0.0
-        proper = (moment[VELOCITY] - self._velocity) / span + self._g if known else np.zeros(3)
-        moment[ACCELERATION] = rotations.rotate_back(*moment[ORIENTATION], *proper)
-        moment[ACCELERATION_COVARIANCE.start] = 0.0 if known else -1.0
-        self._time, self._velocity = moment[TIME], moment[VELOCITY].copy()
+def _held(scene, frames):
+    if scene.constraint.kind == 'free':
+        raise BadInput('parameter publish', 'got reaction with constraint free', 'nothing holds a free body')
+    return _in_world(scene, frames)
+
+
+def _reaction(scene):
+    """Derive force and torque of the constraint, about the fixed point, the point `through` of the hinge, or the point of contact."""
+    dynamics = Dynamics(scene)
+
+    def derive(moment, wrench):
+        balance = dynamics.balance(moment, wrench)
+        moment[REACTION] = *balance.force, *balance.torque
+    return derive
 
 
 def _joint(scene, frames):
@@ -219,7 +229,7 @@ def _hinge(scene):
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
     x, y, z, w = scene.initial.orientation.tolist()
 
-    def derive(moment):
+    def derive(moment, wrench):
         *turn, cosine = rotations.multiply(-x, -y, -z, w, *moment[ORIENTATION])
         moment[HINGE] = start + 2.0 * math.atan2(axis @ turn, cosine), axis @ moment[ANGULAR_VELOCITY]
     return derive
@@ -241,7 +251,7 @@ def _box(scene, frames):
 def _box_pose(scene):
     center, axes = scene.body.center_of_mass, scene.body.about_center.axes
 
-    def derive(moment):
+    def derive(moment, wrench):
         q = moment[ORIENTATION]
         moment[BOX] = *(moment[POSITION] + rotations.rotate(*q, *center)), *rotations.multiply(*q, *axes)
     return derive
@@ -264,9 +274,10 @@ EVERY_TICK = (
 ON_REQUEST = (
     Output('odom', 'nav_msgs/msg/Odometry', _odometry, ('pose.pose', 'twist.twist'), (POSITION, ORIENTATION, BODY_VELOCITY, ANGULAR_VELOCITY),
            derive=_velocity_in_body),
-    Output('imu', 'sensor_msgs/msg/Imu', _in_body, ('orientation', 'angular_velocity', 'linear_acceleration', 'linear_acceleration_covariance'),
-           (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION, ACCELERATION_COVARIANCE), derive=Accelerometer),
+    Output('imu', 'sensor_msgs/msg/Imu', _in_body, ('orientation', 'angular_velocity', 'linear_acceleration'),
+           (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION), derive=_proper_acceleration),
     Output('joint_states', 'sensor_msgs/msg/JointState', _joint, ('position', 'velocity'), (HINGE,), derive=_hinge),
+    Output('reaction', 'geometry_msgs/msg/WrenchStamped', _held, ('wrench',), (REACTION,), derive=_reaction),
     Output('marker', 'visualization_msgs/msg/Marker', _box, ('pose',), (BOX,), derive=_box_pose),
     Output('tf', 'tf2_msgs/msg/TFMessage', _transform, ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True),
     Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),

@@ -142,7 +142,8 @@ class Session:
     def _messages(self, vectors, tick):
         """Return the messages of consecutive ticks from that one on."""
         energies, squares = self.simulation.diagnose(States(vectors))
-        return self._publishing.ticking.messages(vectors, energies, squares, [self.timeline.instant(tick + k) for k in range(len(vectors))])
+        stamps = [self.timeline.instant(tick + k) for k in range(len(vectors))]
+        return self._publishing.ticking.messages(vectors, energies, squares, stamps, self.simulation.wrench)
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
