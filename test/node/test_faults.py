@@ -4,10 +4,13 @@ import os
 import pathlib
 import signal
 
+import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from node.test_load import diagnosis
 from node.test_shutdown import messages_in, recording_of
 from std_msgs.msg import Float64
+
+from rigid_body_sim.recording.reader import Recording
 
 READER = """
 import rclpy
@@ -34,6 +37,13 @@ def start_and_fail(self):
 engine.Engine.start = start_and_fail
 sim_node.main(sys.argv[1:])
 """
+BACK = """
+import itertools, sys, time
+from rigid_body_sim.node import sim_node
+real, calls = time.time_ns, itertools.count()
+time.time_ns = lambda: real() - (3600 * 10**9 if next(calls) > 100 else 0)
+sim_node.main(sys.argv[1:])
+"""
 
 
 def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
@@ -57,6 +67,20 @@ def test_callback_that_fails_ends_it_with_a_whole_recording(ros_domain, tmp_path
     assert (node.returncode, node.stderr) == (1, 'sim_node: a callback failed: RuntimeError: on purpose\n')
     [folder] = (tmp_path / 'recordings').iterdir()
     assert messages_in(folder)['/energy'] > 10
+
+
+def test_wall_clock_set_back_by_an_hour_loses_and_doubles_no_tick(ros_domain, tmp_path, compiled_kernels):
+    """Stamps count ticks from the instant of the first one; only the times of publication tell of the wall clock."""
+    node = ros_domain.run('-c', BACK, '--ros-args', '-p', 'rate:=200', '-p', 'duration:=1.0', '-p',
+                          f'recording.directory:={tmp_path / "recordings"}', timeout=90)
+    assert (node.returncode, node.stderr) == (0, '')
+    [folder] = (tmp_path / 'recordings').iterdir()
+    with Recording(folder) as recording:
+        stamps = recording.read('/pose', ['header.stamp'])['header.stamp']
+        published = [message.publish_time for message in recording.messages(['/pose'])]
+    assert set(np.diff(stamps)) == {5_000_000}
+    assert len(stamps) == 201
+    assert min(np.diff(published)) < -3599e9
 
 
 def test_nothing_of_its_own_is_left_in_shared_memory(run_node):
