@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble soak bench bench-node study study-full pins pins-noble clean
+.PHONY: help run test lint package test-noble soak figures bench bench-node study study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -45,6 +45,9 @@ soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble .venv-noble/bin/$(PYTEST)
+
+figures: .venv/run.stamp ## figures and tables of README and docs anew
+	.venv/bin/python docs/make_figures.py
 
 bench: .venv/run.stamp ## cost of one state in closed form; recordings: writing, size, reading
 	.venv/bin/python bench/closed_forms.py

@@ -1,35 +1,48 @@
-"""Make the figures of README and docs anew: docs/images/*.png.
+"""Make the figures of README and docs anew (docs/images/*.png), and the tables of docs/systems and docs/corrections.md.
 
 ::
 
-    .venv/bin/python docs/make_figures.py
+    make figures
 """
 
+import importlib
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
 
-IMAGES = pathlib.Path(__file__).resolve().parent / 'images'
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+from figures import tables  # noqa: E402  (this folder is on the path only now)
+from figures.style import IMAGES, save  # noqa: E402
+
 RUNS = {'run': ('tennis_racket', 20)}
+DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py') if path.stem not in ('__init__', 'style', 'tables'))
 
 
 def command(*arguments):
     """Run a command of the package."""
-    subprocess.run([sys.executable, '-m', 'rigid_body_sim', *arguments], check=True, cwd=IMAGES.parent.parent)
+    subprocess.run([sys.executable, '-m', 'rigid_body_sim', *arguments], check=True, cwd=HERE.parent)
 
 
-def main():
-    """Simulate, analyse, keep the figure."""
-    IMAGES.mkdir(exist_ok=True)
+def main(names):
+    """Make the figures of these names, all by default; then the tables."""
     for name, (scene, seconds) in RUNS.items():
-        with tempfile.TemporaryDirectory() as folder:
-            recording = pathlib.Path(folder) / 'recording'
-            command('simulate', '--scene', scene, '--duration', str(seconds), '--output', str(recording))
-            command('analyze', str(recording), '--output', folder)
-            shutil.copy(pathlib.Path(folder) / 'overview.png', IMAGES / f'{name}.png')
+        if not names or name in names:
+            with tempfile.TemporaryDirectory() as folder:
+                recording = pathlib.Path(folder) / 'recording'
+                command('simulate', '--scene', scene, '--duration', str(seconds), '--output', str(recording))
+                command('analyze', str(recording), '--output', folder)
+                shutil.copy(pathlib.Path(folder) / 'overview.png', IMAGES / f'{name}.png')
+    for name in DRAWN:
+        if not names or name in names:
+            print(f'docs/images/{name}.png')
+            save(importlib.import_module(f'figures.{name}').draw(), name)
+    if not names or 'tables' in names:
+        tables.fill()
 
 
 if __name__ == '__main__':
-    main()
+    main(sys.argv[1:])

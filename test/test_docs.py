@@ -1,0 +1,72 @@
+"""The pages: their numbers are those that check_scenes finds, their pictures and links exist, their commands are commands."""
+
+import pathlib
+import re
+import sys
+
+import pytest
+
+from rigid_body_sim.commands import COMMANDS
+from rigid_body_sim.scenes import load_scene, scene_names
+
+DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
+sys.path.insert(0, str(DOCS))
+from figures import tables  # noqa: E402  (docs/ is no package)
+
+README = DOCS.parent / 'README.md'
+# scenes whose kernels other tests compile anyway; the rest of the tables is made by the same function
+QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'tennis_racket', 'heavy_top', 'fast_top'}
+
+
+def numbers(text):
+    """Return the numbers of a table, and its words without them."""
+    pattern = r'(?<![A-Za-z_^/(])[-+]?\d+\.?\d*(?:e[-+]?\d+)?'
+    return [float(number) for number in re.findall(pattern, text)], re.sub(pattern, '#', text)
+
+
+@pytest.mark.parametrize('path', tables.pages(), ids=lambda path: path.stem)
+def test_numbers_of_the_page_are_those_of_check_scenes(path):
+    text = path.read_text()
+    if path.stem == 'corrections':
+        for erratum in tables.ERRATA:
+            if erratum[2] in QUICK:
+                assert _same(tables.correction(*erratum), text), erratum
+    fresh = tables.filled(text.replace('<!-- corrections -->', '<!-- left as it is -->'), QUICK)
+    assert _same(fresh, text.replace('<!-- corrections -->', '<!-- left as it is -->')), 'run: make figures'
+
+
+def _same(part, text):
+    """Return whether every line of one text stands in another, numbers to two units of their last place."""
+    there = [numbers(line) for line in text.splitlines()]
+    return all(any(words == other and found == pytest.approx(shown, rel=2e-9) for shown, other in there)
+               for found, words in map(numbers, part.splitlines()))
+
+
+def test_every_scene_has_a_page():
+    text = ''.join(path.read_text() for path in (DOCS / 'systems').glob('*.md'))
+    for name in scene_names():
+        assert f'config/scenes/{name}.yaml' in text, name
+
+
+@pytest.mark.parametrize('path', [*tables.pages(), DOCS / 'scenes.md', README], ids=lambda path: path.stem)
+def test_links_lead_somewhere(path):
+    for target in re.findall(r'\]\(([^)#:]+)\)', path.read_text()):
+        assert (path.parent / target).exists(), target
+
+
+def test_the_gallery_shows_every_page_and_pictures_are_small():
+    text = README.read_text()
+    for path in (DOCS / 'systems').glob('*.md'):
+        assert f'(docs/systems/{path.name})' in text
+        assert f'](../images/{path.stem}.png)\n' == path.read_text()[-len(f'](../images/{path.stem}.png)\n'):]
+        assert (DOCS / 'images' / f'{path.stem}.png').stat().st_size < 100_000
+
+
+@pytest.mark.parametrize('path', [*tables.pages(), DOCS / 'scenes.md'], ids=lambda path: path.stem)
+def test_commands_of_the_page_exist_and_their_overrides_hold(path):
+    for line in re.findall(r'^python -m rigid_body_sim (.*)$', path.read_text(), re.MULTILINE):
+        assert line.split()[0] in COMMANDS
+        scene = re.search(r'--scene (\w+)(?= |$)', line)
+        overrides = re.findall(r'--set (?:"([^"]+)"|(\S+))', line)
+        if scene and scene[1] in scene_names():
+            load_scene(scene[1], [quoted or plain for quoted, plain in overrides])
