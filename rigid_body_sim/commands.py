@@ -16,5 +16,6 @@ COMMANDS = {
     'export': ('rigid_body_sim.recording.export:main', 'a recording to CSV, Parquet or NumPy'),
     'work_precision': ('rigid_body_sim.study.precision.work_precision:main', 'error against CPU time: every method, and the peers'),
     'check_scenes': ('rigid_body_sim.study.check_scenes:main', 'run every system of the notes and measure what theory predicts'),
+    'hard_cases': ('rigid_body_sim.study.hard_cases.hard_cases:main', 'the table of hard cases, ours and the peers'),
     'scenes': ('rigid_body_sim.list_scenes:main', 'list the scenes, their effects and the methods that can run them'),
 }

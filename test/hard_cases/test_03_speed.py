@@ -9,6 +9,7 @@ import pytest
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scenes import parse_scene
 from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases.table import of_group
 
 FREE = 'scene: fast\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\ninitial: {angular_velocity: [%s, %s, %s]}\n'
 TOP = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}\n'
@@ -45,3 +46,10 @@ def test_events_that_crowd_are_the_same_one_tick_at_a_time():
 def test_an_energy_beyond_doubles_is_refused(kind):
     with pytest.raises(BadInput, match='fast: initial: energy or momentum is beyond what a double holds'):
         Simulation(parse_scene(kind % ((1e200,) * kind.count('%s'))))
+
+
+@pytest.mark.parametrize('case', of_group(3), ids=lambda case: case.name)
+def test_case(case):
+    outcome = case.run()
+    # measured: at most 0.1 of the bounds
+    assert outcome.good, f'{outcome.error:.3g} {outcome.unit}, bound {outcome.bound:.3g} ({outcome.reason}); {case.why}'

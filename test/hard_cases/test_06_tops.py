@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from tops import HEAVY, UPRIGHT, anchored, at, many
 
+from rigid_body_sim.study.hard_cases.table import of_group
+
 
 @pytest.mark.parametrize('kick', [1e-8, 1e-59, 1e-61, 1e-100, 1e-200, 1e-300])
 @pytest.mark.parametrize('spin', [0.0, 5.0])
@@ -56,3 +58,10 @@ def test_kicks_as_small_as_doubles_go(kick):
             states = many(anchor, np.array([0.0, 0.1, 1.0, 100.0, 1e6]))
             assert np.isfinite(states).all()
             assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 4.5e-16
+
+
+@pytest.mark.parametrize('case', of_group(6), ids=lambda case: case.name)
+def test_case(case):
+    outcome = case.run()
+    # measured: 8.7e-16 rad of 2e-15 (loops)
+    assert outcome.good, f'{outcome.error:.3g} {outcome.unit}, bound {outcome.bound:.3g} ({outcome.reason}); {case.why}'

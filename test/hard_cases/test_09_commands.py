@@ -9,6 +9,7 @@ import pytest
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases.table import of_group
 
 NONE = (0.0, 0.0, 0.0)
 
@@ -92,3 +93,10 @@ def test_opposite_pairs_of_enormous_impulses_cancel_to_the_last_bit(scenes):
     for each in (simulation, quiet):
         each.advance(877)
     assert simulation.vector.tobytes() == quiet.vector.tobytes()
+
+
+@pytest.mark.parametrize('case', of_group(9), ids=lambda case: case.name)
+def test_case(case):
+    outcome = case.run()
+    # measured: the same bits
+    assert outcome.good, f'{outcome.error:.3g} {outcome.unit}, bound {outcome.bound:.3g} ({outcome.reason}); {case.why}'

@@ -1,0 +1,75 @@
+"""Cases with a reference of 34 digits and more: the attitude at every reference time, and the times of flips (groups 1, 2, 3 and 6).
+
+Bound: the floor of two roundings of a quaternion, 2e-15 rad, plus for free bodies half an ulp of the angle turned over (the rounding of omega
+itself; the motion may magnify it far beyond: up to 3 rad on the separatrix, yet the closed form stays here, its rates have more digits than a
+double). A flip: 4 ulp of its time.
+"""
+
+import functools
+import json
+import math
+import pathlib
+
+import numpy as np
+from mpmath import mp, mpf
+
+from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases.case import Case, Outcome
+
+RECORDS = json.loads(pathlib.Path(__file__).with_name('references.json').read_text())
+EPSILON = np.finfo(float).eps
+FLOOR = 2e-15
+
+
+def scene_of(record):
+    """Return the scene of a record."""
+    top = record['kind'] == 'pivot'
+    body = {'mass': record.get('mass', 1.0), 'inertia': record['moments']}
+    if top:
+        body |= {'inertia_about': 'origin', 'center_of_mass': record['center']}
+    return parse_scene(json.dumps({
+        'scene': 'hard_case', 'body': body, 'constraint': record['kind'], 'effects': [{'gravity': {'g': record['g']}}] if top else [],
+        'initial': {key: record[key] for key in ('orientation', 'angular_velocity')}}))
+
+
+def angle(found, expected):
+    """Return the angle (rad) between an attitude and one given in digits."""
+    with mp.workdps(50):
+        p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
+        size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
+        sign = 1 if mp.fdot(p, q) > 0 else -1
+        across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2 for a, b in zip(p, q)))
+        return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
+
+
+def attitude(record):
+    """Return the Outcome at the reference time where the error is the largest share of its bound."""
+    simulation = Simulation(scene_of(record))
+    states = simulation.states([state['time'] for state in record['states']]).orientation
+    size = math.hypot(*record['angular_velocity']) if record['kind'] == 'free' else 0.0
+    found = [(angle(q, state['orientation']), FLOOR + 0.5 * EPSILON * size * state['time'])
+             for q, state in zip(states, record['states'], strict=True)]
+    error, bound = max(found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf)
+    last = record['states'][-1]['time']
+    return Outcome(error, bound, 'rad', f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, up to {last:g} s')
+
+
+def flips(record):
+    """Return the Outcome of the times of flips, relative to these."""
+    simulation = Simulation(scene_of(record), rate=1.0)
+    last = float(mpf(record['flips'][-1]['time']))
+    simulation.advance(math.ceil(min(last, 1e15)) + 1)
+    times = [event.time for event in simulation.events if event.name == 'flip']
+    with mp.workdps(40):
+        errors = [float(abs(mpf(times[flip['count'] - 1]) / mpf(flip['time']) - 1)) for flip in record['flips']]
+    return Outcome(max(errors), 4.0 * EPSILON, 'of the time', f'rounding of the times of flips {[flip["count"] for flip in record["flips"]]}')
+
+
+def cases():
+    """Yield the cases."""
+    for record in RECORDS:
+        yield Case(record['group'], record['name'], record['why'], functools.partial(attitude, record), record)
+        if record['group'] == 1 and record['flips']:
+            yield Case(1, f'flips: {record["name"]}', 'energy says nothing of them; each is the time of a passage through the middle axis',
+                       functools.partial(flips, record))
