@@ -5,7 +5,10 @@ scene               predicted and measured                        theory
 =================== ============================================= ==================================================================
 free body           interval between two flips                    asymmetric_top.time_between_flips
 free symmetric body rate at which omega goes round the axis       symmetric_top.precession_rate
+same, axial torque  the same, on average                          driven_body.phase
+body that makes heat least energy, once it is reached             largest_axis.least_energy
 hinged with gravity interval between two turning points           kater_pendulum.period
+bat that is hit     rate after the blow                           baseball_bat.angular_acceleration
 heavy symmetric top interval between two turning points           heavy_top.time_between_turning_points
 ball on the table   when rolling begins, the speed it rolls at    billiard.sliding_time, billiard.speed_when_rolling
 =================== ============================================= ==================================================================
@@ -18,125 +21,30 @@ import math
 import numpy as np
 
 from rigid_body_sim.bodies import IDENTITY
-from rigid_body_sim.rotations import rotate, rotate_back
-from rigid_body_sim.theory import asymmetric_top, billiard, heavy_top, kater_pendulum, symmetric_top
+from rigid_body_sim.node.expectations import Interval, Relaxing, Rolling, Steady, Turning
+from rigid_body_sim.rotations import rotate_back
+from rigid_body_sim.theory import asymmetric_top, baseball_bat, driven_body, heavy_top, kater_pendulum, symmetric_top
 
 
 def expectation(scene, state):
-    """Return what theory expects of a scene from a state on: Interval, Turning, Rolling, or None where it is silent."""
+    """Return what theory expects of a scene from a state on, an object with note, look and compared, or None where it is silent."""
     names = {effect.name for effect in scene.effects if effect.name != 'strike'}
     if any(effect.name == 'strike' and effect.time > state.time for effect in scene.effects):
         return None
     kind = scene.constraint.kind
     if kind == 'free' and not names - {'gravity'}:
         return _flips(scene, state) or _round_the_axis(scene, state)
+    if kind == 'free' and names == {'torque'}:
+        return _round_the_axis(scene, state)
+    if kind == 'free' and names == {'internal_dissipation'}:
+        return Relaxing(scene, state)
+    if kind == 'hinge' and not names:
+        return _after_a_blow(scene, state)
     if names == {'gravity'} and kind in ('hinge', 'pivot'):
         return _swing(scene, state) if kind == 'hinge' else _nutation(scene, state)
     if kind == 'table' and names == {'sliding_friction'}:
         return Rolling(scene, state)
     return None
-
-
-def _comparison(name, predicted, measured, values):
-    """Return predicted, measured and their relative difference under their names."""
-    values[f'predicted_{name}'] = float(predicted)
-    if measured is not None:
-        difference = float(measured / predicted - 1.0) if predicted else float(measured)
-        values[f'measured_{name}'] = float(measured)
-        values['relative_difference'] = max(difference, values.get('relative_difference', 0.0), key=abs)
-    return values
-
-
-class Interval:
-    """The time between two events of one name, and as a frequency (rad/s): two intervals are one period."""
-
-    def __init__(self, event, seconds):
-        self.event, self._seconds = event, seconds
-        self._last = self._measured = None
-
-    def note(self, name, time):
-        """Note an event."""
-        if name == self.event:
-            self._measured = time - self._last if self._last is not None else None
-            self._last = time
-
-    def look(self, state):
-        """States say nothing new."""
-
-    def compared(self):
-        """Return the comparison, a dict."""
-        found = _comparison('interval', self._seconds, self._measured, {'event': self.event})
-        return _comparison('frequency', math.pi / self._seconds, math.pi / self._measured if self._measured else None, found)
-
-
-class Turning:
-    """The rate (rad/s) at which omega goes round the axis of a free symmetric body, in body axes, between two looks at the state."""
-
-    def __init__(self, rate, components, state):
-        self._rate, self._components = rate, components
-        self._before, self._first = self._at(state), self._at(state)
-        self._turned = 0.0
-
-    def _at(self, state):
-        across = self._components(state)
-        return state.time, math.atan2(across[1], across[0])
-
-    def note(self, name, time):
-        """Events say nothing new."""
-
-    def look(self, state):
-        """Add the angle since the last look; how many whole turns it holds is what the predicted rate comes nearest to."""
-        now = self._at(state)
-        expected = self._rate * (now[0] - self._before[0])
-        self._turned += expected + math.remainder(now[1] - self._before[1] - expected, 2.0 * math.pi)
-        self._before = now
-
-    def compared(self):
-        """Return the comparison, a dict."""
-        elapsed = self._before[0] - self._first[0]
-        return _comparison('rate', self._rate, self._turned / elapsed if elapsed > 0.0 else None, {'quantity': 'omega round the axis'})
-
-
-class Rolling:
-    """When a ball stops slipping (s after the state it starts from), and the speed it then has."""
-
-    def __init__(self, scene, state):
-        body, friction = scene.body, scene.effect('sliding_friction')
-        self._start = state.time
-        share = body.about_center.moments[0] / (body.mass * body.radius**2)
-        slip, ahead = _slip(body.radius, state)
-        size = float(np.hypot(*slip))
-        slipping = size > 1e-14 * (np.hypot(*state.velocity[:2]) + np.hypot(*ahead))
-        grip = friction.mu * friction.g
-        self._time = (billiard.sliding_time(size, friction.mu, friction.g, share) if grip else math.inf) if slipping else 0.0
-        self._speed = float(np.hypot(*billiard.speed_when_rolling(state.velocity[:2], ahead, share)))
-        self._onset = None if slipping else 0.0
-        self._rolls_at = None
-        self.look(state)
-
-    def note(self, name, time):
-        """Note an event."""
-        if name == 'rolling began' and self._onset is None:
-            self._onset = time - self._start
-
-    def look(self, state):
-        """Read the speed once it rolls."""
-        if self._onset is not None and state.time >= self._start + self._onset:
-            self._rolls_at = float(np.hypot(*state.velocity[:2]))
-
-    def compared(self):
-        """Return the comparison, a dict; empty for a ball that never rolls."""
-        if not math.isfinite(self._time):
-            return {}
-        found = _comparison('time', self._time, self._onset, {'event': 'rolling began'})
-        return _comparison('speed', self._speed, self._rolls_at, found)
-
-
-def _slip(radius, state):
-    """Return the velocity of the lowest point, and a omega as a forward velocity: both in the plane, m/s."""
-    wx, wy, _ = rotate(*state.orientation, *state.angular_velocity)
-    ahead = radius * np.array([wy, -wx])
-    return state.velocity[:2] - ahead, ahead
 
 
 def _in_order(inertia, state):
@@ -151,20 +59,51 @@ def _flips(scene, state):
 
 
 def _round_the_axis(scene, state):
+    """Omega round the axis of a body with two equal moments, left alone or driven about that axis."""
     inertia = scene.body.about_center
-    for axis in range(3):
-        first, second = (axis + 1) % 3, (axis + 2) % 3
-        I1, I3 = inertia.moments[first], inertia.moments[axis]
-        if inertia.moments[second] == I1 and I1 != I3:
-            omega = rotate_back(*inertia.axes, *state.angular_velocity)
-            rate = symmetric_top.precession_rate(omega[axis], I1, I3)
+    I = inertia.moments
+    axes = [axis for axis in range(3) if I[(axis + 1) % 3] == I[(axis + 2) % 3] != I[axis]]
+    if not axes:
+        return None
+    [axis] = axes
+    I1, I3, torque = I[(axis + 1) % 3], I[axis], _axial_torque(scene, inertia, axis)
+    spin = float(rotate_back(*inertia.axes, *state.angular_velocity)[axis])
 
-            def across(state):
-                omega = rotate_back(*inertia.axes, *state.angular_velocity)
-                return omega[first], omega[second]    # noqa: B023  (the loop ends here)
+    def across(state):
+        omega = rotate_back(*inertia.axes, *state.angular_velocity)
+        return omega[(axis + 1) % 3], omega[(axis + 2) % 3]
 
-            return Turning(float(rate), across, state) if rate and any(across(state)) else None
-    return None
+    if torque is None or not (spin or torque) or not any(across(state)):
+        return None
+    return Turning(lambda time: float(driven_body.phase(time, spin, torque, I1, I3) if torque else
+                                      symmetric_top.precession_rate(spin, I1, I3) * time), across, state)
+
+
+def _axial_torque(scene, inertia, axis):
+    """Return the constant torque about a principal axis, N m; None where the torque is another one."""
+    torques = [effect for effect in scene.effects if effect.name == 'torque']
+    along = 0.0
+    for torque in torques:
+        value = rotate_back(*inertia.axes, *torque.values[0])
+        if torque.frame != 'body' or torque.times != (0.0,) or any(value[k] for k in range(3) if k != axis):
+            return None
+        along += value[axis]
+    return along
+
+
+def _after_a_blow(scene, state):
+    """Rate of a hinged body at rest that was hit at time 0, while nothing else has disturbed it."""
+    strikes = [effect for effect in scene.effects if effect.name == 'strike']
+    n, body = np.array(scene.constraint.axis), scene.body
+    arm = np.subtract(body.center_of_mass, scene.constraint.through)
+    length = np.linalg.norm(arm - n * (n @ arm))
+    if len(strikes) != 1 or strikes[0].time or strikes[0].point is None or state.time or scene.initial.angular_velocity.any() or not length:
+        return None
+    impulse = np.array(strikes[0].impulse if strikes[0].frame == 'body' else rotate_back(*scene.initial.orientation, *strikes[0].impulse))
+    lever = np.subtract(strikes[0].point, scene.constraint.through)
+    a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
+    # the moment of the blow about the hinge, F d, by its lever
+    return Steady(float(baseball_bat.angular_acceleration(n @ np.cross(lever, impulse), 1.0, body.mass, length, a)), n)
 
 
 def _swing(scene, state):
