@@ -1,0 +1,80 @@
+"""Scenes and commands drawn at random: plain data that is a scene file, so that what fails can be written down and run."""
+
+import json
+
+from hypothesis import strategies as st
+
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.simulation import Simulation
+
+unit = st.one_of(st.just(0.0), st.floats(-1.0, 1.0), st.floats(-1e-9, 1e-9), st.sampled_from([1.0, -1.0, 5e-324, 1e-160]))
+vectors = st.tuples(unit, unit, unit).map(list)
+quaternions = st.tuples(unit, unit, unit, unit).map(list).filter(lambda q: max(map(abs, q)) > 0.0)
+sizes = st.sampled_from([1e-12, 1e-3, 1.0, 10.0, 1e3, 1e6])
+
+
+@st.composite
+def moments(draw, symmetric):
+    """Draw moments that a body can have."""
+    a, b = draw(st.floats(1e-3, 1.0)), draw(st.floats(1e-3, 1.0))
+    if symmetric:
+        return [a, a, draw(st.sampled_from([1e-12, 0.5, 1.0, 1.5, 2.0])) * a]
+    share = draw(st.one_of(st.sampled_from([0.0, 1.0]), st.floats(1e-12, 1.0)))
+    return [a, b, abs(a - b) + share * (a + b - abs(a - b))]
+
+
+@st.composite
+def scenes(draw):
+    """Draw a scene in closed form of any kind."""
+    kind, speed = draw(st.sampled_from(['free', 'top', 'hinge', 'table'])), draw(sizes)
+    omega = [speed * x for x in draw(vectors)]
+    scene = {'scene': 'drawn', 'constraint': kind, 'effects': [], 'initial': {'orientation': draw(quaternions)}}
+    if kind == 'free':
+        scene['body'] = {'mass': draw(sizes), 'inertia': draw(moments(symmetric=False))}
+        scene['initial'] |= {'angular_velocity': omega, 'velocity': draw(vectors)}
+    elif kind == 'table':
+        scene['body'] = {'mass': draw(sizes), 'shape': {'solid_sphere': {'radius': draw(st.floats(1e-3, 1.0))}}}
+        scene['effects'] = [{'sliding_friction': {'mu': draw(st.one_of(st.just(0.0), st.floats(1e-6, 2.0))), 'g': 9.81}}]
+        scene['initial'] |= {'angular_velocity': omega, 'velocity': [*draw(vectors)[:2], 0.0]}
+    else:
+        scene['body'] = {'mass': 1.0, 'inertia': draw(moments(symmetric=True)), 'inertia_about': 'origin',
+                         'center_of_mass': [0.0, 0.0, draw(st.sampled_from([0.0, 1e-9, 0.01, -0.01]))]}
+        scene['effects'] = [{'gravity': {'g': draw(st.floats(0.0, 20.0))}}]
+        scene['initial']['angular_velocity'] = omega
+        scene['constraint'] = 'pivot'
+        if kind == 'hinge':
+            scene['constraint'] = {'hinge': {'axis': draw(vectors.filter(lambda axis: max(map(abs, axis)) > 1e-3))}}
+            del scene['initial']['angular_velocity']
+            scene['initial']['rate'] = omega[0]
+    return scene
+
+
+commands = st.lists(st.tuples(st.sampled_from(['impulse', 'advance', 'reset']), vectors, vectors, sizes, st.sampled_from(['world', 'body'])),
+                    max_size=6)
+
+
+def in_one_line(refusal):
+    """Assert that a refusal is one clear line."""
+    text = str(refusal)
+    assert text.isprintable() and len(text) < 2000, repr(text)
+
+
+def run(scene, acts):
+    """Run a drawn scene under commands; return the Simulation, or None where scene or command are refused in one line."""
+    try:
+        simulation = Simulation(parse_scene(json.dumps(scene)))
+    except BadInput as refusal:
+        in_one_line(refusal)
+        return None
+    for act, force, torque, size, frame in [*acts, ('advance', None, None, 1.0, None)]:
+        try:
+            if act == 'impulse':
+                simulation.impulse([size * x for x in force], [size * x for x in torque], frame)
+            elif act == 'reset':
+                simulation.reset()
+            else:
+                simulation.advance(max(1, int(min(size, 1e3))))
+        except (BadInput, NotConverged) as refusal:
+            in_one_line(refusal)
+    return simulation

@@ -1,0 +1,20 @@
+"""Every mutant of test/hard_cases/mutations.py is found out by its test; one here, all with `make soak`."""
+
+import os
+
+import pytest
+from hard_cases import mutations
+
+CHOSEN = mutations.MUTANTS if os.environ.get('RIGID_BODY_SIM_SOAK') else mutations.QUICK
+
+
+@pytest.mark.parametrize('name', CHOSEN)
+def test_mutant_is_found_out(name, tmp_path):
+    assert mutations.killed(name, tmp_path)
+
+
+@pytest.mark.parametrize('name', CHOSEN)
+def test_what_is_not_mutated_passes(name, tmp_path, monkeypatch):
+    file, found, _, test = mutations.MUTANTS[name]
+    monkeypatch.setitem(mutations.MUTANTS, name, (file, found, found, test))
+    assert not mutations.killed(name, tmp_path)
