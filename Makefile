@@ -39,8 +39,9 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 16,000 damaged ones, @mcap/core
-	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 test/recording test/analysis/test_damaged.py
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 16,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files
+	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
+	    test/recording test/analysis/test_damaged.py test/hard_cases
 
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)
@@ -61,6 +62,8 @@ study: .venv/run.stamp ## what accuracy costs in time: four problems, our method
 
 study-full: .venv-peers/stamp ## the whole suite with the peers, about an hour; in study-full/
 	.venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
+	.venv-peers/bin/python -m rigid_body_sim hard_cases --peers --json > study-full/hard_cases.json
+	.venv-peers/bin/python docs/make_hard_cases.py study-full/hard_cases.json
 
 pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and test.in (with the oldest Python)
 	.venv/bin/python requirements/pin.py run
