@@ -1,4 +1,4 @@
-"""Figures of recordings: writing, size, reading, cost of a tick to the node, what a kill loses.
+"""Figures of recordings: writing, size, reading, analysing, cost of a tick to the node, what a kill loses.
 
     PYTHONPATH=. .venv/bin/python bench/recordings.py [--seconds 60] [--hour]
 
@@ -9,7 +9,6 @@ import argparse
 import json
 import os
 import pathlib
-import re
 import signal
 import statistics
 import subprocess
@@ -24,19 +23,21 @@ from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic, journal_topic
 from rigid_body_sim.recording.writer import Writer
+from rigid_body_sim.scenes import load_scene
 from rigid_body_sim.simulation import Simulation
 from rigid_body_sim.topics import EVERY_TICK, Frames
 
 MILLISECOND = 1_000_000
 HERE = pathlib.Path(__file__).resolve().parent
+SCENES = ('tennis_racket', 'heavy_top', 'billiard_low', 'tennis_racket initial.velocity=[0.1,0.2,0.3]')
 ENVIRONMENT = dict(os.environ, PYTHONPATH=f'{HERE}{os.pathsep}{HERE.parent}')
 
 
 class Racket:
-    """Ticks of the racket at a rate (1/s): stamps, and packed messages of the four topics."""
+    """Ticks of the racket (or of another scene) at a rate (1/s): stamps, and packed messages of the four topics."""
 
-    def __init__(self, count, rate):
-        simulation = Simulation('tennis_racket', rate=rate)
+    def __init__(self, count, rate, scene='tennis_racket'):
+        simulation = Simulation(scene, rate=rate)
         states = simulation.states(np.arange(count) / rate)
         self.stamps = time.time_ns() + np.arange(count) * round(1e9 / rate)
         packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
@@ -46,9 +47,9 @@ class Racket:
         self.payload = sum(rows.size for rows in self.rows)
 
 
-def writing(folder, seconds, block=None):
-    """Write the racket at 1 kHz, a chunk every `block` ticks as the node does, or as fast as it goes; return messages/s and size/payload."""
-    racket = Racket(round(seconds * 1000), 1000.0)
+def writing(folder, seconds, block=None, scene='tennis_racket'):
+    """Write a scene at 1 kHz, a chunk every `block` ticks as the node does, or as fast as it goes; return messages/s and size/payload."""
+    racket = Racket(round(seconds * 1000), 1000.0, scene)
     late = racket.stamps + np.random.default_rng(1).integers(30_000, 200_000, len(racket.stamps))
     began = time.perf_counter()
     with Writer(folder, racket.ticking, [], journal_topic(), {'scene': 'tennis_racket'}) as writer:
@@ -63,19 +64,27 @@ def writing(folder, seconds, block=None):
 
 
 def reading(folder):
-    """Decode every column of a recording; return (messages, seconds, peak memory of this process so far in MB)."""
+    """Decode every column of a recording; return messages/s."""
     began, count = time.perf_counter(), 0
     with Recording(folder) as recording:
         for _, columns in recording.blocks():
             count += len(columns['log_time'])
-    peak = re.search(r'VmHWM:\s*(\d+) kB', pathlib.Path('/proc/self/status').read_text())
-    return count, time.perf_counter() - began, int(peak[1]) / 1024
+    return count / (time.perf_counter() - began)
 
 
-def reading_apart(folder):
-    """Return what reading() does in a process of its own, so that its memory is its own."""
-    code = 'import json, sys; from recordings import reading; print(json.dumps(reading(sys.argv[1])))'
-    return json.loads(subprocess.run([sys.executable, '-c', code, str(folder)], capture_output=True, check=True, env=ENVIRONMENT).stdout)
+def analysing(folder, seconds):
+    """Run `simulate` for so long and `analyze` on its recording; return messages/s of the one, seconds and peak memory (MB) of the other."""
+    command = [sys.executable, '-m', 'rigid_body_sim']
+    simulated = subprocess.run([*command, 'simulate', '--duration', str(seconds), '--output', folder, '--json'], capture_output=True,
+                               check=True, env=ENVIRONMENT)
+    cost = json.loads(simulated.stdout)['cost']
+    began = time.perf_counter()
+    _, status, usage = os.wait4(subprocess.Popen([*command, 'analyze', folder, '--json'], stdout=subprocess.DEVNULL, env=ENVIRONMENT).pid, 0)
+    if status:
+        raise RuntimeError('analyze failed')
+    return {'messages': cost['messages'], 'simulate_messages_per_second': cost['messages'] / cost['run'],
+            'analyze_seconds': time.perf_counter() - began, 'analyze_cpu_seconds': usage.ru_utime + usage.ru_stime,
+            'analyze_peak_mb': usage.ru_maxrss / 1024}
 
 
 def ticking(folder, rate, seconds):
@@ -136,21 +145,20 @@ def main():
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description='Figures of recordings.')
     parser.add_argument('--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)')
-    parser.add_argument('--hour', action='store_true', help='also write and read an hour at 1 kHz: 14.4 million messages, 0.6 GB on disk')
+    parser.add_argument('--hour', action='store_true', help='simulate and analyse an hour, not a minute: 14.4 million messages, 0.5 GB')
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder, figures = pathlib.Path(name), {}
         for title, block in (('simulate', None), ('node', 100)):
             speed, ratio = writing(folder / title, 60.0, block)
             figures[f'writer as {title}'] = {'messages_per_second': speed, 'size_by_payload': ratio}
-        count, spent, _ = reading(folder / 'node')
-        figures['reader'] = {'messages_per_second': count / spent}
+        figures['size by payload'] = {scene: writing(folder / f'size{number}', 20.0, 100, load_scene(scene.split()[0], scene.split()[1:]))[1]
+                                      for number, scene in enumerate(SCENES)}
+        figures['reader'] = {'messages_per_second': reading(folder / 'node')}
         figures['4 topics at 1 kHz'] = ticking(folder / 'slow', 1000.0, 10.0)
         figures['4 topics at 4 kHz'] = ticking(folder / 'fast', 4000.0, options.seconds)
         figures['node and recorder killed: ms lost'] = killing(folder)
-        if options.hour:
-            writing(folder / 'hour', 3600.0, 100)
-            figures['hour read'] = dict(zip(('messages', 'seconds', 'peak_mb'), reading_apart(folder / 'hour'), strict=True))
+        figures['simulate and analyze'] = analysing(folder / 'run', 3600.0 if options.hour else 60.0)
     print(json.dumps(figures, indent=2))
 
 

@@ -18,7 +18,8 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 from figures import tables  # noqa: E402  (this folder is on the path only now)
 from figures.style import IMAGES, save  # noqa: E402
 
-RUNS = {'run': ('tennis_racket', 20)}
+# image -> scene, seconds, figure of the report
+RUNS = {'run': ('tennis_racket', 20, 'overview'), 'recordings': ('heavy_top', 20, 'spectrum')}
 DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py') if path.stem not in ('__init__', 'style', 'tables'))
 
 
@@ -29,13 +30,13 @@ def command(*arguments):
 
 def main(names):
     """Make the figures of these names, all by default; then the tables."""
-    for name, (scene, seconds) in RUNS.items():
+    for name, (scene, seconds, figure) in RUNS.items():
         if not names or name in names:
             with tempfile.TemporaryDirectory() as folder:
                 recording = pathlib.Path(folder) / 'recording'
                 command('simulate', '--scene', scene, '--duration', str(seconds), '--output', str(recording))
                 command('analyze', str(recording), '--output', folder)
-                shutil.copy(pathlib.Path(folder) / 'overview.png', IMAGES / f'{name}.png')
+                shutil.copy(pathlib.Path(folder) / f'{figure}.png', IMAGES / f'{name}.png')
     for name in DRAWN:
         if not names or name in names:
             print(f'docs/images/{name}.png')

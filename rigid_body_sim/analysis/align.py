@@ -35,9 +35,11 @@ def aligned(recording, topics, progress=None):
 
 
 def _take(waiting, name, until):
-    """Return the columns of a topic up to a log time (None: all), or None; leave the rest waiting."""
+    """Return the columns of a topic up to a log time (None: all), those that all blocks have, or None; leave the rest waiting."""
     blocks = waiting[name]
-    joined = blocks[0] if len(blocks) == 1 else {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
+    joined = blocks[0] if len(blocks) == 1 else {
+        key: np.concatenate([block[key] for block in blocks]) for key, column in blocks[0].items()
+        if all(key in block and block[key].shape[1:] == column.shape[1:] for block in blocks)}
     count = len(joined['log_time']) if until is None else int(np.searchsorted(joined['log_time'], until, side='right'))
     waiting[name] = [{key: column[count:] for key, column in joined.items()}] if count < len(joined['log_time']) else []
     return {key: column[:count] for key, column in joined.items()} if count else None

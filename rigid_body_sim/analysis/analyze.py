@@ -14,7 +14,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 
 
-def analyze(path, folder, short=False):
+def analyze(path, folder, short=False, shared_page=None):
     """Analyse a recording; return (list of summaries, one a body; paths of what was written, the text first).
 
     Parameters
@@ -25,6 +25,8 @@ def analyze(path, folder, short=False):
         Where the report goes; made if need be, its files replaced.
     short : bool
         Only numbers and the overview figure.
+    shared_page : list, optional
+        Gets what page.write_page needs, and no page is written here.
 
     Raises
     ------
@@ -44,6 +46,12 @@ def analyze(path, folder, short=False):
         written[0].write_text('\n'.join(line for one in found for line in lines(one)) + '\n', encoding='utf-8')
         written[1].write_text(json.dumps({'recording': str(path), 'bodies': found}, indent=2, allow_nan=False) + '\n', encoding='utf-8')
         written += _figures(folder, measured, found, more, short)
+        name = pathlib.Path(path).resolve().name
+        sections = [(name, one, numbers, *extra) for one, numbers, extra in zip(measured, found, more, strict=True)]
+        if shared_page is not None:
+            shared_page += sections
+        elif not short:
+            written += write_page(folder, sections)
     except OSError as error:
         raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
     return found, written
@@ -66,14 +74,19 @@ def _figures(folder, measured, found, more, short):
     from rigid_body_sim.analysis import figures
     if short:
         return [figures.draw_overview(folder, one, title(numbers)) for one, numbers in zip(measured, found, strict=True)]
-    from rigid_body_sim.analysis import page
     written = []
-    if page.available():
-        page.write_page(folder / 'report.html', [(one, numbers, *extra) for one, numbers, extra in zip(measured, found, more, strict=True)])
-        written.append(folder / 'report.html')
     for one, numbers, extra in zip(measured, found, more, strict=True):
         written += figures.draw_all(folder, one, *extra, title(numbers))
     return written
+
+
+def write_page(folder, sections):
+    """Write report.html if Plotly is there; return its path in a list."""
+    from rigid_body_sim.analysis import page
+    if not page.available():
+        return []
+    page.write_page(folder / 'report.html', sections)
+    return [folder / 'report.html']
 
 
 def report_folder(path):
@@ -97,27 +110,40 @@ def main(arguments=None):
                                  'python -m rigid_body_sim analyze recordings/racket')
     parser.add_argument('recording', nargs='+', help='folder of a recording, or .mcap file; also of `ros2 bag record`')
     parser.add_argument('--output', metavar='FOLDER', help='where the reports go (default: beside each recording); '
-                        'of several recordings each gets a folder of its own in it')
+                        'of several recordings it gets one page on all, and a folder each')
     parser.add_argument('--json', action='store_true', help='print what report.json holds')
     return command_line.run(_run, parser.parse_args(arguments))
 
 
 def _run(options):
-    results = []
+    results, shared = [], [] if options.output and len(options.recording) > 1 else None
     for path in options.recording:
         folder = report_folder(path)
         if options.output:
-            folder = pathlib.Path(options.output) / (folder.name if len(options.recording) > 1 else '')
-        found, written = analyze(path, folder)
+            folder = pathlib.Path(options.output) / (folder.name if shared is not None else '')
+        found, written = analyze(path, folder, shared_page=shared)
         results.append({'recording': path, 'bodies': found, 'files': [str(name) for name in written]})
         if not options.json:
             show(found, written)
+    if shared is not None:
+        _write_shared(pathlib.Path(options.output), shared, results, options.json)
     from rigid_body_sim.analysis import page
     if not page.available():
         print('report.html was not made: it needs plotly (pip install plotly)', file=sys.stderr)
     if options.json:
         command_line.print_json(results)
     return command_line.GOOD
+
+
+def _write_shared(folder, shared, results, quiet):
+    """Write the page on all recordings and all numbers."""
+    try:
+        (folder / 'report.json').write_text(json.dumps(results, indent=2, allow_nan=False) + '\n', encoding='utf-8')
+        written = [folder / 'report.json', *write_page(folder, shared)]
+    except OSError as error:
+        raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
+    if not quiet:
+        show([], written)
 
 
 if __name__ == '__main__':

@@ -56,8 +56,10 @@ class Comparison:
     def take(self, stretch):
         """Compare a stretch (see align.aligned)."""
         ticks_of = {topic: self._rerun.ticks(columns['log_time']) for topic, columns in stretch.items()}
+        for name, topic in self._topics.items():
+            if topic in stretch:
+                check_numbers(topic, stretch[topic], name)
         for topic, ticks in ticks_of.items():
-            check_numbers(topic, stretch[topic])
             if ticks.min() < self._rerun.next_tick:
                 raise BadInput(topic, f'tick {int(ticks.min())} comes too late', 'messages in the order of time')
         recorded = np.unique(np.concatenate(list(ticks_of.values())))

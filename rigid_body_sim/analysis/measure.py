@@ -7,11 +7,12 @@ from rigid_body_sim.analysis.collectors import Curve
 from rigid_body_sim.analysis.drift import Residual, scales
 from rigid_body_sim.analysis.flips import Flips, can_flip
 from rigid_body_sim.analysis.motion import Motion
-from rigid_body_sim.analysis.source import EVERY_TICK
+from rigid_body_sim.analysis.source import COLUMNS, EVERY_TICK
 from rigid_body_sim.analysis.timing import Punctuality
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.timeline import NANOSECONDS
 
+HAVE_STAMPS = ('pose', 'angular_velocity')
 LARGEST = 1e150     # its square is finite
 UNIT = 1e-6
 """By how much the square of a quaternion's length may differ from 1: one that went through single precision is off by 1e-7."""
@@ -46,7 +47,7 @@ class Measured:
     def take(self, stretch):
         """Take messages of one stretch of time: name in source.EVERY_TICK -> columns. BadInput where they hold no sensible numbers."""
         for name, columns in stretch.items():
-            check_numbers(self.source.topics[name], columns)
+            check_numbers(self.source.topics[name], columns, name)
             stamps = columns['log_time']
             times = (stamps - self.source.start) / NANOSECONDS
             if name == 'energy':
@@ -72,11 +73,15 @@ class Measured:
                             pose['pose.position'][mine])
 
 
-def check_numbers(topic, columns):
-    """Raise BadInput where the columns of a topic of every tick hold what no motion has."""
-    for name in ('data', 'vector', 'pose.orientation', 'pose.position'):
-        if name in columns and not (np.abs(columns[name]) < LARGEST).all():     # false for NaN
+def check_numbers(topic, columns, name):
+    """Raise BadInput where the columns of a topic of every tick (`name` in source.EVERY_TICK) are not what a motion has."""
+    for column, width in COLUMNS[name].items():
+        if column not in columns or columns[column].shape[1:] != width or columns[column].dtype != np.float64:
+            raise BadInput(topic, f'has no {column} in its messages, or not of {width[0] if width else 1} doubles', EVERY_TICK[name])
+        if not (np.abs(columns[column]) < LARGEST).all():     # false for NaN
             raise BadInput(topic, f'holds a number that is not finite, or beyond {LARGEST:g}', 'a recording of a simulation that went well')
+    if name in HAVE_STAMPS and ('header.stamp' not in columns or columns['header.stamp'].dtype != np.int64):
+        raise BadInput(topic, 'has no stamps in its messages', EVERY_TICK[name])
     q = columns.get('pose.orientation')
     if q is not None and not (np.abs((q * q).sum(axis=1) - 1.0) < UNIT).all():
         raise BadInput(topic, 'holds an orientation that is no unit quaternion', 'a recording of a rigid body')

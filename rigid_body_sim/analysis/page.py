@@ -29,11 +29,11 @@ def write_page(path, bodies):
     Parameters
     ----------
     path : pathlib.Path
-    bodies : list of (Measured, summary, Spectrum or None, ledger or None)
+    bodies : list of (name of the recording, Measured, summary, Spectrum or None, ledger or None)
     """
     from plotly.offline import get_plotlyjs
     here = pathlib.Path(__file__).parent
-    heading = ', '.join(title(found) for _, found, _, _ in bodies)
+    heading = ', '.join(title(found) for _, _, found, _, _ in bodies)
     parts = [f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(heading)}</title>',
              f'<style>{(here / "page.css").read_text()}</style><script>{get_plotlyjs()}</script>',
              f'<script>{(here / "playback.js").read_text()}</script></head><body>']
@@ -42,9 +42,9 @@ def write_page(path, bodies):
     path.write_text('\n'.join([*parts, '</body></html>']), encoding='utf-8')
 
 
-def _section(number, measured, found, spectrum, balance):
+def _section(number, name, measured, found, spectrum, balance):
     """Yield the HTML of one body."""
-    yield f'<h1>{html.escape(title(found))}</h1><pre>{html.escape(chr(10).join(lines(found)[1:]))}</pre>'
+    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p><pre>{html.escape(chr(10).join(lines(found)[1:]))}</pre>'
     over_time = [*panels.overview(measured), *panels.motion(measured), *(panels.energies(balance) if balance else ())]
     yield '<h2>Over time</h2><p>Drag to zoom, double-click to see all; curves of more than 32768 points show the extremes of each stretch.</p>'
     yield _html(_over_time(over_time, measured.source), f'time{number}')

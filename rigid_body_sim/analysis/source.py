@@ -17,6 +17,9 @@ from rigid_body_sim.timeline import NANOSECONDS
 
 EVERY_TICK = {'pose': 'geometry_msgs/msg/PoseStamped', 'angular_velocity': 'geometry_msgs/msg/Vector3Stamped',
               'energy': 'std_msgs/msg/Float64', 'angular_momentum_squared': 'std_msgs/msg/Float64'}
+# topic of every tick -> its columns of numbers, and how many numbers each has
+COLUMNS = {'pose': {'pose.orientation': (4,), 'pose.position': (3,)}, 'angular_velocity': {'vector': (3,)}, 'energy': {'data': ()},
+           'angular_momentum_squared': {'data': ()}}
 TYPES = {**EVERY_TICK, 'events': 'diagnostic_msgs/msg/DiagnosticStatus', 'scene': 'std_msgs/msg/String', 'journal': 'std_msgs/msg/String',
          'cmd_wrench': 'geometry_msgs/msg/WrenchStamped', 'cmd_impulse': 'geometry_msgs/msg/WrenchStamped'}
 

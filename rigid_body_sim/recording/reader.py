@@ -183,7 +183,7 @@ class Recording:
                 for log_time, message in self.decoded(name):
                     try:
                         entry = json.loads(message['data'])
-                    except ValueError:
+                    except (ValueError, KeyError, TypeError, RecursionError):
                         continue
                     if isinstance(entry, dict) and isinstance(entry.get('kind'), str):
                         entries.append({**entry, 'log_time': log_time, 'topic': name})

@@ -36,3 +36,13 @@ def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
             assert (columns['data'] == -columns['log_time']).all()
             found[topic] += columns['log_time'].tolist()
     assert found == {topic: stamps.tolist() for topic, stamps in times.items()}
+
+
+def test_columns_that_not_all_messages_have_are_left_out():
+    """As where a frame got another name, of another length."""
+    from rigid_body_sim.analysis import align
+    waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2))}, {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2))},
+                      {'log_time': np.arange(5, 7), 'x': np.ones((2, 2))}]}
+    taken = align._take(waiting, '/a', 5)
+    assert set(taken) == {'log_time', 'x'} and taken['log_time'].tolist() == [0, 1, 2, 3, 4, 5] and taken['x'].sum() == 6.0
+    assert waiting['/a'][0]['log_time'].tolist() == [6]

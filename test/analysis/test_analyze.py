@@ -35,7 +35,7 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
     printed = capsys.readouterr().out.splitlines()
     text = (tmp_path / 'report.txt').read_text().splitlines()
     assert printed[:len(text)] == text
-    files = ['report.txt', 'report.json', 'report.html', *(f'{name}.png' for name in FIGURES)]
+    files = ['report.txt', 'report.json', *(f'{name}.png' for name in FIGURES), 'report.html']
     assert [line.strip() for line in printed[len(text):]] == [str(tmp_path / name) for name in files]
     assert all((tmp_path / name).stat().st_size > 10_000 for name in files[2:])
     assert all((tmp_path / f'{name}.svg').read_text().startswith('<?xml') for name in FIGURES)
@@ -106,7 +106,7 @@ def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
     assert (found['timing']['ticks'], found['timing']['missing']) == (2001, 0)
     # written at once at its time of arrival, 20 to 90 us after the stamp
     assert found['timing']['lateness']['max'] == pytest.approx(70e-6, abs=3e-6)
-    assert [path.name for path in files[2:]] == ['report.html', *(f'{name}_lab.png' for name in FIGURES if name != 'ledger')]
+    assert [path.name for path in files[2:]] == [*(f'{name}_lab.png' for name in FIGURES if name != 'ledger'), 'report.html']
 
 
 def test_without_a_scene_nothing_is_judged_by_it(tmp_path):
@@ -134,7 +134,12 @@ def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
     assert main(['.', str(file), '--output', str(tmp_path / 'all'), '--json']) == 0
     results = json.loads(capsys.readouterr().out)
     assert [len(result['bodies']) for result in results] == [1, 1] and results[0]['bodies'] == results[1]['bodies']
-    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report']
+    # one page on both, and a folder each
+    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report', 'report.html', 'report.json']
+    assert json.loads((tmp_path / 'all' / 'report.json').read_text()) == results
+    text = (tmp_path / 'all' / 'report.html').read_text(encoding='utf-8')
+    assert '<p>one.a</p>' in text and '<p>one.a_0.mcap</p>' in text and 'id="time1"' in text
+    assert not (tmp_path / 'all' / 'one.a_report' / 'report.html').exists()
 
 
 def test_bad_input_is_one_line(tmp_path, capsys):

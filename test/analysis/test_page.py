@@ -27,7 +27,7 @@ def written(tmp_path_factory):
     made.record(folder / 'run', 'tennis_racket', 600, rate=100.0, namespace='/left', bodies=['/right'], acts=acts)
     with Recording(folder / 'run') as recording:
         bodies = measure(recording, sources(recording))
-    page.write_page(folder / 'report.html', [(one, summary(one, Spectrum(one)), Spectrum(one), None) for one in bodies])
+    page.write_page(folder / 'report.html', [('run', one, summary(one, Spectrum(one)), Spectrum(one), None) for one in bodies])
     return folder / 'report.html'
 
 
