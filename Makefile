@@ -39,7 +39,7 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 16,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases
 
