@@ -15,7 +15,7 @@ from figures import tables  # noqa: E402  (docs/ is no package)
 
 README = DOCS.parent / 'README.md'
 # scenes whose kernels other tests compile anyway; the rest of the tables is made by the same function
-QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'tennis_racket', 'heavy_top', 'fast_top'}
+QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'heavy_top', 'fast_top'}
 
 
 def numbers(text):

@@ -1,5 +1,9 @@
 """The command `check_scenes`: every system of the notes run by the simulator and measured, beside what theory predicts."""
 
+import concurrent.futures
+import contextlib
+import functools
+import multiprocessing
 import time
 
 import numpy as np
@@ -29,18 +33,12 @@ def _check(options):
     if options.set and (options.scene is None or SHAPES in options.scene):
         raise BadInput('--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME')
     names = options.scene or [SHAPES, *SYSTEMS]
-    scenes = {name: None if name == SHAPES else load_scene(name, options.set) for name in names}
+    held = {name: name != SHAPES and load_scene(name, options.set).constraint.kind in ('pivot', 'hinge') for name in names}
     began, tables = time.perf_counter(), []
-    progress = tqdm(scenes.items(), disable=None, leave=False, unit=' scenes')
-    for name, scene in progress:
-        progress.set_postfix_str(name)
-        rows = confirm(scene) if scene else confirm_shapes()
-        about = scene.about if scene else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
-        tables.append({'scene': scene.name if scene else name, 'about': about, 'notes': scene.notes if scene else [],
-                       'quantities': [_plain(row) for row in rows]})
+    for table in _tables(held, options.set):
+        tables.append(table)
         if not options.json:
-            progress.clear()
-            _tell(tables[-1])
+            _tell(table)
     quantities = [quantity for table in tables for quantity in table['quantities']]
     failed = sum(quantity['verdict'] != CONFIRMED for quantity in quantities)
     if options.json:
@@ -49,6 +47,43 @@ def _check(options):
         print(f'{len(quantities)} quantities of {len(tables)} systems: {len(quantities) - failed} confirmed, {failed} not; '
               f'{time.perf_counter() - began:.1f} s')
     return command_line.CHECK_FAILED if failed else command_line.GOOD
+
+
+def _tables(held, overrides):
+    """Yield the tables of the systems in order, with progress on a terminal.
+
+    Several are shared out between two processes, held bodies in one and the others in another: so neither compiles what the other does.
+    """
+    with contextlib.ExitStack() as stack:
+        if len(held) == 1:
+            pending = [functools.partial(_table, name, overrides) for name in held]
+        else:
+            spawn = multiprocessing.get_context('spawn')
+            workers = [stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn)) for _ in range(2)]
+            futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
+            for worker in workers:
+                stack.callback(worker.shutdown, cancel_futures=True)
+            pending = [future.result for future in futures]
+        progress = stack.enter_context(tqdm(zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'))
+        for name, result in progress:
+            progress.set_postfix_str(name)
+            table = result()
+            if isinstance(table, tuple):
+                raise BadInput(*table)
+            progress.clear()
+            yield table
+
+
+def _table(name, overrides):
+    """Return the table of a system as plain data, or what is wrong with it: where, problem, remedy."""
+    scene = None if name == SHAPES else load_scene(name, overrides)
+    try:
+        rows = confirm(scene) if scene else confirm_shapes()
+    except BadInput as error:
+        return error.where, error.problem, error.remedy
+    about = scene.about if scene else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
+    return {'scene': scene.name if scene else name, 'about': about, 'notes': scene.notes if scene else [],
+            'quantities': [_plain(row) for row in rows]}
 
 
 CONFIRMED, REFUTED = 'confirmed', 'NOT CONFIRMED'

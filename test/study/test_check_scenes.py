@@ -12,8 +12,8 @@ from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric_top
 
-# all that ship but those whose kernels no other test compiles: ball by dop8, Euler's equations with a torque, heat with its ledger
-QUICK = [name for name in SYSTEMS if not name.startswith(('billiard', 'driven', 'major', 'baseball'))]
+# all that ship but those whose kernels no other test compiles (ball by dop8, torque, heat, bat) and the second of two alike
+QUICK = [name for name in SYSTEMS if not name.startswith(('billiard', 'driven', 'major', 'baseball', 'falling'))]
 
 
 def table(*arguments, capsys, status=0):
@@ -132,3 +132,13 @@ def test_billiard_height_decides_the_formula():
     a, h = 0.03, 0.02
     right = billiard.onset_of_rolling(1.5, h, a, 0.2, 9.81)
     assert billiard.onset_of_rolling_above_as_written(1.5, h, a, 0.2, 9.81) == pytest.approx(7.0 * right)
+
+
+def test_two_processes_share_several_scenes(capsys):
+    """Bodies that are held in one, others in another; the tables come in the order asked, and what is wrong is said as by one process."""
+    assert check_scenes.main(['--scene', 'heavy_top', '--scene', 'symmetric_top', '--json']) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [table['scene'] for table in found['scenes']] == ['heavy_top', 'symmetric_top']
+    assert found['quantities'] == sum(len(table['quantities']) for table in found['scenes']) > 20
+    assert check_scenes.main(['--scene', 'heavy_top', '--scene', 'symmetric_top', '--set', 'initial.spin=50']) == 2
+    assert capsys.readouterr().err.startswith('symmetric_top: moments [1.0, 1.0, 1.3], omega [0.0, 0.0, 50.0]; needs I1 = I2')
