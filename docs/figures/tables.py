@@ -74,6 +74,8 @@ def scene_table(scene):
         measured = shown(quantity.measured, digits)
         if quantity.absolute and not np.any(quantity.predicted):
             measured = f'below {quantity.tolerance:.0e}'
+        if quantity.detail.startswith(('deviation', 'change over')):
+            measured += f': {quantity.detail}'
         kind = ' absolute' if quantity.absolute else ''
         cells = (title.replace('|', '\\|'), relation + shown(quantity.predicted, digits), measured, f'{quantity.tolerance:.0e}{kind}')
         lines.append(f'| {" | ".join(cells)} |')

@@ -14,6 +14,7 @@ from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.rotations import rotate
+from rigid_body_sim.theory import asymmetric_top
 
 RATE = 250
 PERIOD = 10**9 // RATE
@@ -211,6 +212,9 @@ def test_diagnostics_tell_with_17_digits(client):
     assert f'{float(ledger["kinetic"]):.17g}' == ledger['kinetic']
     assert abs(float(ledger['energy_residual'])) < 1e-11
     assert statuses['sim_node: recording'].message == 'recording'
+    prediction = {pair.key: pair.value for pair in statuses['sim_node: prediction'].values}
+    expected = asymmetric_top.time_between_flips((1.0, 2.0, 2.5), (1.0, 0.8, -1.5))
+    assert (prediction['event'], float(prediction['predicted_interval'])) == ('flip', pytest.approx(expected, rel=1e-12))
 
 
 def set_parameter(client, name, **value):
