@@ -32,7 +32,10 @@ def processor():
     """Return the name and feature flags of the processor, on which compiled code and the bits of sin and cos depend."""
     if HAVE_NUMBA:
         from llvmlite import binding
-        return f'{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}'
+        # numba compiles for another processor where its settings say so
+        features = numba.config.CPU_FEATURES
+        return (f'{numba.config.CPU_NAME or binding.get_host_cpu_name()} '
+                f'{binding.get_host_cpu_features().flatten() if features is None else features}')
     return platform.processor() or platform.machine()
 
 

@@ -58,6 +58,20 @@ def swing_rate(scene):
     return 2.0 * float(np.sqrt(body.mass * gravity.g * np.linalg.norm(arm) / across))
 
 
+def drive(scene, wrench):
+    """Return a bound of the angular acceleration (rad/s^2) by torques and a held wrench: their sum over the least moment."""
+    body, constraint = scene.body, scene.constraint
+    torque = sum(max(float(np.linalg.norm(value)) for value in effect.values) for effect in scene.effects if effect.name == 'torque')
+    if wrench:
+        arm = np.subtract(body.center_of_mass, constraint.through if constraint.kind == 'hinge' else (0.0, 0.0, 0.0))
+        lever = float(np.linalg.norm(arm)) if constraint.kind in ('pivot', 'hinge') else 0.0
+        torque += float(np.linalg.norm(wrench.torque)) + lever * float(np.linalg.norm(wrench.force))
+    if torque == 0.0:
+        return 0.0
+    moments = (body.about_origin if constraint.kind == 'pivot' else body.about_center).moments
+    return torque / (moment_about_hinge(body, constraint) if constraint.kind == 'hinge' else min(moment for moment in moments if moment > 0.0))
+
+
 @compiled
 def angular_momentum(p, omega_x, omega_y, omega_z):
     """Return I omega in body axes, I about the point of reference."""

@@ -104,10 +104,12 @@ class Watcher:
         Time of the solver's start, s.
     swing : float
         What may come to the rate at once, rad/s (mechanics.swing_rate): a body at rest soon is not.
+    drive : float
+        What may come to it in a second, rad/s^2 (mechanics.drive).
     """
 
-    def __init__(self, solver, watched, start, swing):
-        self._swing = swing
+    def __init__(self, solver, watched, start, swing, drive):
+        self._swing, self._drive = swing, drive
         self._solver, self._watched = solver, watched
         self._vector = np.empty(STATE_SIZE)
         self._time = start
@@ -117,7 +119,10 @@ class Watcher:
     def _look(self, time):
         self._solver.state(time, self._vector)
         vector = self._vector.tolist()
-        self._spacing = RADIANS_BETWEEN_LOOKS / max(math.hypot(*vector[5:8]) + self._swing, 1e-300)
+        # the time s in which rate s + drive s^2/2 is that angle
+        rate = math.hypot(*vector[5:8]) + self._swing
+        self._spacing = 2.0 * RADIANS_BETWEEN_LOOKS / max(
+            rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300)
         return [watch.value(vector) for watch in self._watched]
 
     def events(self, until):

@@ -18,7 +18,7 @@ from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.integrators import METHODS, runnable, scipy_methods, table, track
 from rigid_body_sim.integrators.adaptive import TIME as NODE_TIME
 from rigid_body_sim.integrators.adaptive import VALUES
-from rigid_body_sim.mechanics import swing_rate
+from rigid_body_sim.mechanics import drive, swing_rate
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
@@ -118,7 +118,8 @@ class Stepped:
         if self.scene.constraint.kind == 'table':
             return self._course.events(after, until)
         if self._watcher is None:
-            self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]), swing_rate(self.scene))
+            self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]), swing_rate(self.scene),
+                                    drive(self.scene, self.wrench))
         return [event for event in self._watcher.events(until) if event[0] > after]
 
     def exchanged(self, time):
