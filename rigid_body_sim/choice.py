@@ -1,16 +1,21 @@
-"""Which method runs a scene: the exact one if a motion absorbs the scene, else the cheapest that meets the accuracy."""
+"""Which method runs a scene: the exact one if a motion absorbs the scene, else the cheapest that was measured to meet the accuracy.
+
+The measurements are those of rigid_body_sim/integrators/measured.py.
+"""
 
 import difflib
 from dataclasses import dataclass
 
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators import METHODS, runnable
+from rigid_body_sim.integrators import METHODS, measured, runnable
 from rigid_body_sim.integrators.stepped import Stepped
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.exact import Exact
 
 FINEST_ACCURACY = 1e-15
+HORIZON = 100.0
+"""Over which an accuracy holds where no duration is given, s."""
 
 
 def methods_for(scene):
@@ -27,9 +32,13 @@ class Choice:
     method : str
         ``exact`` or a name of METHODS.
     accuracy, step : float or None
-        What the method was asked for.
+        What was asked for.
     horizon : float
         Over which the accuracy holds, s.
+    tolerance : float or None
+        The accuracy that the method itself is told: what `auto` found to be enough, else `accuracy`.
+    expected_error : float or None
+        Of the attitude at the end of the horizon (rad), where `auto` chose; where the motion magnifies errors it is larger.
     """
 
     scene: object
@@ -37,6 +46,8 @@ class Choice:
     accuracy: float | None
     step: float | None
     horizon: float
+    tolerance: float | None
+    expected_error: float | None
     _prototype: object
 
     def solver(self, start, wrench):
@@ -44,11 +55,24 @@ class Choice:
         if wrench == Wrench():
             return self._prototype.start(start)
         method = 'dop8' if self.method == 'exact' else self.method
-        return Stepped(self.scene, method, self.accuracy, self.step, wrench, self.horizon).start(start)
+        return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
 
 
-def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=100.0):
+def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
     """Return the Choice for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    integrator : str
+    accuracy : float
+        rad.
+    step : float, optional
+        s.
+    horizon : float
+        s.
+    settled : tuple, optional
+        (method, tolerance, expected error) that `auto` once chose: then they are taken, whatever the table says now.
 
     Raises
     ------
@@ -64,12 +88,16 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=100.0):
         near = difflib.get_close_matches(integrator, ['auto', 'exact', *METHODS], 1)
         raise BadInput('integrator', f'got {integrator!r}',
                        f'did you mean {near[0]!r}?' if near else f'one of auto, exact, {", ".join(METHODS)}')
+    if not 0.0 < horizon < float('inf'):
+        raise BadInput('horizon', f'got {horizon!r}', 'a positive number of seconds')
     motion = absorbing_motion(scene)
     if integrator in ('auto', 'exact') and motion and step is None:
-        return Choice(scene, 'exact', accuracy, None, horizon, Exact(scene, motion))
+        return Choice(scene, 'exact', accuracy, None, horizon, accuracy, measured.floor(scene, horizon), Exact(scene, motion))
     able = runnable(scene)
-    method = 'dop8' if integrator == 'auto' else integrator
+    method, tolerance, expected = integrator, accuracy, None
+    if integrator == 'auto':
+        method, tolerance, expected = settled or measured.pick(scene, able, accuracy, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
-    return Choice(scene, method, accuracy, step, horizon, Stepped(scene, method, accuracy if step is None else None, step, horizon=horizon))
+    return Choice(scene, method, accuracy, step, horizon, tolerance, expected, Stepped(scene, method, tolerance, step, horizon=horizon))

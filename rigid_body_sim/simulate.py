@@ -10,6 +10,7 @@ import numpy as np
 from tqdm import tqdm
 
 from rigid_body_sim import command_line
+from rigid_body_sim.choice import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
@@ -157,9 +158,10 @@ def main(arguments=None):
 
 def _run(options):
     began = time.perf_counter()
-    simulation = Simulation(load_scene(options.scene, options.set), options.integrator, options.accuracy, options.rate)
-    if not (options.duration >= 0.0 and options.duration * options.rate <= LONGEST):
+    scene = load_scene(options.scene, options.set)
+    if not (options.duration >= 0.0 and not options.duration * options.rate > LONGEST):
         raise BadInput('--duration', f'got {options.duration!r}', f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
+    simulation = Simulation(scene, options.integrator, options.accuracy, options.rate, horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
         recording = Recording(options.output, simulation, _parameters(options), **_writing(options)) if options.output else None

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_body_sim import mechanics
-from rigid_body_sim.choice import choose
+from rigid_body_sim.choice import HORIZON, choose
 from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
@@ -78,6 +78,10 @@ class Simulation:
         Ticks per second, for :meth:`advance`.
     step : float, optional
         Fixed step of the method, s, instead of step control.
+    horizon : float
+        Duration over which the accuracy is asked for, s.
+    settled : tuple, optional
+        What `auto` chose in an earlier run (choice.choose).
 
     Attributes
     ----------
@@ -94,13 +98,13 @@ class Simulation:
         By name and value, before anything runs.
     """
 
-    def __init__(self, scene, integrator='auto', accuracy=1e-12, rate=1000.0, step=None):
+    def __init__(self, scene, integrator='auto', accuracy=1e-12, rate=1000.0, step=None, horizon=HORIZON, settled=None):
         self.scene = scene if isinstance(scene, Scene) else load_scene(scene)
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
         self.integrator, self.accuracy = integrator, accuracy
-        self.choice = choose(self.scene, integrator, accuracy, step)
+        self.choice = choose(self.scene, integrator, accuracy, step, horizon, settled)
         self.tick = 0
         self.events = []
         self.vector = np.empty(STATE_SIZE)

@@ -87,7 +87,9 @@ def test_it_says_all_that_is_needed_to_run_it_again(flipping):
     recording = Recording(flipping)
     about = {key: json.loads(recording.about[key]) for key in ('simulation', 'parameters', 'machine')}
     assert recording.about['made_by'] == 'simulate' and recording.about['version']
-    assert about['simulation'] == {'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact'}
+    assert about['simulation'] == {'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact',
+                                   'horizon': 10.0, 'tolerance': 1e-12, 'expected_error': about['simulation']['expected_error']}
+    assert 0.0 < about['simulation']['expected_error'] < 1e-13
     assert about['parameters'] == {'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'], 'rate': 500.0,
                                    'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0}
     assert {'processor', 'libc', 'python', 'numpy', 'numba', 'sources'} <= set(about['machine'])

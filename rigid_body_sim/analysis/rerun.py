@@ -63,7 +63,9 @@ class Rerun:
 
     def _simulation(self, text, asked):
         asked = {**asked, **self._method}
-        return Simulation(parse_scene(text), asked['integrator'], asked['accuracy'], asked['rate'])
+        # what auto chose then, not what it would choose now
+        settled = None if self._method else (asked['method'], asked['tolerance'], asked['expected_error'])
+        return Simulation(parse_scene(text), asked['integrator'], asked['accuracy'], asked['rate'], horizon=asked['horizon'], settled=settled)
 
     def ticks(self, stamps):
         """Return the ticks of stamps (n,) int64, ns; BadInput where one lies between ticks."""

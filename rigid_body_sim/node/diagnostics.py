@@ -9,6 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
 
+from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 
 PERIOD = 1.0
@@ -68,7 +69,8 @@ class Diagnostics:
     def _ledger(self):
         balance = self._session.balance
         level, message = self._bounded({name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')})
-        return self._status('ledger', level, message or 'energy and angular momentum balance', balance)
+        method = {name: value for name, value in about.method_of(self._session.simulation.choice).items() if value is not None}
+        return self._status('ledger', level, message or 'energy and angular momentum balance', {**balance, **method})
 
     def _timing(self):
         ticker, settings = self._ticker, self._settings

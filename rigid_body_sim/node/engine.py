@@ -6,6 +6,7 @@ import threading
 
 from std_srvs.srv import SetBool, Trigger
 
+from rigid_body_sim.choice import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
@@ -80,7 +81,7 @@ class Engine:
         """Return a simulation as the parameters say, with changes; it may take a while, so it is done before the tick that needs it."""
         wanted = {name: changes.get(name, self._settings[name]) for name in SIMULATION_PARAMETERS}
         scene = load_scene(wanted['scene'], wanted['scene_overrides'])
-        return Simulation(scene, wanted['integrator'], wanted['accuracy'], wanted['rate'])
+        return Simulation(scene, wanted['integrator'], wanted['accuracy'], wanted['rate'], horizon=self._settings.duration or HORIZON)
 
     # -- services -----------------------------------------------------------------------------------------------------------------------
 
@@ -208,7 +209,7 @@ def warm_up(simulation):
 
 
 def _use_everything(simulation):
-    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate)
+    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate, horizon=simulation.choice.horizon)
     trial.advance()
     trial.diagnose(trial.foresee(2))
     if trial.scene.accepts_commands:

@@ -63,7 +63,12 @@ def about(made_by, simulation, parameters):
 def run_of(simulation):
     """Return what a Simulation was asked for and what it chose, as a dict: with the scene, enough to make it again."""
     return {'integrator': simulation.integrator, 'accuracy': simulation.accuracy, 'step': simulation.choice.step, 'rate': simulation.rate,
-            'method': simulation.choice.method}
+            **method_of(simulation.choice)}
+
+
+def method_of(choice):
+    """Return what a Choice fell upon, as a dict: `settled` of choice.choose can be made of it."""
+    return {'method': choice.method, 'horizon': choice.horizon, 'tolerance': choice.tolerance, 'expected_error': choice.expected_error}
 
 
 def state_entry(tick, simulation):

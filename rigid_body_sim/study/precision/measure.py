@@ -39,6 +39,7 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
 
     Returns
     -------
+    dict
         ``lines``: for each runner name, control, is_peer, ``notes`` (what went wrong at some settings) and ``points``: setting, set_up (s),
         errors, residuals, cpu per simulated second: median, least, most; ``refused``: name -> reason.
     """

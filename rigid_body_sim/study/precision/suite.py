@@ -51,14 +51,26 @@ _PROBLEMS = {
         HEAVY, 'pivot', WEIGHT, '{angular_velocity: [1.0e-6, 0, 34.2931]}')),
 }
 
-NAMES = tuple(_PROBLEMS)
+# kinds of scene that the suite lacks, for the table that `auto` chooses by
+_TRAINING = {
+    'damped_heavy_top': ('drag on an asymmetric top', 10.0, _written(
+        '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}', 'pivot',
+        '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]', '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}')),
+    'driven_pendulum': ('a pendulum under a constant couple', 20.0, _written(
+        '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}',
+        '[gravity: {g: 9.81}, torque: {value: [0, 1.5, 0]}]', '{angle: 0.3, rate: 4.0}')),
+    'damped_pendulum': ('a pendulum with drag', 20.0, _written(
+        '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}',
+        '[gravity: {g: 9.81}, drag: {linear: 0.05, angular: 0.01}]', '{angle: 0.3, rate: 9.0}')),
+}
+NAMES, TRAINING = tuple(_PROBLEMS), tuple(_TRAINING)
 QUICK = ('racket', 'heavy_symmetric_top', 'asymmetric_heavy_top', 'driven_body')
 """What the quick form of the study runs: two problems with a closed form, two without."""
 
 
 def problem(name):
     """Return a problem of the suite."""
-    about, duration, text = _PROBLEMS[name]
+    about, duration, text = (_PROBLEMS | _TRAINING)[name]
     return Problem(name, about, duration, parse_scene(f'scene: {name}\n{text}', where=f'suite: {name}'))
 
 
