@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble soak figures bench bench-node study study-full pins pins-noble clean
+.PHONY: help run test lint package test-noble soak figures bench bench-node bench-choice study study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -59,6 +59,9 @@ bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes
 
 study: .venv/run.stamp ## what accuracy costs in time: four problems, our methods; table, JSON and figure in study/
 	.venv/bin/python -m rigid_body_sim work_precision --quick --output study
+
+bench-choice: .venv/run.stamp ## what auto chooses on scenes outside its table: errors and cost
+	.venv/bin/python bench/choice.py
 
 study-full: .venv-peers/stamp ## the whole suite with the peers, about an hour; in study-full/
 	.venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full

@@ -54,7 +54,7 @@ NOISE = 2.0 ** -44       # of an increment: changes so small that no longer fall
 # The rates of y' = i nu y with x = nu h have Legendre coefficients c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!) for large n: c_(n + 1)/c_n is
 # x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by (8!)^2/(16! 17!) x^17: that is UNSEEN x^9 times the 7th.
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
-LONGEST = 3.5            # x beyond which substitution is slow, and its last change says little of what is left
+LONGEST = 1.8            # of x, which is half the angle that a body turns: from 1.85 on nutation of fast tops can grow from step to step
 ENOUGH = 0.03            # of what is allowed: a change so small says that one sweep less would do
 
 

@@ -37,6 +37,12 @@ def floor(scene, horizon):
     return HALF_ULP * (4.0 + pace(scene) * horizon)
 
 
+def rows(scene):
+    """Return the measurements for a scene's kind: method -> list of dicts with tolerance, error, cost, from coarse to fine."""
+    kinds = table()['kinds']
+    return kinds.get(kind(scene)) or kinds[scene.constraint.kind]
+
+
 def pick(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) of the cheapest method measured to meet an accuracy, else of the most accurate one.
 
@@ -50,11 +56,9 @@ def pick(scene, able, accuracy, horizon):
     horizon : float
         Over which it is asked for, s.
     """
-    kinds = table()['kinds']
-    rows = kinds.get(kind(scene)) or kinds[scene.constraint.kind]
     good, rest = [], []
     for method in able:
-        entries = rows.get(method, [])
+        entries = rows(scene).get(method, [])
         first = next((entry for entry in entries if entry['error'] <= accuracy), None)
         if first:
             good.append((first['cost'], first['error'], method, first['tolerance']))

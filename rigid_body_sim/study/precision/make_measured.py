@@ -16,7 +16,7 @@ from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.recording.about import machine
 from rigid_body_sim.study.precision import measure, reference, runner, suite
 
-LIMIT, REPEATS = 0.05, 7
+LIMIT, REPEATS = 0.02, 7
 
 
 def main():

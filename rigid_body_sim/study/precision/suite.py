@@ -53,6 +53,9 @@ _PROBLEMS = {
 
 # kinds of scene that the suite lacks, for the table that `auto` chooses by
 _TRAINING = {
+    'fast_asymmetric_top': ('fast nutation of a small size', 10.0, _written(
+        '{mass: 0.4, inertia: [0.003, 0.0036, 0.002], inertia_about: origin, center_of_mass: [0.002, 0, 0.04]}', 'pivot', WEIGHT,
+        '{euler_zyz: [0.3, 0.5, 0.1], angular_velocity: [0.4, 0.3, 120]}')),
     'damped_heavy_top': ('drag on an asymmetric top', 10.0, _written(
         '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}', 'pivot',
         '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]', '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}')),
