@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from data import choice_cases
 
+from rigid_body_sim import simulate
+from rigid_body_sim.analysis import resimulate
 from rigid_body_sim.choice import choose
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
@@ -71,3 +73,15 @@ def test_the_horizon_is_the_duration_and_counts():
     assert short.choice.expected_error < long.choice.expected_error
     with pytest.raises(BadInput, match='horizon'):
         choose(scene_of('slow_top'), horizon=0.0)
+
+
+def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch):
+    (tmp_path / 'top.yaml').write_text(choice_cases.text('slow_top'))
+    asked = ['--scene', str(tmp_path / 'top.yaml'), '--duration', '0.2', '--accuracy', '1e-6', '--output', str(tmp_path / 'run'), '--json']
+    assert simulate.main(asked) == 0
+    method = json.loads(capsys.readouterr().out)['method']
+    assert method['horizon'] == 0.2
+    assert 0.0 < method['expected_error'] <= 1e-6
+    monkeypatch.setattr(measured, 'pick', lambda *_: ('rk4', None, 1.0))
+    assert resimulate.main([str(tmp_path / 'run')]) == 0
+    assert 'identical' in capsys.readouterr().out

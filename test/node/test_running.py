@@ -211,6 +211,7 @@ def test_diagnostics_tell_with_17_digits(client):
     ledger = {pair.key: pair.value for pair in statuses['sim_node: ledger'].values}
     assert f'{float(ledger["kinetic"]):.17g}' == ledger['kinetic']
     assert abs(float(ledger['energy_residual'])) < 1e-11
+    assert ledger['method'] == 'exact' and 0.0 < float(ledger['expected_error']) < 1e-12
     assert statuses['sim_node: recording'].message == 'recording'
     prediction = {pair.key: pair.value for pair in statuses['sim_node: prediction'].values}
     expected = asymmetric_top.time_between_flips((1.0, 2.0, 2.5), (1.0, 0.8, -1.5))
