@@ -239,7 +239,8 @@ def _jacobi_eigenvectors(matrix):
     vectors = np.eye(3, dtype=np.longdouble)
     for _ in range(12):
         for i, j in ((0, 1), (0, 2), (1, 2)):
-            if a[i, j] == 0.0:
+            if a[i, j] * a[i, j] == 0.0:    # nothing is left to turn away, and its ratio might overflow
+                a[i, j] = a[j, i] = 0.0
                 continue
             ratio = (a[j, j] - a[i, i]) / (2.0 * a[i, j])
             tangent = 1.0 / (abs(ratio) + np.hypot(np.longdouble(1.0), ratio))

@@ -132,3 +132,15 @@ def test_needle_keeps_its_small_moment_when_turned():
     turn = Rotation.from_euler('z', 90, degrees=True)
     matrix = np.round(turn.as_matrix()) @ np.diag([1.0, 1e-12, 1.0]) @ np.round(turn.as_matrix()).T
     assert sorted(bodies.Inertia.of_matrix(matrix).moments) == [1e-12, 1.0, 1.0]
+
+
+@pytest.mark.filterwarnings('error')
+def test_graded_tensors_are_solved_without_overflow():
+    """A rotation leaves an off-diagonal element of 1e-4900 here and there; its quotient is beyond extended precision."""
+    rng = np.random.default_rng(0)
+    for _ in range(400):
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        tensor = turn @ np.diag([1.0, 2.0, 2.5] * 10.0 ** rng.integers(-8, 8, 3)) @ turn.T
+        moments, vectors = bodies._jacobi_eigenvectors((tensor + tensor.T) / 2.0)
+        assert np.abs(vectors.T @ vectors - np.eye(3)).max() < 1e-15
+        assert np.trace(tensor) == near(moments.sum(), 1e-14)
