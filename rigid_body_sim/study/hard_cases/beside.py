@@ -1,7 +1,11 @@
-"""The peers beside a case: the attitude at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say."""
+"""The peers beside a case: the attitude at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say.
+
+Each answer is asked of a process of its own, so that a peer that crashes or goes on for ever is one more answer.
+"""
 
 import importlib
 import math
+import multiprocessing
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.study.hard_cases.attitudes import angle, scene_of
@@ -9,8 +13,10 @@ from rigid_body_sim.study.hard_cases.attitudes import angle, scene_of
 LONGEST = 100.0
 """s: later reference times would take the peers hours."""
 STEP, TOLERANCE = 1e-3, 1e-12
-MOST_RADIANS = 1e6
+MOST_RADIANS = 1e4
 """Turned over, beyond which even a step a radian takes a peer minutes."""
+PATIENCE = 30.0
+"""s: a peer that has not answered by then has none."""
 
 
 def modules():
@@ -41,6 +47,21 @@ def at(record):
 
 def error(module, record):
     """Return the attitude error (rad) of a peer on a record, or a text that says why there is none."""
+    context = multiprocessing.get_context('fork')
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=lambda: theirs.send(_error(module, record)))
+    process.start()
+    theirs.close()
+    try:
+        answer = ours.recv() if ours.poll(PATIENCE) else f'no answer in {PATIENCE:g} s'
+    except EOFError:
+        answer = 'crashes'
+    process.kill()
+    process.join()
+    return answer
+
+
+def _error(module, record):
     from rigid_body_sim.study.precision import peers
     from rigid_body_sim.study.precision.runner import RefusedError
     from rigid_body_sim.study.precision.suite import Problem

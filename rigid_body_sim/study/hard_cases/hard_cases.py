@@ -43,8 +43,8 @@ def measure(with_peers, watch):
     rows = []
     for case in tqdm(CASES, disable=not watch, unit='case'):
         outcome = case.run()
-        row = {'group': GROUPS[case.group], 'case': case.name, 'why': case.why, 'error': _number(outcome.error), 'bound': outcome.bound,
-               'unit': outcome.unit, 'reason': outcome.reason, 'good': outcome.good, 'peers': {}}
+        row = {'group': GROUPS[case.group], 'case': case.name, 'why': case.why, 'error': _number(float(outcome.error)),
+               'bound': float(outcome.bound), 'unit': outcome.unit, 'reason': outcome.reason, 'good': bool(outcome.good), 'peers': {}}
         if case.record and installed:
             row['peer_time'] = beside.at(case.record)['time']
             row['peers'] = {name: beside.error(module, case.record) for name, module in installed.items()}
