@@ -53,6 +53,7 @@ figures: .venv/run.stamp ## figures and tables of README and docs anew
 bench: .venv/run.stamp ## cost of one state in closed form; recordings: writing, size, reading
 	.venv/bin/python bench/closed_forms.py
 	.venv/bin/python bench/recordings.py
+	.venv/bin/python bench/smooth_scenes.py
 
 bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else
 	.venv/bin/python bench/node.py
