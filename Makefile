@@ -55,8 +55,9 @@ bench: .venv/run.stamp ## cost of one state in closed form; recordings: writing,
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
 
-bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else
+bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; parts of a tick at each accuracy
 	.venv/bin/python bench/node.py
+	.venv/bin/python bench/tick.py
 
 study: .venv/run.stamp ## what accuracy costs in time: four problems, our methods; table, JSON and figure in study/
 	.venv/bin/python -m rigid_body_sim work_precision --quick --output study

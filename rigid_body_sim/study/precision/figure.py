@@ -18,28 +18,33 @@ def draw(results):
     rows = math.ceil(len(results) / columns)
     figure = Figure(figsize=(7.6 * columns, 4.9 * rows), dpi=110, layout='constrained')
     FigureCanvasAgg(figure)
+    looks = {}    # a method looks the same in all panels
+    for peers in (False, True):
+        names = dict.fromkeys(line['name'] for result in results for line in result['lines'] if line['is_peer'] == peers)
+        looks |= {name: number for number, name in enumerate(names)}
     for result, axes in zip(results, figure.subplots(rows, columns, squeeze=False).flat):
-        panel(axes, result)
+        panel(axes, result, looks)
     for axes in figure.axes[len(results):]:
         axes.remove()
     return figure
 
 
-def panel(axes, result):
-    """Draw one problem."""
+def panel(axes, result, looks):
+    """Draw one problem; `looks` has a number for each method, which is its colour and marker."""
     floor = result['floor']
     axes.axhspan(LEAST, floor, color=SHADE, linewidth=0.0, zorder=0)
-    axes.text(0.99, floor, 'half an ulp on the inputs ', ha='right', va='top', fontsize=7.5, transform=axes.get_yaxis_transform())
+    axes.text(0.01, floor, 'half an ulp on the inputs', ha='left', va='top', fontsize=7.5, transform=axes.get_yaxis_transform())
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
     for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
-        for k, line in enumerate(lines):
+        for line in lines:
+            k = looks[line['name']]
             colour = COLOURS[k % len(COLOURS)]
             times = [point['cpu']['median'] for point in line['points']]
             spread = [[t - point['cpu']['least'] for t, point in zip(times, line['points'])],
                       [point['cpu']['most'] - t for t, point in zip(times, line['points'])]]
             errors = [min(MOST, max(LEAST, point['error'])) for point in line['points']]
-            single = len(times) == 1
+            single = line['control'] == 'none'
             axes.errorbar(times, errors, xerr=spread, linestyle=dashes, color=colour, marker='*' if single else MARKERS[k % len(MARKERS)],
                           markersize=15 if single else 5, markerfacecolor=colour if filled else 'white', linewidth=1.3, elinewidth=0.6,
                           label=line['name'], zorder=4 if single else 3)
