@@ -37,7 +37,7 @@ TAIL = """
 ![Energy error and attitude error of RK4 beside the separatrix over 60 s](images/hard_cases.png)
 
 *RK4 of 1 ms one ulp beside the separatrix of I = (3, 4, 6): energy stays at round-off, the attitude is wrong by 1e-6 rad after 40 s and by
-far more when the body turns over. Only a reference shows it, so every case here is held to one, or to a law that a wrong state breaks.*
+2e-3 rad when the body turns over. Only a reference shows it, so every case here is held to one, or to a law that a wrong state breaks.*
 """
 
 

@@ -4,6 +4,7 @@ The measurements are those of rigid_body_sim/integrators/measured.py.
 """
 
 import difflib
+import math
 from dataclasses import dataclass
 
 from rigid_body_sim.effects.wrench import Wrench
@@ -14,6 +15,7 @@ from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.exact import Exact
 
 FINEST_ACCURACY = 1e-15
+STIFF = 10.0    # rates of dissipation beyond so many times that of the rotation
 HORIZON = 100.0
 """Over which an accuracy holds where no duration is given, s."""
 
@@ -58,6 +60,18 @@ class Choice:
         return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
 
 
+def _bearing_heat(scene, able):
+    """Return the methods without gauss16 where internal dissipation is stiff: its iteration does not converge there, dop8 steps to the end.
+
+    The rate c L^2/I of dissipation is c L times that of the rotation, L/I.
+    """
+    inner = scene.effect('internal_dissipation')
+    if inner is None:
+        return able
+    momentum = scene.body.about_center.matrix @ scene.initial.angular_velocity
+    return [name for name in able if name != 'gauss16'] if inner.coefficient * math.hypot(*momentum) > STIFF else able
+
+
 def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
     """Return the Choice for a scene.
 
@@ -96,7 +110,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     able = runnable(scene)
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
-        method, tolerance, expected = settled or measured.pick(scene, able, accuracy, horizon)
+        method, tolerance, expected = settled or measured.pick(scene, _bearing_heat(scene, able), accuracy, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
