@@ -121,7 +121,7 @@ TABLE = (
     Entry('scene_overrides', (), 'changes of the scene, each key.path=value', changeable=True),
     Entry('rate', 1000.0, 'ticks per second of simulated time (Hz)', 1e-3, 1e5, changeable=True),
     Entry('integrator', 'auto', 'method; auto: the exact one if there is, else the cheapest that meets accuracy', changeable=True),
-    Entry('accuracy', 1e-12, 'relative error of the state that a stepped method may make', 1e-15, 1e-1, changeable=True),
+    Entry('accuracy', 1e-12, 'error of the attitude asked for, over duration or 100 s (rad)', 1e-15, 1e-1, changeable=True),
     Entry('real_time_factor', 1.0, 'simulated seconds per second; 0: as fast as it goes', 0.0, 1e6, changeable=True),
     Entry('duration', 0.0, 'simulated seconds after which the node ends (s); 0: endless', 0.0, 1e9),
     Entry('overrun', 'slip', 'when it cannot keep up: slip (simulated time falls behind) or skip_publish (messages are left out first)',

@@ -50,6 +50,16 @@ def test_errors_are_rotation_angles_at_the_end_and_along_the_way(racket):
     assert point['cpu']['least'] <= point['cpu']['median'] <= point['cpu']['most']
 
 
+def test_a_lucky_coarse_setting_does_not_end_a_sweep_but_round_off_does(racket):
+    problem, truth = racket
+
+    def swept(*errors):
+        one = runner.Runner('swept', 'step', errors, lambda error: made_up(problem, truth, '', error).make(None))
+        return [point['setting'] for point in measure.measure(problem, truth, [one], 1.0, 1)['lines'][0]['points']]
+    assert swept(1e-2, 1.0, 1.0, 1e-3) == [1e-2, 1.0, 1.0, 1e-3]
+    assert swept(1e-3, 1e-12, 1e-10, 1e-10, 1e-10) == [1e-3, 1e-12, 1e-10, 1e-10]
+
+
 def test_refusals_are_recorded_and_nan_is_one(racket):
     def refuses(_):
         raise runner.RefusedError('a rod has no inverse')

@@ -18,8 +18,8 @@ from rigid_body_sim.study.precision.runner import RefusedError
 
 SAMPLE = 1e-3
 """A timed sample takes at least this long, s."""
-WORSE = 4.0
-"""A sweep ends after two settings that are that much worse than the best one: round-off has won."""
+WORSE, NEAR = 4.0, 1e4
+"""A sweep ends after two settings that are that much worse than the best one, if this is so near the floor: round-off has won."""
 
 
 def measure(problem, reference, runners, limit, repeats, watch=None):
@@ -95,7 +95,7 @@ def _sweep(problem, reference, runner, limit, balance, notes):
         angles, omegas = reference.errors(states)
         yield {'setting': setting, 'set_up': set_up, 'first_run': first_run, 'error': float(angles[-1]), 'largest_error': float(angles.max()),
                'omega_error': float(omegas[-1]), 'largest_omega_error': float(omegas.max()), **balance.residuals(final, reference)}, run
-        worse = worse + 1 if angles[-1] > WORSE * best else 0
+        worse = worse + 1 if angles[-1] > WORSE * best and best < NEAR * reference.floor[-1] else 0
         best = min(best, angles[-1])
         if worse == 2 or first_run > limit:
             return
