@@ -66,6 +66,13 @@ def add(a, al, b, bl):
     return quick_two_sum(s, e + f)
 
 
+@compiled_inline
+def add_double(a, al, b):
+    """Return a + b for a pair a and a double b: how sums are carried on with what they lose."""
+    s, e = two_sum(a, b)
+    return quick_two_sum(s, e + al)
+
+
 @compiled
 def add_alike(a, al, b, bl):
     """Return a + b to 3 u^2 of the result, for a and b of one sign."""

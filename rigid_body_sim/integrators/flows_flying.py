@@ -5,6 +5,7 @@ both sums carry what they lose (Kahan).
 """
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.double_double import add_double
 from rigid_body_sim.integrators.euler import INVERSE, MASS
 from rigid_body_sim.specialise import UNBOUND
 
@@ -19,11 +20,9 @@ force = UNBOUND
 @compiled
 def drift(p, y, c, h):
     """Return (y, c) after the body has moved freely for a time h."""
-    (q1, q2, q3, q4, w1, w2, w3), _ = rotation_drift(p, y[:7], c[:7], h)
-    d1, d2, d3 = h * y[10] + c[7], h * y[11] + c[8], h * y[12] + c[9]
-    x1, x2, x3 = y[7] + d1, y[8] + d2, y[9] + d3
-    return ((q1, q2, q3, q4, w1, w2, w3, x1, x2, x3, y[10], y[11], y[12]),
-            (*c[:7], d1 - (x1 - y[7]), d2 - (x2 - y[8]), d3 - (x3 - y[9]), c[10], c[11], c[12]))
+    z, lost = rotation_drift(p, y[:7], c[:7], h)
+    (x1, l1), (x2, l2), (x3, l3) = add_double(y[7], c[7], h * y[10]), add_double(y[8], c[8], h * y[11]), add_double(y[9], c[9], h * y[12])
+    return (*z, x1, x2, x3, y[10], y[11], y[12]), (*lost, l1, l2, l3, c[10], c[11], c[12])
 
 
 @compiled
@@ -51,14 +50,15 @@ def kick_with_heat(p, y, c, h):
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     z, c = _added(p, y, c, h, tx, ty, tz, fx, fy, fz)
     q1, q2, q3, q4 = rotation_turned(y, h * ux, h * uy, h * uz)
-    return (q1, q2, q3, q4, *z[4:]), c
+    return (q1, q2, q3, q4, *z[4:]), (0.0, 0.0, 0.0, 0.0, *c[4:])
 
 
 @compiled
 def _added(p, y, c, h, tx, ty, tz, fx, fy, fz):
     """Return (y, c) after a torque (frame) and a force (world) for a time h."""
-    z, lost = rotation_added(y[:7], c[:7], h * p[INVERSE] * tx, h * p[INVERSE + 1] * ty, h * p[INVERSE + 2] * tz)
-    d1, d2, d3 = h * fx / p[MASS] + c[10], h * fy / p[MASS] + c[11], h * fz / p[MASS] + c[12]
-    v1, v2, v3 = y[10] + d1, y[11] + d2, y[12] + d3
-    return ((*z, y[7], y[8], y[9], v1, v2, v3),
-            (*lost, c[7], c[8], c[9], d1 - (v1 - y[10]), d2 - (v2 - y[11]), d3 - (v3 - y[12])))
+    z, lost = rotation_added(p, y[:7], c[:7], h, tx, ty, tz)
+    mass = p[MASS]
+    v1, l1 = add_double(y[10], c[10], h * fx / mass)
+    v2, l2 = add_double(y[11], c[11], h * fy / mass)
+    v3, l3 = add_double(y[12], c[12], h * fz / mass)
+    return (*z, y[7], y[8], y[9], v1, v2, v3), (*lost, c[7], c[8], c[9], l1, l2, l3)

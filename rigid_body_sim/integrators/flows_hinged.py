@@ -1,6 +1,7 @@
 """Template: the two flows of a body on a hinge; unknowns as in hinged.py. A drift goes on with the rate, a kick changes the rate."""
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.double_double import add_double
 from rigid_body_sim.specialise import UNBOUND
 
 rate = UNBOUND
@@ -9,22 +10,19 @@ rate = UNBOUND
 @compiled
 def drift(p, y, c, h):
     """Return (y, c) after the body has turned freely for a time h."""
-    d = h * y[1] + c[0]
-    phi = y[0] + d
-    return (phi, y[1]), (d - (phi - y[0]), c[1])
+    phi, lost = add_double(y[0], c[0], h * y[1])
+    return (phi, y[1]), (lost, c[1])
 
 
 @compiled
 def kick(p, y, c, h):
     """Return (y, c) after the torque has acted alone for a time h."""
-    d = h * rate(p, y)[1] + c[1]
-    speed = y[1] + d
-    return (y[0], speed), (c[0], d - (speed - y[1]))
+    speed, lost = add_double(y[1], c[1], h * rate(p, y)[1])
+    return (y[0], speed), (c[0], lost)
 
 
 @compiled
 def kick_with_heat(p, y, c, h):
     """Return (y, c) after the torque, which depends on the rate, has acted alone for a time h, by the explicit midpoint rule."""
-    d = h * rate(p, (y[0], y[1] + 0.5 * h * rate(p, y)[1]))[1] + c[1]
-    speed = y[1] + d
-    return (y[0], speed), (c[0], d - (speed - y[1]))
+    speed, lost = add_double(y[1], c[1], h * rate(p, (y[0], y[1] + 0.5 * h * rate(p, y)[1]))[1])
+    return (y[0], speed), (c[0], lost)
