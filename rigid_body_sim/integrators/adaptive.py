@@ -13,6 +13,7 @@ rate = UNBOUND
 settled = UNBOUND
 step = UNBOUND
 trial = UNBOUND
+fastest = UNBOUND
 load = UNBOUND
 put = UNBOUND
 load_scales = UNBOUND
@@ -22,7 +23,16 @@ ORDER = UNBOUND
 
 TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
+SPEED = 10.0               # 1/s, of a first step where nothing moves yet
 TRIALS = 60                # of one step: after so many refusals it is given up
+
+
+@compiled
+def begin(p, control, node):
+    """Choose the first step from a node whose time and unknowns are set."""
+    y = load(node, VALUES)
+    speed = fastest(y, rate(p, y))
+    node[STEP] = math.pow(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
 
 @compiled

@@ -4,8 +4,6 @@ Loops over the eight stages are the inner ones, on arrays in which the stages of
 code without being asked to reorder any sum.
 """
 
-import math
-
 import numpy as np
 
 from rigid_body_sim.integrators import gauss_march, unroll
@@ -14,7 +12,6 @@ from rigid_body_sim.integrators.gauss_nodes import STAGES
 from rigid_body_sim.specialise import specialise
 
 TERMS = 2 * STAGES + 1
-FIRST = 0.5    # rad of the fastest unknown, in the first step
 
 
 def equations(scene, wrench, books):
@@ -35,23 +32,15 @@ def march(method, bound, adapts):
         load_scales=unroll.load_source('load_scales', relative), put_scales=unroll.put_source('put_scales', relative),
         stage_rates=_stage_rates(n, size, bound.parameter_count), spread=_spread(n), combined=_combined(size, STAGES * n),
         advanced=_advanced(size), along=_along(size, places['CURVE']),
-        end_of_curve=_end_of_curve(n, places['CURVE']), measure=_measure(groups), grown=_grown(groups))
+        end_of_curve=_end_of_curve(n, places['CURVE']), measure=_measure(groups), grown=_grown(groups),
+        fastest=unroll.fastest_source(groups), first_scales=_first_scales(groups))
 
 
-def begin(stepped, bound, kernels, p, y, time):
-    """Return (control, node) at the start of a march from the unknowns y (books included)."""
+def begin(stepped, kernels):
+    """Return (control, node) of a march, to be copied for each start."""
     control, node = np.zeros(gauss_march.WORK + kernels.CURVE + TERMS * kernels.SIZE), np.zeros(kernels.KEPT + STAGES * kernels.SIZE)
-    control[gauss_march.WORK + kernels.FOR + 3] = math.nan    # no curve yet
     control[kernels.TOLERANCE] = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
-    control[kernels.FIXED], control[kernels.ORIGIN] = stepped.step or 0.0, time
-    rates = np.array(bound.kernels.rate(p, tuple(y.tolist())))
-    sizes = [(absolute, math.hypot(*y[first:last]), math.hypot(*rates[first:last])) for first, last, absolute in bound.kind.GROUPS]
-    fastest = max(change if absolute else change / size if size > 0.0 else 0.0 for absolute, size, change in sizes)
-    h = FIRST / fastest if fastest > 0.0 else 1e-3
-    node[kernels.TIME], node[kernels.STEP], node[kernels.KEPT - 1] = time, 0.0 if stepped.step else h, 1.0
-    scales = [max(size, change * h) for absolute, size, change in sizes if not absolute]
-    node[kernels.SCALES:kernels.SCALES + len(scales)] = np.square(scales)
-    node[kernels.VALUES:kernels.VALUES + len(y)] = y
+    control[kernels.FIXED] = stepped.step or 0.0
     return control, node
 
 
@@ -118,6 +107,16 @@ def _grown(groups):
     squares = [' + '.join(f'y[{u}] * y[{u}]' for u in range(first, last)) for first, last, absolute in groups if not absolute]
     entries = ''.join(f'max(scales[{place}], {square}), ' for place, square in enumerate(squares))
     return '\n'.join(['@compiled', 'def grown(scales, y):', f'    return ({entries})', ''])
+
+
+def _first_scales(groups):
+    """Return the source of ``first_scales(y, k, h)``: the squared scales at y, where a first step h with rates k moves."""
+    entries = []
+    for first, last, absolute in groups:
+        if not absolute:
+            square, change = (' + '.join(f'{name}[{u}] * {name}[{u}]' for u in range(first, last)) for name in 'yk')
+            entries.append(f'max({square}, h * h * ({change})), ')
+    return '\n'.join(['@compiled', 'def first_scales(y, k, h):', f'    return ({"".join(entries)})', ''])
 
 
 def _tree(terms):

@@ -3,6 +3,8 @@
 What the scene does not list is not in the code.
 """
 
+import bisect
+
 import numpy as np
 
 from rigid_body_sim.effects.views import Frame
@@ -10,9 +12,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.integrators import euler, flying, hinged, turning
 from rigid_body_sim.mechanics import moment_about_hinge
-from rigid_body_sim.rotations import multiply, rotate
 from rigid_body_sim.specialise import specialise
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY
+from rigid_body_sim.state import TIME
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
 
@@ -34,7 +35,8 @@ class Equations:
     kind : module
         turning, flying or hinged: which unknowns there are.
     kernels : module
-        `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``write(p, time, y, out)``.
+        `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, node, at)``,
+        ``write(p, time, y, out)``.
     breakpoints : tuple of floats
         Times (s) at which the parameters jump.
     acts : bool
@@ -73,37 +75,47 @@ class Equations:
         if self.kind is flying:
             sources['force'] = force_source(calls)
         self.kernels = specialise(self.kind, **sources)
+        self._fixed, self._held = self._constants(), {}
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self.frame, time)]
 
-    def start(self, vector):
-        """Return (fixed parameters, unknowns) of a start, a state vector (14)."""
-        frame, q, omega = self.frame, tuple(vector[ORIENTATION].tolist()), tuple(vector[ANGULAR_VELOCITY].tolist())
-        q_frame, omega_frame = multiply(*q, *frame.axes), frame.from_body(omega)
-        point = np.array(rotate(*q, *frame.point))
-        place = vector[POSITION] + point
-        drift = vector[VELOCITY] + rotate(*q, *np.cross(omega, frame.point))
-        fixed = np.zeros(euler.FIXED)
+    def _constants(self):
+        """Return the fixed parameters, without those that a start decides."""
+        frame, fixed = self.frame, np.zeros(hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED)
         fixed[euler.AXES:euler.AXES + 4], fixed[euler.POINT:euler.POINT + 3] = frame.axes, frame.from_body(frame.point)
-        fixed[euler.START], fixed[euler.PLACE:euler.PLACE + 3], fixed[euler.MASS] = vector[TIME], place, frame.mass
+        fixed[euler.MASS], fixed[euler.MOVES] = frame.mass, float(frame.kind == 'free')
         if self.kind is hinged:
-            fixed[euler.INVERSE] = 1.0 / self._moment
-            return (*fixed, *self._axis, *q), (0.0, float(np.dot(self._axis, omega)))
+            fixed[euler.INVERSE], fixed[hinged.AXIS:hinged.AXIS + 3] = 1.0 / self._moment, self._axis
+            return fixed
         moments = np.array(frame.moments)
-        heavy = moments > 0.0
         fixed[euler.MOMENTS:euler.MOMENTS + 3] = moments
-        fixed[euler.INVERSE:euler.INVERSE + 3] = inverse = np.divide(1.0, moments, out=np.zeros(3), where=heavy)
+        fixed[euler.INVERSE:euler.INVERSE + 3] = inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
         differences = np.roll(moments, -1) - np.roll(moments, -2)
         fixed[euler.EULER:euler.EULER + 3] = np.divide(differences, moments, out=np.zeros(3), where=inverse > 0.0)
-        omega_frame = tuple(float(w) if heavy[k] else 0.0 for k, w in enumerate(omega_frame))
-        if self.kind is flying:
-            return tuple(fixed), (*q_frame, *omega_frame, *place.tolist(), *drift.tolist())
-        fixed[euler.DRIFT:euler.DRIFT + 3] = drift if frame.kind == 'free' else 0.0
-        return tuple(fixed), (*q_frame, *omega_frame)
+        return fixed
+
+    def held(self, time):
+        """Return the parameters that hold just after a time, as an array of the caller's own; those of the start are to be set."""
+        k = bisect.bisect_right(self.breakpoints, time)
+        if k not in self._held:
+            self._held[k] = self.parameters(self._fixed, time)
+        return self._held[k].copy()
+
+    def continued(self, p, time):
+        """Return the parameters that hold just after a time, of a start whose parameters are p."""
+        held = self.held(time)
+        held[:len(self._fixed)] = p[:len(self._fixed)]
+        return held
+
+    def start(self, vector):
+        """Return (parameters, unknowns with the books) of a start, a state vector (14)."""
+        p, y = self.held(float(vector[TIME])), np.zeros(self.kind.UNKNOWNS + self.extra)
+        self.kernels.start(p, vector, y, 0)
+        return p, y
 
     def parameters(self, fixed, time):
-        """Return the parameters that hold just after a time: the fixed ones of a start, then the values of all that acts."""
+        """Return the parameters that hold just after a time: the fixed ones, then the values of all that acts."""
         return np.array([*fixed, *(value for one in self._acting(time) for value in one.values)])
 
 

@@ -4,13 +4,13 @@ Layout of the first parameters of every scene kind; the values of all that acts 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.rotations import multiply, normalised, rotate
+from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
 
 EULER, INVERSE, MOMENTS = 0, 3, 6          # (I2 - I3)/I1 ..., 1/I1 ..., I1 ...; the first two are 0 where the moment is 0
 AXES, POINT = 9, 13                        # quaternion, frame -> body; body origin -> point of reference, frame components
 START, PLACE, DRIFT = 16, 17, 20           # time, position and velocity of the point of reference at the start (world)
-MASS = 23
-FIXED = 24
+MASS, MOVES = 23, 24                       # MOVES: 1 of a free body, 0 where the point of reference is held
+FIXED = 25
 
 
 @compiled
@@ -31,6 +31,21 @@ def attitude_rate(qx, qy, qz, qw, wx, wy, wz):
 def lost_norm(qx, qy, qz, qw):
     """Return (1 - |q|^2)/2, what q must be stretched by to have norm 1 again, to second order."""
     return 0.5 * ((1.0 - qw * qw - qz * qz) - qx * qx - qy * qy)
+
+
+@compiled
+def read_state(p, vector):
+    """Set the parameters that a start, a state vector, decides; return q and omega of the frame, place and velocity of its point (world)."""
+    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
+    px, py, pz = p[POINT], p[POINT + 1], p[POINT + 2]
+    qx, qy, qz, qw = multiply(vector[1], vector[2], vector[3], vector[4], ax, ay, az, aw)
+    wx, wy, wz = rotate_back(ax, ay, az, aw, vector[5], vector[6], vector[7])
+    ux, uy, uz = rotate(qx, qy, qz, qw, px, py, pz)
+    x, y, z = vector[8] + ux, vector[9] + uy, vector[10] + uz
+    ux, uy, uz = rotate(qx, qy, qz, qw, wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px)
+    vx, vy, vz = p[MOVES] * (vector[11] + ux), p[MOVES] * (vector[12] + uy), p[MOVES] * (vector[13] + uz)
+    p[START], p[PLACE], p[PLACE + 1], p[PLACE + 2], p[DRIFT], p[DRIFT + 1], p[DRIFT + 2] = vector[0], x, y, z, vx, vy, vz
+    return (qx, qy, qz, qw), taken(p, wx, wy, wz), (x, y, z), (vx, vy, vz)
 
 
 @compiled

@@ -19,6 +19,12 @@ NEARLY = 1e-9    # of a step: an end that close to a node is that node
 
 
 @compiled
+def begin(p, control, node):
+    """Take the time of a node as the origin of all times."""
+    control[1] = node[TIME]
+
+
+@compiled
 def march(p, control, node, following, target, end, limit):
     """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
 

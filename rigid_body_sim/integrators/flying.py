@@ -5,7 +5,7 @@ rigid_body_sim/integrators/turning.py, about the centre of mass; x' = v, M v' = 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import MASS, attitude_rate, lost_norm, taken, write_state  # noqa: F401
+from rigid_body_sim.integrators.euler import MASS, attitude_rate, lost_norm, read_state, taken, write_state  # noqa: F401
 from rigid_body_sim.rotations import rotate  # noqa: F401
 from rigid_body_sim.specialise import UNBOUND
 
@@ -17,6 +17,15 @@ booked = UNBOUND
 
 UNKNOWNS = 13
 GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
+
+
+@compiled
+def start(p, vector, node, at):
+    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+    q, omega, place, drift = read_state(p, vector)
+    y = (*q, *omega, *place, *drift)
+    for u in range(UNKNOWNS):
+        node[at + u] = y[u]
 
 
 @compiled

@@ -27,6 +27,8 @@ combined = UNBOUND
 advanced = UNBOUND
 measure = UNBOUND
 grown = UNBOUND
+fastest = UNBOUND
+first_scales = UNBOUND
 along = UNBOUND
 end_of_curve = UNBOUND
 # counts of the unknowns, with books and without, and places that follow from them
@@ -48,6 +50,7 @@ WORTH = 1.05             # change of step below which the step stays: another pr
 TRIALS = 60              # of one step
 MOST_SWEEPS = 45         # of one trial: slower convergence asks for a smaller step
 COMFORTABLE = 13         # beyond it longer steps cost more than they save
+FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, where nothing moves yet
 FIRST_SWEEPS = 4         # of a step without one before it
 ROUNDING = 2.0 ** -60    # of an increment: nothing to it
 NOISE = 2.0 ** -44       # of an increment: changes so small that no longer fall are rounding
@@ -56,6 +59,18 @@ NOISE = 2.0 ** -44       # of an increment: changes so small that no longer fall
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
 LONGEST = 1.8            # of x, which is half the angle that a body turns: from 1.85 on nutation of fast tops can grow from step to step
 ENOUGH = 0.03            # of what is allowed: a change so small says that one sweep less would do
+
+
+@compiled
+def begin(p, control, node):
+    """Choose the first step from a node whose time and unknowns are set, and the scales."""
+    control[ORIGIN], control[WORK + FOR + 3] = node[TIME], math.nan    # no curve yet
+    y = load(node, VALUES)
+    k = rate(p, y)
+    speed = fastest(y, k)
+    h = FIRST / speed if speed > 0.0 else UNMOVED
+    node[STEP], node[KEPT - 1] = 0.0 if control[FIXED] > 0.0 else h, 1.0
+    put_scales(first_scales(y, k, h), node, SCALES)
 
 
 @compiled

@@ -8,7 +8,7 @@ I is the moment about the axis, Gamma the torque about the hinge point; the rest
 import math
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import FIXED, INVERSE, PLACE, write_state
+from rigid_body_sim.integrators.euler import FIXED, INVERSE, PLACE, read_state, write_state
 from rigid_body_sim.rotations import multiply, rotate  # noqa: F401 (rotate: for the bound sums)
 from rigid_body_sim.specialise import UNBOUND
 
@@ -18,6 +18,14 @@ booked = UNBOUND
 UNKNOWNS = 2
 GROUPS = ((0, 1, True), (1, 2, False))
 AXIS, ATTITUDE = FIXED, FIXED + 3    # n; q0
+
+
+@compiled
+def start(p, vector, node, at):
+    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+    q, _, _, _ = read_state(p, vector)
+    p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3] = q
+    node[at], node[at + 1] = 0.0, p[AXIS] * vector[5] + p[AXIS + 1] * vector[6] + p[AXIS + 2] * vector[7]
 
 
 @compiled

@@ -35,20 +35,21 @@ class _Course:
 
     def __init__(self, stepped, equations):
         self._equations, self._method, self._scene = equations, stepped.method, stepped.scene
-        self._fixed, y = equations.start(stepped.vector)
+        self._first, self._y = equations.start(stepped.vector)
+        y = self._y
         self._begin = float(stepped.vector[TIME])
         self._accuracy = max(stepped.accuracy, FINEST)
-        self._scales = np.ones(len(y) + equations.extra)
+        self._scales = np.ones(len(y))
         for first, last, absolute in equations.kind.GROUPS:
             if not absolute:
                 self._scales[first:last] = max(1.0, math.hypot(*y[first:last]))
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
         self._reached, self._steps, self._parameters = [], [], []
-        self._solver, self._y = None, np.array([*y, *np.zeros(equations.extra)])
+        self._solver = None
 
     def _enter(self, begin, y):
         """Start the solver of the stretch that begins at a time."""
-        p = self._equations.parameters(self._fixed, begin)
+        p = self._equations.continued(self._first, begin)
         rate = self._equations.kernels.rate
         self._p = p
         end = next(time for time in self._ends if time > begin)

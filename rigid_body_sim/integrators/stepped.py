@@ -23,7 +23,7 @@ from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
 
-CHECKPOINTS, SPACING = 128, 32    # of a march: how many are kept, and at first every which node is one
+CHECKPOINTS = 128       # of a march: how many are kept
 FINEST = 1e-15          # accuracy below this is not in the doubles
 ULP = float(np.finfo(float).eps)
 ONLY = np.zeros(1, dtype=np.intp)    # the order of a single time
@@ -77,7 +77,7 @@ class Stepped:
             return table.OnTable(self.scene, self.method, self.wrench, self.step)
         if self.method.FAMILY is scipy_methods:
             return scipy_methods.Bound(self, books)
-        return _Bound(self.scene, self.method, self.wrench, self.step is None, books)
+        return _Bound(self, books)
 
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
@@ -138,16 +138,24 @@ class Stepped:
 class _Bound:
     """The kernels of one method on the equations of one scene kind."""
 
-    def __init__(self, scene, method, wrench, adapts, books):
-        self.equations = equations = method.FAMILY.equations(scene, wrench, books)
+    def __init__(self, stepped, books):
+        family = stepped.method.FAMILY
+        self.equations = equations = family.equations(stepped.scene, stepped.wrench, books)
         self.acts = equations.acts
-        self.march = method.FAMILY.march(method, equations, adapts)
-        shared = {name: f'{self.march.__name__}:{name}' for name in ('march', 'between', 'SIZE')}
-        self.track = specialise(track, write=f'{equations.kernels.__name__}:write', **shared)
+        self.march = family.march(stepped.method, equations, stepped.step is None)
+        self._prototype = family.begin(stepped, self.march)
+        shared = {name: f'{self.march.__name__}:{name}' for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
+        shared |= {name: f'{equations.kernels.__name__}:{name}' for name in ('start', 'write')}
+        self.track = specialise(track, **shared)
 
     def course(self, stepped):
         """Return the course of a started solver."""
         return _Course(stepped, self)
+
+    def arrays(self, p):
+        """Return the arrays of a piece with the parameters p: what track.py fills and follows."""
+        control, node = self._prototype
+        return p, control.copy(), node.copy(), np.empty(len(node)), np.empty((CHECKPOINTS, len(node))), np.empty(3, dtype=np.intp)
 
 
 class _Course:
@@ -156,18 +164,21 @@ class _Course:
     def __init__(self, stepped, bound):
         self._stepped, self._bound = stepped, bound
         equations = bound.equations
-        self._fixed, y = equations.start(stepped.vector)
         self._begin = float(stepped.vector[TIME])
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
-        self._pieces = [self._piece(self._begin, np.array([*y, *np.zeros(equations.extra)]))]
+        p, *rest = first = bound.arrays(equations.held(self._begin))
+        bound.track.first_piece(p, stepped.vector, *rest)
+        self._pieces = [first]
 
-    def _piece(self, begin, y):
-        bound = self._bound
-        p = bound.equations.parameters(self._fixed, begin)
-        control, node = self._stepped.method.FAMILY.begin(self._stepped, bound.equations, bound.march, p, y, begin)
-        checkpoints = np.empty((CHECKPOINTS, len(node)))
-        checkpoints[0] = node
-        return p, control, node, node.copy(), checkpoints, np.array([1, SPACING, 0])
+    def _next_piece(self, begin):
+        """Return the piece that begins where the last one ends."""
+        p, _, reached, *_ = self._pieces[-1]
+        piece = self._bound.arrays(self._bound.equations.continued(p, begin))
+        values = slice(VALUES, VALUES + self._bound.march.SIZE)
+        node = piece[2]
+        node[NODE_TIME], node[values] = begin, reached[values]
+        self._bound.track.piece(*piece)
+        return piece
 
     def states(self, times, out):
         """Fill out with the states at times."""
@@ -187,7 +198,7 @@ class _Course:
             done, k = until, k + 1
             if done < len(order) and k == len(self._pieces):
                 self._check(bound.track.follow(*piece, end, end), piece)
-                self._pieces.append(self._piece(end, piece[2][VALUES:VALUES + bound.march.SIZE]))
+                self._pieces.append(self._next_piece(end))
 
     def _check(self, good, piece):
         if not good:

@@ -8,19 +8,40 @@ the earlier one: it is as accurate as the nodes, continuous, and does not depend
 from rigid_body_sim.compiled import compiled
 from rigid_body_sim.specialise import UNBOUND
 
+start = UNBOUND
+begin = UNBOUND
 march = UNBOUND
 between = UNBOUND
 write = UNBOUND
 SIZE = UNBOUND
+VALUES = UNBOUND
 
 TIME = 0
 STORED, STRIDE, COUNT = 0, 1, 2     # layout of `counts`
+SPACING = 32                        # at first every which node is kept
 
 
 @compiled
 def _copy(source, target):
     for k in range(len(source)):    # an assignment of slices would compile numba's own error texts, for seconds
         target[k] = source[k]
+
+
+@compiled
+def first_piece(p, vector, control, node, following, store, counts):
+    """Fill a piece at its start, a state vector; its constants are in p, control and node."""
+    node[TIME] = vector[0]
+    start(p, vector, node, VALUES)
+    piece(p, control, node, following, store, counts)
+
+
+@compiled
+def piece(p, control, node, following, store, counts):
+    """Fill a piece at its first node, whose time and unknowns are set."""
+    begin(p, control, node)
+    _copy(node, following)
+    _copy(node, store[0])
+    counts[STORED], counts[STRIDE], counts[COUNT] = 1, SPACING, 0
 
 
 @compiled

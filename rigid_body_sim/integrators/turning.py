@@ -7,7 +7,7 @@ between -1 and 1 for every body, needles included. The point of reference moves 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import DRIFT, PLACE, START, attitude_rate, lost_norm, taken, write_state  # noqa: F401
+from rigid_body_sim.integrators.euler import DRIFT, PLACE, START, attitude_rate, lost_norm, read_state, taken, write_state  # noqa: F401
 from rigid_body_sim.rotations import rotate  # noqa: F401
 from rigid_body_sim.specialise import UNBOUND
 
@@ -18,6 +18,12 @@ booked = UNBOUND
 
 UNKNOWNS = 7
 GROUPS = ((0, 4, True), (4, 7, False))
+
+
+@compiled
+def start(p, vector, node, at):
+    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+    (node[at], node[at + 1], node[at + 2], node[at + 3]), (node[at + 4], node[at + 5], node[at + 6]), _, _ = read_state(p, vector)
 
 
 @compiled

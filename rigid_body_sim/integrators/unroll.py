@@ -54,6 +54,18 @@ def trial_source(method, n, extra, groups):
                       f'    return {sums(n + extra)}, {losses(n + extra)}, ({"".join(f"{square}, " for square in squares)}), error', ''])
 
 
+def fastest_source(groups):
+    """Return the source of ``fastest(y, k)``: the largest rate of change (1/s) of a group of unknowns, relative to its scale at y."""
+    lines = ['@compiled', 'def fastest(y, k):', '    found = 0.0']
+    for first, last, absolute in groups:
+        change, square = (' + '.join(f'{name}[{u}] * {name}[{u}]' for u in range(first, last)) for name in 'ky')
+        if absolute:
+            lines.append(f'    found = max(found, math.sqrt({change}))')
+        else:
+            lines += [f'    square = {square}', f'    found = max(found, math.sqrt(({change}) / square)) if square > 0.0 else found']
+    return '\n'.join([*lines, '    return found', ''])
+
+
 def load_source(name, size):
     """Return the source of ``name(array, at)``: a tuple of `size` entries."""
     return '\n'.join(['@compiled', f'def {name}(array, at):', f'    return ({"".join(f"array[at + {u}], " for u in range(size))})', ''])
