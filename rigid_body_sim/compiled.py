@@ -2,7 +2,7 @@
 
 numba looks at the time stamp of one file only, so a cached caller would go on with the old body of a callee in another file. Here the cache
 folder is named by a hash of every source file that kernels could depend on, of numba's version and of the processor: after any edit it is
-another folder. Kernels live at the top of the package, in effects, integrators and motions, and depend on nothing in the other folders.
+another folder. Nothing that is compiled depends on the folders WITHOUT_KERNELS.
 
 Kernels follow four rules, so that they mean the same with and without numba: scalars and small arrays only, functions of ``math`` only, no
 division by zero (plain Python would raise), no ``**`` (its rounding differs between the two).
@@ -24,7 +24,7 @@ except ImportError:
 
 HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
 PACKAGE = pathlib.Path(__file__).resolve().parent
-WITHOUT_KERNELS = ('analysis', 'messages', 'node', 'recording', 'study', 'theory')
+WITHOUT_KERNELS = ('analysis', 'messages', 'node', 'recording', 'theory')
 KEEP_UNUSED = 30 * 86400.0    # s
 
 

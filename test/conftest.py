@@ -1,11 +1,15 @@
 """Fixtures of all tests."""
 
 import os
+import signal
 
 import pytest
 import ros
 
 os.environ.update(ros.SETTINGS)
+# a shell that starts the tests with & leaves SIGINT ignored, and processes inherit that
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -22,16 +22,26 @@ def to_frame(ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
 
 @compiled
-def to_world(ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the world components of a force given in body axes, R u."""
-    return rotate(qx, qy, qz, qw, ux, uy, uz)
+def held_force(fx, fy, fz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the force F + R u (N, world components), F given in world axes and u in the frame's."""
+    ux, uy, uz = rotate(qx, qy, qz, qw, ux, uy, uz)
+    return fx + ux, fy + uy, fz + uz
 
 
 @compiled
-def moment(rx, ry, rz, fx, fy, fz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the torque r x R^T F (N m, frame components) about the reference point of a force F given in world axes."""
-    ux, uy, uz = rotate_back(qx, qy, qz, qw, fx, fy, fz)
-    return ry * uz - rz * uy, rz * ux - rx * uz, rx * uy - ry * ux
+def held_torque(tx, ty, tz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the couple R^T T + u (N m, frame components), T given in world axes and u in the frame's."""
+    tx, ty, tz = rotate_back(qx, qy, qz, qw, tx, ty, tz)
+    return tx + ux, ty + uy, tz + uz
+
+
+@compiled
+def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, ux, uy, uz, sx, sy, sz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the torque r x (R^T F + u) + R^T T + s (N m, frame components) about the point; F, T in world axes, u and s in the frame's."""
+    fx, fy, fz = rotate_back(qx, qy, qz, qw, fx, fy, fz)
+    tx, ty, tz = rotate_back(qx, qy, qz, qw, tx, ty, tz)
+    fx, fy, fz = fx + ux, fy + uy, fz + uz
+    return ry * fz - rz * fy + tx + sx, rz * fx - rx * fz + ty + sy, rx * fy - ry * fx + tz + sz
 
 
 @compiled

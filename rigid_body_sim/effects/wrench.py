@@ -28,17 +28,14 @@ class Wrench:
         return any(self.force) or any(self.torque)
 
     def acting(self, frame, time):
-        """View `rate`: the force or its moment, and the couple; what is zero does not act."""
-        in_body = self.frame == 'body'
-        force, torque = (frame.from_body(vector) if in_body else tuple(map(float, vector)) for vector in (self.force, self.torque))
-        acting = []
-        if any(force) and frame.kind in ('free', 'table'):
-            acting.append(Acting(f'{ELEMENTARY}:{"to_world" if in_body else "constant"}', force, 'force', 'work'))
-        elif any(force) and in_body:
-            (rx, ry, rz), (fx, fy, fz) = frame.arm, force
-            acting.append(Acting(f'{ELEMENTARY}:constant', (ry * fz - rz * fy, rz * fx - rx * fz, rx * fy - ry * fx), 'torque', 'work'))
-        elif any(force):
-            acting.append(Acting(f'{ELEMENTARY}:moment', (*frame.arm, *force), 'torque', 'work'))
-        if any(torque):
-            acting.append(Acting(f'{ELEMENTARY}:{"constant" if in_body else "to_frame"}', torque, 'torque', 'work'))
-        return tuple(acting)
+        """View `rate`: the force or its moment, and the couple.
+
+        Whatever is held, it is one kind for a scene, so that no command meets kernels that are not compiled yet.
+        """
+        held = (*map(float, (*self.force, *self.torque)), *ZERO, *ZERO)
+        if self.frame == 'body':
+            held = (*ZERO, *ZERO, *frame.from_body(self.force), *frame.from_body(self.torque))
+        if frame.kind in ('free', 'table'):
+            return (Acting(f'{ELEMENTARY}:held_force', (*held[0:3], *held[6:9]), 'force', 'work'),
+                    Acting(f'{ELEMENTARY}:held_torque', (*held[3:6], *held[9:12]), 'torque', 'work'))
+        return Acting(f'{ELEMENTARY}:held_about_point', (*frame.arm, *held), 'torque', 'work'),

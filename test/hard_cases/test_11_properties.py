@@ -12,6 +12,7 @@ from hard_cases.random_scenes import commands, run, scenes
 from hypothesis import HealthCheck, given, settings
 
 EPSILON = np.finfo(float).eps
+SMALLEST = 5e-324       # energies of 1e-320 J are whole multiples of this
 EXAMPLES = 100_000 if os.environ.get('RIGID_BODY_SIM_SOAK') else 400
 
 
@@ -24,7 +25,8 @@ def check(simulation):
     assert np.isfinite(list(ledger.values())).all()
     # an impulse rounds omega: each of the (at most seven) stretches adds a few ulp, in units of the largest energy there was, which the
     # ledger's scale (start, now, work) may fall short of where impulses cancel; a needle's tilt is rounded by I_max/I_min less than that
-    assert abs(ledger['energy_residual']) <= 1e-11
+    energy = max(abs(ledger[name]) for name in ('kinetic', 'potential', 'dissipated', 'work'))
+    assert abs(ledger['energy_residual']) <= 1e-11 + (8.0 * SMALLEST / energy if energy > 0.0 else 0.0)
     assert abs(ledger['momentum_residual']) <= 1e-9
 
 
