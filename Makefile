@@ -50,9 +50,10 @@ test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 w
 figures: .venv/run.stamp ## figures and tables of README and docs anew
 	.venv/bin/python docs/make_figures.py
 
-bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; recordings: writing, size, reading
+bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading
 	.venv/bin/python bench/closed_forms.py
 	.venv/bin/python bench/energy.py
+	.venv/bin/python bench/instructions.py
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
 

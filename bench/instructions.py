@@ -1,0 +1,134 @@
+"""Instructions that a step takes, counted by callgrind: what a scene does not list costs nothing.
+
+    .venv/bin/python bench/instructions.py [--json]
+
+Counts are repeatable where times are not. Every case is counted with all effects known, and with only those left in the table of effects that
+its scene lists: a program that cannot know the others. A count is the difference between 2 N and N steps, so that what a start takes drops
+out. One more scene lists drag besides, and must take more: else the counting would see nothing. All is compiled for a generic x86-64,
+because callgrind does not know the newest instructions. It takes a minute. Exits with 1 if an absent
+effect costs more than 1 %, or a listed one less. Needs valgrind; without it nothing is counted, and one line says so.
+"""
+
+import argparse
+import gc
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from rigid_body_sim.effects import EFFECTS
+from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.scenes import parse_scene
+
+TOP = """scene: counted
+body: {mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}
+constraint: pivot
+effects: [gravity: {g: 9.81}]
+initial: {tilt: 0.5, angular_velocity: [0, 0, 60]}
+"""
+DRIVEN = """scene: counted
+body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
+constraint: free
+effects: [torque: {value: [0.03, -0.02, 0.05]}]
+initial: {angular_velocity: [0.1, 2.0, 0.3]}
+"""
+DRAGGED = TOP.replace('}]\n', '}, drag: {linear: 0.5, angular: 0.01}]\n')
+STEP, STEPS = 1e-3, 20_000
+ALLOWED = 0.01
+DRAG_COSTS = 'a step of dop8, asymmetric heavy top with drag'
+
+
+def steps(text):
+    """Return act(n): n steps of dop8 from the start."""
+    scene, out = parse_scene(text), np.empty(14)
+    solver = Stepped(scene, 'dop8', step=STEP)
+
+    def act(n):
+        solver.start(scene.initial.vector).state(n * STEP, out)
+    return act
+
+
+# name: (scene, effects that it lists)
+CASES = {'a step of dop8, asymmetric heavy top': (TOP, ('gravity',)),
+         'a step of dop8, driven body': (DRIVEN, ('torque',)),
+         DRAG_COSTS: (DRAGGED, ('gravity', 'drag'))}
+KNOWN = 'all', 'listed'
+
+
+def march(control):
+    """Run every case; `control(*arguments)` talks to callgrind."""
+    every = dict(EFFECTS)
+    gc.disable()
+    for number, (text, listed) in enumerate(CASES.values()):
+        for known in KNOWN:
+            for name in [name for name in every if known == 'listed' and name not in listed]:
+                del EFFECTS[name]
+            act = steps(text)
+            for label, count in (('first', 1), ('once', STEPS), ('twice', 2 * STEPS)):    # the first time more is loaded
+                control('-z')
+                act(count)
+                control(f'--dump={number}.{known}.{label}')
+            EFFECTS.clear()
+            EFFECTS.update(every)
+
+
+def callgrind_control(*arguments):
+    """Tell the callgrind that runs this process what to do."""
+    subprocess.run(['callgrind_control', *arguments, str(os.getpid())], check=True, stdout=subprocess.DEVNULL)
+
+
+def counted():
+    """Return {case: {known: instructions}}."""
+    environment = os.environ | {'NUMBA_CPU_NAME': 'generic', 'NUMBA_CPU_FEATURES': '', 'PYTHONHASHSEED': '0'}
+    # this Python is the one that the ROS wheels' start-up has run anew, so its child is not run anew under valgrind
+    child = [sys.executable, __file__, '--march']
+    subprocess.run([*child, 'alone'], env=environment, check=True)    # compiles
+    with tempfile.TemporaryDirectory() as folder:
+        valgrind = ['valgrind', '--quiet', '--tool=callgrind', '--instr-atstart=no', f'--callgrind-out-file={folder}/out']
+        subprocess.run([*valgrind, *child, 'counted'], env=environment, check=True, stderr=subprocess.DEVNULL)
+        totals = {}
+        for path in pathlib.Path(folder).glob('out.*'):
+            profile = path.read_text()
+            label = re.search(r'^desc: Trigger: dump (\S+)', profile, re.MULTILINE)
+            if label:
+                totals[label.group(1)] = int(re.search(r'^totals: (\d+)', profile, re.MULTILINE).group(1))
+    return {case: {known: (totals[f'{number}.{known}.twice'] - totals[f'{number}.{known}.once']) / STEPS for known in KNOWN}
+            for number, case in enumerate(CASES)}
+
+
+def main():
+    """Count and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--json', action='store_true')
+    parser.add_argument('--march', choices=('alone', 'counted'), help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.march:
+        control = callgrind_control if options.march == 'counted' else lambda *_: None
+        control('--instr=on')
+        march(control)
+        return 0
+    if shutil.which('valgrind') is None:
+        print('Instructions not counted: valgrind is not installed (apt install valgrind)')
+        return 0
+    counts = counted()
+    worst = max(abs(count['all'] / count['listed'] - 1.0) for count in counts.values())
+    drag = counts[DRAG_COSTS]['all'] / next(iter(counts.values()))['all'] - 1.0
+    good = worst <= ALLOWED < drag
+    if options.json:
+        print(json.dumps({'instructions': counts, 'worst': worst, 'allowed': ALLOWED, 'drag_costs': drag, 'good': good}))
+    else:
+        print(f'{"instructions, effects known:":52}{"all":>12}{"listed ones":>12}{"ratio - 1":>12}')
+        for case, count in counts.items():
+            print(f'{case:52}{count["all"]:>12.1f}{count["listed"]:>12.1f}{count["all"] / count["listed"] - 1.0:>+12.3%}')
+        print(f'drag, once listed, costs {drag:+.1%}')
+    return int(not good)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
