@@ -74,13 +74,14 @@ def march(p, control, node, following, target, end, limit):
                 h = (t1 - t) * (GROWTH if good else SHRINK)
             if good:
                 break
+        y1, c1 = settled(y1, c1)
         if not good or target < t1 or moved == limit:
             following[TIME], following[STEP] = t1, h
             put_scales(scales1, following, SCALES)
             put(y1, following, VALUES)
-            put(settled(y1, c1), following, VALUES + SIZE)
+            put(c1, following, VALUES + SIZE)
             break
-        t, planned, y, c, scales = t1, h, y1, settled(y1, c1), scales1
+        t, planned, y, c, scales = t1, h, y1, c1, scales1
         moved += 1
     node[TIME], node[STEP] = t, planned
     put_scales(scales, node, SCALES)

@@ -32,7 +32,7 @@ def march(method, bound, adapts):
         load_scales=unroll.load_source('load_scales', relative), put_scales=unroll.put_source('put_scales', relative),
         stage_rates=_stage_rates(n, size, bound.parameter_count), spread=_spread(n), combined=_combined(size, STAGES * n),
         advanced=_advanced(size), along=_along(size, places['CURVE']),
-        end_of_curve=_end_of_curve(n, places['CURVE']), measure=_measure(groups), grown=_grown(groups),
+        end_of_curve=_end_of_curve(n, places['CURVE']), measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),
         fastest=unroll.fastest_source(groups), first_scales=_first_scales(groups))
 
 
@@ -100,6 +100,16 @@ def _measure(groups):
         lines.append(f'    total += {square}' if absolute else f'    total += ({square}) / scales[{place}] if scales[{place}] > 0.0 else 0.0')
         place += not absolute
     return '\n'.join([*lines, '    return total', ''])
+
+
+def _by_group(groups):
+    """Return the source of ``by_group(a, scales)``: the squared norm of each group of unknowns over its squared scale."""
+    entries, place = [], 0
+    for first, last, absolute in groups:
+        square = ' + '.join(f'a[{u}] * a[{u}]' for u in range(first, last))
+        entries.append(f'{square}, ' if absolute else f'({square}) / scales[{place}] if scales[{place}] > 0.0 else 0.0, ')
+        place += not absolute
+    return '\n'.join(['@compiled', 'def by_group(a, scales):', f'    return ({"".join(entries)})', ''])
 
 
 def _grown(groups):

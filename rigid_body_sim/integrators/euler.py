@@ -34,6 +34,19 @@ def lost_norm(qx, qy, qz, qw):
 
 
 @compiled
+def unit(qx, qy, qz, qw, cx, cy, cz, cw):
+    """Return q + c with norm 1, as the nearest doubles and what they lose.
+
+    The stretch must go into q itself: left in c it would be added after the next step, which turns q by x, half the angle of the body, and
+    so shrink the error of the norm to 1 - cos(x) only: beyond a quarter turn of q errors would grow from step to step.
+    """
+    lost = lost_norm(qx, qy, qz, qw) - (qx * cx + qy * cy + qz * cz + qw * cw)
+    dx, dy, dz, dw = cx + lost * qx, cy + lost * qy, cz + lost * qz, cw + lost * qw
+    sx, sy, sz, sw = qx + dx, qy + dy, qz + dz, qw + dw
+    return (sx, sy, sz, sw), (dx - (sx - qx), dy - (sy - qy), dz - (sz - qz), dw - (sw - qw))
+
+
+@compiled
 def read_state(p, vector):
     """Set the parameters that a start, a state vector, decides; return q and omega of the frame, place and velocity of its point (world)."""
     ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]

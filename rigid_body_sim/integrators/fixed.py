@@ -48,7 +48,7 @@ def march(p, control, node, following, target, end, limit):
         if target < t1:
             break
         y, c = step(p, y, c, rate(p, y), size)
-        c = settled(y, c)
+        y, c = settled(y, c)
         t, count = t1, count + 1.0
         moved += 1
     node[TIME], node[COUNT] = t, count

@@ -5,7 +5,7 @@ rigid_body_sim/integrators/turning.py, about the centre of mass; x' = v, M v' = 
 """
 
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.integrators.euler import MASS, attitude_rate, lost_norm, read_state, taken, write_state  # noqa: F401
+from rigid_body_sim.integrators.euler import MASS, attitude_rate, read_state, taken, unit, write_state  # noqa: F401
 from rigid_body_sim.rotations import rotate  # noqa: F401
 from rigid_body_sim.specialise import UNBOUND
 
@@ -40,9 +40,9 @@ def rate(p, y):
 
 @compiled
 def settled(y, c):
-    """Return c (what the sums have lost) with what brings q back to norm 1."""
-    lost = lost_norm(y[0], y[1], y[2], y[3])
-    return (c[0] + lost * y[0], c[1] + lost * y[1], c[2] + lost * y[2], c[3] + lost * y[3], *c[4:])
+    """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
+    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
+    return (*q, *y[4:]), (*lost, *c[4:])
 
 
 @compiled

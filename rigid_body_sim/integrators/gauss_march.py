@@ -26,6 +26,7 @@ spread = UNBOUND
 combined = UNBOUND
 advanced = UNBOUND
 measure = UNBOUND
+by_group = UNBOUND
 grown = UNBOUND
 fastest = UNBOUND
 first_scales = UNBOUND
@@ -57,7 +58,7 @@ NOISE = 2.0 ** -44       # of an increment: changes so small that no longer fall
 # The rates of y' = i nu y with x = nu h have Legendre coefficients c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!) for large n: c_(n + 1)/c_n is
 # x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by (8!)^2/(16! 17!) x^17: that is UNSEEN x^9 times the 7th.
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
-LONGEST = 1.8            # of x, which is half the angle that a body turns: from 1.85 on nutation of fast tops can grow from step to step
+LONGEST = 3.5            # of x, which is half the angle that a body turns: beyond it substitution takes more sweeps than are given
 ENOUGH = 0.03            # of what is allowed: a change so small says that one sweep less would do
 
 
@@ -141,18 +142,31 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
 
 @compiled
 def _judged(S, h, mean, scales):
-    """Return (estimated error of a step, its length in radians of its fastest motion); (0, 0) where coefficients are but rounding."""
-    row7, row6, row5, row4 = combined(S, TAILS[0]), combined(S, TAILS[1]), combined(S, TAILS[2]), combined(S, TAILS[3])
-    c7, c6 = measure(row7, row7, 0.0, scales), measure(row6, row6, 0.0, scales)
-    c5, c4 = measure(row5, row5, 0.0, scales), measure(row4, row4, 0.0, scales)
+    """Return (estimated error of a step, its length in radians of its largest motion); (0, 0) where coefficients are but rounding.
+
+    Each group of unknowns errs by its own fastest motion: the torque of the weight turns in body axes twice as fast as q does, so omega may
+    err most where its changes are small.
+    """
+    rows = combined(S, TAILS[0]), combined(S, TAILS[1]), combined(S, TAILS[2]), combined(S, TAILS[3])
+    c7, c6 = by_group(rows[0], scales), by_group(rows[1], scales)
+    c5, c4 = by_group(rows[2], scales), by_group(rows[3], scales)
     noise = NOISE * NOISE * measure(mean, mean, 0.0, scales)
-    if c5 + c4 <= noise:
-        return 0.0, 0.0
-    # both pairs, lest an even or odd motion hide one; the faster of them, for fast motions of small size tell in the error only
-    square = math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise), FALL_64 * FALL_64 * c6 / (c4 + noise)))
-    x = math.sqrt(square)
-    seventh = math.sqrt(max(c7, square * c6 / (FALL_7 * FALL_7)))
-    return UNSEEN * h * seventh * square * square * square * square * x, x
+    error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(len(c7)):
+        s7, s6, s5, s4 = s7 + c7[k], s6 + c6[k], s5 + c5[k], s4 + c4[k]
+        if c5[k] + c4[k] > noise:
+            square = _fastest_square(c7[k], c6[k], c5[k], c4[k], noise)
+            seventh = math.sqrt(max(c7[k], square * c6[k] / (FALL_7 * FALL_7)))
+            error += UNSEEN * h * seventh * square * square * square * square * math.sqrt(square)
+    if s5 + s4 <= noise:
+        return error, 0.0
+    return error, math.sqrt(_fastest_square(s7, s6, s5, s4, noise))
+
+
+@compiled
+def _fastest_square(c7, c6, c5, c4, noise):
+    """Return the squared length of a step in radians, from squared coefficients: both pairs, lest an even or odd motion hide one."""
+    return math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise), FALL_64 * FALL_64 * c6 / (c4 + noise)))
 
 
 @compiled
@@ -205,7 +219,7 @@ def march(p, control, node, following, target, end, limit):
                 break
             h, before = next_step, 0.0    # the rates of the step before are overwritten
         y1, c1 = advanced(y, mean, c, h)
-        c1 = settled(y1, c1)
+        y1, c1 = settled(y1, c1)
         sweeps1 = max(1, used - 1) if fewer else used
         if not good or target < t1 or moved == limit:
             following[TIME], following[STEP], following[KEPT - 2], following[KEPT - 1] = t1, next_step, h, sweeps1

@@ -12,7 +12,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.integrators import steps, table_rates, unroll
 from rigid_body_sim.integrators.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
-from rigid_body_sim.integrators.euler import lost_norm
+from rigid_body_sim.integrators.euler import unit
 from rigid_body_sim.integrators.table_rates import CREEPING, GLIDING, PLACE, ROLLING, SLIDING, SPIN, UNKNOWNS, P, Q, U
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.rotations import normalised, rotate, rotate_back
@@ -210,9 +210,8 @@ class _Phase:
                 factor = SAFETY * (allowed / max(error, 1e-9 * allowed)) ** (1.0 / self._bound.order)
                 factor = min(GROWTH, max(SHRINK, factor))
             if error <= allowed:
-                stretch = lost_norm(*after[Q:U])
-                lost_after = (*(c + stretch * q for c, q in zip(lost_after, after[Q:U])), *lost_after[U:])
-                return after, lost_after, scales_after, (h * factor, h)
+                q, lost_q = unit(*after[Q:U], *lost_after[Q:U])
+                return (*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after, (h * factor, h)
             h *= factor
         raise NotConverged(f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start of the hold')
 

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import tops
 from data import smooth_cases
 
 from rigid_body_sim.errors import NotConverged
@@ -141,3 +142,25 @@ def test_energy_has_no_trend_at_long_steps(top):
 def test_a_step_too_long_for_substitution_fails_with_the_time(top):
     with pytest.raises(NotConverged, match=r'gauss16 on asymmetric_heavy_top: at t = 0\.0 s'):
         state(top, 5.0, step=0.5)
+
+
+@pytest.fixture(scope='module')
+def fast_top():
+    """Return a top at 180 rad/s, and its attitude at 20 s in closed form."""
+    leaning = [0.0, math.sin(0.25), 0.0, math.cos(0.25)]
+    _, anchor = tops.anchored(tops.HEAVY, leaning, [0.0, 0.0, 180.0])
+    return tops.scene_of(tops.HEAVY, leaning, [0.0, 0.0, 180.0]), tops.at(anchor, 20.0)[1:5]
+
+
+@pytest.mark.parametrize('accuracy', [10.0 ** -k for k in range(1, 13)])
+def test_accuracy_asked_is_met_by_a_fast_top(fast_top, accuracy):
+    """Its torque turns in body axes twice as fast as q, and omega changes little: omega's error is seen by its own group alone."""
+    scene, exact = fast_top
+    assert angle_between(*state(scene, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact) < 2.0 * accuracy    # 0.84 at most
+
+
+@pytest.mark.parametrize('half_angle', [1.0, 1.7, 1.9])
+def test_norm_of_q_does_not_grow_where_a_step_turns_it_far(fast_top, half_angle):
+    """A stretch added after the next step would make errors of the norm grow by 1 - cos(half angle): beyond a quarter turn, without end."""
+    scene, exact = fast_top
+    assert angle_between(*state(scene, 20.0, step=2.0 * half_angle / 180.0)[1:5], *exact) < 1e-8    # 2.5e-13, 9.2e-10, 5.2e-9
