@@ -18,7 +18,7 @@ PYTHON_VERSIONS = 3.11 3.12 3.13
 COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
-PYTEST = python -m pytest --numprocesses 2 --timeout 300 --ignore test/test_installed.py
+PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
 .PHONY: help run test lint package test-noble soak figures bench bench-node bench-choice study study-full pins pins-noble clean
 
