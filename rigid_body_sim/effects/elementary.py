@@ -36,11 +36,10 @@ def held_torque(tx, ty, tz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
 
 @compiled
-def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, ux, uy, uz, sx, sy, sz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the torque r x (R^T F + u) + R^T T + s (N m, frame components) about the point; F, T in world axes, u and s in the frame's."""
+def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, sx, sy, sz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the torque r x R^T F + R^T T + s (N m, frame components) about the point; F and T are given in world axes, s in the frame's."""
     fx, fy, fz = rotate_back(qx, qy, qz, qw, fx, fy, fz)
     tx, ty, tz = rotate_back(qx, qy, qz, qw, tx, ty, tz)
-    fx, fy, fz = fx + ux, fy + uy, fz + uz
     return ry * fz - rz * fy + tx + sx, rz * fx - rx * fz + ty + sy, rx * fy - ry * fx + tz + sz
 
 

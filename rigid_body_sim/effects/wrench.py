@@ -32,10 +32,13 @@ class Wrench:
 
         Whatever is held, it is one kind for a scene, so that no command meets kernels that are not compiled yet.
         """
-        held = (*map(float, (*self.force, *self.torque)), *ZERO, *ZERO)
-        if self.frame == 'body':
-            held = (*ZERO, *ZERO, *frame.from_body(self.force), *frame.from_body(self.torque))
+        in_body = self.frame == 'body'
+        given = (*map(float, self.force), *map(float, self.torque))
+        world_force, world_torque = (ZERO, ZERO) if in_body else (given[:3], given[3:])
+        force, torque = (frame.from_body(given[:3]), frame.from_body(given[3:])) if in_body else (ZERO, ZERO)
         if frame.kind in ('free', 'table'):
-            return (Acting(f'{ELEMENTARY}:held_force', (*held[0:3], *held[6:9]), 'force', 'work'),
-                    Acting(f'{ELEMENTARY}:held_torque', (*held[3:6], *held[9:12]), 'torque', 'work'))
-        return Acting(f'{ELEMENTARY}:held_about_point', (*frame.arm, *held), 'torque', 'work'),
+            return (Acting(f'{ELEMENTARY}:held_force', (*world_force, *force), 'force', 'work'),
+                    Acting(f'{ELEMENTARY}:held_torque', (*world_torque, *torque), 'torque', 'work'))
+        (rx, ry, rz), (fx, fy, fz), (tx, ty, tz) = frame.arm, force, torque
+        about_point = ry * fz - rz * fy + tx, rz * fx - rx * fz + ty, rx * fy - ry * fx + tz
+        return Acting(f'{ELEMENTARY}:held_about_point', (*frame.arm, *world_force, *world_torque, *about_point), 'torque', 'work'),

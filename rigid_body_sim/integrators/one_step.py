@@ -10,10 +10,9 @@ def march(method, bound, adapts):
     """Return the module that marches: adaptive.py or fixed.py bound to equations and to the step of the method."""
     size, groups, kernels = bound.kind.UNKNOWNS + bound.extra, bound.kind.GROUPS, bound.kernels.__name__
     bindings = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled', 'SIZE': f'SIZE = {size}\n',
-                'step': method.FAMILY.step_source(method, bound),
                 'load': unroll.load_source('load', size), 'put': unroll.put_source('put', size)}
     if not adapts:
-        return specialise(fixed, **bindings)
+        return specialise(fixed, step=method.FAMILY.step_source(method, bound), **bindings)
     relative = sum(not absolute for _, _, absolute in groups)
     return specialise(
         adaptive, fastest=unroll.fastest_source(groups), ORDER=f'ORDER = {method.ORDER}\n',
