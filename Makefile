@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package test-noble soak figures bench bench-node bench-choice study study-full pins pins-noble clean
+.PHONY: help run test lint package unit test-noble soak figures bench bench-node bench-choice study study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -28,7 +28,10 @@ help: ## this list
 run: .venv/run.stamp ## the node on SCENE (tennis_racket) at RATE (1000) Hz for DURATION (20) s; its recording, report and figure
 	@.venv/bin/python -m rigid_body_sim run --scene $(SCENE) --rate $(RATE) --duration $(DURATION)
 
-test: lint package ## everything: ruff, colcon build and test of the package, pytest
+test: lint ## everything: ruff, colcon build and test of the package, pytest
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=none package unit
+
+unit: .venv/test.stamp ## pytest
 	.venv/bin/$(PYTEST)
 
 lint: .venv/test.stamp ## ruff
@@ -39,9 +42,9 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
-	    test/recording test/analysis/test_damaged.py test/hard_cases
+	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py test/node/test_long_run.py
 
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)

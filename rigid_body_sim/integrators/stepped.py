@@ -66,8 +66,10 @@ class Stepped:
         if step is not None and 'step' not in self.method.TAKES:
             raise BadInput('step', f'got {step!r}, but {method} chooses its own steps', 'give an accuracy and no step')
         self.accuracy, self.step, self.horizon = accuracy, step, horizon
-        self._plain = self._bind(books=False)
-        self._with_books = None
+        # what a command does is always asked for: one march for both, and half to compile
+        one_march = bool(wrench) and scene.constraint.kind != 'table' and self.method.FAMILY is not scipy_methods
+        self._plain = self._bind(books=one_march)
+        self._with_books = self._plain if one_march else None
 
     def _bind(self, books):
         if self.scene.constraint.kind == 'table':
@@ -84,7 +86,8 @@ class Stepped:
         started = object.__new__(Stepped)
         started.__dict__.update(self.__dict__)
         started.vector = np.array(vector, dtype=float)
-        started._course, started._booked_course = self._plain.course(started), None
+        started._course = self._plain.course(started)
+        started._booked_course = started._course if self._with_books is self._plain else None
         started._watcher = None
         return started
 

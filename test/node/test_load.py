@@ -56,11 +56,11 @@ def set_parameter(client, name, value):
 
 
 def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
-    """Two processes send 5000 impulses a second each; the journal has every one, in the order of its sender."""
-    count = 5000
+    """Two processes send 2500 impulses a second each; the journal has every one, in the order of its sender."""
+    count = 2500
     with run_node('-p', 'rate:=500') as node:
         arrays = node.client.collect(DiagnosticArray, '/diagnostics')
-        senders = [subprocess.Popen([sys.executable, '-c', FLOOD, str(sender), str(count), '5000'], env=node.domain.environment)
+        senders = [subprocess.Popen([sys.executable, '-c', FLOOD, str(sender), str(count), '2500'], env=node.domain.environment)
                    for sender in (1, 2)]
         for sender in senders:
             assert sender.wait(60) == 0

@@ -1,6 +1,7 @@
 """check_scenes: what it says of scenes, what it makes of overrides, and that a wrong formula does not pass."""
 
 import json
+import os
 
 import numpy as np
 import pytest
@@ -134,6 +135,7 @@ def test_billiard_height_decides_the_formula():
     assert billiard.onset_of_rolling_above_as_written(1.5, h, a, 0.2, 9.81) == pytest.approx(7.0 * right)
 
 
+@pytest.mark.skipif('RIGID_BODY_SIM_SOAK' not in os.environ, reason='compiles for long: make soak')
 def test_two_processes_share_several_scenes(capsys):
     """Bodies that are held in one, others in another; the tables come in the order asked, and what is wrong is said as by one process."""
     assert check_scenes.main(['--scene', 'heavy_top', '--scene', 'symmetric_top', '--json']) == 0
