@@ -11,7 +11,6 @@
 
 import contextlib
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, WORK
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
+from rigid_body_sim.spans import Event, Span
 from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, State, States
 
 NOTHING = (0.0, 0.0, 0.0)
@@ -30,37 +30,6 @@ LARGEST_WORK = 1e250
 """Work (J) of one command: the energies of all that a tick takes stay far below what a double holds."""
 LARGEST_TURN = 1e7
 """Angle (rad) through which a held wrench may turn the body within a tick: beyond, a tick would take minutes."""
-
-
-@dataclass(frozen=True)
-class Event:
-    """Something that happened: at which tick (the first one at or after it), when (s), what, and its numbers."""
-
-    tick: int
-    time: float
-    name: str
-    values: dict
-
-
-class _Span:
-    """A stretch of the motion that one solver covers, from its start to the next impulse, hold or strike.
-
-    `given` is what commands, strikes and effects have exchanged with the body up to the start: work (J), angular impulse about the point of
-    reference (world axes, N m s), dissipated energy (J).
-    """
-
-    def __init__(self, time, solver, wrench, strikes, given):
-        self.time, self.solver, self.wrench, self.strikes, self.given = time, solver, wrench, strikes, given
-        self._told, self._looked_until = [], time
-
-    def events(self, after, until, tick):
-        """Return the (time, name, values) after one time (s), which never falls from call to call, and not later than another, in order."""
-        # a solver looks for events once, going forward: what it found beyond `until` in an earlier look is kept
-        if until > self._looked_until:
-            self._told += self.solver.events(self._looked_until, until, tick)
-            self._looked_until = until
-        self._told = [event for event in self._told if event[0] > after]
-        return [event for event in self._told if event[0] <= until]
 
 
 class Simulation:
@@ -132,7 +101,7 @@ class Simulation:
         self._initial = previous._initial
         span, now = previous._spans[-1], previous.time
         given = span.given + span.solver.exchanged(now)
-        self._spans = [_Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
+        self._spans = [Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
         self._arrive()
         self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
@@ -144,7 +113,7 @@ class Simulation:
             raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
                            'a smaller angular velocity, velocity or height')
         self._initial = self._diagnosis.copy()
-        self._spans = [_Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
+        self._spans = [Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
         self._commands = None
         self._arrive()
         self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
@@ -210,7 +179,7 @@ class Simulation:
         if len(spans) == 1:
             spans[0].solver.states(times, out)
             return States(out)
-        place = np.searchsorted([span.time for span in spans], times, side='right') - 1
+        place = _places(spans, times)
         for k, span in enumerate(spans):
             chosen = np.flatnonzero(place == k)
             part = np.empty((len(chosen), STATE_SIZE))
@@ -301,8 +270,7 @@ class Simulation:
             raise BadInput('reactions', f'nothing holds the body of {self.scene.name}', 'a scene with a pivot, a hinge or a table')
         states = self.states(times)
         spans = self._spans_until(states.time.max()) if len(states) else []
-        place = np.searchsorted([span.time for span in spans], states.time, side='right') - 1
-        return self._dynamics.reactions(states.vector, [spans[k].wrench for k in place])
+        return self._dynamics.reactions(states.vector, [spans[k].wrench for k in _places(spans, states.time)])
 
     @property
     def energy(self):
@@ -381,7 +349,7 @@ class Simulation:
             mechanics.apply_impulse(self._mechanics, start, force, couple, exchange)
             given[WORK] += exchange[mechanics.WORK]
             given[ANGULAR_IMPULSE] += exchange[mechanics.ANGULAR_IMPULSE:mechanics.ANGULAR_IMPULSE + 3]
-        return _Span(time, self.choice.solver(start, wrench), wrench, strikes, given)
+        return Span(time, self.choice.solver(start, wrench), wrench, strikes, given)
 
     def _present_commands(self):
         """Return what the commands of this tick start from: the span before them, and what they add up to so far."""
@@ -433,6 +401,11 @@ class Simulation:
         if what == 'wrench' and (any(force) or any(torque)) and turn > LARGEST_TURN:
             raise BadInput(what, f'torque {list(torque)} would turn the body by {turn:.3g} rad within a tick',
                            f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
+
+
+def _places(spans, times):
+    """Return for each time the number of the span it lies in."""
+    return np.searchsorted([span.time for span in spans], times, side='right') - 1
 
 
 def _sum(p, q):

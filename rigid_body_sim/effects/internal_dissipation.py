@@ -9,7 +9,6 @@ The momentum L = R m stays in the world when the axes turn with omega + c m x om
 energy; the axes' own rate differs from it by c m x omega, the motion of the inner parts that make the heat.
 """
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -59,23 +58,3 @@ def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     if across <= ENDED * ENDED * (m1 * m1 + m2 * m2 + m3 * m3):
         return 0.0, 0.0, 0.0
     return c * (I2 - I3) * wy * wz, c * (I3 - I1) * wz * wx, c * (I1 - I2) * wx * wy
-
-
-@compiled
-def relaxed(c, I1, I2, I3, time, m1, m2, m3):
-    """Return m after the dissipation alone has acted for a time: exact.
-
-    m' = c m x (m x omega) = c (2 T m - m^2 I^-1 m) is the gradient flow of T on the sphere of constant m^2; its solution is
-    m(t) = |m| u/|u|, u_i = m_i exp(-c m^2 (1/I_i - 1/I_last) t), I_last the largest moment among the axes with m_i != 0 (so that u never
-    vanishes altogether). A component of zero moment is zero and stays.
-    """
-    square = m1 * m1 + m2 * m2 + m3 * m3
-    last = max(I1 if m1 != 0.0 else 0.0, I2 if m2 != 0.0 else 0.0, I3 if m3 != 0.0 else 0.0)
-    slowest = 1.0 / last if last > 0.0 else 0.0
-    rate = c * square * time
-    u1 = m1 * math.exp(-rate * (1.0 / I1 - slowest)) if I1 > 0.0 else 0.0
-    u2 = m2 * math.exp(-rate * (1.0 / I2 - slowest)) if I2 > 0.0 else 0.0
-    u3 = m3 * math.exp(-rate * (1.0 / I3 - slowest)) if I3 > 0.0 else 0.0
-    norm = math.sqrt(u1 * u1 + u2 * u2 + u3 * u3)
-    scale = math.sqrt(square) / norm if norm > 0.0 else 0.0
-    return u1 * scale, u2 * scale, u3 * scale
