@@ -6,8 +6,9 @@ Mechanics, section 32.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import permutations, product
+from operator import add
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -191,7 +192,7 @@ def _check_moments(body, given, where):
     moments = body.about_center.moments
     point = 'about the centre of mass' + ('' if given is body.about_center else ', moved there by the parallel-axis theorem')
     for k, moment in enumerate(moments):
-        others = sum(moments) - moment
+        others = moments[0] + moments[1] + moments[2] - moment
         if moment < -slack:
             raise BadInput(f'{where}.inertia', f'moment {moment!r} {point} is negative', 'moments of inertia are zero or positive')
         if moment > others + slack:
@@ -215,7 +216,8 @@ def composite(parts):
     parts : sequence of (Body, at, orientation)
         `at`: the part's origin in the composite's axes, m; `orientation`: quaternion that turns part axes into the composite's.
     """
-    M = sum(part.mass for part, _, _ in parts)
+    # sum() of floats rounds otherwise from Python 3.12 on: the same file would be another body
+    M = reduce(add, (part.mass for part, _, _ in parts))
     centers = [np.asarray(at) + Rotation.from_quat(orientation).apply(part.center_of_mass) for part, at, orientation in parts]
     center = sum(part.mass * at for (part, _, _), at in zip(parts, centers, strict=True)) / M
     tensor = np.zeros((3, 3))

@@ -5,6 +5,9 @@ one. Symbols: M mass, c centre of mass from the body's origin (body axes), omega
 point of reference (world axes), g acceleration of gravity (along -z of the world).
 """
 
+from functools import reduce
+from operator import add
+
 import numpy as np
 
 from rigid_body_sim.compiled import compiled
@@ -61,7 +64,8 @@ def swing_rate(scene):
 def drive(scene, wrench):
     """Return a bound of the angular acceleration (rad/s^2) by torques and a held wrench: their sum over the least moment."""
     body, constraint = scene.body, scene.constraint
-    torque = sum(max(float(np.linalg.norm(value)) for value in effect.values) for effect in scene.effects if effect.name == 'torque')
+    torques = [effect.values for effect in scene.effects if effect.name == 'torque']
+    torque = reduce(add, (max(float(np.linalg.norm(value)) for value in values) for values in torques), 0.0)
     if wrench:
         arm = np.subtract(body.center_of_mass, constraint.through if constraint.kind == 'hinge' else (0.0, 0.0, 0.0))
         lever = float(np.linalg.norm(arm)) if constraint.kind in ('pivot', 'hinge') else 0.0

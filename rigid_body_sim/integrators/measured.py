@@ -7,6 +7,7 @@ and the CPU time for each radian that the body may turn (s).
 
 import functools
 import json
+import math
 import pathlib
 
 from rigid_body_sim.mechanics import swing_rate
@@ -29,7 +30,7 @@ def kind(scene):
 
 def pace(scene):
     """Return how fast a body may turn (rad/s): its rate at the start, and what its weight can add."""
-    return float(sum(rate * rate for rate in scene.initial.angular_velocity)) ** 0.5 + swing_rate(scene)
+    return math.hypot(*scene.initial.angular_velocity) + swing_rate(scene)
 
 
 def floor(scene, horizon):

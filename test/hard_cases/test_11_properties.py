@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 
 EPSILON = np.finfo(float).eps
 SMALLEST = 5e-324       # energies of 1e-320 J are whole multiples of this
-EXAMPLES = 100_000 if os.environ.get('RIGID_BODY_SIM_SOAK') else 400
+EXAMPLES = 100_000 if os.environ.get('RIGID_BODY_SIM_SOAK') else 150
 
 
 def check(simulation):
