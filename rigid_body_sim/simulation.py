@@ -11,6 +11,7 @@
 
 import contextlib
 import math
+import typing
 
 import numpy as np
 
@@ -115,6 +116,7 @@ class Simulation:
         self._initial = self._diagnosis.copy()
         self._spans = [Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
         self._commands = None
+        self._foreseen = _Foreseen(None, 0, ())
         self._arrive()
         self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
@@ -137,9 +139,15 @@ class Simulation:
         before = self.time
         self.tick += ticks
         self._commands = None
-        self._arrive()
+        foreseen = self._foreseen
+        place = self.tick - foreseen.tick
+        if foreseen.spans is self._spans and 0 <= place < len(foreseen.vectors):
+            self.vector[:] = foreseen.vectors[place]
+            self._diagnosed_tick = None
+        else:
+            self._arrive()
+            self.events.extend(self._events_between(self._spans, before, self.time))
         self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
-        self.events.extend(self._events_between(self._spans, before, self.time))
 
     def advance_through(self, ticks):
         """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
@@ -151,11 +159,15 @@ class Simulation:
     def foresee(self, ticks):
         """Return the States at the next ticks, to the bit what :meth:`advance` meets if no command comes, without going there.
 
-        There are `ticks` of them, or as many as come before the tick of the next event.
+        There are `ticks` of them, or as many as come before the tick of the next event. They are kept: to advance to one of them costs
+        nothing more.
         """
         times = self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1))
-        event = next(self._events_between(self._spans_until(times[-1]), self.time, times[-1]), None)
-        return self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
+        spans = self._spans_until(times[-1])
+        event = next(self._events_between(spans, self.time, times[-1]), None)
+        states = self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
+        self._foreseen = _Foreseen(spans, self.tick + 1, states.vector)
+        return states
 
     def diagnose(self, states):
         """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
@@ -401,6 +413,14 @@ class Simulation:
         if what == 'wrench' and (any(force) or any(torque)) and turn > LARGEST_TURN:
             raise BadInput(what, f'torque {list(torque)} would turn the body by {turn:.3g} rad within a tick',
                            f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
+
+
+class _Foreseen(typing.NamedTuple):
+    """States that were computed ahead: the spans they belong to, the tick of the first one, their vectors; no event falls among them."""
+
+    spans: list
+    tick: int
+    vectors: object
 
 
 def _places(spans, times):

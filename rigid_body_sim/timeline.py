@@ -35,6 +35,12 @@ class Timeline:
         """Return the instant of a tick, ns, rounded to the nearest."""
         return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (2 * self._rate_numerator)
 
+    def instants(self, tick, count):
+        """Return the instants of a tick and those after it, `count` in all, ns."""
+        first, period, divisor = tick - self.tick, self._double_period, 2 * self._rate_numerator
+        origin, half = self.origin, self._rate_numerator
+        return [origin + (k * period + half) // divisor for k in range(first, first + count)]
+
     def ticks_in(self, seconds):
         """Return the number of ticks after which at least `seconds` have passed; 0.07 s at 100 Hz are 7, though the double is above 0.07."""
         exact = Fraction(seconds) * self.rate

@@ -17,6 +17,7 @@ from rclpy.subscription import Subscription
 
 from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
+from rigid_body_sim.node.doorbell import Doorbell
 
 WRENCH, IMPULSE = 'cmd_wrench', 'cmd_impulse'
 DEPTH = 2000
@@ -90,7 +91,7 @@ class Commands:
     Attributes
     ----------
     report : callable
-        To be set: called by :meth:`take` with (topic, reason, what was got, the line that would be right) for each refused message.
+        To be set: called by :meth:`look` with (topic, reason, what was got, the line that would be right) for each refused message.
     received, accepted, applied : int
     refusals : collections.Counter
         Refused messages by reason.
@@ -105,6 +106,8 @@ class Commands:
         self.queue = collections.deque()
         group = TakenElsewhere()
         self._subscriptions = [(topic, self._subscribe(node, topic, group)) for topic in (WRENCH, IMPULSE)]
+        self._bell = Doorbell(node, [subscription for _, subscription in self._subscriptions])
+        self._takers = [(topic, subscription.handle.take_message) for topic, subscription in self._subscriptions]
 
     @staticmethod
     def _subscribe(node, topic, group):
@@ -113,11 +116,21 @@ class Commands:
             event_callbacks=qos.subscription_mismatch(node, topic), qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
 
     def take(self, scene_accepts):
-        """Take all that has come: the tick thread calls this, nobody else."""
-        for topic, subscription in self._subscriptions:
-            take = subscription.handle.take_message
+        """Take what has come, at a tick: the tick thread calls this and :meth:`look`, nobody else."""
+        if not self._bell.silent():
+            self.look(scene_accepts)
+
+    def look(self, scene_accepts):
+        """Take all that has come."""
+        before = self.received
+        for topic, take in self._takers:
             while (message := take(WrenchStamped, True)) is not None:
                 self._receive(topic, message[0], scene_accepts)
+        self._bell.answer(self.received - before)
+
+    def remove(self):
+        """Take away what the node would not find by itself."""
+        self._bell.remove()
 
     def _receive(self, topic, data, scene_accepts):
         self.received += 1

@@ -162,6 +162,7 @@ class Engine:
 
     def remove(self):
         """Take away from the node all that the engine gave it, after :meth:`close`."""
+        self.commands.remove()
         for entity in set(_entities(self._node)) - self._entities_before:
             for destroy in (self._node.destroy_publisher, self._node.destroy_subscription, self._node.destroy_service,
                             self._node.destroy_timer):

@@ -70,14 +70,9 @@ class Journal:
 
     # -- the tick thread ----------------------------------------------------------------------------------------------------------------
 
-    @property
-    def state_wanted(self):
-        """Whether the recorder wants the full state (:meth:`state`), as it does after a gap."""
-        return self._recorder.state_wanted
-
     def tick(self, stamp, messages):
-        """Record the messages of a tick."""
-        self._record_tick(stamp, time.time_ns(), messages)
+        """Record the messages of a tick; return whether the full state (:meth:`state`) is wanted, as it is after a gap."""
+        return self._record_tick(stamp, time.time_ns(), messages)
 
     def state(self, simulation, stamp):
         """Record the full state of a tick, after its messages."""
@@ -116,7 +111,9 @@ class NoJournal:
     """Stands for the recording of a node that does not record."""
 
     path = status = None
-    state_wanted = False
+
+    def tick(self, stamp, messages):
+        """Record nothing, want nothing."""
 
     def __getattr__(self, name):
         return self._nothing

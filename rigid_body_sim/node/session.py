@@ -11,6 +11,7 @@ up with the present tick, and what was made ahead is dropped. The bits are the s
 
 import collections
 import concurrent.futures
+import math
 import time
 from fractions import Fraction
 
@@ -24,8 +25,10 @@ from rigid_body_sim.timeline import NANOSECONDS, Timeline
 
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
-AHEAD = 16
-"""How many ticks are made ahead; a disturbance stops it for as many."""
+AHEAD = 64
+"""How many ticks are made ahead at 1 kHz or less; at higher rates fewer, so that making them fits between two ticks."""
+QUIET = 16
+"""For how many ticks after a disturbance nothing is made ahead."""
 
 
 class Session:
@@ -106,19 +109,30 @@ class Session:
         if self._commands.queue or self._release_tick is not None:
             self._catch_up()
             self._command(tick)
-        if not self._ahead:
-            self._catch_up()
-        if self.simulation.events:
-            self._report_events()
-        messages = self._ahead.popleft() if self._ahead else self._messages(self.simulation.vector[None], tick)[0]
+        if self._ahead:
+            stamp, messages = self._ahead.popleft()
+        else:
+            stamp, messages = self._present(tick)
         if publish:
-            self._publish_tick(tick, messages)
+            self._publishing.tick(messages)
+            if self._journal.tick(stamp, messages):
+                self._catch_up()
+                self._journal.state(self.simulation, stamp)
         if self._balance_wanted:
             self.take_balance()
         self.next_tick = tick + 1
-        self.finished = self._last_tick is not None and tick >= self._last_tick
+        if self._last_tick is not None and tick >= self._last_tick:
+            self.finished = True
         if not self._ahead and tick >= self._look_ahead_from:
             self._look_ahead(tick)
+
+    def _present(self, tick):
+        """Go to a tick that was not made ahead, tell of its events, return its stamp and messages."""
+        self._catch_up()
+        if self.simulation.events:
+            self._report_events()
+        [entry] = self._messages(self.simulation.vector[None], tick)
+        return entry
 
     def _catch_up(self):
         """Have the simulation stand at the tick that is being run; drop what was made ahead."""
@@ -130,36 +144,28 @@ class Session:
         """Make the messages of the ticks after this one, up to the next event."""
         self._catch_up()
         try:
-            states = self.simulation.foresee(AHEAD)
+            states = self.simulation.foresee(min(AHEAD, math.ceil(AHEAD * 1000.0 / self.simulation.rate)))
         except NotConverged:
             # said when its tick comes, if it comes
             states = ()
         if len(states):
             self._ahead.extend(self._messages(states.vector, tick + 1))
         else:
-            self._look_ahead_from = tick + AHEAD
+            self._look_ahead_from = tick + QUIET
 
     def _messages(self, vectors, tick):
-        """Return the messages of consecutive ticks from that one on."""
+        """Return stamp and messages of consecutive ticks from that one on."""
         energies, squares = self.simulation.diagnose(States(vectors))
-        stamps = [self.timeline.instant(tick + k) for k in range(len(vectors))]
-        return self._publishing.ticking.messages(vectors, energies, squares, stamps, self.simulation.wrench)
+        stamps = self.timeline.instants(tick, len(vectors))
+        return zip(stamps, self._publishing.ticking.messages(vectors, energies, squares, stamps, self.simulation.wrench), strict=True)
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
         if self.timeline is None:
             return
-        self._commands.take(self.simulation.scene.accepts_commands)
+        self._commands.look(self.simulation.scene.accepts_commands)
         if self._balance_wanted:
             self.take_balance()
-
-    def _publish_tick(self, tick, messages):
-        stamp = self.timeline.instant(tick)
-        self._publishing.tick(messages)
-        self._journal.tick(stamp, messages)
-        if self._journal.state_wanted:
-            self._catch_up()
-            self._journal.state(self.simulation, stamp)
 
     def _serve_requests(self):
         while self._requests:
@@ -254,7 +260,7 @@ class Session:
 
     def _disturbed(self):
         """Begin to compare theory with the motion from here on, and wait for quiet before looking ahead."""
-        self._look_ahead_from = self._tick + AHEAD
+        self._look_ahead_from = self._tick + QUIET
         simulation = self.simulation
         self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)
 

@@ -124,7 +124,10 @@ class Recorder:
         return self._process.pid
 
     def tick(self, log_time, publish_time, messages):
-        """Record a tick: its stamp and the wall clock in ns, and the messages (bytes) of the ticking topics in their order."""
+        """Record a tick: its stamp and the wall clock in ns, and the messages (bytes) of the ticking topics in their order.
+
+        Returns `state_wanted`.
+        """
         data = b''.join(messages)
         if len(data) != self._tick_size:
             raise ValueError(f'messages of {len(data)} bytes where the ticking topics have {self._tick_size}')
@@ -137,6 +140,7 @@ class Recorder:
                 self._write(0, frame)
             if time.monotonic() >= self._look_at:
                 self._look()
+        return self.state_wanted
 
     def message(self, topic_name, log_time, publish_time, data):
         """Record a message that may be lost under duress."""

@@ -1,0 +1,81 @@
+"""The doorbell: no message waits for long, no look is wasted, and a busy executor keeps nothing from the tick thread."""
+
+import time
+
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from std_msgs.msg import Float64
+
+from rigid_body_sim.node.commands import TakenElsewhere
+from rigid_body_sim.node.doorbell import GLANCE, LOOKS, Doorbell
+
+
+class House:
+    """A node with two subscriptions behind a doorbell, a publisher to the second, and an executor."""
+
+    def __init__(self, context):
+        self.node = rclpy.create_node('house', context=context)
+        group = TakenElsewhere()
+        self.subscriptions = [self.node.create_subscription(Float64, name, lambda _: None, 10, callback_group=group, raw=True)
+                              for name in ('nobody', 'knocks')]
+        self.publisher = self.node.create_publisher(Float64, 'knocks', 10)
+        self.bell = Doorbell(self.node, self.subscriptions)
+        self.executor = SingleThreadedExecutor(context=context)
+        self.executor.add_node(self.node)
+
+    def look(self):
+        """Take all that waits, as a tick does when the bell is not silent; return how many messages."""
+        found = 0
+        for subscription in self.subscriptions:
+            while subscription.handle.take_message(Float64, True) is not None:
+                found += 1
+        self.bell.answer(found)
+        return found
+
+    def spin_until(self, condition):
+        deadline = time.monotonic() + 10.0
+        while not condition():
+            assert time.monotonic() < deadline
+            self.executor.spin_once(timeout_sec=0.05)
+
+
+@pytest.fixture
+def house(ros_domain):
+    context = rclpy.Context()
+    rclpy.init(args=[], context=context, domain_id=ros_domain.id)
+    house = House(context)
+    yield house
+    house.bell.remove()
+    house.node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+def fall_silent(house):
+    house.executor.spin_once(timeout_sec=0.0)
+    for _ in range(LOOKS + 1):
+        assert not house.bell.silent()
+        house.look()
+    assert house.bell.silent()
+
+
+@pytest.mark.timeout(60.0)
+def test_bell_rings_for_a_message_and_leaves_it_to_the_tick_thread(house):
+    house.spin_until(lambda: house.publisher.get_subscription_count() == 1)
+    for _ in range(2):
+        fall_silent(house)
+        house.publisher.publish(Float64(data=1.0))
+        house.publisher.publish(Float64(data=2.0))
+        house.spin_until(lambda: not house.bell.silent())
+        # the executor has taken nothing
+        assert house.look() == 2
+
+
+@pytest.mark.timeout(60.0)
+def test_messages_are_found_while_the_executor_is_busy(house):
+    house.spin_until(lambda: house.publisher.get_subscription_count() == 1)
+    fall_silent(house)
+    house.publisher.publish(Float64(data=1.0))
+    time.sleep(0.2)
+    found = [house.look() for _ in range(2 * GLANCE) if not house.bell.silent()]
+    assert found == [1, 0]
