@@ -2,7 +2,7 @@
 
 numba looks at the time stamp of one file only, so a cached caller would go on with the old body of a callee in another file. Here the cache
 folder is named by a hash of every source file that kernels could depend on, of numba's version and of the processor: after any edit it is
-another folder. Nothing that is compiled depends on the folders WITHOUT_KERNELS.
+another folder, and copies of the same sources share one. Nothing that is compiled depends on the folders WITHOUT_KERNELS.
 
 Kernels follow four rules, so that they mean the same with and without numba: scalars and small arrays only, functions of ``math`` only, no
 division by zero (plain Python would raise), no ``**`` (its rounding differs between the two).
@@ -77,17 +77,21 @@ def _remove_unused(base):
 
 
 CACHE_FOLDER = _cache_folder() if HAVE_NUMBA else None
+_SETTINGS = {'CACHE_DIR': str(CACHE_FOLDER or ''), 'CACHE_LOCATOR_CLASSES': 'rigid_body_sim.kernel_cache.Place'}
 
 
 def _jit(function, **options):
     if not HAVE_NUMBA:
         return function
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(CACHE_FOLDER) if CACHE_FOLDER else ''
+    # a numba that does not know a setting goes on without it: then every copy of the package compiles for itself
+    before = {name: getattr(numba.config, name) for name in _SETTINGS if hasattr(numba.config, name)}
+    for name in before:
+        setattr(numba.config, name, _SETTINGS[name])
     try:
         return numba.njit(cache=CACHE_FOLDER is not None, error_model='numpy', nogil=True, **options)(function)
     finally:
-        numba.config.CACHE_DIR = before
+        for name, value in before.items():
+            setattr(numba.config, name, value)
 
 
 def compiled(function):

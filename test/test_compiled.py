@@ -53,6 +53,12 @@ def test_two_processes_on_a_cold_cache_agree(copy_of_package):
     answers = [process.communicate(timeout=100)[0] for process in both]
     assert answers[0] == answers[1] != ''
     assert all(process.returncode == 0 for process in both)
+    # what is installed elsewhere from the same sources finds it all compiled
+    found = set((copy_of_package / 'cache').rglob('*.nbc'))
+    shutil.copytree(copy_of_package / 'rigid_body_sim', copy_of_package / 'elsewhere' / 'rigid_body_sim')
+    assert run(TURN, copy_of_package / 'elsewhere', XDG_CACHE_HOME=str(copy_of_package / 'cache')) == answers[0]
+    if hasattr(compiled.numba.config, 'CACHE_LOCATOR_CLASSES'):
+        assert set((copy_of_package / 'cache').rglob('*.nbc')) == found
 
 
 @needs_numba
