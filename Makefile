@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package unit test-noble soak figures bench bench-node bench-choice study study-full pins pins-noble clean
+.PHONY: help run test lint package unit test-noble soak figures bench bench-node bench-choice study study-check study-full pins pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -66,6 +66,9 @@ bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes
 
 study: .venv/run.stamp ## what accuracy costs in time: four problems, our methods; table, JSON and figure in study/
 	.venv/bin/python -m rigid_body_sim work_precision --quick --output study
+
+study-check: .venv-peers/stamp ## the harness beside published figures of peers: within a factor of 2, or why
+	.venv-peers/bin/python bench/published.py
 
 bench-choice: .venv/run.stamp ## what auto chooses on scenes outside its table: errors and cost
 	.venv/bin/python bench/choice.py

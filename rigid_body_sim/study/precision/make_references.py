@@ -1,5 +1,7 @@
 """Make references/*.json: the suite's references by Taylor series in fixed point, and the floors of the problems.
 
+Where a file is there already, it says how far the new states are from those in it.
+
 ::
 
     .venv/bin/python -m rigid_body_sim.study.precision.make_references [NAME ...]
@@ -14,9 +16,13 @@ from rigid_body_sim.study.precision import reference, suite
 def make(name):
     """Compute and write one reference; return what to say about it."""
     problem = suite.problem(name)
-    found = reference.compute(problem.scene, problem.duration)
+    found, before = reference.compute(problem.scene, problem.duration), reference.load(problem)
     reference.save(name, problem, found)
-    return f'{name}: {found.digits:.1f} digits, floor at the end {found.floor[-1]:.2e} rad, {found.floor_omega[-1]:.2e} rad/s'
+    said = f'{name}: {found.digits:.1f} digits, floor at the end {found.floor[-1]:.2e} rad, {found.floor_omega[-1]:.2e} rad/s'
+    if before is None:
+        return said
+    angles, lengths = found.distances(before.orientation, before.omega)
+    return f'{said}; from the file before {angles.max():.0e} rad, {lengths.max():.0e} rad/s'
 
 
 if __name__ == '__main__':

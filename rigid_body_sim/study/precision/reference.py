@@ -48,7 +48,11 @@ class Reference:
     def errors(self, states):
         """Return the errors of states (n, 7), q and omega at the times: rotation angle (rad), length of the difference of omega (rad/s)."""
         rows = [[mpf(x) for x in row] for row in states.tolist()]
-        return _distances([row[:4] for row in rows], [row[4:] for row in rows], self.orientation, self.omega)
+        return self.distances([row[:4] for row in rows], [row[4:] for row in rows])
+
+    def distances(self, orientation, omega):
+        """Return how far attitudes and rates (lists of tuples of mpf) are from these: rotation angles (rad), lengths (rad/s)."""
+        return _distances(orientation, omega, self.orientation, self.omega)
 
 
 def compute(scene, duration, draws=8, progress=lambda part: None):

@@ -82,13 +82,20 @@ def ours(problem, reference):
                          lambda setting, name=name, control=control: _our_run(problem, name, {control: setting}))
 
 
+def begun(scene):
+    """Return the state vector from which all start: the scene's, strikes at time 0 done."""
+    if any(effect.name == 'strike' for effect in scene.effects):
+        return Simulation(scene).states(np.zeros(1)).vector[0]
+    return scene.initial.vector
+
+
 def _our_run(problem, method, control):
     scene, end = problem.scene, problem.duration
     choice = choose(scene, method, horizon=end, **control)
-    start, out, still = scene.initial.vector, np.empty(STATE_SIZE), Wrench()
-    result = out[ORIENTATION.start:ANGULAR_VELOCITY.stop]
-    if any(effect.name == 'strike' for effect in scene.effects):
+    if any(effect.name == 'strike' and effect.time > 0.0 for effect in scene.effects):
         return _struck_run(scene, method, control)
+    start, out, still = begun(scene), np.empty(STATE_SIZE), Wrench()
+    result = out[ORIENTATION.start:ANGULAR_VELOCITY.stop]
     solver = None
 
     def begin():
@@ -107,7 +114,7 @@ def _one_more(run):
 
 
 def _struck_run(scene, method, control):
-    """Return the Run of a scene with strikes, which are the business of Simulation."""
+    """Return the Run of a scene with strikes on the way, which are the business of Simulation."""
     simulation = Simulation(scene, method, **control)
     result = np.empty((1, STATE_SIZE))
 

@@ -1,14 +1,16 @@
 """Basilisk: a spacecraft hub under RK4 and under RKF78 with error control; attitude in modified Rodrigues parameters, all steps in C++."""
 
 import importlib.metadata
+import math
 
 import numpy as np
 
 from rigid_body_sim.study.precision.peers import body
-from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
+from rigid_body_sim.study.precision.runner import GRID, RefusedError, Run, Runner, steps_for
 
 NAME = 'Basilisk'
 NANOSECONDS = 10**9
+HELD = {'pivot': 'a fixed point', 'hinge': 'a fixed axis', 'table': 'a table and its friction'}
 
 
 def version():
@@ -18,15 +20,24 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield both methods; its clock counts whole nanoseconds, so steps that are not are rounded down to them."""
-    given = body.of(problem)
-    if problem.scene.constraint.kind != 'free':
-        raise RefusedError('a fixed point: its hub flies free')
+    """Yield both methods; its clock counts whole nanoseconds, so steps are such."""
+    kind = problem.scene.constraint.kind
+    if kind != 'free':
+        raise RefusedError(f'{HELD[kind]}: its hub flies free')
+    given = body.of(problem.scene)
     if given.inner or np.any(given.damping) or np.any(given.push):
         raise RefusedError('drag, internal dissipation or a torque fixed in the world: modules of its own would have to be written')
-    yield Runner(f'{NAME} RK4', 'step', steps_for(problem, reference), lambda step: _run(problem, given, 'svIntegratorRK4', step, None), True)
-    yield Runner(f'{NAME} RKF78', 'tolerance', tuple(10.0 ** -k for k in range(2, 14)),
-                 lambda tolerance: _run(problem, given, 'svIntegratorRKF78', problem.duration / 32.0, tolerance), True)
+    steps = tuple(dict.fromkeys(_whole(problem.duration, step) for step in steps_for(problem, reference)))
+    yield Runner(f'{NAME} RK4', 'step', steps, lambda step: _run(problem, given, 'svIntegratorRK4', step, None), True)
+    yield Runner(f'{NAME} RKF78', 'tolerance', tuple(10.0 ** -k for k in range(2, 16)),
+                 lambda tolerance: _run(problem, given, 'svIntegratorRKF78', problem.duration / GRID, tolerance), True)
+
+
+def _whole(duration, step):
+    """Return the step of whole nanoseconds that is the nearest to one and of which the times of the reference are multiples."""
+    grid = round(duration / GRID * NANOSECONDS)
+    count = max(1, round(duration / GRID / step))
+    return grid // min((k for k in range(1, 2 * count + 1) if grid % k == 0), key=lambda k: abs(math.log(k / count))) / NANOSECONDS
 
 
 def _run(problem, given, method, step, tolerance):

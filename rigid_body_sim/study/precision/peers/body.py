@@ -7,6 +7,7 @@ import numba
 import numpy as np
 
 from rigid_body_sim.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.study.precision.peers import start
 from rigid_body_sim.study.precision.runner import RefusedError
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
@@ -66,22 +67,16 @@ class Body:
         return np.concatenate([i, 1.0 / i, self.torque, self.push, self.weight_arm, self.damping.ravel(), [self.inner]])
 
 
-def of(problem):
-    """Return the Body of a free or pivoted problem whose torques are smooth; RefusedError says what is not given to peers."""
-    scene = problem.scene
+def of(scene):
+    """Return the Body of a free or pivoted scene; RefusedError says what is not given to peers."""
     body, kind = scene.body, scene.constraint.kind
-    if kind not in ('free', 'pivot'):
-        raise RefusedError(f'constraint {kind}: its user would have to derive other equations')
-    if any(effect.name == 'strike' for effect in scene.effects):
-        raise RefusedError('a strike: the harness gives this peer smooth motions only')
+    orientation, omega, _ = start.of(scene)
     inertia = body.about_origin if kind == 'pivot' else body.about_center
     if min(inertia.moments) <= 0.0:
         raise RefusedError('a zero moment of inertia: its equations divide by it')
     torque, push = np.zeros(3), np.zeros(3)
     for effect in scene.effects:
         if effect.name == 'torque':
-            if len(effect.times) > 1 or effect.times[0] > 0.0:
-                raise RefusedError('a torque that jumps: the harness gives this peer smooth motions only')
             if effect.frame == 'body':
                 torque += rotate_back(*inertia.axes, *effect.values[0])
             else:
@@ -91,10 +86,9 @@ def of(problem):
     damping = np.zeros((3, 3))
     if drag:
         damping = drag.angular * np.eye(3) + drag.linear * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    initial = scene.initial
-    q = multiply(*initial.orientation, *inertia.axes) if tuple(inertia.axes) != IDENTITY else tuple(initial.orientation)
+    q = multiply(*orientation, *inertia.axes) if tuple(inertia.axes) != IDENTITY else orientation
     return Body(np.array(inertia.moments), tuple(inertia.axes), torque, push, body.mass * (gravity.g if gravity else 0.0) * arm, damping,
-                inner.coefficient if inner else 0.0, np.array([*q, *rotate_back(*inertia.axes, *initial.angular_velocity)]))
+                inner.coefficient if inner else 0.0, np.array([*q, *rotate_back(*inertia.axes, *omega)]))
 
 
 @numba.njit(cache=True)

@@ -1,10 +1,10 @@
-"""Drake: a continuous MultibodyPlant under its 5th-order Runge-Kutta with error control, and its default of 3rd order."""
+"""Drake: a continuous MultibodyPlant under its 5th- and 3rd-order Runge-Kutta with error control; contact by its discrete solver."""
 
 import numpy as np
 
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.study.precision.peers import body
-from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
+from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'Drake'
 ACCURACIES = tuple(10.0 ** -k for k in range(1, 13))
@@ -21,53 +21,51 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield Drake with two of its methods."""
-    given = body.of(problem)
-    if given.inner:
-        raise RefusedError('internal dissipation: it has no such effect')
-    if np.any(given.torque) or np.any(given.push) or np.any(given.damping):
-        raise RefusedError('a torque or drag on a free body: its user writes a system in Python for it, which would be what is timed')
+    """Yield Drake with two of its methods; with one, at fixed steps, where there is contact."""
+    numbers = given.of(problem)
+    if isinstance(numbers, ball.Ball):
+        steps = steps_for(problem, reference)
+        yield Runner(f'{NAME} discrete', 'step', steps, lambda step: _run(problem.scene, numbers, step, None, None), True)
+        return
+    if isinstance(numbers, body.Body):
+        if numbers.inner:
+            raise RefusedError('internal dissipation: it has no such effect')
+        if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
+            raise RefusedError('drag on the centre of mass of a pivoted body: its joints damp all axes alike')
     for label, scheme in (('RK5', 'runge_kutta5'), ('RK3', 'runge_kutta3')):
-        yield Runner(f'{NAME} {label}', 'accuracy', ACCURACIES, lambda accuracy, scheme=scheme: _run(problem, given, scheme, accuracy), True)
+        yield Runner(f'{NAME} {label}', 'accuracy', ACCURACIES,
+                     lambda accuracy, scheme=scheme: _run(problem.scene, numbers, 0.0, scheme, accuracy), True)
 
 
-def _run(problem, given, scheme, accuracy):
-    from pydrake.math import RollPitchYaw, RotationMatrix
-    from pydrake.multibody.plant import MultibodyPlant
-    from pydrake.multibody.tree import BallRpyJoint, RotationalInertia, SpatialInertia, UnitInertia
+def _run(scene, numbers, step, scheme, accuracy):
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
     from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
-    scene, free = problem.scene, problem.scene.constraint.kind == 'free'
-    inertia, arm = given.about_center(scene)
-    mass = scene.body.mass
-    plant = MultibodyPlant(time_step=0.0)
-    about = np.asarray(inertia) + (mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
-    unit = UnitInertia().SetFromRotationalInertia(RotationalInertia(*np.diag(about), about[0, 1], about[0, 2], about[1, 2]), mass)
-    try:
-        turning = plant.AddRigidBody('body', SpatialInertia(mass, arm, unit))
-    except RuntimeError as error:
-        raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
-    gravity = scene.effect('gravity')
-    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0 if free or not gravity else -gravity.g])
-    joint = None if free else plant.AddJoint(BallRpyJoint('pivot', plant.world_frame(), turning.body_frame()))
+    from pydrake.systems.framework import DiagramBuilder
+    kind, gravity = scene.constraint.kind, scene.effect('gravity')
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, step)
+    if isinstance(numbers, body.Body):
+        inertia, arm = numbers.about_center(scene)
+    else:
+        inertia, arm = scene.body.about_center.matrix, np.array(scene.body.center_of_mass)
+    turning = plant.AddRigidBody('body', _spatial(scene.body.mass, arm, inertia))
+    g = numbers.g if kind == 'table' else gravity.g if gravity and kind != 'free' else 0.0
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -g])
+    joint = _joined(plant, turning, scene, numbers)
     plant.Finalize()
-    simulator = Simulator(plant)
-    integrator = ResetIntegratorFromFlags(simulator, scheme, MAX_STEP)
-    integrator.set_target_accuracy(accuracy)
-    context = simulator.get_mutable_context()
-    q, omega = given.start[:4], given.start[4:]
-    rotation = RotationMatrix(_matrix(q))
-    angles = RollPitchYaw(rotation).vector()
+    force = _drive(builder, plant, turning, numbers)
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    if scheme:
+        ResetIntegratorFromFlags(simulator, scheme, MAX_STEP).set_target_accuracy(accuracy)
+    whole = simulator.get_mutable_context()
+    context = plant.GetMyMutableContextFromRoot(whole)
+    force(whole)
+    again = _beginning(plant, context, turning, joint, numbers)
 
     def begin():
-        context.SetTime(0.0)
-        if free:
-            positions = np.zeros(7)
-            positions[:4] = q[3], *q[:3]
-            plant.SetPositions(context, positions)
-            plant.SetVelocities(context, np.concatenate([rotation.matrix() @ omega, np.zeros(3)]))
-        else:
-            joint.set_angles(context, angles)
-            joint.set_angular_velocity(context, rotation.matrix() @ omega)
+        whole.SetTime(0.0)
+        again()
         simulator.Initialize()
 
     def to(time):
@@ -77,15 +75,104 @@ def _run(problem, given, scheme, accuracy):
             raise NotConverged(f'{NAME}: {str(error).splitlines()[0]}') from None
 
     def state():
+        if isinstance(numbers, pendulum.Pendulum):
+            return numbers.state((joint.get_angle(context), joint.get_angular_rate(context)))
         pose = plant.EvalBodyPoseInWorld(context, turning)
         quaternion = pose.rotation().ToQuaternion()
         spin = plant.EvalBodySpatialVelocityInWorld(context, turning).rotational()
-        return given.state((quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *(pose.rotation().matrix().T @ spin)))
-    return Run(begin, to, state)
+        omega = spin if isinstance(numbers, ball.Ball) else pose.rotation().matrix().T @ spin
+        return numbers.state((quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *omega))
+    run = Run(begin, to, state)
+    run.keeps = simulator, diagram
+    return run
 
 
-def _matrix(q):
+def _spatial(mass, arm, inertia):
+    from pydrake.multibody.tree import RotationalInertia, SpatialInertia, UnitInertia
+    about = np.asarray(inertia) + (mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
+    try:
+        unit = UnitInertia().SetFromRotationalInertia(RotationalInertia(*np.diag(about), about[0, 1], about[0, 2], about[1, 2]), mass)
+        return SpatialInertia(mass, arm, unit)
+    except RuntimeError as error:
+        raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
+
+
+def _joined(plant, turning, scene, numbers):
+    """Add and return the joint that holds the body, with its damping; for a ball the table too."""
+    from pydrake.geometry import HalfSpace, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.plant import CoulombFriction
+    from pydrake.multibody.tree import BallRpyJoint, FixedOffsetFrame, QuaternionFloatingJoint, RevoluteJoint
+    world, frame = plant.world_frame(), turning.body_frame()
+    if isinstance(numbers, pendulum.Pendulum):
+        through = np.array(scene.constraint.through)
+        held = plant.AddFrame(FixedOffsetFrame('held', frame, RigidTransform(through)))
+        turn = _rotation(numbers.orientation)
+        base = plant.AddFrame(FixedOffsetFrame('base', world, RigidTransform(turn, turn.matrix() @ through)))
+        joint = plant.AddJoint(RevoluteJoint('hinge', base, held, numbers.axis, numbers.friction))
+        plant.AddJointActuator('motor', joint)
+        return joint
+    if isinstance(numbers, ball.Ball):
+        friction = CoulombFriction(numbers.mu, numbers.mu)
+        plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction)
+        plant.RegisterCollisionGeometry(turning, RigidTransform(), Sphere(numbers.radius), 'ball', friction)
+        return plant.AddJoint(QuaternionFloatingJoint('flight', world, frame))
+    damping = numbers.damping[0, 0]
+    if scene.constraint.kind == 'free':
+        return plant.AddJoint(QuaternionFloatingJoint('flight', world, frame, damping))
+    return plant.AddJoint(BallRpyJoint('pivot', world, frame, damping))
+
+
+def _drive(builder, plant, turning, numbers):
+    """Connect what turns the body; return what sets it in the context. A couple fixed in the body is a propeller that has no thrust."""
+    from pydrake.math import RigidTransform, RotationMatrix
+    from pydrake.multibody.math import SpatialForce
+    from pydrake.multibody.plant import ExternallyAppliedSpatialForce, Propeller
+    if isinstance(numbers, pendulum.Pendulum):
+        return lambda whole: plant.get_actuation_input_port().FixValue(plant.GetMyMutableContextFromRoot(whole), [numbers.torque])
+    if isinstance(numbers, ball.Ball) or not (np.any(numbers.torque) or np.any(numbers.push)):
+        return lambda whole: None
+    if np.any(numbers.torque) and np.any(numbers.push):
+        raise RefusedError('a couple in the body and one in the world at once: its one port would have to be fed by a system of its user')
+    if np.any(numbers.push):
+        applied = ExternallyAppliedSpatialForce()
+        applied.body_index, applied.F_Bq_W = turning.index(), SpatialForce(numbers.push, np.zeros(3))
+        port = plant.get_applied_spatial_force_input_port()
+        return lambda whole: port.FixValue(plant.GetMyMutableContextFromRoot(whole), [applied])
+    place = RigidTransform(RotationMatrix.MakeFromOneVector(numbers.torque, 2), np.zeros(3))
+    propeller = builder.AddSystem(Propeller(turning.index(), place, 0.0, 1.0))
+    builder.Connect(propeller.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+    builder.Connect(plant.get_body_poses_output_port(), propeller.get_body_poses_input_port())
+    size = float(np.linalg.norm(numbers.torque))
+    return lambda whole: propeller.get_command_input_port().FixValue(propeller.GetMyMutableContextFromRoot(whole), [size])
+
+
+def _beginning(plant, context, turning, joint, numbers):
+    """Return what puts the body at its start."""
+    from pydrake.math import RollPitchYaw
+    if isinstance(numbers, pendulum.Pendulum):
+        def hinge():
+            joint.set_angle(context, 0.0)
+            joint.set_angular_rate(context, numbers.start[1])
+        return hinge
+    x, y, z, w = numbers.start[:4]
+    rotation = _rotation(numbers.start[:4])
+    if isinstance(numbers, ball.Ball):
+        positions, velocities = np.array([w, x, y, z, 0.0, 0.0, numbers.radius]), np.array([*numbers.start[4:], 0.0])
+    else:
+        positions, velocities = np.array([w, x, y, z, 0.0, 0.0, 0.0]), np.concatenate([rotation.matrix() @ numbers.start[4:], np.zeros(3)])
+    if plant.num_positions() == 3:
+        positions, velocities = RollPitchYaw(rotation).vector(), velocities[:3]
+
+    def again():
+        plant.SetPositions(context, positions)
+        plant.SetVelocities(context, velocities)
+    return again
+
+
+def _rotation(q):
+    from pydrake.math import RotationMatrix
     x, y, z, w = q
-    return np.array([[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-                     [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-                     [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]])
+    return RotationMatrix(np.array([[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+                                    [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+                                    [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]]))

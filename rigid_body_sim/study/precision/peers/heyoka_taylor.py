@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rigid_body_sim.study.precision.peers import body
+from rigid_body_sim.study.precision.peers import ball, given, pendulum
 from rigid_body_sim.study.precision.runner import TOLERANCES, Run, Runner
 
 NAME = 'heyoka'
@@ -15,17 +15,20 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield heyoka in doubles and in 80-bit numbers."""
-    given = body.of(problem)
-    yield Runner(NAME, 'tolerance', TOLERANCES, lambda tolerance: _run(given, tolerance, np.float64), True)
-    yield Runner(f'{NAME}, 80 bit', 'tolerance', (1e-12, 1e-15, 1e-18), lambda tolerance: _run(given, tolerance, np.longdouble), True)
+    """Yield heyoka in doubles and, but for a ball, in 80-bit numbers."""
+    numbers = given.of(problem)
+    made = _rolling if isinstance(numbers, ball.Ball) else _run
+    yield Runner(NAME, 'tolerance', TOLERANCES, lambda tolerance: made(numbers, tolerance, np.float64), True)
+    if made is _run:
+        yield Runner(f'{NAME}, 80 bit', 'tolerance', (1e-12, 1e-15, 1e-18), lambda tolerance: _run(numbers, tolerance, np.longdouble), True)
 
 
-def _run(given, tolerance, number):
+def _run(numbers, tolerance, number):
     import heyoka
-    variables = heyoka.make_vars('x', 'y', 'z', 'w', 'w1', 'w2', 'w3')
-    system = list(zip(variables, equations(given, number, *variables)))
-    start = given.start.astype(number)
+    swings = isinstance(numbers, pendulum.Pendulum)
+    variables = heyoka.make_vars(*(('phi', 'rate') if swings else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3')))
+    system = list(zip(variables, (swinging if swings else turning)(numbers, number, *variables)))
+    start = numbers.start.astype(number)
     integrator = heyoka.taylor_adaptive(system, start, tol=number(tolerance), fp_type=number)
 
     def begin():
@@ -34,10 +37,55 @@ def _run(given, tolerance, number):
 
     def to(time):
         integrator.propagate_until(number(time))
-    return Run(begin, to, lambda: given.state(integrator.state.astype(float)))
+    return Run(begin, to, lambda: numbers.state(integrator.state.astype(float)))
 
 
-def equations(given, number, x, y, z, w, *omega):
+def _rolling(numbers, tolerance, _):
+    """Return the Run of a ball: one integrator that stops at the event that it begins to roll, another one from there on."""
+    import heyoka
+    variables = heyoka.make_vars('x', 'y', 'z', 'w', 'w1', 'w2', 'w3', 'v1', 'v2')
+    x, y, z, w, w1, w2, w3 = variables[:7]
+    turn = [0.5 * (w * w1 + w2 * z - w3 * y), 0.5 * (w * w2 + w3 * x - w1 * z), 0.5 * (w * w3 + w1 * y - w2 * x),
+            -0.5 * (w1 * x + w2 * y + w3 * z)]
+
+    def integrator(push, **events):
+        system = [*turn, *(heyoka.expression(float(c)) for c in push[4:])]
+        return heyoka.taylor_adaptive(list(zip(variables, system)), numbers.start, tol=tolerance, **events)
+    rolling = sliding = integrator(np.zeros(9))
+    if numbers.slides:
+        onset = sum((c * one for c, one in zip(numbers.slip[5:], variables[5:])), numbers.slip[4] * variables[4])
+        sliding = integrator(numbers.push, t_events=[heyoka.t_event(onset, direction=heyoka.event_direction.negative)])
+    now = sliding
+
+    def begin():
+        nonlocal now
+        now = sliding
+        if numbers.slides:
+            now.reset_cooldowns()
+        now.time = 0.0
+        now.state[:] = numbers.start
+
+    def to(time):
+        nonlocal now
+        now.propagate_until(time)
+        if now.time < time:
+            rolling.time = now.time
+            rolling.state[:] = now.state
+            rolling.propagate_until(time)
+            now = rolling
+    return Run(begin, to, lambda: numbers.state(now.state))
+
+
+def swinging(numbers, number, phi, rate):
+    """Return the right-hand sides of a pendulum; what is zero is not written."""
+    import heyoka
+    a, b, k, d = numbers.numbers.astype(number)
+    parts = [c * e for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0]
+    right = sum(parts[1:], parts[0]) if parts else 0.0 * rate
+    return [rate, right + k if k else right]
+
+
+def turning(numbers, number, x, y, z, w, *omega):
     """Return the right-hand sides; what is zero is not written."""
     def total(*terms):
         terms = [number(c) * e for c, e in terms if c != 0.0]
@@ -47,20 +95,21 @@ def equations(given, number, x, y, z, w, *omega):
         parts = [part for part in parts if part is not None]
         return sum(parts[1:], parts[0])
     # constants are formed in the precision of the numbers
-    i, c = given.moments.astype(number), number(given.inner)
+    i, c = numbers.moments.astype(number), number(numbers.inner)
     products = [omega[1] * omega[2], omega[2] * omega[0], omega[0] * omega[1]]
-    a = omega if not given.inner else [plus(omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k]))) for k in range(3)]
+    a = omega if not numbers.inner else [plus(omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k]))) for k in range(3)]
     columns = [[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
                [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
                [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)]]
     rates = []
     for k in range(3):
         j, l = (k + 1) % 3, (k + 2) % 3
-        inertia = total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j])) if given.inner else \
+        inertia = total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j])) if numbers.inner else \
             total(((i[j] - i[l]) / i[k], products[k]))
-        couple = total((given.weight_arm[l] / i[k], columns[j][2]), (-given.weight_arm[j] / i[k], columns[l][2]),
-                       *((given.push[n] / i[k], columns[k][n]) for n in range(3)), *((-given.damping[k, n] / i[k], omega[n]) for n in range(3)))
-        constant = number(given.torque[k]) / i[k]
+        couple = total((numbers.weight_arm[l] / i[k], columns[j][2]), (-numbers.weight_arm[j] / i[k], columns[l][2]),
+                       *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
+                       *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)))
+        constant = number(numbers.torque[k]) / i[k]
         parts = plus(inertia, couple) if inertia is not None or couple is not None else 0.0 * omega[k]
         rates.append(parts + constant if constant else parts)
     return [0.5 * (w * a[0] + y * a[2] - z * a[1]), 0.5 * (w * a[1] + z * a[0] - x * a[2]), 0.5 * (w * a[2] + x * a[1] - y * a[0]),

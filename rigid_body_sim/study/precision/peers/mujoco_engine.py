@@ -1,14 +1,19 @@
-"""MuJoCo: RK4, and its default semi-implicit Euler; all steps in one call, so the loop runs in C."""
+"""MuJoCo: RK4, and its default semi-implicit Euler; all steps in one call, so the loop runs in C. A ball meets the table by its own contact."""
 
 import numpy as np
 
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.study.precision.peers import body
+from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'MuJoCo'
-SCENE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" gravity="0 0 {gravity!r}"><flag contact="disable"/></option><worldbody>
-<body><joint type="{joint}"/><inertial pos="{place}" mass="{mass!r}" fullinertia="{inertia}"/></body></worldbody></mujoco>"""
+SCENE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" gravity="0 0 {gravity!r}" cone="elliptic">
+<flag contact="{contact}"/></option><worldbody>{table}
+<body pos="{origin}" quat="{attitude}">{joint}<inertial pos="{place}" mass="{mass!r}" fullinertia="{inertia}"/>{shape}</body>
+</worldbody></mujoco>"""
+TABLE = '<geom type="plane" size="0 0 1" friction="{0!r} 0 0"/>'
+BALL = '<geom type="sphere" size="{1!r}" friction="{0!r} 0 0"/>'
 
 
 def version():
@@ -19,42 +24,72 @@ def version():
 
 def runners(problem, reference):
     """Yield MuJoCo with both of its methods."""
-    given = body.of(problem)
-    if given.inner:
-        raise RefusedError('internal dissipation: it has no such effect')
-    if np.abs(given.damping - given.damping[0, 0] * np.eye(3)).max() > 0.0:
-        raise RefusedError('drag on the centre of mass of a pivoted body: its joints damp all axes alike')
+    numbers = given.of(problem)
+    if isinstance(numbers, body.Body):
+        if numbers.inner:
+            raise RefusedError('internal dissipation: it has no such effect')
+        if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
+            raise RefusedError('drag on the centre of mass of a pivoted body: its joints damp all axes alike')
     steps = steps_for(problem, reference)
     for label, integrator in (('RK4', 'RK4'), ('default (Euler)', 'Euler')):
-        yield Runner(f'{NAME} {label}', 'step', steps, lambda step, integrator=integrator: _run(problem, given, integrator, step), True)
+        yield Runner(f'{NAME} {label}', 'step', steps, lambda step, integrator=integrator: _run(problem.scene, numbers, integrator, step), True)
 
 
-def _run(problem, given, integrator, step):
+def _text(scene, numbers, integrator, step):
+    """Return the model: its body frame is that of the peer's numbers, which for a hinge and a ball is the scene's."""
+    kind, gravity = scene.constraint.kind, scene.effect('gravity')
+    g = gravity.g if gravity and kind in ('pivot', 'hinge') else numbers.g if kind == 'table' else 0.0
+    attitude, origin, table, shape = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), '', ''
+    if isinstance(numbers, body.Body):
+        inertia, arm = numbers.about_center(scene)
+        joint = f'<joint type="{"free" if kind == "free" else "ball"}"/>'
+    else:
+        inertia, arm = scene.body.about_center.matrix, np.array(scene.body.center_of_mass)
+        joint = '<joint type="free"/>'
+    if kind == 'hinge':
+        attitude = numbers.orientation
+        joint = f'<joint type="hinge" axis="{_spaced(numbers.axis)}" pos="{_spaced(scene.constraint.through)}" damping="{numbers.friction!r}"/>'
+    elif kind == 'table':
+        origin, table, shape = (0.0, 0.0, numbers.radius), TABLE.format(numbers.mu), BALL.format(numbers.mu, numbers.radius)
+    return SCENE.format(
+        integrator=integrator, step=step, gravity=-g, contact='enable' if kind == 'table' else 'disable', table=table, joint=joint, shape=shape,
+        mass=scene.body.mass, origin=_spaced(origin), attitude=_spaced((attitude[3], *attitude[:3])), place=_spaced(arm),
+        inertia=_spaced(inertia[pair] for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))))
+
+
+def _spaced(values):
+    return ' '.join(repr(float(value)) for value in values)
+
+
+def _run(scene, numbers, integrator, step):
     import mujoco
-    scene, free = problem.scene, problem.scene.constraint.kind == 'free'
-    gravity = scene.effect('gravity')
-    mass, inertia, arm = scene.body.mass, *given.about_center(scene)
-    text = SCENE.format(
-        integrator=integrator, step=step, gravity=0.0 if free or not gravity else -gravity.g, joint='free' if free else 'ball', mass=mass,
-        place=' '.join(map(repr, arm.tolist())),
-        inertia=' '.join(repr(float(inertia[pair])) for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))))
     try:
-        model = mujoco.MjModel.from_xml_string(text)
+        model = mujoco.MjModel.from_xml_string(_text(scene, numbers, integrator, step))
     except ValueError as error:
         raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
     data = mujoco.MjData(model)
     mujoco.set_mju_user_warning(lambda text: None)    # else it writes a file into the present folder
-    model.dof_damping[-3:] = given.damping[0, 0]
-    x, y, z, w = given.start[:4]
+    turns = isinstance(numbers, body.Body)
+    if turns:
+        model.dof_damping[-3:] = numbers.damping[0, 0]
     done = 0
 
     def begin():
         nonlocal done
         mujoco.mj_resetData(model, data)
-        data.qpos[-4:] = w, x, y, z
-        data.qvel[-3:] = given.start[4:]
-        data.qfrc_applied[-3:] = given.torque
-        data.xfrc_applied[1, 3:] = given.push
+        if turns:
+            x, y, z, w = numbers.start[:4]
+            data.qpos[-4:] = w, x, y, z
+            data.qvel[-3:] = numbers.start[4:]
+            data.qfrc_applied[-3:] = numbers.torque
+            data.xfrc_applied[1, 3:] = numbers.push
+        elif isinstance(numbers, pendulum.Pendulum):
+            data.qvel[0] = numbers.start[1]
+            data.qfrc_applied[0] = numbers.torque
+        else:
+            x, y, z, w, *omega = numbers.start[:7]
+            data.qpos[3:] = w, x, y, z
+            data.qvel[:] = *numbers.start[7:], 0.0, *rotate_back(x, y, z, w, *omega)
         done = 0
 
     def to(time):
@@ -66,6 +101,9 @@ def _run(problem, given, integrator, step):
             raise NotConverged(f'{NAME}: at a step of {step:.3g} s it finds NaN and starts anew from its first pose, with a warning')
 
     def state():
+        if isinstance(numbers, pendulum.Pendulum):
+            return numbers.state((data.qpos[0], data.qvel[0]))
         w, x, y, z = data.qpos[-4:]
-        return given.state((x, y, z, w, *data.qvel[-3:]))
+        omega = data.qvel[-3:]
+        return numbers.state((x, y, z, w, *(rotate(x, y, z, w, *omega) if isinstance(numbers, ball.Ball) else omega)))
     return Run(begin, to, state)

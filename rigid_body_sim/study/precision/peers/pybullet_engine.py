@@ -1,14 +1,18 @@
-"""PyBullet: its step is one call from Python, there is no other way; damping is switched off."""
+"""PyBullet: its step is one call from Python, there is no other way; its own damping is switched off."""
 
 import importlib.metadata
+import tempfile
 
 import numpy as np
 
 from rigid_body_sim.rotations import rotate, rotate_back
-from rigid_body_sim.study.precision.peers import body
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'PyBullet'
+URDF = """<robot name="pendulum"><link name="base"/>
+<link name="body"><inertial><origin xyz="{place}"/><mass value="{mass!r}"/><inertia {inertia}/></inertial></link>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="body"/><axis xyz="{axis}"/><origin xyz="{through}"/></joint></robot>"""
 
 
 def version():
@@ -19,52 +23,119 @@ def version():
 
 def runners(problem, reference):
     """Yield the one method there is."""
-    given = body.of(problem)
-    if given.inner or np.any(given.damping):
-        raise RefusedError('drag or internal dissipation: its damping is a factor a step, another law')
-    yield Runner(NAME, 'step', steps_for(problem, reference), lambda step: _run(problem, given, step), True)
+    numbers = given.of(problem)
+    if isinstance(numbers, body.Body) and numbers.inner:
+        raise RefusedError('internal dissipation: it has no such effect')
+    made = {body.Body: _turning, pendulum.Pendulum: _swinging, ball.Ball: _rolling}[type(numbers)]
+    yield Runner(NAME, 'step', steps_for(problem, reference), lambda step: made(problem.scene, numbers, step), True)
 
 
-def _run(problem, given, step):
+def _engine(step, g):
+    """Return the module and keywords that name a world of its own."""
     import pybullet as engine
-    scene, free = problem.scene, problem.scene.constraint.kind == 'free'
-    inertia, arm = given.about_center(scene)
-    if np.abs(inertia - np.diag(np.diag(inertia))).max() > 1e-12 * inertia.max():
-        raise RefusedError('the principal axes about the centre of mass are not those about the pivot: it takes three moments only')
-    gravity = scene.effect('gravity')
-    client = engine.connect(engine.DIRECT)
-    engine.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=0, physicsClientId=client)
-    engine.setGravity(0.0, 0.0, 0.0 if free or not gravity else -gravity.g, physicsClientId=client)
-    one = engine.createMultiBody(baseMass=scene.body.mass, physicsClientId=client)
-    engine.changeDynamics(one, -1, localInertiaDiagonal=np.diag(inertia).tolist(), linearDamping=0.0, angularDamping=0.0, maxJointVelocity=1e9,
-                          physicsClientId=client)
-    if not free:
-        engine.createConstraint(one, -1, -1, -1, engine.JOINT_POINT2POINT, [0, 0, 0], (-arm).tolist(), [0, 0, 0], physicsClientId=client)
-    q, omega = given.start[:4], given.start[4:]
-    spin = rotate(*q, *omega)
-    place = np.array(rotate(*q, *arm))
+    world = {'physicsClientId': engine.connect(engine.DIRECT)}
+    engine.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=0, **world)
+    engine.setGravity(0.0, 0.0, -g, **world)
+    return engine, world
+
+
+def _spaced(values):
+    return ' '.join(repr(float(value)) for value in values)
+
+
+def _undamped(engine, world, one, moments, **more):
+    engine.changeDynamics(one, -1, localInertiaDiagonal=list(map(float, moments)), linearDamping=0.0, angularDamping=0.0, maxJointVelocity=1e9,
+                          **more, **world)
+
+
+def _stepping(engine, world, step, again, push, state):
+    """Return the Run of a loop of steps; `again` goes back to the start, `push` applies what is no part of the world, if anything."""
     done = 0
 
     def begin():
         nonlocal done
-        engine.resetBasePositionAndOrientation(one, place.tolist(), q.tolist(), physicsClientId=client)
-        engine.resetBaseVelocity(one, np.cross(spin, place).tolist(), list(spin), physicsClientId=client)
+        again()
         done = 0
 
     def to(time):
         nonlocal done
         steps = body.whole_steps(time, step)
-        driven = np.any(given.torque) or np.any(given.push)
         for _ in range(steps - done):
-            if driven:
-                now = engine.getBasePositionAndOrientation(one, physicsClientId=client)[1]
-                torque = np.add(rotate(*now, *given.torque), given.push).tolist()
-                engine.applyExternalTorque(one, -1, torque, engine.WORLD_FRAME, physicsClientId=client)
-            engine.stepSimulation(physicsClientId=client)
+            if push:
+                push()
+            engine.stepSimulation(**world)
         done = steps
+    return Run(begin, to, state)
+
+
+def _turning(scene, numbers, step):
+    free, gravity = scene.constraint.kind == 'free', scene.effect('gravity')
+    inertia, arm = numbers.about_center(scene)
+    if np.abs(inertia - np.diag(np.diag(inertia))).max() > 1e-12 * inertia.max():
+        raise RefusedError('the principal axes about the centre of mass are not those about the pivot: it takes three moments only')
+    engine, world = _engine(step, 0.0 if free or not gravity else gravity.g)
+    one = engine.createMultiBody(baseMass=scene.body.mass, **world)
+    _undamped(engine, world, one, np.diag(inertia))
+    if not free:
+        engine.createConstraint(one, -1, -1, -1, engine.JOINT_POINT2POINT, [0, 0, 0], (-arm).tolist(), [0, 0, 0], **world)
+    q, omega = numbers.start[:4], numbers.start[4:]
+    spin, place = rotate(*q, *omega), np.array(rotate(*q, *arm))
+
+    def again():
+        engine.resetBasePositionAndOrientation(one, place.tolist(), q.tolist(), **world)
+        engine.resetBaseVelocity(one, np.cross(spin, place).tolist(), list(spin), **world)
+
+    def push():
+        now, torque = engine.getBasePositionAndOrientation(one, **world)[1], numbers.torque
+        if np.any(numbers.damping):
+            torque = torque - numbers.damping @ rotate_back(*now, *engine.getBaseVelocity(one, **world)[1])
+        engine.applyExternalTorque(one, -1, np.add(rotate(*now, *torque), numbers.push).tolist(), engine.WORLD_FRAME, **world)
 
     def state():
-        _, q = engine.getBasePositionAndOrientation(one, physicsClientId=client)
-        _, spin = engine.getBaseVelocity(one, physicsClientId=client)
-        return given.state((*q, *rotate_back(*q, *spin)))
-    return Run(begin, to, state)
+        q = engine.getBasePositionAndOrientation(one, **world)[1]
+        return numbers.state((*q, *rotate_back(*q, *engine.getBaseVelocity(one, **world)[1])))
+    driven = np.any(numbers.torque) or np.any(numbers.push) or np.any(numbers.damping)
+    return _stepping(engine, world, step, again, push if driven else None, state)
+
+
+def _swinging(scene, numbers, step):
+    """Return the Run of a revolute joint on a fixed base, of a URDF file as its users write it."""
+    gravity, body_, through = scene.effect('gravity'), scene.body, scene.constraint.through
+    engine, world = _engine(step, gravity.g if gravity else 0.0)
+    inertia = body_.about_center.matrix
+    text = URDF.format(
+        axis=_spaced(numbers.axis), through=_spaced(through), place=_spaced(np.subtract(body_.center_of_mass, through)), mass=body_.mass,
+        inertia=' '.join(f'i{"xyz"[i]}{"xyz"[j]}="{float(inertia[i, j])!r}"' for i in range(3) for j in range(i, 3)))
+    with tempfile.NamedTemporaryFile('w', suffix='.urdf') as file:
+        file.write(text)
+        file.flush()
+        one = engine.loadURDF(file.name, baseOrientation=list(map(float, numbers.orientation)), useFixedBase=True,
+                              flags=engine.URDF_USE_INERTIA_FROM_FILE, **world)
+    engine.changeDynamics(one, 0, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0, maxJointVelocity=1e9, **world)
+    engine.setJointMotorControl2(one, 0, engine.VELOCITY_CONTROL, force=0.0, **world)    # else a motor brakes it
+
+    def push():
+        torque = numbers.torque - numbers.friction * engine.getJointState(one, 0, **world)[1]
+        engine.setJointMotorControl2(one, 0, engine.TORQUE_CONTROL, force=torque, **world)
+
+    return _stepping(engine, world, step, lambda: engine.resetJointState(one, 0, 0.0, float(numbers.start[1]), **world),
+                     push if numbers.torque or numbers.friction else None, lambda: numbers.state(engine.getJointState(one, 0, **world)[:2]))
+
+
+def _rolling(scene, numbers, step):
+    """Return the Run of a sphere on a plane, both with its own contact; it multiplies their coefficients of friction."""
+    engine, world = _engine(step, numbers.g)
+    table = engine.createMultiBody(0.0, engine.createCollisionShape(engine.GEOM_PLANE, **world), **world)
+    engine.changeDynamics(table, -1, lateralFriction=1.0, restitution=0.0, **world)
+    one = engine.createMultiBody(scene.body.mass, engine.createCollisionShape(engine.GEOM_SPHERE, radius=numbers.radius, **world), **world)
+    _undamped(engine, world, one, scene.body.about_center.moments, lateralFriction=numbers.mu, rollingFriction=0.0, spinningFriction=0.0,
+              restitution=0.0)
+    x, y, z, w, wx, wy, wz, vx, vy = numbers.start.tolist()
+
+    def again():
+        engine.resetBasePositionAndOrientation(one, [0.0, 0.0, numbers.radius], [x, y, z, w], **world)
+        engine.resetBaseVelocity(one, [vx, vy, 0.0], [wx, wy, wz], **world)
+
+    def state():
+        return numbers.state((*engine.getBasePositionAndOrientation(one, **world)[1], *engine.getBaseVelocity(one, **world)[1]))
+    return _stepping(engine, world, step, again, None, state)
