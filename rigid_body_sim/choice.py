@@ -56,7 +56,7 @@ class Choice:
         """Return a solver from a state on, under a held wrench."""
         if wrench == Wrench():
             return self._prototype.start(start)
-        method = 'dop8' if self.method == 'exact' else self.method
+        method = 'dop8' if self.method in ('exact', 'taylor') else self.method
         return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
 
 

@@ -88,7 +88,7 @@ def _jit(function, **options):
     for name in before:
         setattr(numba.config, name, _SETTINGS[name])
     try:
-        return numba.njit(cache=CACHE_FOLDER is not None, error_model='numpy', nogil=True, **options)(function)
+        return numba.njit(cache=CACHE_FOLDER is not None, error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
     finally:
         for name, value in before.items():
             setattr(numba.config, name, value)

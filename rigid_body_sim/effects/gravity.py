@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from rigid_body_sim.effects.views import Acting
+from rigid_body_sim.effects.views import Acting, Pull
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,10 @@ class Gravity:
             return Acting('rigid_body_sim.effects.elementary:constant', (0.0, 0.0, -weight), 'force', 'potential'),
         values = tuple(weight * r for r in frame.arm)
         return Acting('rigid_body_sim.effects.elementary:moment_of_weight', values, 'torque', 'potential'),
+
+    def series(self, frame, time):
+        """View `series`: the weight, where it turns the body."""
+        return Pull(force=(0.0, 0.0, -frame.mass * self.g)) if frame.kind == 'pivot' else None
 
     def energy(self, frame, height):
         """Return the potential energy (J) of the centre of mass at a height (m) above the world's origin."""

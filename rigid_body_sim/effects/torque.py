@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
-from rigid_body_sim.effects.views import Acting, as_floats
+from rigid_body_sim.effects.views import Acting, Pull, as_floats
 from rigid_body_sim.errors import BadInput
 
 VECTOR = {'type': 'array', 'items': {'type': 'number'}, 'minItems': 3, 'maxItems': 3}
@@ -61,3 +61,10 @@ class Torque:
         if self.frame == 'world':
             return Acting('rigid_body_sim.effects.elementary:to_frame', value, 'torque', 'work'),
         return Acting('rigid_body_sim.effects.elementary:constant', frame.from_body(value), 'torque', 'work'),
+
+    def series(self, frame, time):
+        """View `series`: the couple."""
+        if frame.kind == 'hinge':
+            return None
+        value = self.value(time)
+        return Pull(couple=value) if self.frame == 'world' else Pull(constant=frame.from_body(value))

@@ -6,9 +6,22 @@ accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
 from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.integrators import dop8, gauss16, lsoda, radau, rk4, runge_kutta, semi_implicit_euler, split2, split4, split6, split8
+from rigid_body_sim.integrators import (
+    dop8,
+    gauss16,
+    lsoda,
+    radau,
+    rk4,
+    runge_kutta,
+    semi_implicit_euler,
+    split2,
+    split4,
+    split6,
+    split8,
+    taylor,
+)
 
-METHODS = {method.NAME: method for method in (dop8, gauss16, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
+METHODS = {method.NAME: method for method in (dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 
 
 def runnable(scene):
@@ -24,4 +37,10 @@ def runnable(scene):
     acting = [one for effect in effects if hasattr(effect, 'acting') for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' for one in acting)
     return [name for name, method in METHODS.items()
-            if all(hasattr(effect, method.NEEDS) for effect in effects) and (method.HEAT or not hot)]
+            if all(_shows(effect, method.NEEDS, frame) for effect in effects) and (method.HEAT or not hot)
+            and not (method.NEEDS == 'series' and frame.kind == 'hinge')]
+
+
+def _shows(effect, view, frame):
+    """Return whether an effect has a view of itself in a frame."""
+    return hasattr(effect, view) and (view != 'series' or effect.series(frame, 0.0) is not None)

@@ -15,7 +15,7 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, runnable, scipy_methods, table, track
+from rigid_body_sim.integrators import METHODS, dop8, power_series, runnable, scipy_methods, table, track
 from rigid_body_sim.integrators.adaptive import TIME as NODE_TIME
 from rigid_body_sim.integrators.adaptive import VALUES
 from rigid_body_sim.mechanics import drive, swing_rate
@@ -142,10 +142,12 @@ class _Bound:
     """The kernels of one method on the equations of one scene kind."""
 
     def __init__(self, stepped, books):
-        family = stepped.method.FAMILY
+        # power series keep no books
+        method = dop8 if books and stepped.method.FAMILY is power_series else stepped.method
+        family = method.FAMILY
         self.equations = equations = family.equations(stepped.scene, stepped.wrench, books)
         self.acts = equations.acts
-        self.march = family.march(stepped.method, equations, stepped.step is None)
+        self.march = family.march(method, equations, stepped.step is None)
         self._prototype = family.begin(stepped, self.march)
         shared = {name: f'{self.march.__name__}:{name}' for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
         shared |= {name: f'{equations.kernels.__name__}:{name}' for name in ('start', 'write')}

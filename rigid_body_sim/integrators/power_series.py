@@ -1,0 +1,87 @@
+"""Family of the methods by power series: taylor. Its equations are not those of a scene but of a few kinds: what acts is in their numbers."""
+
+import numpy as np
+
+from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import euler, taylor_march, taylor_series, turning
+from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.specialise import specialise
+
+CONSTANT, FORCE, PULL, COUPLE = (euler.FIXED + k for k in (0, 3, 6, 12))
+COUNT = COUPLE + 3
+
+
+def equations(scene, wrench, books):
+    """Return the equations of a scene that `march` is for; they keep no books and know no wrench (Stepped has dop8 for these).
+
+    Raises
+    ------
+    BadInput
+        An effect or a constraint that they cannot have.
+    """
+    return Series(scene)
+
+
+class Series(Equations):
+    """The equations of turning as taylor_series.py has them: a constant torque, a force on an arm, a couple.
+
+    Behind the parameters of every kind (euler.py) stand the constant part of omega', the force in world components, six numbers that make
+    its part of omega' from its components in the frame, and the couple in world components.
+    """
+
+    def __init__(self, scene):
+        self.frame = Frame.of(scene.body, scene.constraint)
+        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')]
+        self.breakpoints = tuple(sorted({time for actor in self._actors for time in actor.breakpoints}))
+        pulls = [actor.series(self.frame, -np.inf) if hasattr(actor, 'series') else None for actor in self._actors]
+        if None in pulls or self.frame.kind not in ('free', 'pivot'):
+            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}', 'bodies that turn under gravity and torques only')
+        self.acts, self.extra, self.kind = bool(pulls), 0, turning
+        self.pushed = any(pull.force is not None for pull in pulls)
+        self.coupled = any(pull.couple is not None for pull in pulls)
+        # the sums of what acts stay unbound: nothing asks for rates
+        self.kernels = specialise(turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n'))
+        self._axis, self._fixed, self._held = None, None, {}
+        self._fixed = self._constants()
+
+    def parameters(self, fixed, time):
+        """Return the parameters that hold just after a time."""
+        p = np.zeros(COUNT)
+        p[:len(fixed)] = fixed
+        inverse, (rx, ry, rz) = p[euler.INVERSE:euler.INVERSE + 3], self.frame.arm
+        constant, force, couple = np.zeros((3, 3))
+        for pull in (actor.series(self.frame, time) for actor in self._actors):
+            constant += pull.constant
+            force += pull.force or 0.0
+            couple += pull.couple or 0.0
+        p[CONSTANT:CONSTANT + 3], p[FORCE:FORCE + 3], p[COUPLE:COUPLE + 3] = inverse * constant, force, couple
+        p[PULL:PULL + 6] = np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)
+        return p
+
+
+def march(method, bound, adapts):
+    """Return the module that marches: taylor_march.py bound to what acts."""
+    return specialise(taylor_march, settled=f'{bound.kernels.__name__}:settled', expand=_expand(bound.pushed, bound.coupled))
+
+
+def begin(stepped, kernels):
+    """Return (control, node) of a march, to be copied for each start."""
+    control = np.zeros(kernels.WORK + kernels.PLACES * (taylor_series.ORDER + 1))
+    control[kernels.TOLERANCE] = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
+    control[kernels.FIXED] = stepped.step or 0.0
+    return control, np.zeros(kernels.VALUES + 2 * kernels.SIZE)
+
+
+def _expand(pushed, coupled):
+    """Return the source of ``expand(p, S, y)``: the series of y."""
+    def numbers(first, count):
+        return f'({"".join(f"p[{first + k}], " for k in range(count))})'
+
+    def along_frame(first):
+        return f'*rotate_back(y[0], y[1], y[2], y[3], p[{first}], p[{first + 1}], p[{first + 2}])'
+    push = f'({along_frame(FORCE)}, *{numbers(PULL, 6)})' if pushed else '()'
+    couple = f'({along_frame(COUPLE)}, *{numbers(euler.INVERSE, 3)})' if coupled else '()'
+    return '\n'.join([f'from {taylor_series.__name__} import expansion as kernel_for', '',
+                      f'expansion = kernel_for({pushed}, {coupled})', '', '', '@compiled', 'def expand(p, S, y):',
+                      f'    expansion(S, (y, {numbers(euler.EULER, 3)}, {numbers(CONSTANT, 3)}, {push}, {couple}))', ''])

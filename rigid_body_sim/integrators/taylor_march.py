@@ -1,0 +1,139 @@
+"""Template: march by Taylor series (taylor.py).
+
+A node is one point of the march: [time, step that led here or number of the node, squared scale of omega, 0, 0, unknowns, what their sums
+lost]. `control` holds [tolerance per second, fixed step or 0, origin, time of the node whose series stand behind] and from WORK on the
+coefficients, order by order.
+"""
+
+import math
+
+from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.taylor_series import ORDER, along
+from rigid_body_sim.integrators.taylor_series import UNKNOWNS as SIZE
+from rigid_body_sim.rotations import rotate_back  # noqa: F401 (for the bound source)
+from rigid_body_sim.specialise import UNBOUND
+
+settled = UNBOUND
+expand = UNBOUND
+
+TIME, STEP, SCALE, VALUES = 0, 1, 2, 5
+TOLERANCE, FIXED, ORIGIN, FOR, WORK = 0, 1, 2, 3, 4
+PLACES = 8               # of an order's coefficients
+NEARLY = 1e-9            # of a fixed step: an end that close to a node is that node
+GROWTH = 4.0             # of a step, at most
+UNMOVED = 1e-3           # s, the first step where nothing moves
+
+
+@compiled
+def begin(p, control, node):
+    """Note the origin of a node whose time and unknowns are set, and the scale."""
+    control[ORIGIN], control[FOR] = node[TIME], math.nan
+    node[STEP] = 0.0
+    node[SCALE] = node[VALUES + 4] * node[VALUES + 4] + node[VALUES + 5] * node[VALUES + 5] + node[VALUES + 6] * node[VALUES + 6]
+
+
+@compiled
+def load(array, at):
+    """Return the unknowns, or what their sums lost."""
+    return array[at], array[at + 1], array[at + 2], array[at + 3], array[at + 4], array[at + 5], array[at + 6]
+
+
+@compiled
+def put(values, array, at):
+    """Write what `load` reads."""
+    array[at], array[at + 1], array[at + 2], array[at + 3] = values[0], values[1], values[2], values[3]
+    array[at + 4], array[at + 5], array[at + 6] = values[4], values[5], values[6]
+
+
+@compiled
+def _square(S, order, weight):
+    """Return the squared norm of the coefficients of an order; those of omega count by a weight."""
+    a = PLACES * order
+    return (S[a] * S[a] + S[a + 1] * S[a + 1]) + (S[a + 2] * S[a + 2] + S[a + 3] * S[a + 3]) + weight * (
+        S[a + 4] * S[a + 4] + S[a + 5] * S[a + 5] + S[a + 6] * S[a + 6])
+
+
+@compiled
+def _longest(S, tolerance, last, scale):
+    """Return the step at which the larger of the last two terms is what the tolerance allows in that time.
+
+    The term before the last one counts as it would at the step before; a step grows by GROWTH at most.
+    """
+    weight = 1.0 / scale if scale > 0.0 else 0.0
+    final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
+    square = max(final * last * last, before)
+    if last == 0.0:    # the first step: by the last term alone
+        if final == 0.0:
+            return UNMOVED
+        last = math.pow(tolerance * tolerance / final, 0.5 / (ORDER - 1))
+        square = max(final * last * last, before)
+    most = GROWTH * last
+    if not square * math.pow(most, 2.0 * (ORDER - 2)) > tolerance * tolerance:
+        return most
+    return math.pow(tolerance * tolerance / square, 0.5 / (ORDER - 2))
+
+
+@compiled
+def march(p, control, node, following, target, end, limit):
+    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+
+    The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed. The last node stands at
+    `end` exactly.
+    """
+    moved = 0
+    if following[TIME] > node[TIME]:
+        if target < following[TIME]:
+            return 0, True
+        for k in range(len(node)):
+            node[k] = following[k]
+        moved = 1
+    tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
+    t, last, scale = node[TIME], node[STEP], node[SCALE]
+    y, c = load(node, VALUES), load(node, VALUES + SIZE)
+    good = True
+    while t < end:
+        expand(p, S, y)
+        scale1 = max(scale, y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+        if fixed > 0.0:
+            step = last + 1.0
+            t1, h = control[ORIGIN] + step * fixed, fixed
+            if t1 + NEARLY * fixed >= end:
+                t1, h = end, end - t
+        else:
+            h = _longest(S, tolerance, last, scale1)
+            t1 = end if t + 1.1 * h >= end else t + h
+            h = t1 - t
+            step = h
+        d = along(S, (h,))
+        d = d[0] + c[0], d[1] + c[1], d[2] + c[2], d[3] + c[3], d[4] + c[4], d[5] + c[5], d[6] + c[6]
+        y1 = y[0] + d[0], y[1] + d[1], y[2] + d[2], y[3] + d[3], y[4] + d[4], y[5] + d[5], y[6] + d[6]
+        c1 = (d[0] - (y1[0] - y[0]), d[1] - (y1[1] - y[1]), d[2] - (y1[2] - y[2]), d[3] - (y1[3] - y[3]), d[4] - (y1[4] - y[4]),
+              d[5] - (y1[5] - y[5]), d[6] - (y1[6] - y[6]))
+        y1, c1 = settled(y1, c1)
+        good = t1 > t and y1[0] * y1[0] + y1[4] * y1[4] + y1[5] * y1[5] + y1[6] * y1[6] < math.inf
+        if not good or target < t1 or moved == limit:
+            following[TIME], following[STEP], following[SCALE] = t1, step, scale1
+            put(y1, following, VALUES)
+            put(c1, following, VALUES + SIZE)
+            control[FOR] = t
+            break
+        t, last, y, c, scale = t1, step, y1, c1, scale1
+        moved += 1
+    node[TIME], node[STEP], node[SCALE] = t, last, scale
+    put(y, node, VALUES)
+    put(c, node, VALUES + SIZE)
+    return moved, good
+
+
+@compiled
+def between(p, control, node, following, dt):
+    """Return the unknowns a time dt after a node and within the step from it, by the series at the node."""
+    y = load(node, VALUES)
+    if not dt > 0.0:
+        return y
+    S = control[WORK:]
+    if control[FOR] != node[TIME]:
+        expand(p, S, y)
+        control[FOR] = node[TIME]
+    d = along(S, (dt,))
+    return y[0] + d[0], y[1] + d[1], y[2] + d[2], y[3] + d[3], y[4] + d[4], y[5] + d[5], y[6] + d[6]

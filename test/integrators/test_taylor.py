@@ -1,0 +1,100 @@
+"""taylor: its recurrence, error control, dense output, and what it refuses."""
+
+import math
+
+import numpy as np
+import pytest
+from data import smooth_cases
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import lanes, runnable, taylor_series
+from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.rotations import angle_between
+from rigid_body_sim.scenes import parse_scene
+
+ULP = np.finfo(float).eps
+
+
+@pytest.fixture(scope='module')
+def top():
+    return parse_scene(smooth_cases.text('asymmetric_heavy_top'))
+
+
+@pytest.fixture(scope='module')
+def exact(top):
+    """Return the heavy top at 20 s, by another method."""
+    out = np.empty(14)
+    Stepped(top, 'dop8', accuracy=1e-15).start(top.initial.vector).state(20.0, out)
+    return out
+
+
+def state(scene, time, **control):
+    out = np.empty(14)
+    Stepped(scene, 'taylor', **control).start(scene.initial.vector).state(time, out)
+    return out
+
+
+def cauchy(a, b, k):
+    return math.fsum(a[i] * b[k - i] for i in range(k + 1))
+
+
+def test_products_of_series_are_complete():
+    """Coefficients of order up to 15 of a b for random series, by eight lanes and by Cauchy's sum."""
+    a, b = np.random.default_rng(3).uniform(-1.0, 1.0, (2, taylor_series.ORDER))
+    o = lanes.Plain()
+    first, second = taylor_series._Series(o, a[0]), taylor_series._Series(o, b[0])
+    product = taylor_series._Products(o, (-1, first, second))
+    for k in range(taylor_series.ORDER):
+        assert abs(product.at(k) + cauchy(a, b, k)) < 8 * ULP    # 2.5
+        if k + 1 < taylor_series.ORDER:
+            first.add(a[k + 1])
+            second.add(b[k + 1])
+
+
+def test_a_step_errs_by_the_next_order():
+    scene = parse_scene(smooth_cases.text('driven_body'))
+    errors = []
+    for time in (0.6, 0.7):
+        fine = np.empty(14)
+        Stepped(scene, 'dop8', accuracy=1e-15, horizon=1.0).start(scene.initial.vector).state(time, fine)
+        errors.append(np.linalg.norm(state(scene, time, step=time)[1:8] - fine[1:8]))
+    assert math.log(errors[1] / errors[0]) / math.log(0.7 / 0.6) == pytest.approx(taylor_series.ORDER + 1, abs=0.5)    # 17.20
+
+
+@pytest.mark.parametrize('accuracy', [1e-3, 1e-6, 1e-9, 1e-12])
+def test_accuracy_asked_is_met(top, exact, accuracy):
+    assert angle_between(*state(top, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact[1:5]) < 2.0 * accuracy    # 1.2, 0.02 at 1e-12
+
+
+@pytest.mark.parametrize('control', [{'accuracy': 1e-9}, {'step': 0.03}])
+def test_states_do_not_depend_on_what_else_was_asked(top, control):
+    times = np.random.default_rng(7).uniform(0.0, 20.0, 300)
+    solver = Stepped(top, 'taylor', **control).start(top.initial.vector)
+    together, again = np.empty((300, 14)), np.empty((300, 14))
+    solver.states(times, together)
+    solver.states(times[::-1], again)
+    assert np.array_equal(again, together[::-1])
+    for k in (0, 150, 299):
+        assert np.array_equal(state(top, times[k], **control), together[k])
+
+
+def test_states_between_nodes_are_as_good_as_nodes(top):
+    times = np.linspace(0.0, 0.4, 101)
+    dense, fine = np.empty((101, 14)), np.empty((101, 14))
+    Stepped(top, 'taylor', accuracy=1e-12).start(top.initial.vector).states(times, dense)
+    Stepped(top, 'dop8', accuracy=1e-15).start(top.initial.vector).states(times, fine)
+    assert max(angle_between(*a[1:5], *b[1:5]) for a, b in zip(dense, fine, strict=True)) < 1e-13
+
+
+@pytest.mark.parametrize('name', ['thrown_with_drag', 'damped_top', 'major_axis_relaxation', 'held_hinge'])
+def test_what_is_no_product_is_refused(name):
+    scene = parse_scene(smooth_cases.text(name))
+    assert 'taylor' not in runnable(scene)
+    with pytest.raises(BadInput, match='taylor cannot run the scene'):
+        Stepped(scene, 'taylor', accuracy=1e-9)
+
+
+def test_a_body_that_does_not_move_stays():
+    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
+                        'initial: {}\n')
+    assert np.array_equal(state(still, 1000.0, accuracy=1e-9)[1:], still.initial.vector[1:])
