@@ -5,6 +5,7 @@ axis, where it has one, along z. Moments of the shapes: notes, section "Some ine
 Mechanics, section 32.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import permutations, product
@@ -16,6 +17,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.errors import BadInput
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
+LARGEST_MOMENT = 1e150    # kg m^2: squares of it are doubles
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of what the user typed
 
 
@@ -174,16 +176,29 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     tensor = np.asarray(moments_or_matrix, dtype=float)
     if tensor.shape == (3,):
         tensor = np.diag(tensor)
-    if not np.array_equal(tensor, tensor.T):
+    if not np.array_equal(tensor, tensor.T, equal_nan=True):
         raise BadInput(f'{where}.inertia', f'got {tensor.tolist()}, which is not symmetric', 'a tensor equals its transpose')
-    given = Inertia.of_matrix(tensor)
     center = tuple(float(x) for x in center_of_mass)
+    refuse_beyond(max(float(np.abs(tensor).max()), M * square_of(center)), where)
+    given = Inertia.of_matrix(tensor)
     if about == 'origin':
         body = Body(M, center, moved(given, M, center, -1.0), given, radius)
     else:
         body = Body(M, center, given, moved(given, M, center, 1.0), radius)
     _check_moments(body, given, where)
     return body
+
+
+def square_of(arm):
+    """Return the squared length of an arm, inf where a double holds no more."""
+    length = math.hypot(*arm)
+    return length * length
+
+
+def refuse_beyond(moment, where):
+    """Refuse a moment of inertia (kg m^2) that is not finite or so large that its square is not."""
+    if not moment <= LARGEST_MOMENT:
+        raise BadInput(where, f'a moment of inertia of {moment!r} kg m^2, about the middle or where it is held', f'at most {LARGEST_MOMENT:g}')
 
 
 def _check_moments(body, given, where):
@@ -220,6 +235,13 @@ def composite(parts):
     M = reduce(add, (part.mass for part, _, _ in parts))
     centers = [np.asarray(at) + Rotation.from_quat(orientation).apply(part.center_of_mass) for part, at, orientation in parts]
     center = sum(part.mass * at for (part, _, _), at in zip(parts, centers, strict=True)) / M
+    with np.errstate(over='ignore', invalid='ignore'):    # make_body refuses what is not finite
+        tensor = _about(center, parts, centers)
+    return make_body(M, (tensor + tensor.T) / 2.0, center)
+
+
+def _about(center, parts, centers):
+    """Return the tensor of placed parts about a point."""
     tensor = np.zeros((3, 3))
     for (part, _, orientation), at in zip(parts, centers, strict=True):
         own = part.about_center.matrix
@@ -228,7 +250,7 @@ def composite(parts):
             own = turn @ own @ turn.T
         d = at - center
         tensor += own + part.mass * (d @ d * np.eye(3) - np.outer(d, d))
-    return make_body(M, (tensor + tensor.T) / 2.0, center)
+    return tensor
 
 
 def _jacobi_eigenvectors(matrix):

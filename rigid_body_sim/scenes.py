@@ -270,13 +270,15 @@ def _constraint(value, body, where):
         raise BadInput(where, f'got {scene_text.brief(settings)}', 'hinge: {axis: [x, y, z], through: [x, y, z]}')
     _check(settings, HINGE, f'{where}.hinge')
     axis = np.array(settings['axis'], dtype=float)
-    length = np.linalg.norm(axis)
+    with np.errstate(over='ignore'):
+        length = np.linalg.norm(axis)
     if not length > 0.0 or not math.isfinite(length):
         raise BadInput(f'{where}.hinge.axis', f'got {settings["axis"]}', 'a direction: three numbers, not all zero')
     axis = tuple((axis / length).tolist())
-    if 'distance' in settings:
-        return Constraint('hinge', axis, _suspension(settings, axis, body, f'{where}.hinge'))
-    return Constraint('hinge', axis, tuple(float(x) for x in settings.get('through', (0.0, 0.0, 0.0))))
+    through = (_suspension(settings, axis, body, f'{where}.hinge') if 'distance' in settings
+               else tuple(float(x) for x in settings.get('through', (0.0, 0.0, 0.0))))
+    bodies.refuse_beyond(body.mass * bodies.square_of(through), f'{where}.hinge')
+    return Constraint('hinge', axis, through)
 
 
 def _suspension(settings, axis, body, where):

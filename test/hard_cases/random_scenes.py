@@ -2,6 +2,7 @@
 
 import json
 
+from hard_cases.conditioning import Allowed
 from hypothesis import strategies as st
 
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -50,8 +51,34 @@ def scenes(draw):
     return scene
 
 
-commands = st.lists(st.tuples(st.sampled_from(['impulse', 'advance', 'reset']), vectors, vectors, sizes, st.sampled_from(['world', 'body'])),
-                    max_size=6)
+@st.composite
+def stepped_scenes(draw, every_effect):
+    """Draw a scene that no closed form absorbs, turning with 20 rad/s at most: an asymmetric top, a driven body, one that loses energy.
+
+    With `every_effect` drag too, and dissipation so strong that other methods are taken: kinds that take minutes to compile.
+    """
+    kind = draw(st.sampled_from(['top', 'driven', 'relaxing', *(['dragged', 'stiff'] if every_effect else [])]))
+    speed = draw(st.sampled_from([0.0, 1e-3, 1.0, 10.0]))
+    inertia = draw(moments(symmetric=False).filter(lambda I: min(I) > 1e-2))
+    scene = {'scene': 'drawn', 'constraint': 'free', 'body': {'mass': draw(sizes), 'inertia': inertia},
+             'initial': {'orientation': draw(quaternions), 'angular_velocity': [speed * x for x in draw(vectors)]}}
+    if kind == 'top':
+        scene['constraint'] = 'pivot'
+        arm = [draw(st.floats(0.001, 0.01)) for _ in range(3)]
+        scene['body'] = {'mass': 1.0, 'inertia': inertia, 'inertia_about': 'origin', 'center_of_mass': arm}
+        scene['effects'] = [{'gravity': {'g': draw(st.floats(0.1, 20.0))}}]
+    elif kind == 'driven':
+        scene['effects'] = [{'torque': {'value': draw(vectors.filter(any))}}]
+    elif kind == 'dragged':
+        scene['effects'] = [{'drag': {'angular': draw(st.floats(1e-6, 1.0)), 'linear': draw(st.floats(1e-6, 1.0))}}]
+    else:
+        scene['effects'] = [{'internal_dissipation': {'coefficient': draw(st.floats(1e-6, 0.4 if kind == 'relaxing' else 1e6))}}]
+    return scene
+
+
+def commands(acts=('impulse', 'advance', 'reset'), sizes=sizes):
+    """Draw up to six commands: (what, force, torque, size, frame)."""
+    return st.lists(st.tuples(st.sampled_from(acts), vectors, vectors, sizes, st.sampled_from(['world', 'body'])), max_size=6)
 
 
 def in_one_line(refusal):
@@ -61,20 +88,23 @@ def in_one_line(refusal):
 
 
 def run(scene, acts):
-    """Run a drawn scene under commands; return the Simulation, or None where scene or command are refused in one line."""
+    """Run a drawn scene under commands; return the Simulation and what is Allowed it, or None where the scene is refused in one line."""
     try:
         simulation = Simulation(parse_scene(json.dumps(scene)))
     except BadInput as refusal:
         in_one_line(refusal)
         return None
+    allowed = Allowed(simulation)
     for act, force, torque, size, frame in [*acts, ('advance', None, None, 1.0, None)]:
         try:
-            if act == 'impulse':
-                simulation.impulse([size * x for x in force], [size * x for x in torque], frame)
-            elif act == 'reset':
+            if act == 'reset':
                 simulation.reset()
-            else:
+                allowed.restart(simulation)
+            elif act == 'advance':
                 simulation.advance(max(1, int(min(size, 1e3))))
+            else:
+                getattr(simulation, act)([size * x for x in force], [size * x for x in torque], frame)
         except (BadInput, NotConverged) as refusal:
             in_one_line(refusal)
-    return simulation
+        allowed.look(simulation)
+    return simulation, allowed

@@ -1,63 +1,90 @@
-"""Group 11, properties of whatever scene: finite, a unit quaternion, residuals within what conditioning allows.
+"""Group 11, properties of whatever scene: finite, a unit quaternion, residuals and states within what conditioning allows (conditioning.py).
 
 A failure shrinks to a scene, which is printed and kept as a file that `simulate --scene` runs.
 """
 
+import json
 import os
+import subprocess
+import sys
 
-import numpy as np
 import pytest
 import yaml
-from hard_cases.random_scenes import commands, run, scenes
-from hypothesis import HealthCheck, given, settings
+from hard_cases.conditioning import Allowed, anchored_anew
+from hard_cases.random_scenes import commands, run, scenes, stepped_scenes
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
 
-EPSILON = np.finfo(float).eps
-SMALLEST = 5e-324       # energies of 1e-320 J are whole multiples of this
-EXAMPLES = 100_000 if os.environ.get('RIGID_BODY_SIM_SOAK') else 150
+from rigid_body_sim import simulate
+from rigid_body_sim.compiled import HAVE_NUMBA
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scenes import load_scene, parse_scene
+from rigid_body_sim.simulation import Simulation
 
-
-def check(simulation):
-    """Assert what holds for every scene."""
-    vector = simulation.vector
-    assert np.isfinite(vector).all()
-    assert abs(vector[1:5] @ vector[1:5] - 1.0) <= 5.0 * EPSILON        # measured 3
-    ledger = simulation.ledger()
-    assert np.isfinite(list(ledger.values())).all()
-    # an impulse rounds omega: each of the (at most seven) stretches adds a few ulp, in units of the largest energy there was, which the
-    # ledger's scale (start, now, work) may fall short of where impulses cancel; a needle's tilt is rounded by I_max/I_min less than that
-    energy = max(abs(ledger[name]) for name in ('kinetic', 'potential', 'dissipated', 'work'))
-    assert abs(ledger['energy_residual']) <= 1e-11 + (8.0 * SMALLEST / energy if energy > 0.0 else 0.0)
-    assert abs(ledger['momentum_residual']) <= 1e-9
+SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
+CHECKS = settings(deadline=None, derandomize=True, phases=(Phase.generate, Phase.shrink),
+                  database=None, suppress_health_check=list(HealthCheck))
 
 
-def test_any_scene_under_any_commands(tmp_path):
-    place = tmp_path / 'failing.yaml'
+def keep(place, scene, acts, check):
+    """Run a check; where it fails, leave the scene in a file."""
+    try:
+        check()
+    except AssertionError:
+        place.write_text(yaml.safe_dump(scene))
+        print(f'{place}, after {acts}:\n{place.read_text()}')
+        raise
 
-    @settings(max_examples=EXAMPLES, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
-    @given(scene=scenes(), acts=commands)
+
+def hold_for_all(place, drawn, acts, count, allow=Allowed.check):
+    @settings(CHECKS, max_examples=count)
+    @given(scene=drawn, acts=acts)
     def holds(scene, acts):
-        simulation = run(scene, acts)
-        if simulation is None:
-            return
-        try:
-            check(simulation)
-        except AssertionError:
-            place.write_text(yaml.safe_dump(scene))
-            print(f'{place}, after {acts}:\n{place.read_text()}')
-            raise
+        found = run(scene, acts)
+        if found is not None:
+            keep(place, scene, acts, lambda: allow(found[1], found[0]))
 
     holds()
 
 
-def test_a_failure_leaves_a_scene_file_that_runs(tmp_path):
-    from rigid_body_sim.scenes import load_scene
-    from rigid_body_sim.simulation import Simulation
-    place = tmp_path / 'drawn.yaml'
-    place.write_text(yaml.safe_dump({'scene': 'drawn', 'constraint': 'free', 'effects': [], 'body': {'mass': 1e-12, 'inertia': [1.0, 2.0, 3.0]},
-                                     'initial': {'orientation': [5e-324, 0.0, 0.0, 1e-9], 'angular_velocity': [1e-160, 1e6, 0.0]}}))
-    simulation = Simulation(load_scene(place))
-    simulation.advance()
-    check(simulation)
-    simulation.vector[1] = 1e-6
+def test_any_scene_in_closed_form_under_any_commands(tmp_path):
+    # measured: 2.0 ulp of energy, 2.8 of momentum, of 8
+    hold_for_all(tmp_path / 'failing.yaml', scenes(), commands(), 40_000 if SOAK else 150)
+
+
+def test_any_scene_that_is_stepped_under_any_commands(tmp_path):
+    """A few in a process that does not compile; held wrenches, drag and strong dissipation too with `make soak`."""
+    if HAVE_NUMBA and not SOAK:
+        this = f'{__file__}::{test_any_scene_that_is_stepped_under_any_commands.__name__}'
+        done = subprocess.run([sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', this], capture_output=True, text=True,
+                              timeout=200, env=os.environ | {'NUMBA_DISABLE_JIT': '1'})
+        assert done.returncode == 0, done.stdout
+        return
+    acts = commands(('impulse', 'advance', 'reset', *(['hold'] if SOAK else [])), st.sampled_from([1e-12, 1e-3, 1.0, 10.0]))
+    hold_for_all(tmp_path / 'failing.yaml', stepped_scenes(every_effect=SOAK), acts, 2000 if SOAK else 20)
+
+
+@settings(CHECKS, max_examples=20_000 if SOAK else 100)
+@given(scene=scenes(), times=st.tuples(st.floats(0.0, 1.0), st.floats(1e-3, 1e3)))
+def test_anchored_anew_on_the_way_it_ends_where_an_ulp_would_bring_it(scene, times):
+    """A bound that follows from conditioning, e^(lambda T) included: what 8 ulp of the state between do to the end."""
+    try:
+        simulation = Simulation(parse_scene(json.dumps(scene)))
+    except BadInput:
+        return
+    share, last = times
+    error, bound = anchored_anew(simulation, simulation.vector.copy(), share * last, last)
+    assert error <= bound
+
+
+def test_a_failure_leaves_a_scene_file_that_the_command_runs(tmp_path, capsys):
+    """A check that no free body passes leaves the smallest scene with one, and `simulate` runs the file."""
+    def not_free(_, simulation):
+        assert simulation.scene.constraint.kind != 'free'
+    place = tmp_path / 'failing.yaml'
     with pytest.raises(AssertionError):
-        check(simulation)
+        hold_for_all(place, scenes(), commands(), 20, not_free)
+    assert load_scene(place).constraint.kind == 'free'
+    capsys.readouterr()
+    assert simulate.main(['--scene', str(place), '--duration', '0.1', '--json', '--output', str(tmp_path / 'run')]) == 0
+    assert json.loads(capsys.readouterr().out)['state']['time'] == 0.1

@@ -91,7 +91,7 @@ def test_mutated_files_run_or_get_one_line(shipped):
         counts[result] += 1
         if k % RUN_EVERY:
             slowest = max(slowest, time.process_time() - began)
-    # measured: 0.46 of the files run; none takes 0.1 s of processor time to be read
+    # measured: 0.10 of the files run; none takes 0.1 s of processor time to be read
     assert min(counts.values()) > FILES // 20
     assert slowest < 5.0
 
@@ -102,6 +102,10 @@ def test_mutated_files_run_or_get_one_line(shipped):
     '!!python/object/apply:os.system [ls]', '--- a\n--- b',
     'scene: x\nbody: {mass: 1.0, inertia: [1e308, 1e308, 1e308]}\nconstraint: free\neffects: []\ninitial: {angular_velocity: [1e10, 0, 0]}',
     'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: []\ninitial: {position: [0, 0, ' + '9' * 309 + ']}',
+    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1], center_of_mass: [0.5, 0, -1e308]}\nconstraint: {hinge: {axis: [0, 0, 1]}}\n'
+    'effects: []\ninitial: {}',
+    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: {hinge: {axis: [0, 1, 0], distance: 1e160}}\n'
+    'effects: []\ninitial: {}',
     'scene: x\nbody: {mass: 1e-320, parts: []}\nconstraint: free\neffects: []\ninitial: {}'],
     ids=lambda text: repr(text[:20]))
 def test_known_traps_get_one_line(text):
