@@ -17,6 +17,7 @@ import numpy as np
 
 from rigid_body_sim import mechanics
 from rigid_body_sim.choice import HORIZON, choose
+from rigid_body_sim.command_check import CommandCheck
 from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
@@ -24,13 +25,9 @@ from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, 
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
 from rigid_body_sim.spans import Event, Span
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, State, States
+from rigid_body_sim.state import ORIENTATION, STATE_SIZE, State, States
 
 NOTHING = (0.0, 0.0, 0.0)
-LARGEST_WORK = 1e250
-"""Work (J) of one command: the energies of all that a tick takes stay far below what a double holds."""
-LARGEST_TURN = 1e7
-"""Angle (rad) through which a held wrench may turn the body within a tick: beyond, a tick would take minutes."""
 
 
 class Simulation:
@@ -81,6 +78,7 @@ class Simulation:
         self._mechanics = mechanics.parameters(self.scene)
         self._dynamics = Dynamics(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
+        self._check = CommandCheck(self._mechanics, self.rate)
         self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
@@ -395,24 +393,8 @@ class Simulation:
         if frame == 'body':
             # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
             force, torque = rotate(*self._attitude_at_tick, *force), rotate(*self._attitude_at_tick, *torque)
-        self._refuse_what_the_body_cannot_take(force, torque, what)
+        self._check(self.vector, force, torque, what)
         return force, torque
-
-    def _refuse_what_the_body_cannot_take(self, force, torque, what):
-        """Try a command on a copy of the present state: an impulse as it is, a wrench as what it gives in a tick."""
-        span = 1.0 if what == 'impulse' else 1.0 / self.rate
-        after, exchange = self.vector.copy(), np.empty(mechanics.EXCHANGE_SIZE)
-        movable = mechanics.apply_impulse(self._mechanics, after, span * np.array(force), span * np.array(torque), exchange)
-        if not movable:
-            raise BadInput(what, f'torque {list(torque)} (world axes) about an axis of zero moment',
-                           'leave that component 0: an axis without moment takes no angular momentum')
-        if not abs(exchange[mechanics.WORK]) <= LARGEST_WORK:
-            raise BadInput(what, f'force {list(force)}, torque {list(torque)} would do a work of {float(exchange[mechanics.WORK])!r} J',
-                           f'at most {LARGEST_WORK:g} J: energies are doubles')
-        turn = float(np.abs(after[ANGULAR_VELOCITY]).max()) / self.rate
-        if what == 'wrench' and (any(force) or any(torque)) and turn > LARGEST_TURN:
-            raise BadInput(what, f'torque {list(torque)} would turn the body by {turn:.3g} rad within a tick',
-                           f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
 
 
 class _Foreseen(typing.NamedTuple):

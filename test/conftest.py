@@ -7,9 +7,10 @@ import pytest
 import ros
 
 os.environ.update(ros.SETTINGS)
-# a shell that starts the tests with & leaves SIGINT ignored, and processes inherit that
-if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+# a shell that starts the tests with & leaves SIGINT ignored, nohup SIGHUP, and processes inherit that
+for number, usual in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, signal.SIG_DFL)):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        signal.signal(number, usual)
 
 
 @pytest.fixture

@@ -89,11 +89,10 @@ class Journal:
 
     def commands(self, tick, stamp, commands):
         """Record the commands that took effect at a tick, in their order."""
-        now = time.time_ns()
-        for command in commands:
-            if command is not RELEASE:
-                data = self._pack_command[command.frame](*divmod(stamp, NANOSECONDS), *command.force, *command.torque)
-                self._recorder.important(self._command_names[command.topic], stamp, now, data)
+        now, seconds = time.time_ns(), divmod(stamp, NANOSECONDS)
+        self._recorder.important_all(
+            [(self._command_names[command.topic], self._pack_command[command.frame](*seconds, *command.force, *command.torque))
+             for command in commands if command is not RELEASE], stamp, now)
         self._recorder.journal('commands', stamp, now, tick=tick, commands=[command._asdict() for command in commands])
 
     # -- the main thread ----------------------------------------------------------------------------------------------------------------

@@ -17,6 +17,7 @@ The formulas share nothing with the simulation. They start from the state after 
 """
 
 import math
+import threading
 
 import numpy as np
 
@@ -141,6 +142,8 @@ def _nutation(scene, state):
 class Prediction:
     """Follows one undisturbed motion: its prediction, and what was seen of it.
 
+    The prediction is made when it is first wanted: under a stream of commands most motions end before. Any thread may want it.
+
     Parameters
     ----------
     scene : scenes.Scene
@@ -149,7 +152,15 @@ class Prediction:
     """
 
     def __init__(self, scene, state):
-        self._expected = expectation(scene, state) if state is not None else None
+        self._scene, self._state, self._found = scene, state, None
+        self._made = threading.Lock()
+
+    @property
+    def _expected(self):
+        with self._made:
+            if self._state is not None:
+                self._found, self._state = expectation(self._scene, self._state), None
+            return self._found
 
     def note(self, name, time):
         """Note an event and its time, s."""

@@ -259,7 +259,7 @@ class Session:
             self._journal.commands(tick, self.stamp, applied)
 
     def _disturbed(self):
-        """Begin to compare theory with the motion from here on, and wait for quiet before looking ahead."""
+        """Compare theory with the motion from here on, and wait for quiet before looking ahead."""
         self._look_ahead_from = self._tick + QUIET
         simulation = self.simulation
         self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)

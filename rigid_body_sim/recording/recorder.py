@@ -80,7 +80,7 @@ class Recorder:
         self._unconfirmed = collections.deque()     # (number, frame)
         self._unconfirmed_size = self._number = self._lost = 0
         self._ticks = self._dropped_now = self._restarts = 0
-        self._dropping = self._ready = self.state_wanted = False
+        self._dropping = self._ready = self._left = self.state_wanted = False
         self._report, self._look_at = Report(), 0.0
         self._keeping = threading.Lock()        # of starting and ending recorders
         self._start(resume=False)
@@ -150,15 +150,20 @@ class Recorder:
 
     def important(self, topic_name, log_time, publish_time, data):
         """Record a message that must not be lost."""
+        self.important_all(((topic_name, data),), log_time, publish_time)
+
+    def important_all(self, messages, log_time, publish_time):
+        """Record messages that must not be lost, each with its topic's name."""
         with self._lock:
-            frame = frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data)
-            if self._unconfirmed_size + len(frame) > UNCONFIRMED:
-                self._lost += 1
-                return
-            self._number += 1
-            self._unconfirmed.append((self._number, frame))
-            self._unconfirmed_size += len(frame)
-            self._append(self._number, frame)
+            for topic_name, data in messages:
+                frame = frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data)
+                if self._unconfirmed_size + len(frame) > UNCONFIRMED:
+                    self._lost += 1
+                    continue
+                self._number += 1
+                self._unconfirmed.append((self._number, frame))
+                self._unconfirmed_size += len(frame)
+                self._append(self._number, frame)
             self._pump()
 
     def journal(self, kind, log_time, publish_time, **values):
@@ -265,7 +270,9 @@ class Recorder:
         with self._lock:
             report = self._report
             error = report.error or '; '.join(report.refused)
-            if not error and not self._ready and not report.closed:
+            if not error and self._left and self._waiting:
+                error = f'the recorder was too slow to take the last {self._waiting_size} bytes'
+            elif not error and not self._left and not self._ready and not report.closed:
                 error = 'the recorder died; a new one is starting'
             dropped = report.dropped + (max(0, self._ticks - report.ticks) if report.error else self._dropped_now)
             return Status(report.recorded, report.written, dropped, self._lost, self._waiting_size, self._restarts, error, report.closed)
@@ -285,6 +292,7 @@ class Recorder:
                         break
                 time.sleep(0.005)
             self._close_pipes()
+            self._left = True
         return self._status()
 
     def _end(self, deadline):
