@@ -11,9 +11,9 @@ import typing
 
 from geometry_msgs.msg import WrenchStamped
 from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.subscription import Subscription
 
 from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
@@ -48,11 +48,11 @@ _REMEDIES = {
 
 
 class TakenElsewhere(CallbackGroup):
-    """A group whose messages the executor leaves alone, for the tick thread takes them; it serves the QoS events only."""
+    """A group whose messages the executor leaves alone, for the tick thread takes them."""
 
     def can_execute(self, entity):
-        """Return whether the executor serves an entity."""
-        return not isinstance(entity, Subscription)
+        """Return that the executor does not serve an entity."""
+        return False
 
     beginning_execution = can_execute
 
@@ -106,6 +106,7 @@ class Commands:
         self.queue = collections.deque()
         group = TakenElsewhere()
         self._subscriptions = [(topic, self._subscribe(node, topic, group)) for topic in (WRENCH, IMPULSE)]
+        self._mismatches = [qos.SubscriptionMismatch(node, topic, subscription.qos_profile) for topic, subscription in self._subscriptions]
         self._bell = Doorbell(node, [subscription for _, subscription in self._subscriptions])
         self._takers = [(topic, subscription.handle.take_message) for topic, subscription in self._subscriptions]
 
@@ -113,7 +114,7 @@ class Commands:
     def _subscribe(node, topic, group):
         return node.create_subscription(
             WrenchStamped, topic, lambda _: None, QoSProfile(depth=DEPTH), callback_group=group, raw=True,
-            event_callbacks=qos.subscription_mismatch(node, topic), qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False), qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
 
     def take(self, scene_accepts):
         """Take what has come, at a tick: the tick thread calls this and :meth:`look`, nobody else."""
@@ -127,6 +128,11 @@ class Commands:
             while (message := take(WrenchStamped, True)) is not None:
                 self._receive(topic, message[0], scene_accepts)
         self._bell.answer(self.received - before)
+
+    def look_for_mismatches(self):
+        """Warn of publishers whose commands do not arrive; from another thread, now and then."""
+        for mismatch in self._mismatches:
+            mismatch.look()
 
     def remove(self):
         """Take away what the node would not find by itself."""

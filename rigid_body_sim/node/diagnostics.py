@@ -53,6 +53,7 @@ class Diagnostics:
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
         self._session.want_balance()
+        self._commands.look_for_mismatches()
         if self._same_name_checks:
             self._look_for_same_name()
 

@@ -1,7 +1,9 @@
 """Quality of service: which policies parameters may change, and mismatches told in plain words."""
 
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.qos import QoSPolicyKind
+import functools
+
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, ReliabilityPolicy
 
 POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)
 WEAKEST = {'RELIABILITY': 'best_effort', 'DURABILITY': 'volatile'}
@@ -15,11 +17,34 @@ def publisher_mismatch(node, topic):
         'ask for {weakest} there'))
 
 
-def subscription_mismatch(node, topic):
-    """Return event callbacks that say once a policy of which a publisher to the topic offers less than this node asks for."""
-    return SubscriptionEventCallbacks(incompatible_qos=_Mismatch(
-        node, topic, 'subscription', 'a publisher offers less {policy} than this node asks for and its messages do not arrive', WEAKEST,
-        'offer {strongest} there'))
+class SubscriptionMismatch:
+    """Says once a policy of which a publisher to a topic offers less than this node asks for.
+
+    It looks at the publishers there are: an event of the subscription would wake the executor for every message that comes.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+    topic : str
+    profile : rclpy.qos.QoSProfile
+        Of the subscription.
+    """
+
+    def __init__(self, node, topic, profile):
+        self._publishers = functools.partial(node.get_publishers_info_by_topic, node.resolve_topic_name(topic))
+        self._profile = profile
+        self._mismatch = _Mismatch(
+            node, topic, 'subscription', 'a publisher offers less {policy} than this node asks for and its messages do not arrive', WEAKEST,
+            'offer {strongest} there')
+
+    def look(self):
+        """Look at the publishers there are now."""
+        for offered in (publisher.qos_profile for publisher in self._publishers()):
+            for policy, weak, strong in (
+                    ('RELIABILITY', offered.reliability == ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE),
+                    ('DURABILITY', offered.durability == DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL)):
+                if weak and getattr(self._profile, policy.lower()) == strong:
+                    self._mismatch.say(policy)
 
 
 class _Mismatch:
@@ -29,7 +54,10 @@ class _Mismatch:
         self._said = set()
 
     def __call__(self, event):
-        policy = QoSPolicyKind(event.last_policy_kind).name
+        self.say(QoSPolicyKind(event.last_policy_kind).name)
+
+    def say(self, policy):
+        """Warn of a mismatch in a policy (name), the first time."""
         if policy in self._said:
             return
         self._said.add(policy)
