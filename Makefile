@@ -60,8 +60,9 @@ bench: .venv/run.stamp ## cost of one state in closed form; energy over a millio
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
 
-bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; parts of a tick at each accuracy
+bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; cost of commands; parts of a tick at each accuracy
 	.venv/bin/python bench/node.py
+	.venv/bin/python bench/commands.py
 	.venv/bin/python bench/tick.py
 
 study: .venv/run.stamp ## what accuracy costs in time: four problems, our methods; table, JSON and figure in study/

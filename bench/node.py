@@ -1,14 +1,17 @@
 """Cost of the node beside the floor: the same tick thread publishing the same bytes, with no simulation, commands, diagnostics or recording.
 
-    .venv/bin/python bench/node.py [--seconds 20] [--rates 1000 4000] [--subscribers 1] [--json]
+    .venv/bin/python bench/node.py [--seconds 20] [--turns 3] [--rates 1000 4000] [--subscribers 1 3] [--rows node] [--normal] [--json]
 
 Each row is a process of its own, with its subscriber processes (plain rclpy). Floor, node without recording and node with recording take
 turns, so that what else the machine does falls on all; the figures are medians over the turns.
 CPU in percent of one core, lateness in microseconds, over the whole life of the process; memory from one second after the first message on.
+Where the system allows it the tick threads have real-time priority; with --normal they have not.
 """
 
 import argparse
 import contextlib
+import ctypes
+import itertools
 import json
 import os
 import pathlib
@@ -24,6 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
 SETTLED = 1.0
 ROWS = ('floor', 'node', 'node, recording')
+PR_CAPBSET_DROP, CAP_SYS_NICE = 24, 23
 LATENESS = re.compile(r'lateness p50 (\d+), p99 (\d+), max (\d+) us')
 ACHIEVED = re.compile(r'(\d+) ticks in ([\d.]+) s \(([\d.]+) Hz\)')
 
@@ -72,7 +76,7 @@ def floor(rate):
         ticker.join()
         late, (ticks, running) = ticker.lateness.summary(), ticker.latest
         print(f'{ticks} ticks in {running * 1e-9} s ({(ticks - 1) / running * 1e9} Hz)')
-        print(f'lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us')
+        print(f'lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; {ticker.overruns} overruns')
         node.destroy_node()
         leave(0)
 
@@ -124,20 +128,26 @@ def children(pid):
     return [int(child) for task in pathlib.Path(f'/proc/{pid}/task').iterdir() for child in (task / 'children').read_text().split()]
 
 
-def spawn(*arguments):
-    """Start a python process."""
-    return subprocess.Popen([sys.executable, *map(str, arguments)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+def without_priority():
+    """Give up, in a process that is about to start, the right to real-time scheduling."""
+    ctypes.CDLL(None).prctl(PR_CAPBSET_DROP, CAP_SYS_NICE, 0, 0, 0)
 
 
-def measure(row, rate, seconds, subscribers, folder):
+def spawn(*arguments, before=None):
+    """Start a python process; `before` is called in it at first."""
+    return subprocess.Popen([sys.executable, *map(str, arguments)], cwd=ROOT, stdout=subprocess.PIPE, text=True, preexec_fn=before)
+
+
+def measure(row, rate, seconds, subscribers, folder, normal):
     """Run one row once; return its figures."""
+    before = without_priority if normal else None
     listeners = [spawn(__file__, '--subscribe') for _ in range(subscribers)]
     if row == 'floor':
-        process = spawn(__file__, '--floor', rate)
+        process = spawn(__file__, '--floor', rate, before=before)
     else:
         record = str(row == 'node, recording').lower()
         process = spawn('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'rate:={rate}', '-p', f'record:={record}', '-p',
-                        f'recording.directory:={folder}')
+                        f'recording.directory:={folder}', before=before)
     try:
         for listener in listeners:
             listener.stdout.readline()
@@ -155,8 +165,10 @@ def measure(row, rate, seconds, subscribers, folder):
     counts = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
     p50, p99, worst = map(int, LATENESS.search(text).groups())
     ticks, _, achieved = ACHIEVED.search(text).groups()
+    [overruns] = re.findall(r'(\d+) overruns', text)
     return {'cpu': 100.0 * cpu / took, 'recorder_cpu': 100.0 * recording / took, 'tick_us': cpu / took / rate * 1e6, 'rate': float(achieved),
             'p50': p50, 'p99': p99, 'max': worst, 'growth_kib': growth / 1024,
+            'overruns': int(overruns),
             'received': min(min(count.values()) for count in counts) / int(ticks) if counts else float('nan')}
 
 
@@ -166,7 +178,9 @@ def main():
     parser.add_argument('--seconds', type=float, default=20.0, help='measured time of each row in each turn (20)')
     parser.add_argument('--turns', type=int, default=3, help='(3)')
     parser.add_argument('--rates', type=float, nargs='+', default=[1000.0], help='Hz (1000)')
-    parser.add_argument('--subscribers', type=int, default=1, help='subscriber processes, at least 1 (1)')
+    parser.add_argument('--subscribers', type=int, nargs='+', default=[1], help='subscriber processes, at least 1 (1)')
+    parser.add_argument('--rows', nargs='+', choices=ROWS, default=ROWS, help='of these three (all)')
+    parser.add_argument('--normal', action='store_true', help='without real-time priority')
     parser.add_argument('--json', action='store_true')
     parser.add_argument('--floor', type=float, help=argparse.SUPPRESS)
     parser.add_argument('--subscribe', action='store_true', help=argparse.SUPPRESS)
@@ -177,27 +191,35 @@ def main():
         return subscribe()
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
+    from rigid_body_sim.compiled import processor
     from rigid_body_sim.node.engine import warm_up
     from rigid_body_sim.simulation import Simulation
     warm_up(Simulation('tennis_racket'))
-    results = {}
+    cases = []
     with tempfile.TemporaryDirectory() as folder:
-        for rate in options.rates:
-            turns = [{row: measure(row, rate, options.seconds, options.subscribers, folder) for row in ROWS} for _ in range(options.turns)]
-            results[rate] = {row: {name: statistics.median(turn[row][name] for turn in turns) for name in turns[0][row]} for row in ROWS}
-            for row in ROWS[1:]:
-                results[rate][row]['over_floor'] = statistics.median(turn[row]['cpu'] / turn['floor']['cpu'] for turn in turns)
+        for subscribers, rate in itertools.product(options.subscribers, options.rates):
+            turns = [{row: measure(row, rate, options.seconds, subscribers, folder, options.normal) for row in options.rows}
+                     for _ in range(options.turns)]
+            rows = {row: {name: statistics.median(turn[row][name] for turn in turns) for name in turns[0][row]} for row in options.rows}
+            for row in rows:
+                if row != 'floor' and 'floor' in rows:
+                    rows[row]['over_floor'] = statistics.median(turn[row]['cpu'] / turn['floor']['cpu'] for turn in turns)
+            cases.append({'subscribers': subscribers, 'rate': rate, 'rows': rows})
+    load = os.getloadavg()[0]
     if options.json:
-        print(json.dumps(results, indent=2))
+        print(json.dumps({'machine': processor(), 'cores': os.cpu_count(), 'load': load, 'normal': options.normal, 'seconds': options.seconds,
+                          'turns': options.turns, 'cases': cases}, indent=2))
         return 0
-    print(f'{options.subscribers} subscriber(s), medians of {options.turns} turns of {options.seconds:g} s, load {os.getloadavg()[0]:.1f}\n')
-    print(f'{"":>8} {"":16}{"CPU %":>7}{"/ floor":>9}{"us/tick":>9}{"recorder %":>12}{"rate Hz":>12}'
-          f'{"late p50":>10}{"p99":>7}{"max":>8}{"growth KiB":>12}{"received":>10}')
-    for rate, rows in results.items():
-        for row, found in rows.items():
+    scheduling = 'normal' if options.normal else 'real-time'
+    print(f'medians of {options.turns} turns of {options.seconds:g} s, {scheduling} scheduling, load {load:.1f}\n')
+    print(f'{"heard by":>8}{"rate":>7} {"":16}{"CPU %":>7}{"/ floor":>9}{"us/tick":>9}{"recorder %":>12}{"rate Hz":>12}'
+          f'{"late p50":>10}{"p99":>7}{"max":>8}{"overruns":>10}{"growth KiB":>12}{"received":>10}')
+    for case in cases:
+        for row, found in case['rows'].items():
             ratio = f'{found["over_floor"]:.2f}' if 'over_floor' in found else ''
-            print(f'{rate:8.0f} {row:16}{found["cpu"]:7.1f}{ratio:>9}{found["tick_us"]:9.1f}{found["recorder_cpu"]:12.1f}{found["rate"]:12.3f}'
-                  f'{found["p50"]:10.0f}{found["p99"]:7.0f}{found["max"]:8.0f}{found["growth_kib"]:12.0f}{found["received"]:10.5f}')
+            print(f'{case["subscribers"]:8}{case["rate"]:7.0f} {row:16}{found["cpu"]:7.1f}{ratio:>9}{found["tick_us"]:9.1f}'
+                  f'{found["recorder_cpu"]:12.1f}{found["rate"]:12.3f}{found["p50"]:10.0f}{found["p99"]:7.0f}{found["max"]:8.0f}'
+                  f'{found["overruns"]:10.0f}{found["growth_kib"]:12.0f}{found["received"]:10.5f}')
     return 0
 
 
