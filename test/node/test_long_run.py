@@ -106,7 +106,7 @@ def test_run_with_all_that_can_befall_it_is_resimulated_to_the_last_bit(run_node
             for _ in range(max(1, round(seconds / 10.0))):
                 with new_client(node.domain) as other:
                     heard = other.collect(Float64, 'energy')
-                    other.until(lambda heard=heard: len(heard) > 10, what='messages for a newcomer')
+                    other.until(lambda heard=heard: len(heard) > 10, timeout=60.0, what='messages for a newcomer')
                     for _ in range(10):
                         publishers[chance.random() < 0.2].publish(random_wrench(chance))
                         client.spin(min(seconds, 10.0) / 10.0)

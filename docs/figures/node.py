@@ -1,0 +1,32 @@
+"""What the node costs beside the floor, and how late its ticks are; drawn from docs/node.json, as bench/node.py --json gave it."""
+
+import json
+import pathlib
+
+import numpy as np
+
+from figures.style import BLACK, BLUE, GREY, ORANGE, label, panels
+
+DATA = pathlib.Path(__file__).resolve().parent.parent / 'node.json'
+COLOURS = {'floor': GREY, 'node': BLUE, 'node, recording': ORANGE}
+HATCHES = {'floor': None, 'node': None, 'node, recording': '//'}
+
+
+def draw():
+    """Return the figure."""
+    figure, (cost, lateness) = panels(2)
+    cases = json.loads(DATA.read_text())['cases']
+    places = np.arange(len(cases))
+    names = [f'{case["rate"] / 1000:g} kHz\nheard by {case["subscribers"]}' for case in cases]
+    for k, (row, colour) in enumerate(COLOURS.items()):
+        found = [case['rows'][row] for case in cases]
+        at = places + 0.27 * (k - 1)
+        cost.bar(at, [one['tick_us'] for one in found], 0.25, color=colour, hatch=HATCHES[row], edgecolor='white', label=row)
+        lateness.vlines(at, [one['p50'] for one in found], [one['p99'] for one in found], color=colour, linewidth=3.0, label=row)
+        lateness.plot(at, [one['p50'] for one in found], color=BLACK, marker='_', linestyle='')
+    for axes in (cost, lateness):
+        axes.set_xticks(places, names)
+    lateness.set_yscale('log')
+    label(cost, '', 'processor time of a tick (µs)')
+    label(lateness, '', 'lateness, p50 to p99 (µs)')
+    return figure
