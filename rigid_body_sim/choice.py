@@ -1,12 +1,13 @@
 """Which method runs a scene: the exact one if a motion absorbs the scene, else the cheapest that was measured to meet the accuracy.
 
-The measurements are those of rigid_body_sim/integrators/measured.py.
+The measurements are those of rigid_body_sim/integrators/measured.py, and are tried on the scene (rigid_body_sim/trial.py).
 """
 
 import difflib
 import math
 from dataclasses import dataclass
 
+from rigid_body_sim import trial
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS, measured, runnable
@@ -40,7 +41,7 @@ class Choice:
     tolerance : float or None
         The accuracy that the method itself is told: what `auto` found to be enough, else `accuracy`.
     expected_error : float or None
-        Of the attitude at the end of the horizon (rad), where `auto` chose; where the motion magnifies errors it is larger.
+        Of the attitude at the end of the horizon (rad), where `auto` chose.
     """
 
     scene: object
@@ -110,7 +111,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     able = runnable(scene)
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
-        method, tolerance, expected = settled or measured.pick(scene, _bearing_heat(scene, able), accuracy, horizon)
+        method, tolerance, expected = settled or trial.settle(scene, _bearing_heat(scene, able), accuracy, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
