@@ -1,15 +1,21 @@
-"""The work-precision figure: error against CPU time per simulated second, one line a method, readable in print and by the colour-blind."""
+"""The work-precision figure: error against CPU time per simulated second, one line a method, readable in print and by the colour-blind.
+
+Lines that are the cheapest of ours, or of the peers, at some accuracy are thick; fixed steps of a method that has both are dotted.
+"""
 
 import math
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from rigid_body_sim.study.precision import table
+
 # Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); markers tell the lines apart without colour, dashes mark the peers
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000', '#7F7F7F')
 MARKERS = 'osD^v<>PXh'
 SHADE = '#E3E3E3'
 LEAST, MOST = 1e-16, 4.0
+FIXED, ONE_MORE = ', fixed step', ', one more state'
 
 
 def draw(results):
@@ -20,7 +26,7 @@ def draw(results):
     FigureCanvasAgg(figure)
     looks = {}    # a method looks the same in all panels
     for peers in (False, True):
-        names = dict.fromkeys(line['name'] for result in results for line in result['lines'] if line['is_peer'] == peers)
+        names = dict.fromkeys(family(line['name']) for result in results for line in result['lines'] if line['is_peer'] == peers)
         looks |= {name: number for number, name in enumerate(names)}
     for result, axes in zip(results, figure.subplots(rows, columns, squeeze=False).flat):
         panel(axes, result, looks)
@@ -37,17 +43,19 @@ def panel(axes, result, looks):
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
     for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
+        leading = leaders(lines)
         for line in lines:
-            k = looks[line['name']]
+            k, fixed = looks[family(line['name'])], line['name'].endswith(FIXED)
             colour = COLOURS[k % len(COLOURS)]
             times = [point['cpu']['median'] for point in line['points']]
             spread = [[t - point['cpu']['least'] for t, point in zip(times, line['points'])],
                       [point['cpu']['most'] - t for t, point in zip(times, line['points'])]]
             errors = [min(MOST, max(LEAST, point['error'])) for point in line['points']]
             single = line['control'] == 'none'
-            axes.errorbar(times, errors, xerr=spread, linestyle=dashes, color=colour, marker='*' if single else MARKERS[k % len(MARKERS)],
-                          markersize=15 if single else 5, markerfacecolor=colour if filled else 'white', linewidth=1.3, elinewidth=0.6,
-                          label=line['name'], zorder=4 if single else 3)
+            size = 15 if line['name'] == 'exact' else 9 if single else 3 if fixed else 5
+            axes.errorbar(times, errors, xerr=spread, linestyle=':' if fixed else dashes, color=colour, label=line['name'],
+                          marker='*' if single else MARKERS[k % len(MARKERS)], markersize=size, markerfacecolor=colour if filled else 'white',
+                          linewidth=2.4 if line['name'] in leading else 0.9, elinewidth=0.6, zorder=4 if single else 3)
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.set_ylim(LEAST, MOST)
@@ -57,3 +65,17 @@ def panel(axes, result, looks):
     axes.grid(color='#dddddd', linewidth=0.5)
     axes.spines[['top', 'right']].set_visible(False)
     axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8, handlelength=3.0)
+
+
+def family(name):
+    """Return the name of a method without its variant: variants have one colour."""
+    return name.removesuffix(FIXED).removesuffix(ONE_MORE)
+
+
+def leaders(lines):
+    """Return the names of the lines that are the cheapest at some level of the table: they are drawn thick."""
+    names = set()
+    for level in table.LEVELS:
+        costs = [(cost, line['name']) for line in lines if (cost := table.cost_at(line, level)) is not None]
+        names |= {min(costs)[1]} if costs else set()
+    return names
