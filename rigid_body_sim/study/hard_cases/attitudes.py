@@ -15,6 +15,7 @@ from mpmath import mp, mpf
 
 from rigid_body_sim.scenes import parse_scene
 from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases import beside
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
 
 RECORDS = json.loads(pathlib.Path(__file__).with_name('references.json').read_text())
@@ -33,22 +34,12 @@ def scene_of(record):
         'initial': {key: record[key] for key in ('orientation', 'angular_velocity')}}))
 
 
-def angle(found, expected):
-    """Return the angle (rad) between an attitude and one given in digits."""
-    with mp.workdps(50):
-        p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
-        size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
-        sign = 1 if mp.fdot(p, q) > 0 else -1
-        across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2 for a, b in zip(p, q)))
-        return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
-
-
 def attitude(record):
     """Return the Outcome at the reference time where the error is the largest share of its bound."""
     simulation = Simulation(scene_of(record))
     states = simulation.states([state['time'] for state in record['states']]).orientation
     size = math.hypot(*record['angular_velocity']) if record['kind'] == 'free' else 0.0
-    found = [(angle(q, state['orientation']), FLOOR + 0.5 * EPSILON * size * state['time'])
+    found = [(beside.angle(q, state['orientation']), FLOOR + 0.5 * EPSILON * size * state['time'])
              for q, state in zip(states, record['states'], strict=True)]
     error, bound = max(found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf)
     last = record['states'][-1]['time']
@@ -69,7 +60,8 @@ def flips(record):
 def cases():
     """Yield the cases."""
     for record in RECORDS:
-        yield Case(record['group'], record['name'], record['why'], functools.partial(attitude, record), record)
+        yield Case(record['group'], record['name'], record['why'], functools.partial(attitude, record),
+                   beside.attitude(scene_of(record), record))
         if record['group'] == 1 and record['flips']:
             yield Case(1, f'flips: {record["name"]}', 'energy says nothing of them; each is the time of a passage through the middle axis',
                        functools.partial(flips, record))

@@ -1,5 +1,6 @@
 """Groups 4, 7, 8, 9 and 10: what has to hold exactly, or by a law, rather than by a reference."""
 
+import functools
 import hashlib
 import math
 import os
@@ -12,14 +13,26 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.rotations import angle_between
 from rigid_body_sim.scenes import load_scene, parse_scene
 from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases import questions
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
+from rigid_body_sim.study.hard_cases.contact import A, G, Shot, question
 
 EPSILON = np.finfo(float).eps
 RELAXING = ('scene: relaxing\nbody: {{mass: 1.0, inertia: [1.0, 2.0, 3.0]}}\nconstraint: free\n'
             'effects: [internal_dissipation: {{coefficient: {c!r}}}]\ninitial: {{angular_velocity: {omega}}}\n')
 BALL = ('scene: ball\nbody: {{mass: 0.17, shape: {{solid_sphere: {{radius: 0.028575}}}}}}\nconstraint: table\n'
         'effects: [{strike}sliding_friction: {{mu: {mu!r}, g: 9.81}}]\ninitial: {initial}\n')
-A = 0.028575
+WOBBLING, ON_SMALLEST, OFF_SMALLEST = (2.0, 0.1, 0.2), (5.0, 0.0, 0.0), (5.0, 0.0, 1e-300)
+LEAVES = (math.log(1e300) - math.log(3.0)) / (175.0 / 12.0)
+ENDED = 100.0
+"""c times the time (s) after which nothing is left of a wobble."""
+SPEED = 1.5    # m/s, of the ball that is struck again
+RESTRUCK = 2.0 * SPEED / (7.0 * G * 0.25)
+"""mu with which it rolls after 0.25 s."""
+DRAWN = (1.0 - 0.4 * A * 140.0) / 1.4
+"""m/s, of a ball of 1 m/s with 140 rad/s of back spin, once it rolls."""
+OPPOSITE = tuple((0.1 * sign, 1e100 * sign, 5e-324 * sign) for sign in (1.0, -1.0))
+"""N m s, body axes."""
 
 
 def _same_bits(*vectors):
@@ -93,13 +106,12 @@ def frictionless():
 
 def restruck_at_onset():
     """Struck again at the very tick at which rolling begins, twice in that tick."""
-    mu = 2.0 * 1.5 / (7.0 * 9.81 * 0.25)      # rolling begins 0.25 s after a push of 1.5 m/s
-    simulation = ball(mu=mu, initial='{velocity: [1.5, 0, 0]}')
+    simulation = ball(mu=RESTRUCK, initial=f'{{velocity: [{SPEED!r}, 0, 0]}}')
     simulation.advance(250)
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
     simulation.advance(1000)
-    expected = np.array([1.5, 0.5]) * 5.0 / 7.0
+    expected = np.array([SPEED, 0.5]) * 5.0 / 7.0
     return Outcome(float(np.abs(simulation.vector[11:13] - expected).max()), 8.0 * EPSILON, 'm/s', 'some roundings of speeds of 1 m/s')
 
 
@@ -107,15 +119,19 @@ def draw_shot():
     """Back spin: it comes back, and then rolls with a slip of exactly zero."""
     simulation = ball(initial='{velocity: [1.0, 0, 0], angular_velocity: [0, -140.0, 0]}')
     simulation.advance(3000)
-    expected = (1.0 - 0.4 * A * 140.0) / 1.4
     v, q = simulation.state.velocity[0], simulation.state
     slip = v - A * q.angular_velocity[1] if abs(q.orientation[0]) + abs(q.orientation[2]) == 0.0 else math.inf
-    return Outcome(abs(v - expected) + abs(slip), 8.0 * EPSILON, 'm/s', 'rounding of speed and slip')
+    return Outcome(abs(v - DRAWN) + abs(slip), 8.0 * EPSILON, 'm/s', 'rounding of speed and slip')
+
+
+def relaxing_scene(c, omega):
+    """Return the scene of a body that loses energy."""
+    return parse_scene(RELAXING.format(c=c, omega=list(omega)))
 
 
 def relaxing(c, omega, seconds):
     """Return energies above L^2/(2 I_max) (relative) and States at 400 times."""
-    simulation = Simulation(parse_scene(RELAXING.format(c=c, omega=list(omega))))
+    simulation = Simulation(relaxing_scene(c, omega))
     states = simulation.states(np.linspace(0.0, seconds, 400))
     energy, square = simulation.diagnose(states)
     return (energy - square / 6.0) / energy[0], states
@@ -124,22 +140,21 @@ def relaxing(c, omega, seconds):
 def never_rises(c, omega, seconds):
     """Return the largest rise of the excess, and the end."""
     excess, _ = relaxing(c, omega, seconds)
-    return Outcome(max(float(np.diff(excess).max()), float(abs(excess[-1])) if c * seconds > 100.0 else 0.0), 20.0 * EPSILON, 'of the energy',
+    return Outcome(max(float(np.diff(excess).max()), float(abs(excess[-1])) if c * seconds > ENDED else 0.0), 20.0 * EPSILON, 'of the energy',
                    'rounding of energy and L^2; at the end nothing is left')
 
 
 def stays_on_smallest():
     """Exactly on the smallest axis: an exact solution, however unstable."""
-    _, states = relaxing(1.0, (5.0, 0.0, 0.0), 100.0)
-    return Outcome(float(np.abs(states.angular_velocity - (5.0, 0.0, 0.0)).max()), 0.0, 'rad/s', 'nothing moves it')
+    _, states = relaxing(1.0, ON_SMALLEST, 100.0)
+    return Outcome(float(np.abs(states.angular_velocity - ON_SMALLEST).max()), 0.0, 'rad/s', 'nothing moves it')
 
 
 def leaves_smallest():
     """Start 1e-300 off it: the offset grows as a spiral at the mean of c L^2 (1/I1 - 1/I2) and c L^2 (1/I1 - 1/I3), 175/12 1/s."""
-    _, states = relaxing(1.0, (5.0, 0.0, 1e-300), 80.0)
+    _, states = relaxing(1.0, OFF_SMALLEST, 80.0)
     time = states.time[int(np.argmax(np.hypot(2.0 * states.angular_velocity[:, 1], 3.0 * states.angular_velocity[:, 2]) > 1.0))]
-    expected = (math.log(1e300) - math.log(3.0)) / (175.0 / 12.0)
-    return Outcome(abs(float(time) - expected), 0.3, 's', f'it leaves after {expected:.1f} s; seen every 0.2 s, the spiral is not round')
+    return Outcome(abs(float(time) - LEAVES), 0.3, 's', f'it leaves after {LEAVES:.1f} s; seen every 0.2 s, the spiral is not round')
 
 
 def impulses_cancel():
@@ -148,8 +163,8 @@ def impulses_cancel():
     one, quiet = Simulation(scene), Simulation(scene)
     for each in (one, quiet):
         each.advance(100)
-    for sign in (1.0, -1.0):
-        one.impulse(torque=(0.1 * sign, 1e100 * sign, 5e-324 * sign), frame='body')
+    for impulse in OPPOSITE:
+        one.impulse(torque=impulse, frame='body')
     refused = 0
     for size in (1e300, math.inf, math.nan):
         try:
@@ -180,17 +195,25 @@ def cases():
                million_ticks)
     yield Case(1, 'energy is no proof', 'a stepper holds energy to round-off beside the separatrix, and is wrong all the same',
                energy_is_no_proof)
-    yield Case(7, 'struck at 2a/5', 'no slip at all: rounding makes a slip that sign functions chatter on', two_fifths)
-    yield Case(7, 'no friction', 'the time to rolling is infinite', frictionless)
-    yield Case(7, 'restruck twice at the very tick of rolling onset', 'two events in one tick, at the end of a phase', restruck_at_onset)
-    yield Case(7, 'draw shot', 'the speed passes through zero while friction does not', draw_shot)
-    yield Case(8, 'through the separatrix', 'from the smallest to the largest axis, past the orbit of infinite period',
-               lambda: never_rises(0.05, (2.0, 0.1, 0.2), 200.0))
-    for c in (1e3, 1e6, 1e9):
-        yield Case(8, f'stiff: c dt = {c * 1e-3:g}', 'the wobble dies within a fraction of a tick; explicit steps would follow it for ever',
-                   lambda c=c: never_rises(c, (2.0, 0.1, 0.2), 1.0))
-    yield Case(8, 'exactly on the smallest axis', 'unstable, yet it must stay', stays_on_smallest)
-    yield Case(8, '1e-300 off the smallest axis', 'absolute tolerances keep it there for ever, or noise throws it off early', leaves_smallest)
-    yield Case(9, 'opposite impulses, denormal and 1e100; 1e300 refused', 'one overflow and every number is NaN', impulses_cancel)
+    yield Case(7, 'struck at 2a/5', 'no slip at all: rounding makes a slip that sign functions chatter on', two_fifths,
+               question(Shot(0.2, (SPEED, 0.0), (0.0, SPEED / A, 0.0), 10.0, (SPEED, 0.0))))
+    yield Case(7, 'no friction', 'the time to rolling is infinite', frictionless,
+               question(Shot(0.0, (1.0, 0.0), (0.0, -50.0, 3.0), 10.0, (1.0, 0.0))))
+    yield Case(7, 'restruck twice at the very tick of rolling onset', 'two events in one tick, at the end of a phase', restruck_at_onset,
+               question(Shot(RESTRUCK, (SPEED, 0.0), (0.0, 0.0, 0.0), 1.25, (SPEED * 5.0 / 7.0, 0.5 * 5.0 / 7.0), (0.25, (0.0, 0.5)))))
+    yield Case(7, 'draw shot', 'the speed passes through zero while friction does not', draw_shot,
+               question(Shot(0.2, (1.0, 0.0), (0.0, -140.0, 0.0), 3.0, (DRAWN, 0.0))))
+    for name, why, c, seconds in (
+            ('through the separatrix', 'from the smallest to the largest axis, past the orbit of infinite period', 0.05, 200.0),
+            *((f'stiff: c dt = {c * 1e-3:g}', 'the wobble dies within a fraction of a tick; explicit steps would follow it for ever', c, 1.0)
+              for c in (1e3, 1e6, 1e9))):
+        yield Case(8, name, why, functools.partial(never_rises, c, WOBBLING, seconds),
+                   questions.never_rises(relaxing_scene(c, WOBBLING), seconds, c * seconds > ENDED))
+    yield Case(8, 'exactly on the smallest axis', 'unstable, yet it must stay', stays_on_smallest,
+               questions.stays(relaxing_scene(1.0, ON_SMALLEST), 100.0))
+    yield Case(8, '1e-300 off the smallest axis', 'absolute tolerances keep it there for ever, or noise throws it off early', leaves_smallest,
+               questions.leaves(relaxing_scene(1.0, OFF_SMALLEST), 80.0, LEAVES))
+    yield Case(9, 'opposite impulses, denormal and 1e100; 1e300 refused', 'one overflow and every number is NaN', impulses_cancel,
+               questions.cancel(OPPOSITE))
     yield Case(10, 'a thousand jumps there and back', 'every jump begins at a rounded state', composed_jumps)
     yield Case(10, 'the same bits in two processes', 'caches, hashes, threads and fast mathematics differ', two_processes)

@@ -1,4 +1,4 @@
-"""The peers beside a case: the attitude at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say.
+"""The peers beside a case: their error at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say.
 
 Each answer is asked of a process of its own, so that a peer that crashes or goes on for ever is one more answer.
 """
@@ -7,15 +7,17 @@ import importlib
 import math
 import multiprocessing
 
+from mpmath import mp, mpf
+
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.study.hard_cases.attitudes import angle, scene_of
+from rigid_body_sim.study.hard_cases.case import Question
 
 LONGEST = 100.0
 """s: later reference times would take the peers hours."""
 STEP, TOLERANCE = 1e-3, 1e-12
 MOST_RADIANS = 1e4
 """Turned over, beyond which even a step a radian takes a peer minutes."""
-PATIENCE = 30.0
+PATIENCE = 20.0
 """s: a peer that has not answered by then has none."""
 
 
@@ -38,51 +40,59 @@ def modules():
     return found, missing
 
 
-def at(record):
-    """Return the reference state that peers are asked for: the last one they can reach."""
-    size = math.hypot(*record['angular_velocity'])
-    near = [state for state in record['states'] if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS]
-    return (near or record['states'])[-1] if near else record['states'][0]
-
-
-def error(module, record):
-    """Return the attitude error (rad) of a peer on a record, or a text that says why there is none."""
+def answer(module, question):
+    """Return the error of a peer, or a text that says why there is none: empty where it cannot be asked."""
     context = multiprocessing.get_context('fork')
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=lambda: theirs.send(_error(module, record)))
+    process = context.Process(target=lambda: theirs.send(_asked(module, question)))
     process.start()
     theirs.close()
     try:
-        answer = ours.recv() if ours.poll(PATIENCE) else f'no answer in {PATIENCE:g} s'
+        found = ours.recv() if ours.poll(PATIENCE) else f'no answer in {PATIENCE:g} s'
     except EOFError:
-        answer = 'crashes'
+        found = 'crashes'
     process.kill()
     process.join()
-    return answer
+    return found
 
 
-def _error(module, record):
+def _asked(module, question):
     from rigid_body_sim.study.precision import peers
     from rigid_body_sim.study.precision.runner import RefusedError
-    from rigid_body_sim.study.precision.suite import Problem
-    state = at(record)
-    problem = Problem(record['name'], record['why'], state['time'], scene_of(record))
-    reference = _Rates([record['angular_velocity']])
     try:
         with peers.quiet():
-            runner = next(iter(module.runners(problem, reference)))
-            step = state['time'] / max(1, round(state['time'] / STEP))
-            run = runner.make(step if runner.control == 'step' else TOLERANCE)
-            run.start()
-            run.to(state['time'])
-            found = angle(run.state()[:4], state['orientation'])
+            found = question.ask(module)
     except (RefusedError, BadInput) as refusal:
         return f'refuses: {_brief(refusal)}'
     except NotConverged as failure:
         return f'fails: {_brief(failure)}'
     except Exception as failure:    # a foreign program may raise anything
         return f'fails: {type(failure).__name__}: {_brief(failure)}'
-    return found if math.isfinite(found) else 'NaN in silence'
+    return found if isinstance(found, str) or math.isfinite(found) else 'NaN in silence'
+
+
+def attitude(scene, record):
+    """Return the Question for the attitude (rad) of a record (attitudes.py), at the last of its times that peers can reach."""
+    size = math.hypot(*record['angular_velocity'])
+    near = [state for state in record['states'] if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS]
+    state = (near or record['states'][:1])[-1]
+
+    def measure(run):
+        run.to(state['time'])
+        return angle(run.state()[:4], state['orientation'])
+    return smooth(scene, state['time'], 'rad', measure)
+
+
+def smooth(scene, time, unit, measure):
+    """Return the Question for what is measured on the started Run (precision/runner.py) of a smooth scene."""
+    def ask(module):
+        from rigid_body_sim.study.precision.suite import Problem
+        runner = next(iter(module.runners(Problem(scene.name, scene.about, time, scene), _Rates([scene.initial.angular_velocity]))))
+        step = time / max(1, round(time / STEP))
+        run = runner.make(step if runner.control == 'step' else TOLERANCE)
+        run.start()
+        return measure(run)
+    return Question(time, unit, ask)
 
 
 class _Rates:
@@ -90,6 +100,16 @@ class _Rates:
 
     def __init__(self, omega):
         self.omega = omega
+
+
+def angle(found, expected):
+    """Return the angle (rad) between an attitude and one given in digits."""
+    with mp.workdps(50):
+        p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
+        size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
+        sign = 1 if mp.fdot(p, q) > 0 else -1
+        across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2 for a, b in zip(p, q)))
+        return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
 
 
 def _brief(failure):

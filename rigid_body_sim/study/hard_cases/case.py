@@ -26,6 +26,25 @@ class Outcome:
 
 
 @dataclass(frozen=True)
+class Question:
+    """What peers are asked about a case.
+
+    Attributes
+    ----------
+    time : float
+        Simulated, s, of the answer.
+    unit : str
+        Of the error.
+    ask : callable
+        Module of a peer -> its error; it may raise RefusedError, NotConverged or anything else.
+    """
+
+    time: float
+    unit: str
+    ask: object
+
+
+@dataclass(frozen=True)
 class Case:
     """One row of the table.
 
@@ -37,15 +56,15 @@ class Case:
         `why` says what makes it hard.
     run : callable
         () -> Outcome.
-    record : dict or None
-        The reference of :mod:`attitudes`, for peers.
+    asked : Question or None
+        What peers are asked.
     """
 
     group: int
     name: str
     why: str
     run: object
-    record: dict | None = None
+    asked: object = None
 
 
 GROUPS = {1: 'racket', 2: 'inertia', 3: 'speed', 4: 'steps', 5: 'long runs', 6: 'tops', 7: 'contact', 8: 'dissipation', 9: 'commands',

@@ -10,7 +10,7 @@ from rigid_body_sim.study.hard_cases.case import GROUPS
 from rigid_body_sim.study.hard_cases.table import CASES
 
 ABOUT = """Run the hard cases, on which general simulators lose energy, blow up, refuse or lie, and print the table: case, ours, bound, verdict.
-With --peers the attitude errors of the programs installed here (requirements/peers.txt has them all) stand beside ours."""
+With --peers the errors of the programs installed here (requirements/peers.txt has them all) stand beside ours."""
 
 
 def main(arguments=None):
@@ -30,7 +30,8 @@ def _run(options):
             print(f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  {row["case"]}: {row["error"]:.1e} {row["unit"]}'
                   f' (bound {row["bound"]:.1e}: {row["reason"]})')
             for name, value in row['peers'].items():
-                print(f'           {name} after {row["peer_time"]:g} s: {value if isinstance(value, str) else f"{value:.1e} rad"}')
+                said = value if isinstance(value, str) else f'{value:.1e} {row["peer_unit"]}'
+                print(f'           {name} after {row["peer_time"]:g} s: {said or "not asked"}')
         if missing:
             print(f'not installed here: {", ".join(missing)}')
         print(f'{sum(row["good"] for row in rows)} of {len(rows)} cases within their bounds')
@@ -45,9 +46,9 @@ def measure(with_peers, watch):
         outcome = case.run()
         row = {'group': GROUPS[case.group], 'case': case.name, 'why': case.why, 'error': _number(float(outcome.error)),
                'bound': float(outcome.bound), 'unit': outcome.unit, 'reason': outcome.reason, 'good': bool(outcome.good), 'peers': {}}
-        if case.record and installed:
-            row['peer_time'] = beside.at(case.record)['time']
-            row['peers'] = {name: beside.error(module, case.record) for name, module in installed.items()}
+        if case.asked and installed:
+            row |= {'peer_time': case.asked.time, 'peer_unit': case.asked.unit,
+                    'peers': {name: beside.answer(module, case.asked) for name, module in installed.items()}}
         rows.append(row)
     return rows, missing
 
