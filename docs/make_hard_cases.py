@@ -19,6 +19,7 @@ import matplotlib.pyplot as plt
 from rigid_body_sim.rotations import angle_between
 from rigid_body_sim.scenes import parse_scene
 from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.study.hard_cases.beside import PATIENCE
 
 DOCS = pathlib.Path(__file__).resolve().parent
 HEAD = """# Which cases are hard, and what they do to general simulators
@@ -29,8 +30,11 @@ peer's cell is empty it has not been asked.
 
 Ours is the error at the worst reference time (34 digits and more, up to 1e6 s), beside the bound that the problem allows: the round-off floor
 and what conditioning adds. Peers run as their users run them, with steps of 1 ms or a tolerance of 1e-12, and are asked at one earlier time
-only (`at`); theirs is the attitude error in rad (3.1 is upside down), or what they say.
+only (`at`); theirs is the error in the unit of that column (3.1 rad is upside down), or what they say: "no answer" within 20 s, "NaN" without
+a word, "refuses", "fails". Under contact the engines use their own, the integrators Coulomb's law as their user writes it
+(`study/hard_cases/contact.py`); opposite impulses are added to omega as they come.
 """
+WORDS = {'NaN in silence': 'NaN', f'no answer in {PATIENCE:g} s': 'no answer'}
 TAIL = """
 ## Energy is no proof
 
@@ -48,12 +52,12 @@ def main(path):
     lines = [HEAD]
     for group in dict.fromkeys(row['group'] for row in found['cases']):
         rows = [row for row in found['cases'] if row['group'] == group]
-        asked = [name for name in names if any(row['peers'].get(name) for row in rows)]
+        asked = [name for name in names if any(row['peers'].get(name, '') != '' for row in rows)]
         lines += [f'## {group.capitalize()}\n', _row(['case', 'why it is hard', 'ours', 'bound', *(['at'] if asked else []), *asked])]
         lines.append(_row(['---'] * (4 + bool(asked) + len(asked))))
         for row in rows:
             peers = [_peer(row['peers'].get(name, '')) for name in asked]
-            at = [f'{row["peer_time"]:g} s' if row['peers'] else ''] if asked else []
+            at = [f'{row["peer_time"]:g} s, {row["peer_unit"]}' if row['peers'] else ''] if asked else []
             mark = '' if row['good'] else ' **fails**'
             lines.append(_row([row['case'], row['why'], f'{row["error"]:.1e} {row["unit"]}{mark}', f'{row["bound"]:.1e}', *at, *peers]))
         lines.append('')
@@ -68,7 +72,7 @@ def _row(cells):
 
 
 def _peer(value):
-    return value.partition(':')[0] if isinstance(value, str) else f'{value:.0e}'
+    return WORDS.get(value, value.partition(':')[0]) if isinstance(value, str) else f'{value:.0e}'
 
 
 def figure():

@@ -17,6 +17,7 @@ from rigid_body_sim.motions.exact import Exact
 
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # rates of dissipation beyond so many times that of the rotation
+ENDING = 1e-9   # of a stiff one the tolerance, at most: a coarser one keeps a wobble above its end, and the steps at 1/rate for ever
 HORIZON = 100.0
 """Over which an accuracy holds where no duration is given, s."""
 
@@ -61,16 +62,13 @@ class Choice:
         return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
 
 
-def _bearing_heat(scene, able):
-    """Return the methods without gauss16 where internal dissipation is stiff: its iteration does not converge there, dop8 steps to the end.
-
-    The rate c L^2/I of dissipation is c L times that of the rotation, L/I.
-    """
+def _stiff(scene):
+    """Return whether internal dissipation is: its rate c L^2/I is c L times that of the rotation, L/I."""
     inner = scene.effect('internal_dissipation')
     if inner is None:
-        return able
+        return False
     momentum = scene.body.about_center.matrix @ scene.initial.angular_velocity
-    return [name for name in able if name != 'gauss16'] if inner.coefficient * math.hypot(*momentum) > STIFF else able
+    return inner.coefficient * math.hypot(*momentum) > STIFF
 
 
 def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
@@ -109,10 +107,15 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     if integrator in ('auto', 'exact') and motion and step is None:
         return Choice(scene, 'exact', accuracy, None, horizon, accuracy, measured.floor(scene, horizon), Exact(scene, motion))
     able = runnable(scene)
+    stiff = _stiff(scene)
+    # the iteration of gauss16 does not converge where dissipation is stiff; dop8 steps to its end
+    fit = [name for name in able if name != 'gauss16'] if stiff else able
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
-        method, tolerance, expected = settled or trial.settle(scene, _bearing_heat(scene, able), accuracy, horizon)
+        method, tolerance, expected = settled or trial.settle(scene, fit, accuracy, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
+    if stiff:
+        tolerance = min(tolerance, ENDING)
     return Choice(scene, method, accuracy, step, horizon, tolerance, expected, Stepped(scene, method, tolerance, step, horizon=horizon))

@@ -49,12 +49,17 @@ class InternalDissipation:
 def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     """Return c m x omega, rad/s: component 1 is c (I2 - I3) omega2 omega3.
 
-    At the end state (m within ENDED of the largest axis, less than the attitude can show) it is 0: what is left there would only keep the
-    steps of a strong dissipation at 1/c for ever.
+    What is left of a wobble (m within ENDED of its end, less than the attitude can show) would only keep the steps of a strong dissipation at
+    1/c for ever. So rates die away there, smoothly, as one that stopped at once would be chattered on: those that hold a component along the
+    axes of the least moment with that component, which always decays, the others with all that is across the axes of the largest moment.
     """
     m1, m2, m3 = I1 * wx, I2 * wy, I3 * wz
-    most = max(I1, I2, I3)
-    across = (m1 * m1 if most > I1 else 0.0) + (m2 * m2 if most > I2 else 0.0) + (m3 * m3 if most > I3 else 0.0)
-    if across <= ENDED * ENDED * (m1 * m1 + m2 * m2 + m3 * m3):
-        return 0.0, 0.0, 0.0
-    return c * (I2 - I3) * wy * wz, c * (I3 - I1) * wz * wx, c * (I1 - I2) * wx * wy
+    s1, s2, s3 = m1 * m1, m2 * m2, m3 * m3
+    most, least = max(I1, I2, I3), min(I1, I2, I3)
+    across = (s1 if most > I1 else 0.0) + (s2 if most > I2 else 0.0) + (s3 if most > I3 else 0.0)
+    along = (s1 if least == I1 else 0.0) + (s2 if least == I2 else 0.0) + (s3 if least == I3 else 0.0)
+    ended = ENDED * ENDED * (s1 + s2 + s3)
+    free = c * (across / (across + ended)) if across > 0.0 else 0.0
+    held = c * (along / (along + ended)) if along > 0.0 else 0.0
+    return ((free if least == I1 else held) * (I2 - I3) * wy * wz, (free if least == I2 else held) * (I3 - I1) * wz * wx,
+            (free if least == I3 else held) * (I1 - I2) * wx * wy)
