@@ -112,7 +112,8 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     fit = [name for name in able if name != 'gauss16'] if stiff else able
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
-        method, tolerance, expected = settled or trial.settle(scene, fit, accuracy, horizon)
+        # a trial of a stiff scene could take coarse tolerances, which never come to an end
+        method, tolerance, expected = settled or (measured.pick if stiff else trial.settle)(scene, fit, accuracy, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
