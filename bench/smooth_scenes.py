@@ -1,50 +1,66 @@
-"""Cost of smooth scenes without a closed form, by accuracy reached: gauss16, dop8 and RK4 beside heyoka (its own Taylor method, compiled).
+"""CPU time of smooth scenes without a closed form beside heyoka, by accuracy reached, and of a state every millisecond.
 
     .venv/bin/python bench/smooth_scenes.py [--json] [--case NAME ...]
 
-Asymmetric heavy tops and a driven body. Every method is swept over its tolerances or steps; a figure is the least time of interleaved
-repeats, CPU microseconds per simulated second for the final state, set-up excluded, of the cheapest run that reached the accuracy (rotation
-angle to heyoka in extended precision). heyoka gets the same equations. Ratios hold, single times depend on the machine. Needs heyoka.
+Asymmetric heavy tops drawn by chance and driven bodies, over 20 s and 100 s. A run is a start from new initial data and the final state, calls
+from Python included; of heyoka the object stays and gets the data. Both are swept over their tolerances; a figure is the median of interleaved
+repeats of the cheapest run that reached the accuracy (rotation angle to heyoka with 80-bit numbers). heyoka gets the same equations;
+it is a Taylor method, compiled. Ratios hold, single times depend on the machine.
 """
 
 import argparse
 import importlib.util
 import json
-import math
 import platform
+import statistics
 import time
 
 import numpy as np
 
+from rigid_body_sim.choice import choose
 from rigid_body_sim.compiled import HAVE_NUMBA, processor
-from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.rotations import angle_between
 from rigid_body_sim.scenes import parse_scene
 
-GOALS = (1e-3, 1e-6, 1e-9, 1e-12)
-REPEATS = 15
-TOP = 'pivot', '[gravity: {g: 9.81}]'
+GOALS = {1e-3: 0.25, 1e-6: 0.33, 1e-9: 0.4, 1e-12: 0.4}
+"""Accuracy -> the part of heyoka's time that is aimed at."""
+DURATIONS = (20.0, 100.0)
+REPEATS, COUNT = 9, 5
+MILLISECONDS = np.arange(20_001) / 1000.0
+DENSE = 1e-9    # of heyoka's and our final state, where a state every millisecond is timed
+STILL = Wrench()
+
+
+def _drawn_top(seed):
+    """Return the text of an asymmetric heavy top: moments about the pivot, place of the centre of mass, tilt and rates by chance."""
+    draw = np.random.default_rng(seed)
+    sides = draw.uniform(0.03, 0.12, 3)
+    center = np.append(draw.uniform(-0.02, 0.02, 2), draw.uniform(0.06, 0.15))
+    at_center = (np.sum(sides ** 2) - sides ** 2) / 3.0
+    about_origin = np.diag(at_center) + center @ center * np.eye(3) - np.outer(center, center)
+    rates = np.append(draw.uniform(-3.0, 3.0, 2), draw.uniform(20.0, 60.0))
+    return (f'body: {{mass: 1.0, inertia: {about_origin.tolist()}, inertia_about: origin, center_of_mass: {center.tolist()}}}\n'
+            f'constraint: pivot\neffects: [gravity: {{g: 9.81}}]\n'
+            f'initial: {{tilt: {draw.uniform(0.2, 1.2)}, angular_velocity: {rates.tolist()}}}\n')
+
+
+DRIVEN = 'body: {{mass: 1.0, inertia: {}}}\nconstraint: free\neffects: [torque: {}]\ninitial: {{angular_velocity: {}}}\n'
 CASES = {
-    'fast top': (*TOP, '{mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}',
-                 '{tilt: 0.5, angular_velocity: [0, 0, 60]}', 20.0),
-    'nearly symmetric top': (*TOP, '{mass: 1.0, inertia: [0.03, 0.028, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}',
-                             '{tilt: 0.5, angular_velocity: [0, 0, 60]}', 20.0),
-    'flat top': (*TOP, '{mass: 1.0, inertia: [0.02, 0.03, 0.025], inertia_about: origin, center_of_mass: [0, 0, 0.1]}',
-                 '{tilt: 0.8, angular_velocity: [1, 2, 30]}', 20.0),
-    'skew slow top': (*TOP, '{mass: 1.0, inertia: [0.03, 0.02, 0.015], inertia_about: origin, center_of_mass: [0.02, 0.01, 0.1]}',
-                      '{tilt: 1.0, angular_velocity: [1, 2, 5]}', 5.0),
-    'driven body': ('free', '[torque: {value: [0.03, -0.02, 0.05]}]', '{mass: 1.0, inertia: [1.0, 2.0, 3.0]}',
-                    '{angular_velocity: [0.1, 2.0, 0.3]}', 100.0),
-    'driven body in world axes': ('free', '[torque: {value: [0.3, -0.2, 0.5], frame: world}]', '{mass: 1.0, inertia: [1.0, 1.5, 2.2]}',
-                                  '{angular_velocity: [0.4, 3.0, 0.2]}', 50.0)}
+    'top 1': _drawn_top(1), 'top 2': _drawn_top(2), 'top 3': _drawn_top(3),
+    'driven body': DRIVEN.format('[1.0, 2.0, 3.0]', '{value: [0.3, -0.2, 0.5]}', '[0.1, 2.0, 0.3]'),
+    'driven in world axes': DRIVEN.format('[1.0, 1.5, 2.2]', '{value: [0.3, -0.2, 0.5], frame: world}', '[0.4, 3.0, 0.2]')}
 
 
 def heyoka_system(scene):
-    """Return heyoka's equations: those of rigid_body_sim/integrators/turning.py, written for what the scene has."""
+    """Return heyoka's equations: those of rigid_body_sim/integrators/turning.py, written for what the scene has, in its frame."""
     import heyoka
+
+    from rigid_body_sim.effects.views import Frame
     qx, qy, qz, qw, wx, wy, wz = heyoka.make_vars('qx', 'qy', 'qz', 'qw', 'wx', 'wy', 'wz')
-    pivoted, torque = scene.constraint.kind == 'pivot', scene.effect('torque')
-    I1, I2, I3 = (scene.body.about_origin if pivoted else scene.body.about_center).moments
+    frame, torque = Frame.of(scene.body, scene.constraint), scene.effect('torque')
+    I1, I2, I3 = frame.moments
     rows = [[None] * 3, [None] * 3, [2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx), qw * qw - qx * qx + qz * qz - qy * qy]]
     if torque and torque.frame == 'world':
         rows[0] = [qw * qw + qx * qx - qy * qy - qz * qz, 2.0 * (qx * qy - qw * qz), 2.0 * (qx * qz + qw * qy)]
@@ -54,94 +70,123 @@ def heyoka_system(scene):
         terms = [factor * what for factor, what in terms if factor != 0.0]
         return sum(terms[1:], terms[0]) if terms else 0.0
 
-    gamma = [0.0, 0.0, 0.0]
-    if pivoted:
-        s1, s2, s3 = (scene.body.mass * scene.effect('gravity').g * c for c in scene.body.center_of_mass)
+    if scene.constraint.kind == 'pivot':
+        s1, s2, s3 = (scene.body.mass * scene.effect('gravity').g * r for r in frame.arm)
         g1, g2, g3 = rows[2]
         gamma = [total((s3, g2), (-s2, g3)), total((s1, g3), (-s3, g1)), total((s2, g1), (-s1, g2))]
     elif torque.frame == 'world':
         gamma = [total(*((value, rows[i][k]) for i, value in enumerate(torque.values[0]))) for k in range(3)]
     else:
-        gamma = list(torque.values[0])
+        gamma = list(frame.from_body(torque.values[0]))
     euler = [(I2 - I3) / I1 * (wy * wz), (I3 - I1) / I2 * (wz * wx), (I1 - I2) / I3 * (wx * wy)]
     return [(qx, 0.5 * (qw * wx + qy * wz - qz * wy)), (qy, 0.5 * (qw * wy + qz * wx - qx * wz)), (qz, 0.5 * (qw * wz + qx * wy - qy * wx)),
             (qw, -0.5 * (qx * wx + qy * wy + qz * wz)),
             *((w, e + g / moment) for w, e, g, moment in zip((wx, wy, wz), euler, gamma, (I1, I2, I3), strict=True))]
 
 
+def in_frame(scene):
+    """Return q and omega of the frame at the start."""
+    from rigid_body_sim.effects.views import Frame
+    from rigid_body_sim.rotations import multiply, rotate_back
+    axes, vector = Frame.of(scene.body, scene.constraint).axes, scene.initial.vector
+    return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
+
+
 def exact_attitude(scene, duration):
-    """Return the final attitude by heyoka with 80-bit numbers."""
+    """Return the frame's final attitude by heyoka with 80-bit numbers."""
     import heyoka
-    start = [np.longdouble(x) for x in scene.initial.vector[1:8]]
+    start = [np.longdouble(x) for x in in_frame(scene)]
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, fp_type=np.longdouble, high_accuracy=True)
     solver.propagate_until(np.longdouble(duration))
     return np.array(solver.state[:4], dtype=float)
 
 
-def runs(scene, duration):
-    """Yield (method, setting, act): act() makes one run and returns (seconds, attitude)."""
+def our_run(scene, duration, method, accuracy):
+    """Return act(): a start and the final state; it returns the frame's attitude."""
+    from rigid_body_sim.effects.views import Frame
+    from rigid_body_sim.rotations import multiply
+    choice, start, out, axes = choose(scene, method, accuracy, horizon=duration), scene.initial.vector, np.empty(14), Frame.of(
+        scene.body, scene.constraint).axes
+
+    def act():
+        choice.solver(start, STILL).state(duration, out)
+
+    def attitude():
+        act()
+        return multiply(*out[1:5], *axes)
+    return act, attitude
+
+
+def heyoka_run(scene, duration, tolerance):
+    """Return the same of heyoka."""
     import heyoka
-    out, speed = np.empty(14), np.linalg.norm(scene.initial.angular_velocity)
+    start = in_frame(scene)
+    solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=tolerance)
 
-    def ours(solver):
-        def act():
-            started = solver.start(scene.initial.vector)
-            begin = time.perf_counter()
-            started.state(duration, out)
-            return time.perf_counter() - begin, out[1:5]
-        return act
+    def act():
+        solver.time = 0.0
+        solver.state[:] = start
+        solver.propagate_until(duration)
 
-    for digits in np.arange(1.0, 15.5, 0.5):
-        for method in ('gauss16', 'dop8'):
-            yield method, f'accuracy 1e-{digits}', ours(Stepped(scene, method, accuracy=10.0 ** -digits))
-    for angle in np.geomspace(0.2, 4.0, 30):
-        steps = math.ceil(duration * speed / angle)
-        yield 'dop8', f'{steps} steps', ours(Stepped(scene, 'dop8', step=duration / steps))
-        for digits in (2.0, 5.0, 8.0, 11.0, 14.0):
-            yield 'gauss16', f'{steps} steps, sweeps to 1e-{digits}', ours(Stepped(scene, 'gauss16', accuracy=10.0 ** -digits,
-                                                                                   step=duration / steps))
-    for angle in np.geomspace(0.002, 0.4, 12):
-        steps = math.ceil(duration * speed / angle)
-        yield 'rk4', f'{steps} steps', ours(Stepped(scene, 'rk4', step=duration / steps))
-    for digits in np.arange(2.0, 17.0, 0.5):
-        for high in (False, True) if digits > 12.0 else (False,):
-            solver = heyoka.taylor_adaptive(heyoka_system(scene), scene.initial.vector[1:8].tolist(), tol=10.0 ** -digits, high_accuracy=high)
-
-            def act(solver=solver):
-                solver.time = 0.0
-                solver.state[:] = scene.initial.vector[1:8]
-                begin = time.perf_counter()
-                solver.propagate_until(duration)
-                return time.perf_counter() - begin, solver.state[:4]
-
-            yield 'heyoka', f'tol 1e-{digits}{", high accuracy" if high else ""}', act
+    def attitude():
+        act()
+        return solver.state[:4] / np.linalg.norm(solver.state[:4])
+    return act, attitude
 
 
-def measure(name):
-    """Return {method: {goal: (microseconds per simulated second, setting)}} of a case."""
-    constraint, effects, body, initial, duration = CASES[name]
-    scene = parse_scene(f'scene: bench\nbody: {body}\nconstraint: {constraint}\neffects: {effects}\ninitial: {initial}\n')
-    exact, found = exact_attitude(scene, duration), []
-    for method, setting, act in runs(scene, duration):
-        try:
-            act()
-            seconds, q = act()
-        except ArithmeticError:    # a step too long for the method
-            continue
-        found.append([method, setting, act, angle_between(*q, *exact), seconds])
-    # of each method and goal only the runs that may be the cheapest are timed again, turn by turn
-    kept = [run for run in found if any(run[3] <= goal and run[4] <= 1.6 * min(
-        other[4] for other in found if other[0] == run[0] and other[3] <= goal) for goal in GOALS)]
+def timed(act, count):
+    """Return the CPU time of a run, s."""
+    begin = time.process_time()
+    for _ in range(count):
+        act()
+    return (time.process_time() - begin) / count
+
+
+def measure(name, duration):
+    """Return {who: {goal: (seconds a run, setting)}}; who is one of our methods, or heyoka."""
+    scene = parse_scene(f'scene: bench\n{CASES[name]}')
+    exact, runs = exact_attitude(scene, duration), []
+    able = [method for method in runnable(scene) if method in ('taylor', 'gauss16', 'dop8') and 'accuracy' in METHODS[method].TAKES]
+    for digits in np.arange(0.5, 15.0, 0.5):
+        runs += [[method, f'{10.0 ** -digits:.0e}', *our_run(scene, duration, method, 10.0 ** -digits)] for method in able]
+        runs.append(['heyoka', f'{10.0 ** -(digits + 2.0):.0e}', *heyoka_run(scene, duration, 10.0 ** -(digits + 2.0))])
+    for run in runs:
+        run[3] = angle_between(*run[3](), *exact)
+        run.append([])
     for _ in range(REPEATS):
-        for run in kept:
-            run[4] = min(run[4], run[2]()[0])
+        for run in runs:
+            run[4].append(timed(run[2], COUNT))
     table = {}
-    for method in dict.fromkeys(run[0] for run in kept):
-        for goal in GOALS:
-            fit = [(run[4] / duration * 1e6, run[1]) for run in kept if run[0] == method and run[3] <= goal]
-            if fit:
-                table.setdefault(method, {})[goal] = min(fit)
+    for goal in GOALS:
+        for who, setting, _, error, times in runs:
+            row, median = table.setdefault(who, {}), statistics.median(times)
+            if error <= goal and median < row.get(goal, (np.inf,))[0]:
+                row[goal] = median, setting
     return table
+
+
+def measure_dense(name):
+    """Return {who: CPU seconds a state} of a state every millisecond, start included."""
+    import heyoka
+    scene = parse_scene(f'scene: bench\n{CASES[name]}')
+    start, out = in_frame(scene), np.empty((len(MILLISECONDS), 14))
+    solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=DENSE * 1e-3)
+    choice = choose(scene, 'auto', DENSE, horizon=float(MILLISECONDS[-1]))
+
+    def theirs():
+        solver.time = 0.0
+        solver.state[:] = start
+        solver.propagate_grid(MILLISECONDS)
+
+    def ours():
+        choice.solver(scene.initial.vector, STILL).states(MILLISECONDS, out)
+    acts, times = {f'auto: {choice.method}': ours, 'heyoka': theirs}, {}
+    for act in acts.values():
+        act()
+    for _ in range(REPEATS):
+        for who, act in acts.items():
+            times.setdefault(who, []).append(timed(act, 1) / len(MILLISECONDS))
+    return {who: statistics.median(values) for who, values in times.items()}
 
 
 def main():
@@ -153,23 +198,29 @@ def main():
     if importlib.util.find_spec('heyoka') is None:
         print('Smooth scenes not measured: heyoka, which they are measured against, is not installed (pip install heyoka==7.13.2)')
         return
-    results = {}
+    results, dense = {}, {}
+    if not options.json:
+        aims = ', '.join(f'{part} at {goal:.0e}' for goal, part in GOALS.items())
+        print(f'CPU microseconds of a run, and in brackets its part of the time of heyoka; aimed at: {aims}')
     for name in options.case:
-        results[name] = table = measure(name)
-        if options.json:
-            continue
-        print(f'{name}\n  {"us per simulated s":12}' + ''.join(f'{goal:>20.0e}' for goal in GOALS))
-        for method, row in table.items():
-            cells = []
-            for goal in GOALS:
-                peer = table.get('heyoka', {}).get(goal)
-                cells.append('-' if goal not in row else f'{row[goal][0]:.2f}' + (f' ({row[goal][0] / peer[0]:.2f})' if peer else ''))
-            print(f'  {method:18}' + ''.join(f'{cell:>20}' for cell in cells), flush=True)
-        print('  cheapest gauss16: ' + '; '.join(setting for _, setting in table.get('gauss16', {}).values()), flush=True)
+        for duration in DURATIONS:
+            results[f'{name}, {duration:g} s'] = table = measure(name, duration)
+            if options.json:
+                continue
+            print(f'{name}, {duration:g} s\n  {"":10}' + ''.join(f'{goal:>20.0e}' for goal in GOALS))
+            for who, row in table.items():
+                peers = table['heyoka']
+                cells = ['-' if goal not in row else f'{row[goal][0] * 1e6:.1f}' + (
+                    f' ({row[goal][0] / peers[goal][0]:.2f})' if goal in peers and who != 'heyoka' else '') for goal in GOALS]
+                print(f'  {who:10}' + ''.join(f'{cell:>20}' for cell in cells), flush=True)
+        dense[name] = measure_dense(name)
+        if not options.json:
+            print(f'{name}: a state every millisecond, us each: '
+                  + ', '.join(f'{who} {seconds * 1e6:.3f}' for who, seconds in dense[name].items()), flush=True)
     if options.json:
-        print(json.dumps({'machine': processor().split()[0], 'python': platform.python_version(), 'compiled': HAVE_NUMBA, 'results': {
-            name: {method: {f'{goal:.0e}': cell for goal, cell in row.items()} for method, row in table.items()}
-            for name, table in results.items()}}, indent=2))
+        print(json.dumps({'machine': processor().split()[0], 'python': platform.python_version(), 'compiled': HAVE_NUMBA, 'runs': {
+            name: {who: {f'{goal:.0e}': cell for goal, cell in row.items()} for who, row in table.items()} for name, table in results.items()},
+            'dense': dense}, indent=2))
 
 
 if __name__ == '__main__':

@@ -8,7 +8,6 @@ import math
 from dataclasses import dataclass
 
 from rigid_body_sim import trial
-from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS, measured, runnable
 from rigid_body_sim.integrators.stepped import Stepped
@@ -56,7 +55,7 @@ class Choice:
 
     def solver(self, start, wrench):
         """Return a solver from a state on, under a held wrench."""
-        if wrench == Wrench():
+        if not wrench:
             return self._prototype.start(start)
         method = 'dop8' if self.method in ('exact', 'taylor') else self.method
         return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)

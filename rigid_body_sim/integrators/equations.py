@@ -43,8 +43,8 @@ class Equations:
         Whether anything exchanges energy or angular momentum with the body.
     calls : list
         What acts, as text for the ..._source functions.
-    parameter_count : int
-        Of the parameters.
+    parameter_count, fixed_count : int
+        Of the parameters, and of those at their beginning that do not change at breakpoints.
     makes_heat : bool
         Whether anything is booked as heat: it depends on velocities.
     """
@@ -76,6 +76,7 @@ class Equations:
             sources['force'] = force_source(calls)
         self.kernels = specialise(self.kind, **sources)
         self._fixed, self._held = self._constants(), {}
+        self.fixed_count = len(self._fixed)
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self.frame, time)]
@@ -105,7 +106,7 @@ class Equations:
     def continued(self, p, time):
         """Return the parameters that hold just after a time, of a start whose parameters are p."""
         held = self.held(time)
-        held[:len(self._fixed)] = p[:len(self._fixed)]
+        held[:self.fixed_count] = p[:self.fixed_count]
         return held
 
     def start(self, vector):

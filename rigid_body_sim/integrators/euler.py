@@ -70,7 +70,9 @@ def write_state(p, time, qx, qy, qz, qw, wx, wy, wz, x, y, z, vx, vy, vz, out):
     out[0] = time
     out[1], out[2], out[3], out[4] = multiply(qx, qy, qz, qw, -ax, -ay, -az, aw)
     out[5], out[6], out[7] = rotate(ax, ay, az, aw, wx, wy, wz)
-    ux, uy, uz = rotate(qx, qy, qz, qw, px, py, pz)
-    out[8], out[9], out[10] = x - ux, y - uy, z - uz
-    ux, uy, uz = rotate(qx, qy, qz, qw, wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px)
-    out[11], out[12], out[13] = vx - ux, vy - uy, vz - uz
+    out[8], out[9], out[10], out[11], out[12], out[13] = x, y, z, vx, vy, vz
+    if px != 0.0 or py != 0.0 or pz != 0.0:
+        ux, uy, uz = rotate(qx, qy, qz, qw, px, py, pz)
+        out[8], out[9], out[10] = x - ux, y - uy, z - uz
+        ux, uy, uz = rotate(qx, qy, qz, qw, wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px)
+        out[11], out[12], out[13] = vx - ux, vy - uy, vz - uz

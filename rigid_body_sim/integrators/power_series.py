@@ -44,6 +44,7 @@ class Series(Equations):
         self.kernels = specialise(turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n'))
         self._axis, self._fixed, self._held = None, None, {}
         self._fixed = self._constants()
+        self.parameter_count, self.fixed_count = COUNT, len(self._fixed)
 
     def parameters(self, fixed, time):
         """Return the parameters that hold just after a time."""

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations import Equations
 from rigid_body_sim.state import STATE_SIZE, TIME
 
@@ -67,12 +67,12 @@ class _Course:
         if self._solver.status == 'finished':
             self._enter(self._solver.t, self._solver.y)
 
+    def state(self, time, out):
+        """Fill out with the state at a time not before the start."""
+        self.states(np.array([time]), out[np.newaxis])
+
     def states(self, times, out):
-        """Fill out with the states at times."""
-        if len(times) == 0:
-            return
-        if not (times.min() >= self._begin and math.isfinite(times.max())):
-            raise BadInput('time', f'asked from {times.min()!r} to {times.max()!r} s', f'finite times from the start, {self._begin!r} s, on')
+        """Fill out with the states at times not before the start."""
         if self._solver is None:
             self._enter(self._begin, self._y)
         while not self._reached or self._reached[-1] < times.max():

@@ -9,6 +9,7 @@ Give `accuracy` (step control) or `step` (fixed steps; it goes before). A state 
 the scene are the business of rigid_body_sim/simulation.py, which starts a solver anew after each.
 """
 
+import bisect
 import math
 
 import numpy as np
@@ -23,10 +24,10 @@ from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 from rigid_body_sim.watches import Watcher, watches
 
-CHECKPOINTS = 128       # of a march: how many are kept
 FINEST = 1e-15          # accuracy below this is not in the doubles
 ULP = float(np.finfo(float).eps)
-ONLY = np.zeros(1, dtype=np.intp)    # the order of a single time
+LEAST = 1e-300          # keeps a quotient finite
+FOR_EVER = (math.inf,)
 
 
 class Stepped:
@@ -85,15 +86,20 @@ class Stepped:
         """Return a solver from a state vector (14 doubles, its time included)."""
         started = object.__new__(Stepped)
         started.__dict__.update(self.__dict__)
-        started.vector = np.array(vector, dtype=float)
+        started.vector = vector = np.array(vector, dtype=float)
+        started._begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
+        # later the body has turned by more radians than doubles can count
+        started._latest = started._begin + 1.0 / max(ULP * math.hypot(wx, wy, wz), LEAST)
         started._course = self._plain.course(started)
         started._booked_course = started._course if self._with_books is self._plain else None
         started._watcher = None
         return started
 
     def state(self, time, out):
-        """Fill out, shape (14,), with the state at a time (s)."""
-        self.states(np.array([time]), out[np.newaxis])
+        """Fill out, shape (14,), with the state at a time (s); it raises what `states` does."""
+        time = float(time)
+        self._within(time, time)
+        self._course.state(time, out)
 
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times (s).
@@ -106,12 +112,19 @@ class Stepped:
             With the time and the cause; also where the body turns so often that doubles no longer carry a part of a turn.
         """
         times = np.asarray(times, dtype=float)
-        if len(times) and math.isfinite(last := times.max()):
-            begin, speed = float(self.vector[TIME]), math.hypot(*self.vector[ANGULAR_VELOCITY].tolist())
-            if speed * (float(last) - begin) * ULP > 1.0:
-                raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {begin!r} s the body turns with {speed!r} rad/s; '
-                                   f'until {float(last)!r} s that is more radians than doubles can count')
-        self._course.states(times, out)
+        if len(times):
+            self._within(float(times.min()), float(times.max()))
+            self._course.states(times, out)
+
+    def _within(self, first, last):
+        """Raise unless the times from the first to the last can be reached."""
+        if self._begin <= first <= last <= self._latest:
+            return
+        if not (first >= self._begin and math.isfinite(last)):
+            raise BadInput('time', f'asked from {first!r} to {last!r} s', f'finite times from the start, {self._begin!r} s, on')
+        raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {self._begin!r} s the body turns with '
+                           f'{math.hypot(*self.vector[ANGULAR_VELOCITY].tolist())!r} rad/s; until {last!r} s that is more radians than '
+                           'doubles can count')
 
     def events(self, after, until, tick=0.0):
         """Return the (time, name, values) of what happens after one time (s) and not later than another, in order; it only goes forward.
@@ -126,16 +139,17 @@ class Stepped:
         return [event for event in self._watcher.events(until) if event[0] > after]
 
     def exchanged(self, time):
-        """Return what commands and effects exchanged with the body from the start to a time, shape (5,)."""
+        """Return what commands and effects exchanged with the body from the start to a time, shape (5,); it raises what `states` does."""
         if not self._plain.acts:
             return np.zeros(EXCHANGE_SIZE)
         if self._booked_course is None:
             if self._with_books is None:
                 self._with_books = self._bind(books=True)
             self._booked_course = self._with_books.course(self)
-        row = np.empty((1, STATE_SIZE + EXCHANGE_SIZE))
-        self._booked_course.states(np.array([time]), row)
-        return row[0, STATE_SIZE:]
+        self._within(float(time), float(time))
+        row = np.empty(STATE_SIZE + EXCHANGE_SIZE)
+        self._booked_course.state(float(time), row)
+        return row[STATE_SIZE:]
 
 
 class _Bound:
@@ -148,65 +162,79 @@ class _Bound:
         self.equations = equations = family.equations(stepped.scene, stepped.wrench, books)
         self.acts = equations.acts
         self.march = family.march(method, equations, stepped.step is None)
-        self._prototype = family.begin(stepped, self.march)
+        control, node = family.begin(stepped, self.march)
+        self._beginning, self._prototypes = np.concatenate((control, node)), {}
+        places = np.cumsum([equations.parameter_count, len(control), len(node), len(node)]).tolist()
+        self.node, self.piece_size = places[1], places[-1] + track.STORE + track.CHECKPOINTS * len(node)
         shared = {name: f'{self.march.__name__}:{name}' for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
         shared |= {name: f'{equations.kernels.__name__}:{name}' for name in ('start', 'write')}
+        shared |= {name: f'{name} = {place}\n' for name, place in zip(('CONTROL', 'NODE', 'FOLLOWING', 'COUNTS'), places, strict=True)}
         self.track = specialise(track, **shared)
 
     def course(self, stepped):
         """Return the course of a started solver."""
         return _Course(stepped, self)
 
-    def arrays(self, p):
-        """Return the arrays of a piece with the parameters p: what track.py fills and follows."""
-        control, node = self._prototype
-        return p, control.copy(), node.copy(), np.empty(len(node)), np.empty((CHECKPOINTS, len(node))), np.empty(3, dtype=np.intp)
+    def prototype(self, time):
+        """Return the beginning of a piece that starts at a time: the parameters that hold there, control, node."""
+        k = bisect.bisect_right(self.equations.breakpoints, time)
+        if k not in self._prototypes:
+            self._prototypes[k] = np.concatenate((self.equations.held(time), self._beginning))
+        return self._prototypes[k]
 
 
 class _Course:
     """One march from a start: a piece for each stretch between breakpoints, made when it is reached."""
 
     def __init__(self, stepped, bound):
-        self._stepped, self._bound = stepped, bound
-        equations = bound.equations
-        self._begin = float(stepped.vector[TIME])
-        self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
-        p, *rest = first = bound.arrays(equations.held(self._begin))
-        bound.track.first_piece(p, stepped.vector, *rest)
-        self._pieces = [first]
+        self._stepped, self._bound, self._pieces, self._ends = stepped, bound, [], FOR_EVER
+        if bound.equations.breakpoints:
+            self._ends = [time for time in bound.equations.breakpoints if time > stepped._begin] + [math.inf]
+
+    def _first_piece(self):
+        """Return the piece at the start, not filled yet."""
+        self._pieces.append(np.empty(self._bound.piece_size))
+        return self._bound.prototype(self._stepped._begin), self._stepped.vector, self._pieces[0]
 
     def _next_piece(self, begin):
         """Return the piece that begins where the last one ends."""
-        p, _, reached, *_ = self._pieces[-1]
-        piece = self._bound.arrays(self._bound.equations.continued(p, begin))
-        values = slice(VALUES, VALUES + self._bound.march.SIZE)
-        node = piece[2]
-        node[NODE_TIME], node[values] = begin, reached[values]
-        self._bound.track.piece(*piece)
+        bound, before, piece = self._bound, self._pieces[-1], np.empty(self._bound.piece_size)
+        prototype = bound.prototype(begin)
+        fixed, values = bound.equations.fixed_count, bound.node + VALUES
+        piece[:len(prototype)] = prototype
+        piece[:fixed], piece[bound.node + NODE_TIME] = before[:fixed], begin
+        piece[values:values + bound.march.SIZE] = before[values:values + bound.march.SIZE]
+        bound.track.opened(piece)
         return piece
 
+    def state(self, time, out):
+        """Fill out with the state at a time not before the start."""
+        if not time < self._ends[0]:
+            self.states(np.array([time]), out[np.newaxis])
+        elif self._pieces:
+            self._check(self._bound.track.state(self._pieces[0], time, self._ends[0], out), self._pieces[0])
+        else:
+            self._check(self._bound.track.first_state(*self._first_piece(), time, self._ends[0], out), self._pieces[0])
+
     def states(self, times, out):
-        """Fill out with the states at times."""
-        if len(times) == 0:
-            return
-        order = np.argsort(times, kind='stable') if len(times) > 1 else ONLY
-        first, last = times[order[0]], times[order[-1]]
-        if not (first >= self._begin and math.isfinite(last)):
-            raise BadInput('time', f'asked from {first!r} to {last!r} s', f'finite times from the start, {self._begin!r} s, on')
-        bound, done, k = self._bound, 0, 0
+        """Fill out with the states at times not before the start."""
+        order = np.argsort(times, kind='stable')
+        bound, last, done, k = self._bound, times[order[-1]], 0, 0
+        if not self._pieces:
+            bound.track.first_piece(*self._first_piece())
         while done < len(order):
             end = self._ends[k]
             until = len(order) if last < end else int(np.searchsorted(times[order], end, side='left'))
             piece = self._pieces[k]
-            filled = done + bound.track.states(*piece, times, order[done:until], end, out)
+            filled = done + bound.track.states(piece, times, order[done:until], end, out)
             self._check(filled == until, piece)
             done, k = until, k + 1
             if done < len(order) and k == len(self._pieces):
-                self._check(bound.track.follow(*piece, end, end), piece)
+                self._check(bound.track.follow(piece, end, end), piece)
                 self._pieces.append(self._next_piece(end))
 
     def _check(self, good, piece):
         if not good:
             method, scene = self._stepped.method.NAME, self._stepped.scene.name
-            raise NotConverged(f'{method} on {scene}: at t = {float(piece[2][NODE_TIME])!r} s the state is no longer finite, '
+            raise NotConverged(f'{method} on {scene}: at t = {float(piece[self._bound.node + NODE_TIME])!r} s the state is no longer finite, '
                                'or the step fell below what the clock resolves')

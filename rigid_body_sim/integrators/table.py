@@ -87,11 +87,13 @@ class TableCourse:
         return _Phase(self._bound, p, y, self._tolerance)
 
     def states(self, times, out):
-        """Fill out with the states at times, and its columns from 14 on with the books."""
+        """Fill out with the states at times not before the start, and its columns from 14 on with the books."""
         for row, time in enumerate(times):
-            if not (time >= self._begin and math.isfinite(time)):
-                raise BadInput('time', f'asked for {time!r} s', f'finite times from the start, {self._begin!r} s, on')
-            self._write(time, self._at(time - self._begin), out[row])
+            self.state(time, out[row])
+
+    def state(self, time, out):
+        """Fill out with the state at a time not before the start, and what is behind it with the books."""
+        self._write(time, self._at(time - self._begin), out)
 
     def events(self, after, until):
         """Return the (time, name, values) after one time (s) and not later than another: rolling began, sliding began."""

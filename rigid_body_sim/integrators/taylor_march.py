@@ -57,20 +57,18 @@ def _square(S, order, weight):
 def _longest(S, tolerance, last, scale):
     """Return the step at which the larger of the last two terms is what the tolerance allows in that time.
 
-    The term before the last one counts as it would at the step before; a step grows by GROWTH at most.
+    The lower one counts as it would at the step before; a step grows by GROWTH at most.
     """
     weight = 1.0 / scale if scale > 0.0 else 0.0
     final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
-    square = max(final * last * last, before)
     if last == 0.0:    # the first step: by the last term alone
         if final == 0.0:
             return UNMOVED
         last = math.pow(tolerance * tolerance / final, 0.5 / (ORDER - 1))
-        square = max(final * last * last, before)
-    most = GROWTH * last
-    if not square * math.pow(most, 2.0 * (ORDER - 2)) > tolerance * tolerance:
-        return most
-    return math.pow(tolerance * tolerance / square, 0.5 / (ORDER - 2))
+    square = max(final * last * last, before)
+    if square == 0.0:
+        return GROWTH * last
+    return min(GROWTH * last, math.pow(tolerance * tolerance / square, 0.5 / (ORDER - 2)))
 
 
 @compiled

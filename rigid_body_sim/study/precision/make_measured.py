@@ -2,11 +2,14 @@
 
 ::
 
-    .venv/bin/python -m rigid_body_sim.study.precision.make_measured
+    .venv/bin/python -m rigid_body_sim.study.precision.make_measured [KIND ...]
+
+All kinds of scene, or the kinds named (``pivot``, ``free`` ...), while the others stay as they are.
 """
 
 import json
 import statistics
+import sys
 import time
 
 from tqdm import tqdm
@@ -19,12 +22,12 @@ from rigid_body_sim.study.precision import measure, reference, runner, suite
 LIMIT, REPEATS = 0.02, 7
 
 
-def main():
+def main(only=()):
     """Measure and write."""
     gathered = {}
     for name in tqdm(suite.NAMES + suite.TRAINING):
         problem = suite.problem(name)
-        if absorbing_motion(problem.scene):
+        if absorbing_motion(problem.scene) or (only and measured.kind(problem.scene) not in only):
             continue
         truth = reference.load(problem)
         controlled = [one for one in runner.ours(problem, truth) if one.control == 'accuracy']
@@ -35,6 +38,8 @@ def main():
                 rows.setdefault(point['setting'], []).append((point['largest_error'], point['cpu']['median'] / measured.pace(problem.scene)))
     kinds = {kind: {method: [entry for tolerance, found in sorted(rows.items(), reverse=True) if (entry := _entry(tolerance, found))]
                     for method, rows in methods.items()} for kind, methods in gathered.items()}
+    if only:
+        kinds = measured.table()['kinds'] | kinds
     measured.FILE.write_text(json.dumps({'made': time.strftime('%Y-%m-%d'), 'machine': machine(), 'kinds': kinds}, indent=1) + '\n')
 
 
@@ -44,4 +49,4 @@ def _entry(tolerance, found):
 
 
 if __name__ == '__main__':
-    main()
+    main(sys.argv[1:])
