@@ -20,8 +20,8 @@ from rigid_body_sim.node import qos
 from rigid_body_sim.node.doorbell import Doorbell
 
 WRENCH, IMPULSE = 'cmd_wrench', 'cmd_impulse'
-DEPTH = 2000
-"""Messages that may wait in a subscription: 0.2 s of 10,000 a second."""
+DEPTH = 10_000
+"""Messages that may wait in a subscription: a second of 10,000 a second."""
 MOST_QUEUED = 100_000
 """Commands that may wait for a tick, while paused or at a low rate."""
 LARGEST = 1e100

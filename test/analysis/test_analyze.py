@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from analysis import made
 
-from rigid_body_sim.analysis import panels, plots
+from rigid_body_sim.analysis import page, panels, plots
 from rigid_body_sim.analysis.analyze import analyze, main, report_folder
 from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.simulation import Simulation
 
+PAGE = ['report.html'] if page.available() else []
 FIGURES = ('overview', 'motion', 'ledger', 'spectrum', 'polhode', 'axis')
 LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)
 
@@ -35,7 +36,7 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
     printed = capsys.readouterr().out.splitlines()
     text = (tmp_path / 'report.txt').read_text().splitlines()
     assert printed[:len(text)] == text
-    files = ['report.txt', 'report.json', *(f'{name}.png' for name in FIGURES), 'report.html']
+    files = ['report.txt', 'report.json', *(f'{name}.png' for name in FIGURES), *PAGE]
     assert [line.strip() for line in printed[len(text):]] == [str(tmp_path / name) for name in files]
     assert all((tmp_path / name).stat().st_size > 10_000 for name in files[2:])
     assert all((tmp_path / f'{name}.svg').read_text().startswith('<?xml') for name in FIGURES)
@@ -106,7 +107,7 @@ def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
     assert (found['timing']['ticks'], found['timing']['missing']) == (2001, 0)
     # written at once at its time of arrival, 20 to 90 us after the stamp
     assert found['timing']['lateness']['max'] == pytest.approx(70e-6, abs=3e-6)
-    assert [path.name for path in files[2:]] == [*(f'{name}_lab.png' for name in FIGURES if name != 'ledger'), 'report.html']
+    assert [path.name for path in files[2:]] == [*(f'{name}_lab.png' for name in FIGURES if name != 'ledger'), *PAGE]
 
 
 def test_without_a_scene_nothing_is_judged_by_it(tmp_path):
@@ -135,10 +136,11 @@ def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
     results = json.loads(capsys.readouterr().out)
     assert [len(result['bodies']) for result in results] == [1, 1] and results[0]['bodies'] == results[1]['bodies']
     # one page on both, and a folder each
-    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report', 'report.html', 'report.json']
+    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report', *PAGE, 'report.json']
     assert json.loads((tmp_path / 'all' / 'report.json').read_text()) == results
-    text = (tmp_path / 'all' / 'report.html').read_text(encoding='utf-8')
-    assert '<p>one.a</p>' in text and '<p>one.a_0.mcap</p>' in text and 'id="time1"' in text
+    for name in PAGE:
+        text = (tmp_path / 'all' / name).read_text(encoding='utf-8')
+        assert '<p>one.a</p>' in text and '<p>one.a_0.mcap</p>' in text and 'id="time1"' in text
     assert not (tmp_path / 'all' / 'one.a_report' / 'report.html').exists()
 
 

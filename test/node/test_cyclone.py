@@ -93,5 +93,6 @@ def test_cyclone_client_hears_the_node_and_commands_it(run_node):
         [k] = np.flatnonzero(np.abs(steps).max(axis=1) > 1e-9)
         moment = 0.25 / steps[k, 2]
         assert moment == pytest.approx(SPHERE_MOMENT, rel=1e-14, abs=0.0)
-        # two momenta of size 10 (kg m^2/s), each turned to the world by a rounded quaternion: 8 roundings of each; measured up to 2.9e-14
-        assert np.abs(steps[k, :2]).max() < 16 * np.finfo(float).eps * 10.0
+        # two momenta of size 10 (kg m^2/s), each turned to the world: an entry of the matrix is a sum of products of rounded components, a
+    # component of the momentum a sum of three of them, 12 roundings of each; measured up to 3.7e-14, at a tick that differs from run to run
+        assert np.abs(steps[k, :2]).max() < 24 * np.finfo(float).eps * 10.0
