@@ -18,7 +18,7 @@ from rigid_body_sim.state import ORIENTATION, STATE_SIZE
 
 RADIANS = 2e4
 """Turned over in a run of a trial, at most: some 10 ms."""
-FINER, TRIES, HELPS = 1e-3, 5, 0.25
+FINER, TRIES, HELPS = 1e-3, 5, 0.7
 
 
 def settle(scene, able, accuracy, horizon):
@@ -60,12 +60,15 @@ def settle(scene, able, accuracy, horizon):
     floor, before = measured.floor(scene, horizon), (tolerance, math.inf)
     for _ in range(TRIES):
         finer = at_most(FINER * tolerance)
-        error = angle_between(*end(tolerance), *end(finer)) / part if finer < tolerance else before[1] * tolerance / before[0]
+        if finer == tolerance:    # nothing to hold it against: at least it is better than the one before
+            error = before[1]
+            break
+        error = angle_between(*end(tolerance), *end(finer)) / part
         error = math.inf if math.isnan(error) else error
+        if error <= accuracy:
+            break
         if before[1] < math.inf and error > HELPS * before[1]:    # it is round-off that is magnified
             tolerance, error = before
-            break
-        if error <= accuracy or finer == tolerance:
             break
         before = tolerance, error
         tolerance = at_most(tolerance * max(FINER, 0.5 * accuracy / error))

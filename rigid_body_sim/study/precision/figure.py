@@ -4,6 +4,7 @@ Lines that are the cheapest of ours, or of the peers, at some accuracy are thick
 """
 
 import math
+import textwrap
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -59,12 +60,12 @@ def panel(axes, result, looks):
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.set_ylim(LEAST, MOST)
-    axes.set_title(f'{result["problem"]}: {result["about"]}'.rstrip(': '), fontsize=10, loc='left')
+    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 64), fontsize=10, loc='left')
     axes.set_xlabel('CPU seconds per simulated second')
     axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
     axes.grid(color='#dddddd', linewidth=0.5)
     axes.spines[['top', 'right']].set_visible(False)
-    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8, handlelength=3.0)
+    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=3.0, labelspacing=0.3)
 
 
 def family(name):

@@ -15,9 +15,9 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.about import machine, version
 from rigid_body_sim.study.precision import measure, peers, reference, runner, suite, table
 
-QUICK_LIMIT, FULL_LIMIT = 0.03, 0.5
+QUICK_LIMIT, FULL_LIMIT = 0.03, 0.15
 """CPU seconds that one run may take: a sweep ends there."""
-QUICK_REPEATS, FULL_REPEATS = 5, 9
+QUICK_REPEATS, FULL_REPEATS = 5, 7
 
 
 def main(arguments=None):
@@ -46,10 +46,10 @@ def _run(options):
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise BadInput('--output', f'{folder} cannot be made ({error.strerror})', 'another folder') from None
-    results, began, versions = [], time.time(), {}
+    results, began, versions, missing = [], time.time(), {}, []
     if options.peers:
         with peers.quiet():
-            versions = {module.NAME: module.version() for module in peers.installed()}
+            versions, missing = {module.NAME: module.version() for module in peers.installed()}, peers.missing()
     for problem in problems:
         with peers.quiet() if options.peers else contextlib.nullcontext():
             results.append(study(problem, options.peers, limit, repeats))
@@ -58,7 +58,9 @@ def _run(options):
     found = {'made': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()), 'took': time.time() - began, 'version': version(),
              'machine': machine(), 'cores': os.cpu_count(), 'load': os.getloadavg(), 'interpreter': platform.python_implementation(),
              'clock': 'time.process_time', 'limit': limit, 'repeats': repeats, 'sample': measure.SAMPLE,
-             'peers': versions, 'results': results}
+             'peers': versions, 'peers_not_installed': missing, 'results': results}
+    if missing and not options.json:
+        print(f'not installed: {", ".join(missing)} (requirements/peers.txt)\n')
     if options.json:
         command_line.print_json(found)
     if folder:

@@ -31,13 +31,24 @@ def quiet():
 
 def installed():
     """Return the modules of the peers that can be imported here."""
-    found = []
-    for name in MODULES:
-        module = importlib.import_module(f'{__name__}.{name}')
-        with contextlib.suppress(ImportError):
-            module.version()
-            found.append(module)
-    return found
+    return [module for module in map(_module, MODULES) if _is_here(module)]
+
+
+def missing():
+    """Return the names of the peers that cannot."""
+    return [module.NAME for module in map(_module, MODULES) if not _is_here(module)]
+
+
+def _module(name):
+    return importlib.import_module(f'{__name__}.{name}')
+
+
+def _is_here(module):
+    try:
+        module.version()
+    except ImportError:
+        return False
+    return True
 
 
 def runners(problem, reference):
