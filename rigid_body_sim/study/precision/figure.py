@@ -39,7 +39,7 @@ def draw(results):
 def panel(axes, result, looks):
     """Draw one problem; `looks` has a number for each method, which is its colour and marker."""
     floor = result['floor']
-    axes.axhspan(LEAST, floor, color=SHADE, linewidth=0.0, zorder=0)
+    axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
     axes.text(0.01, floor, 'half an ulp on the inputs', ha='left', va='top', fontsize=7.5, transform=axes.get_yaxis_transform())
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
@@ -59,8 +59,8 @@ def panel(axes, result, looks):
                           linewidth=2.4 if line['name'] in leading else 0.9, elinewidth=0.6, zorder=4 if single else 3)
     axes.set_xscale('log')
     axes.set_yscale('log')
-    axes.set_ylim(LEAST, MOST)
-    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 64), fontsize=10, loc='left')
+    axes.set_ylim(LEAST / 4.0, MOST)
+    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76), fontsize=10, loc='left')
     axes.set_xlabel('CPU seconds per simulated second')
     axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
     axes.grid(color='#dddddd', linewidth=0.5)

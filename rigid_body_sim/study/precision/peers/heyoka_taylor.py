@@ -17,13 +17,15 @@ def version():
 def runners(problem, reference):
     """Yield heyoka in doubles and, but for a ball, in 80-bit numbers."""
     numbers = given.of(problem)
-    made = _rolling if isinstance(numbers, ball.Ball) else _run
+    made = _rolling if isinstance(numbers, ball.Ball) else smooth_run
     yield Runner(NAME, 'tolerance', TOLERANCES, lambda tolerance: made(numbers, tolerance, np.float64), True)
-    if made is _run:
-        yield Runner(f'{NAME}, 80 bit', 'tolerance', (1e-12, 1e-15, 1e-18), lambda tolerance: _run(numbers, tolerance, np.longdouble), True)
+    if made is smooth_run:
+        finer = (1e-12, 1e-15, 1e-18)
+        yield Runner(f'{NAME}, 80 bit', 'tolerance', finer, lambda tolerance: smooth_run(numbers, tolerance, np.longdouble), True)
 
 
-def _run(numbers, tolerance, number):
+def smooth_run(numbers, tolerance, number):
+    """Return the Run of a Body or Pendulum in numbers of a type (float64 or longdouble)."""
     import heyoka
     swings = isinstance(numbers, pendulum.Pendulum)
     variables = heyoka.make_vars(*(('phi', 'rate') if swings else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3')))
