@@ -59,6 +59,7 @@ bench: .venv/run.stamp ## cost of one state in closed form; energy over a millio
 	.venv/bin/python bench/instructions.py
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
+	.venv/bin/python bench/ensembles.py
 
 bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; cost of commands; parts of a tick at each accuracy
 	.venv/bin/python bench/node.py

@@ -84,18 +84,18 @@ def heyoka_system(scene):
             *((w, e + g / moment) for w, e, g, moment in zip((wx, wy, wz), euler, gamma, (I1, I2, I3), strict=True))]
 
 
-def in_frame(scene):
-    """Return q and omega of the frame at the start."""
+def in_frame(scene, vector):
+    """Return q and omega of the frame of a state vector."""
     from rigid_body_sim.effects.views import Frame
     from rigid_body_sim.rotations import multiply, rotate_back
-    axes, vector = Frame.of(scene.body, scene.constraint).axes, scene.initial.vector
+    axes = Frame.of(scene.body, scene.constraint).axes
     return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
 
 
-def exact_attitude(scene, duration):
-    """Return the frame's final attitude by heyoka with 80-bit numbers."""
+def exact_attitude(scene, duration, vector):
+    """Return the frame's final attitude by heyoka with 80-bit numbers, from a state vector."""
     import heyoka
-    start = [np.longdouble(x) for x in in_frame(scene)]
+    start = [np.longdouble(x) for x in in_frame(scene, vector)]
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, fp_type=np.longdouble, high_accuracy=True)
     solver.propagate_until(np.longdouble(duration))
     return np.array(solver.state[:4], dtype=float)
@@ -120,7 +120,7 @@ def our_run(scene, duration, method, accuracy):
 def heyoka_run(scene, duration, tolerance):
     """Return the same of heyoka."""
     import heyoka
-    start = in_frame(scene)
+    start = in_frame(scene, scene.initial.vector)
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=tolerance)
 
     def act():
@@ -145,7 +145,7 @@ def timed(act, count):
 def measure(name, duration):
     """Return {who: {goal: (seconds a run, setting)}}; who is one of our methods, or heyoka."""
     scene = parse_scene(f'scene: bench\n{CASES[name]}')
-    exact, runs = exact_attitude(scene, duration), []
+    exact, runs = exact_attitude(scene, duration, scene.initial.vector), []
     able = [method for method in runnable(scene) if method in ('taylor', 'gauss16', 'dop8') and 'accuracy' in METHODS[method].TAKES]
     for digits in np.arange(0.5, 15.0, 0.5):
         runs += [[method, f'{10.0 ** -digits:.0e}', *our_run(scene, duration, method, 10.0 ** -digits)] for method in able]
@@ -169,7 +169,7 @@ def measure_dense(name):
     """Return {who: CPU seconds a state} of a state every millisecond, start included."""
     import heyoka
     scene = parse_scene(f'scene: bench\n{CASES[name]}')
-    start, out = in_frame(scene), np.empty((len(MILLISECONDS), 14))
+    start, out = in_frame(scene, scene.initial.vector), np.empty((len(MILLISECONDS), 14))
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=DENSE * 1e-3)
     choice = choose(scene, 'auto', DENSE, horizon=float(MILLISECONDS[-1]))
 

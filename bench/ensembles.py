@@ -1,0 +1,113 @@
+"""Ensembles: states in closed form for each CPU second, and asymmetric heavy tops beside heyoka's batch mode where it is installed.
+
+    .venv/bin/python bench/ensembles.py [--json]
+
+CPU seconds of all threads, medians of interleaved repeats, the Python around the kernels included. The tops run for 20 s to an error of at most
+1e-9 rad, the largest of BATCH bodies; heyoka gets the same equations, and of its batches the set-up is left out.
+"""
+
+import argparse
+import importlib.util
+import json
+import statistics
+import time
+
+import numpy as np
+from smooth_scenes import CASES, exact_attitude, heyoka_system, in_frame
+
+from rigid_body_sim import ensemble
+from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.rotations import angle_between, multiply
+from rigid_body_sim.scenes import load_scene, parse_scene
+
+CLOSED = {'free body': 'asymmetric_top', 'racket': 'tennis_racket', 'Lagrange top': 'heavy_top'}
+BODIES, TIMES, REPEATS = 20_000, 50, 7
+BATCH, MANY, DURATION, GOAL = 8, 32, 20.0, 1e-9
+SPREAD = 0.02    # of the rates: how far the starts lie apart
+
+
+def starts_of(scene, count):
+    """Return count starts around that of a scene."""
+    starts = np.tile(scene.initial.vector, (count, 1))
+    starts[:, 5:8] *= 1.0 + SPREAD * np.random.default_rng(5).uniform(-1.0, 1.0, (count, 3))
+    return starts
+
+
+def closed():
+    """Yield (what, act, states)."""
+    for kind, name in CLOSED.items():
+        scene = load_scene(name)
+        for times in (1, TIMES):
+            starts = starts_of(scene, BODIES // times)
+            at = np.linspace(0.5, 20.0, times)
+            yield (f'{kind}, {times} times a body', lambda scene=scene, starts=starts, at=at: ensemble(scene, starts, at),
+                   len(starts) * times)
+
+
+def tops():
+    """Yield (what, act, bodies times seconds) of the heavy tops."""
+    import heyoka
+    scene = parse_scene(f'scene: bench\n{CASES["top 1"]}')
+    starts = starts_of(scene, MANY)
+    exact = [exact_attitude(scene, DURATION, start) for start in starts[:BATCH]]
+
+    axes = Frame.of(scene.body, scene.constraint).axes
+
+    def error_of(attitudes):
+        return max(angle_between(*q, *truth) for q, truth in zip(attitudes, exact, strict=True))
+
+    def ours(accuracy):
+        return lambda: ensemble(scene, starts, [DURATION], 'taylor', accuracy)
+
+    def theirs(tolerance):
+        solvers = [(heyoka.taylor_adaptive_batch(heyoka_system(scene), np.zeros((7, BATCH)), tol=tolerance),
+                    np.array([in_frame(scene, start) for start in starts[k:k + BATCH]]).T) for k in range(0, MANY, BATCH)]
+
+        def act():
+            for solver, start in solvers:
+                solver.set_time(0.0)
+                solver.state[:] = start
+                solver.propagate_until(DURATION)
+            return solvers[0][0].state[:4].T / np.linalg.norm(solvers[0][0].state[:4], axis=0)[:, np.newaxis]
+        return act
+    for digits in np.arange(7.0, 12.0, 0.5):
+        act = ours(10.0 ** -digits)
+        if error_of([multiply(*body.orientation[0], *axes) for body in act()[:BATCH]]) <= GOAL:
+            yield f'asymmetric top, taylor to {10.0 ** -digits:.0e}', act, MANY * DURATION
+            break
+    for digits in np.arange(9.0, 16.0, 0.5):
+        act = theirs(10.0 ** -digits)
+        if error_of(act()) <= GOAL:
+            yield f'asymmetric top, heyoka in batches of {BATCH} to {10.0 ** -digits:.0e}', act, MANY * DURATION
+            break
+
+
+def main():
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--json', action='store_true')
+    options = parser.parse_args()
+    rows = list(closed())
+    if importlib.util.find_spec('heyoka') is not None:
+        rows += tops()
+    for _, act, _ in rows:
+        act()
+    times = {what: [] for what, _, _ in rows}
+    for _ in range(REPEATS):
+        for what, act, count in rows:
+            begin = time.process_time()
+            act()
+            times[what].append((time.process_time() - begin) / count)
+    rates = {what: 1.0 / statistics.median(values) for what, values in times.items()}
+    if options.json:
+        print(json.dumps(rates, indent=2))
+        return
+    print('for each CPU second: states in closed form, seconds of a top')
+    for what, rate in rates.items():
+        print(f'  {what:60} {rate:12.0f}')
+    if len(rows) == 2 * len(CLOSED):
+        print('  tops not measured: heyoka, which they are measured against, is not installed (pip install heyoka==7.13.2)')
+
+
+if __name__ == '__main__':
+    main()
