@@ -69,7 +69,7 @@ def killed(name, folder):
     path.write_text(text.replace(found, put))
     try:
         done = subprocess.run([sys.executable, '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', test], cwd=copy, env=environment,
-                              capture_output=True, text=True, timeout=60)
+                              capture_output=True, text=True, timeout=300)
     except subprocess.TimeoutExpired:
         return True     # it went on for ever: no test would let that pass
     if done.returncode not in (0, 1):
