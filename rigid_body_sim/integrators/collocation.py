@@ -97,7 +97,8 @@ def _measure(groups):
     for first, last, absolute in groups:
         lines += [f'    d{u} = a[{u}] - share * b[{u}]' for u in range(first, last)]
         square = ' + '.join(f'd{u} * d{u}' for u in range(first, last))
-        lines.append(f'    total += {square}' if absolute else f'    total += ({square}) / scales[{place}] if scales[{place}] > 0.0 else 0.0')
+        share = f'({square}) / scales[{place}] if scales[{place}] > {unroll.NOTHING**2!r} else 0.0'
+        lines.append(f'    total += {square if absolute else share}')
         place += not absolute
     return '\n'.join([*lines, '    return total', ''])
 
@@ -107,7 +108,7 @@ def _by_group(groups):
     entries, place = [], 0
     for first, last, absolute in groups:
         square = ' + '.join(f'a[{u}] * a[{u}]' for u in range(first, last))
-        entries.append(f'{square}, ' if absolute else f'({square}) / scales[{place}] if scales[{place}] > 0.0 else 0.0, ')
+        entries.append(f'{square}, ' if absolute else f'({square}) / scales[{place}] if scales[{place}] > {unroll.NOTHING**2!r} else 0.0, ')
         place += not absolute
     return '\n'.join(['@compiled', 'def by_group(a, scales):', f'    return ({"".join(entries)})', ''])
 

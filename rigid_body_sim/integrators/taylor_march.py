@@ -22,6 +22,7 @@ PLACES = 8               # of an order's coefficients
 NEARLY = 1e-9            # of a fixed step: an end that close to a node is that node
 GROWTH = 4.0             # of a step, at most
 UNMOVED = 1e-3           # s, the first step where nothing moves
+NOTHING = 1e-300         # (rad/s)^2, of a body that neither turns nor is turned
 
 
 @compiled
@@ -59,7 +60,7 @@ def _longest(S, tolerance, last, scale):
 
     The lower one counts as it would at the step before; a step grows by GROWTH at most.
     """
-    weight = 1.0 / scale if scale > 0.0 else 0.0
+    weight = 1.0 / scale if scale > NOTHING else 0.0
     final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
     if last == 0.0:    # the first step: by the last term alone
         if final == 0.0:
@@ -91,7 +92,9 @@ def march(p, control, node, following, target, end, limit):
     good = True
     while t < end:
         expand(p, S, y)
-        scale1 = max(scale, y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+        # a body that hardly turns yet is measured by the rate that omega' gives it
+        pull = math.sqrt(S[PLACES + 4] * S[PLACES + 4] + S[PLACES + 5] * S[PLACES + 5] + S[PLACES + 6] * S[PLACES + 6])
+        scale1 = max(scale, y[4] * y[4] + y[5] * y[5] + y[6] * y[6], pull)
         if fixed > 0.0:
             step = last + 1.0
             t1, h = control[ORIGIN] + step * fixed, fixed

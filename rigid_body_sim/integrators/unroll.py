@@ -6,6 +6,7 @@ which no stage values are formed.
 """
 
 ROUNDING = 2.0 ** -49    # of an increment: what the sums of error estimates carry
+NOTHING = 1e-100         # rad/s, of a body that a torque sets turning from rest as good as exactly: rates relative to it say nothing
 
 
 def step_source(method, n, extra):
@@ -42,7 +43,7 @@ def trial_source(method, n, extra, groups):
             place = len(squares)
             before, after = (' + '.join(f'{name} * {name}' for name in (form.format(u) for u in members)) for form in ('y[{}]', 's{}'))
             lines.append(f'    square{place} = max(scales[{place}], {before}, {after})')
-            lines.append(f'    weight{place} = 1.0 / square{place} if square{place} > 0.0 else 0.0')
+            lines.append(f'    weight{place} = 1.0 / square{place} if square{place} > {NOTHING**2!r} else 0.0')
             squares.append(f'square{place}')
             weight = f'weight{place} * '
         for name, row in (('fifth', method.E5), ('third', method.E3)):
@@ -55,15 +56,18 @@ def trial_source(method, n, extra, groups):
 
 
 def fastest_source(groups):
-    """Return the source of ``fastest(y, k)``: the largest rate of change (1/s) of a group of unknowns, relative to its scale at y."""
+    """Return the source of ``fastest(y, k)``: the largest rate of change (1/s) of a group of unknowns, relative to its scale at y.
+
+    It is 0 where nothing moves yet.
+    """
     lines = ['@compiled', 'def fastest(y, k):', '    found = 0.0']
     for first, last, absolute in groups:
         change, square = (' + '.join(f'{name}[{u}] * {name}[{u}]' for u in range(first, last)) for name in 'ky')
         if absolute:
             lines.append(f'    found = max(found, math.sqrt({change}))')
         else:
-            lines += [f'    square = {square}', f'    found = max(found, math.sqrt(({change}) / square)) if square > 0.0 else found']
-    return '\n'.join([*lines, '    return found', ''])
+            lines += [f'    square = {square}', f'    found = max(found, math.sqrt(({change}) / square)) if square > {NOTHING**2!r} else found']
+    return '\n'.join([*lines, f'    return found if found > {NOTHING!r} else 0.0', ''])
 
 
 def load_source(name, size):
