@@ -210,6 +210,8 @@ def _outside(c, p, w, time):
     x, y, z, s, turn = _slow_axis(c, p, root / speed, speed)
     ex, ey, ez, es, end_turn = _slow_axis(end, p, root / end_speed, end_speed)
     half = 0.5 * (_angle(c, end, p, speed, end_speed, w * time, time) + (end_turn - turn))
+    if not abs(half) < math.inf:
+        half = 0.0    # more than a double holds: an ulp of omega is any angle at all
     x, y, z, s = multiply(math.sin(half), 0.0, 0.0, math.cos(half), -x, -y, -z, s)
     return multiply(ex, ey, ez, es, x, y, z, s)
 

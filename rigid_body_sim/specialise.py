@@ -8,6 +8,7 @@ cache folder, where its kernels are cached like any others. What a scene does no
 import hashlib
 import importlib.util
 import inspect
+import linecache
 import os
 import re
 import sys
@@ -57,7 +58,10 @@ def _load(source, stem):
         return sys.modules[name]
     if CACHE_FOLDER is None:
         module = types.ModuleType(name)
-        exec(compile(source, f'<{name}>', 'exec'), module.__dict__)
+        module.__file__ = f'<{name}>'
+        # so that tracebacks and inspect show it
+        linecache.cache[module.__file__] = len(source), None, source.splitlines(keepends=True), module.__file__
+        exec(compile(source, module.__file__, 'exec'), module.__dict__)
     else:
         path = CACHE_FOLDER / f'{name}.py'
         if not path.exists():

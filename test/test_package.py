@@ -25,7 +25,7 @@ KEYS = {
         'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
 }
 OPTIONAL = {'llvmlite', 'lz4', 'numba', 'plotly', 'pyarrow', 'zstandard'}
-# what work_precision --peers measures, by import name; requirements/peers.in has them
+# what work_precision --peers and hard_cases --peers measure, by import name; requirements/peers.in has them
 PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
 
 
@@ -43,7 +43,7 @@ def imported(path):
             names |= {alias.name.partition('.')[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and not node.level:
             names.add(node.module.partition('.')[0])
-    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'} - (set(PEERS) if path.parent.name == 'peers' else set())
+    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'} - (set(PEERS) if 'study' in path.parts else set())
 
 
 def test_package_xml_names_what_is_imported_and_nothing_else():
@@ -62,7 +62,7 @@ def test_requirements_name_what_is_imported():
 
 
 def test_requirements_name_the_peers():
-    used = {name for path in SOURCES if path.parent.name == 'peers' for name in PEERS if name in path.read_text()}
+    used = {name for path in SOURCES if 'study' in path.parts for name in PEERS if name in path.read_text()}
     named = (ROOT / 'requirements' / 'peers.in').read_text()
     for name in used:
         assert re.search(rf'^{PEERS[name]}==', named, re.MULTILINE), name

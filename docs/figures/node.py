@@ -25,8 +25,11 @@ def draw():
         lateness.vlines(at, [one['p50'] for one in found], [one['p99'] for one in found], color=colour, linewidth=3.0, label=row)
         lateness.plot(at, [one['p50'] for one in found], color=BLACK, marker='_', linestyle='')
     for axes in (cost, lateness):
-        axes.set_xticks(places, names)
+        axes.set_xticks(places, names, fontsize=8)
+        axes.set_axisbelow(True)
     lateness.set_yscale('log')
+    lateness.set_yticks([30, 100, 300, 1000], ['30', '100', '300', '1000'])
+    lateness.minorticks_off()
     label(cost, '', 'processor time of a tick (µs)')
-    label(lateness, '', 'lateness, p50 to p99 (µs)')
+    label(lateness, '', 'lateness, p50 to p99 (µs)', legend=False)
     return figure

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from rigid_body_sim.compiled import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.study.precision import figure, measure, peers, reference, runner, suite, table, work_precision
 
@@ -94,6 +95,7 @@ def test_methods_come_from_the_table(racket, monkeypatch):
 
 
 # measured: 2e-10, 2e-11, 4e-11 rad; 3e-10, 5e-11, 3e-10 rad/s
+@pytest.mark.skipif(not HAVE_NUMBA, reason='peers are given compiled equations')
 @pytest.mark.parametrize('name', ['damped_body', 'driven_pendulum', 'ball_slip_to_roll'])
 def test_peers_solve_the_same_equations(name):
     """SciPy is always here: its error tells whether weight, damping, heat, hinge and friction have the right signs; the ball begins to roll."""
