@@ -17,7 +17,7 @@ import numpy as np
 
 from rigid_body_sim import mechanics
 from rigid_body_sim.choice import HORIZON, choose
-from rigid_body_sim.command_check import CommandCheck
+from rigid_body_sim.command_check import LARGEST_WORK, CommandCheck
 from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
@@ -357,6 +357,10 @@ class Simulation:
         if force.any() or couple.any():
             exchange = np.empty(mechanics.EXCHANGE_SIZE)
             mechanics.apply_impulse(self._mechanics, start, force, couple, exchange)
+            work = exchange.item(mechanics.WORK)
+            if not abs(work) <= LARGEST_WORK:
+                raise BadInput(f'{self.scene.name}: strike', f'at {time:g} s it would do a work of {work!r} J',
+                               f'at most {LARGEST_WORK:g} J: energies are doubles')
             given[WORK] += exchange[mechanics.WORK]
             given[ANGULAR_IMPULSE] += exchange[mechanics.ANGULAR_IMPULSE:mechanics.ANGULAR_IMPULSE + 3]
         return Span(time, self.choice.solver(start, wrench), wrench, strikes, given)

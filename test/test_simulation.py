@@ -191,6 +191,12 @@ def test_torque_about_a_rod_is_refused():
             act(torque=(0.0, 0.0, 1.0), frame='body')
 
 
+@pytest.mark.parametrize('impulse', ['-1e308', '1e160'])
+def test_strike_beyond_what_a_double_holds_is_refused(impulse):
+    with pytest.raises(BadInput, match=r'baseball_bat: strike: at 0 s it would do a work of (nan|inf) J'):
+        Simulation(load_scene('baseball_bat', [f'strike.impulse=[0, {impulse}, 0]']))
+
+
 @pytest.mark.parametrize(('arguments', 'line'), [
     ({'rate': 0.0}, 'rate: got 0.0'), ({'rate': np.nan}, 'rate: got nan'), ({'accuracy': 1e-17}, 'accuracy: got 1e-17'),
     ({'integrator': 'dop9'}, "did you mean 'dop8'"), ({'step': -1.0, 'integrator': 'dop8'}, 'step: got -1.0')])

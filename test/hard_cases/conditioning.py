@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rigid_body_sim.mechanics import moment_about_hinge, swing_rate
+from rigid_body_sim.mechanics import drive, moment_about_hinge, swing_rate
 from rigid_body_sim.motions.weight import MOST_PANELS, RADIANS_A_PANEL
 from rigid_body_sim.rotations import angle_between
 from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
@@ -52,9 +52,12 @@ class Allowed:
     def look(self, simulation):
         """Add what the present state may have lost."""
         omega, v = np.abs(simulation.vector[ANGULAR_VELOCITY]), simulation.vector[11:14]
-        size, passed = float(np.linalg.norm(omega)) + self._swing, simulation.time - self._time
+        passed = simulation.time - self._time
+        size = float(np.linalg.norm(omega)) + self._swing
+        # methods with steps measure a body that is set turning by the rate that its torque gives within a radian
+        driven = size + drive(simulation.scene, simulation.wrench) ** 0.5
         ulp = FEW * (EPSILON + self._loss * passed)
-        self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v) + self._weight
+        self.energy += ulp * (float(self._moments @ omega) * driven + self._mass * float(v @ v) + self._weight
                               + abs(simulation.ledger()['work']))
         # the ledger's quadrature of the weight's torque has so many panels at most: beyond, it no longer follows the turning
         resolved = size * passed <= RADIANS_A_PANEL * MOST_PANELS
