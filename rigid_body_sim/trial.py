@@ -37,9 +37,9 @@ def settle(scene, able, accuracy, horizon):
         Over which it is asked for, s; of a long one the trial runs a part, and errors are taken to grow with time.
     """
     method, tolerance, promised = measured.pick(scene, able, accuracy, horizon)
-    if not HAVE_NUMBA:
-        return method, tolerance, promised
     part, ends = min(1.0, _span(scene) / horizon), {}
+    if not (HAVE_NUMBA and part > 0.0):
+        return method, tolerance, promised
 
     def end(tolerance):
         """Return where it gets to."""
