@@ -1,4 +1,6 @@
-"""What a body cannot take: tried on a copy of the present state before a command acts."""
+"""What is no command, and what a body cannot take: tried on a copy of the present state before a command acts."""
+
+import math
 
 import numpy as np
 
@@ -13,23 +15,35 @@ LARGEST_TURN = 1e7
 
 
 class CommandCheck:
-    """Refuses commands that a body cannot take.
+    """Refuses what is no command, and commands that a body cannot take.
 
     Parameters
     ----------
+    scene : Scene
     parameters : array
         Of the scene (mechanics.parameters).
     rate : float
         Ticks per second: a wrench is tried as what it gives in a tick, an impulse as it is.
     """
 
-    def __init__(self, parameters, rate):
-        self._parameters, self._rate = parameters, rate
+    def __init__(self, scene, parameters, rate):
+        self._scene, self._parameters, self._rate = scene, parameters, rate
         # thousands of commands a second are checked: the arrays are made once
         self._after, self._exchange = np.empty(STATE_SIZE), np.empty(mechanics.EXCHANGE_SIZE)
         self._force, self._torque = np.empty(3), np.empty(3)
 
-    def __call__(self, state, force, torque, what):
+    def well_formed(self, force, torque, frame, what):
+        """Return a force and a torque as tuples of floats; BadInput if they or the frame are none, or the scene refuses commands."""
+        if not self._scene.accepts_commands:
+            raise BadInput(what, f'the scene {self._scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
+        force, torque = tuple(map(float, force)), tuple(map(float, torque))
+        if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
+            raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
+        if frame not in ('world', 'body'):
+            raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
+        return force, torque
+
+    def bearable(self, state, force, torque, what):
         """Raise BadInput if a force (N or N s) and a torque (N m or N m s), world axes, cannot act on a state; `what`: impulse or wrench."""
         self._after[:], self._force[:], self._torque[:] = state, force, torque
         if what == 'wrench':

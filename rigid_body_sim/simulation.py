@@ -21,7 +21,8 @@ from rigid_body_sim.command_check import LARGEST_WORK, CommandCheck
 from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE, WORK
+from rigid_body_sim.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE, WORK
+from rigid_body_sim.ledger import balance
 from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
 from rigid_body_sim.spans import Event, Span
@@ -78,7 +79,7 @@ class Simulation:
         self._mechanics = mechanics.parameters(self.scene)
         self._dynamics = Dynamics(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
-        self._check = CommandCheck(self._mechanics, self.rate)
+        self._check = CommandCheck(self.scene, self._mechanics, self.rate)
         self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
@@ -164,7 +165,7 @@ class Simulation:
         spans = self._spans_until(times[-1])
         event = next(self._events_between(spans, self.time, times[-1]), None)
         states = self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
-        self._foreseen = _Foreseen(spans, self.tick + 1, states.vector)
+        self._foreseen = _Foreseen(spans, self.tick + 1, states.vector.copy())
         return states
 
     def diagnose(self, states):
@@ -293,24 +294,10 @@ class Simulation:
         return float(self._diagnose()[mechanics.MOMENTUM_SQUARED])
 
     def ledger(self):
-        """Return the balance of energy (J) and angular momentum since the start or the last reset, as a dict of floats.
-
-        ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|, |potential|, |work|; ``momentum_residual``
-        is |L - L(0) - angular impulse| relative to the largest of the three.
-        """
-        kinetic, potential, _, *momentum = self._diagnose().tolist()
+        """Return the balance of energy (J) and angular momentum since the start or the last reset, a dict of floats (ledger.balance)."""
         span = self._spans[-1]
         given = span.given + span.solver.exchanged(self.time)
-        work, dissipated, impulse = given[WORK], given[DISSIPATED], given[ANGULAR_IMPULSE]
-        start = self._initial
-        left = math.fsum((kinetic, potential, dissipated, -start[mechanics.KINETIC], -start[mechanics.POTENTIAL], -work))
-        scale = max(kinetic, abs(potential), abs(work), start[mechanics.KINETIC], abs(start[mechanics.POTENTIAL]))
-        missing = np.linalg.norm(momentum - start[mechanics.MOMENTUM:] - impulse)
-        size = max(np.linalg.norm(momentum), np.linalg.norm(start[mechanics.MOMENTUM:]), np.linalg.norm(impulse))
-        return {'kinetic': kinetic, 'potential': potential, 'dissipated': float(dissipated), 'work': float(work),
-                'energy_residual': float(left / scale) if scale > 0.0 else 0.0,
-                'angular_momentum_squared': self.angular_momentum_squared,
-                'momentum_residual': float(missing / size) if size > 0.0 else 0.0}
+        return balance(self._initial, self._diagnose(), given)
 
     def _diagnose(self):
         if self._diagnosed_tick != (self.tick, len(self._spans)):
@@ -387,17 +374,11 @@ class Simulation:
 
     def _in_world(self, force, torque, frame, what):
         """Return a command's force and torque in world axes, two tuples, checked."""
-        if not self.scene.accepts_commands:
-            raise BadInput(what, f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
-        force, torque = tuple(map(float, force)), tuple(map(float, torque))
-        if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
-            raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
-        if frame not in ('world', 'body'):
-            raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
+        force, torque = self._check.well_formed(force, torque, frame, what)
         if frame == 'body':
             # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
             force, torque = rotate(*self._attitude_at_tick, *force), rotate(*self._attitude_at_tick, *torque)
-        self._check(self.vector, force, torque, what)
+        self._check.bearable(self.vector, force, torque, what)
         return force, torque
 
 

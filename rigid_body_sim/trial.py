@@ -24,17 +24,8 @@ FINER, TRIES, HELPS = 1e-3, 5, 0.7
 def settle(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene, else the most accurate one of the table.
 
-    Without numba, where a run would take seconds, it is what the table says.
-
-    Parameters
-    ----------
-    scene : Scene
-    able : list of str
-        Methods that can run it.
-    accuracy : float
-        Error of the attitude that is asked for, rad.
-    horizon : float
-        Over which it is asked for, s; of a long one the trial runs a part, and errors are taken to grow with time.
+    Parameters as of :func:`rigid_body_sim.integrators.measured.pick`; of a long horizon the trial runs a part, and errors are taken to grow
+    with time. Without numba, where a run would take seconds, it is what the table says.
     """
     method, tolerance, promised = measured.pick(scene, able, accuracy, horizon)
     part, ends = min(1.0, _span(scene) / horizon), {}

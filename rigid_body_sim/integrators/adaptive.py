@@ -7,6 +7,7 @@ estimated error per second is below the tolerance, so that errors add up in prop
 import math
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.nodes import onward
 from rigid_body_sim.specialise import UNBOUND
 
 rate = UNBOUND
@@ -48,13 +49,9 @@ def march(p, control, node, following, target, end, limit):
         The last node stands there exactly.
     """
     tolerance = control[0]
-    moved = 0
-    if following[TIME] > node[TIME]:
-        if target < following[TIME]:
-            return 0, True
-        for k in range(len(node)):
-            node[k] = following[k]
-        moved = 1
+    moved = onward(node, following, target)
+    if moved < 0:
+        return 0, True
     t, planned = node[TIME], node[STEP]
     scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
     good = True

@@ -13,6 +13,7 @@ import math
 
 from rigid_body_sim.compiled import compiled
 from rigid_body_sim.integrators.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
+from rigid_body_sim.integrators.nodes import onward
 from rigid_body_sim.specialise import UNBOUND
 
 rate = UNBOUND
@@ -176,13 +177,9 @@ def march(p, control, node, following, target, end, limit):
     The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed. The last node stands at
     `end` exactly.
     """
-    moved = 0
-    if following[TIME] > node[TIME]:
-        if target < following[TIME]:
-            return 0, True
-        for k in range(len(node)):
-            node[k] = following[k]
-        moved = 1
+    moved = onward(node, following, target)
+    if moved < 0:
+        return 0, True
     tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
     t, planned, last, sweeps = node[TIME], node[STEP], node[KEPT - 2], int(node[KEPT - 1])
     scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)

@@ -8,6 +8,7 @@ coefficients, order by order.
 import math
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.nodes import onward
 from rigid_body_sim.integrators.taylor_series import ORDER, along
 from rigid_body_sim.integrators.taylor_series import UNKNOWNS as SIZE
 from rigid_body_sim.rotations import rotate_back  # noqa: F401 (for the bound source)
@@ -79,13 +80,9 @@ def march(p, control, node, following, target, end, limit):
     The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed. The last node stands at
     `end` exactly.
     """
-    moved = 0
-    if following[TIME] > node[TIME]:
-        if target < following[TIME]:
-            return 0, True
-        for k in range(len(node)):
-            node[k] = following[k]
-        moved = 1
+    moved = onward(node, following, target)
+    if moved < 0:
+        return 0, True
     tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
     t, last, scale = node[TIME], node[STEP], node[SCALE]
     y, c = load(node, VALUES), load(node, VALUES + SIZE)

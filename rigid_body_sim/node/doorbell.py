@@ -48,7 +48,7 @@ class Doorbell(Waitable):
         elif self._rung:
             self._in_vain += 1
             if self._in_vain > LOOKS:
-                self._rung, self._in_vain = False, 0
+                self._rung, self._in_vain, self._unheard = False, 0, 0
                 executor = self._node.executor
                 if executor is not None:
                     executor.wake()

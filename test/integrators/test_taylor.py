@@ -66,26 +66,6 @@ def test_accuracy_asked_is_met(top, exact, accuracy):
     assert angle_between(*state(top, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact[1:5]) < 2.0 * accuracy    # 1.2, 0.02 at 1e-12
 
 
-@pytest.mark.parametrize('control', [{'accuracy': 1e-9}, {'step': 0.03}])
-def test_states_do_not_depend_on_what_else_was_asked(top, control):
-    times = np.random.default_rng(7).uniform(0.0, 20.0, 300)
-    solver = Stepped(top, 'taylor', **control).start(top.initial.vector)
-    together, again = np.empty((300, 14)), np.empty((300, 14))
-    solver.states(times, together)
-    solver.states(times[::-1], again)
-    assert np.array_equal(again, together[::-1])
-    for k in (0, 150, 299):
-        assert np.array_equal(state(top, times[k], **control), together[k])
-
-
-def test_states_between_nodes_are_as_good_as_nodes(top):
-    times = np.linspace(0.0, 0.4, 101)
-    dense, fine = np.empty((101, 14)), np.empty((101, 14))
-    Stepped(top, 'taylor', accuracy=1e-12).start(top.initial.vector).states(times, dense)
-    Stepped(top, 'dop8', accuracy=1e-15).start(top.initial.vector).states(times, fine)
-    assert max(angle_between(*a[1:5], *b[1:5]) for a, b in zip(dense, fine, strict=True)) < 1e-13
-
-
 @pytest.mark.parametrize('name', ['thrown_with_drag', 'damped_top', 'major_axis_relaxation', 'held_hinge'])
 def test_what_is_no_product_is_refused(name):
     scene = parse_scene(smooth_cases.text(name))

@@ -4,6 +4,7 @@ import contextlib
 import itertools
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -237,6 +238,18 @@ def test_stopped_recorder_costs_bounded_memory_and_only_ticks(tmp_path, monkeypa
     gaps = check(tmp_path / 'bag', first + 100)
     assert gaps
     assert status.dropped == sum(gap['ticks'] for gap in gaps) > 2000
+
+
+def test_what_a_stopped_recorder_has_not_taken_at_the_end_is_said(tmp_path):
+    recorder = start(tmp_path / 'bag')
+    with stopped(recorder):
+        for k in range(8):
+            recorder.important(SCENE.name, k, k, bytes(2**20))
+        status = recorder.close(timeout=0.1)
+        assert not status.closed
+        assert re.fullmatch(r'the recorder was too slow to take the last \d{7} bytes', status.error)
+        assert int(re.search(r'\d+', status.error)[0]) == status.waiting > 2**20
+    os.waitpid(recorder.process_id, 0)
 
 
 def test_full_disk_is_reported_and_recording_resumes_when_there_is_room(tmp_path):

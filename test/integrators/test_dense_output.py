@@ -1,0 +1,43 @@
+"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes."""
+
+import numpy as np
+import pytest
+from data import smooth_cases
+
+from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.rotations import angle_between
+from rigid_body_sim.scenes import parse_scene
+
+METHODS = ('gauss16', 'taylor')
+
+
+@pytest.fixture(scope='module')
+def top():
+    return parse_scene(smooth_cases.text('asymmetric_heavy_top'))
+
+
+def states(scene, method, times, **control):
+    out = np.empty((len(times), 14))
+    Stepped(scene, method, **control).start(scene.initial.vector).states(times, out)
+    return out
+
+
+@pytest.mark.parametrize('control', [{'accuracy': 1e-9}, {'step': 0.03}])
+@pytest.mark.parametrize('method', METHODS)
+def test_states_do_not_depend_on_what_else_was_asked(top, method, control):
+    times = np.random.default_rng(7).uniform(0.0, 20.0, 300)
+    solver = Stepped(top, method, **control).start(top.initial.vector)
+    together, again, alone = np.empty((300, 14)), np.empty((300, 14)), np.empty(14)
+    solver.states(times, together)
+    solver.states(times[::-1], again)
+    assert np.array_equal(again, together[::-1])
+    for k in (0, 150, 299):
+        Stepped(top, method, **control).start(top.initial.vector).state(times[k], alone)
+        assert np.array_equal(alone, together[k])
+
+
+@pytest.mark.parametrize(('method', 'control'), [('gauss16', {'step': 0.03}), ('taylor', {'accuracy': 1e-12})])
+def test_states_between_nodes_are_as_good_as_nodes(top, method, control):
+    times = np.linspace(0.0, 0.4, 101)
+    pairs = zip(states(top, method, times, **control), states(top, 'dop8', times, accuracy=1e-15), strict=True)
+    assert max(angle_between(*a[1:5], *b[1:5]) for a, b in pairs) < 1e-13
