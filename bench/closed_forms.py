@@ -14,7 +14,7 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.compiled import HAVE_NUMBA, compiled, processor
+from rigid_body_sim.compiled import HAVE_NUMBA, compiled_allocating, processor
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.exact import Exact
 from rigid_body_sim.scenes import load_scene
@@ -26,7 +26,7 @@ MILLISECONDS = 20_000
 REPEATS = 15
 
 
-@compiled
+@compiled_allocating
 def _rk4(I1, I2, I3, w, q, h, steps):
     """Advance body rates and attitude of a free body by classical Runge-Kutta steps: what a careful user would write with numba."""
     y = np.empty(7)

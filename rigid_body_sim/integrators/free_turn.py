@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled
+from rigid_body_sim.compiled import compiled, compiled_allocating
 from rigid_body_sim.double_double import add, add_double, multiply, multiply_double, two_sum
 from rigid_body_sim.integrators.euler import EULER, MOMENTS
 
@@ -25,7 +25,7 @@ MOST_SPANS = 4096              # of one drift, a thousand radians: kicks so rare
 LEAST = 1e-250                 # of I omega^2: below it the 32 digits of products are lost
 
 
-@compiled
+@compiled_allocating
 def turned_freely(p, y, c, h):
     """Return (q and omega, what their sums have lost), 7 each, after a free rotation for a time h; NaN if it takes more than MOST_SPANS."""
     S, left = np.empty((7, TERMS)), h

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import free_anchor
 from rigid_body_sim.motions.free_anchor import ROUNDING, TO_BODY, TO_WORLD, TUMBLES, fill_rotation, rotation_parameters
@@ -102,7 +102,7 @@ def _origin(c, qx, qy, qz, qw, wx, wy, wz, rx, ry, rz, vx, vy, vz):
     return rx - dx, ry - dy, rz - dz, vx - ux, vy - uy, vz - uz
 
 
-@compiled
+@compiled_allocating
 def states(c, times, out):
     """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
     if len(times) < FEW:

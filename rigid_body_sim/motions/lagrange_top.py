@@ -27,7 +27,7 @@ from fractions import Fraction
 import numpy as np
 
 from rigid_body_sim import bodies
-from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
 from rigid_body_sim.double_double import multiply_double, two_sum
 from rigid_body_sim.motions.lagrange_top_anchor import (
     IS_HYPERBOLIC,
@@ -139,7 +139,7 @@ def state(c, time, out):
     out[11], out[12], out[13] = 0.0, 0.0, 0.0
 
 
-@compiled
+@compiled_allocating
 def states(c, times, out):
     """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
     if len(times) < FEW:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.elliptic import carlson_rf, complete_k, nome, root_nome
 from rigid_body_sim.motions.lagrange_top_means import NEVER, mean_rates
@@ -100,7 +100,7 @@ def functions(anchor, time, time_low):
     return hyperbolic_functions(anchor, time, time_low)
 
 
-@compiled
+@compiled_allocating
 def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     """Fill the anchor from Cayley-Klein parameters (of any norm) and omega_c (rad/s).
 

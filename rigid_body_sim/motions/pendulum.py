@@ -24,7 +24,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import pendulum_anchor
 from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PERIOD, PHASE, RATE, START
@@ -89,7 +89,7 @@ def _pose(c, sine, cosine, half_rate):
             rate * (sine * c[e + 1] - cosine * c[f + 1]), rate * (sine * c[e + 2] - cosine * c[f + 2]))
 
 
-@compiled
+@compiled_allocating
 def states(c, times, out):
     """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
     if len(times) < FEW:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from near import near
 
 from rigid_body_sim.bodies import Body, Inertia
-from rigid_body_sim.compiled import HAVE_NUMBA, compiled
+from rigid_body_sim.compiled import HAVE_NUMBA, compiled_allocating
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.motions import free_body as motion
 from rigid_body_sim.motions.exact import loops
@@ -141,7 +141,7 @@ def test_same_bits_in_another_process_with_and_without_numba():
         assert done.stdout.strip() == here
 
 
-@compiled
+@compiled_allocating
 def reanchored(parameters, start, tick, ticks, every, moments, out):
     """Anchor anew at every tick; fill out with 2 E, L^2 and |q|^2 - 1 of every so many."""
     anchor, state = np.empty(motion.ANCHOR_SIZE), start.copy()

@@ -10,7 +10,7 @@ import os
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled
+from rigid_body_sim.compiled import compiled_allocating
 from rigid_body_sim.motions import free_body
 from rigid_body_sim.scenes import load_scene
 from rigid_body_sim.simulation import Simulation
@@ -72,7 +72,7 @@ def anchored(name):
     return Outcome(worst, SIGMAS, 'sigma', f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, stationary noise')
 
 
-@compiled
+@compiled_allocating
 def walk(parameters, start, ticks, every, moments, out):
     """Anchor anew at every tick of 1 ms; fill out with 2 E, L^2 and |q|^2 - 1 of every so many."""
     anchor, state = np.empty(free_body.ANCHOR_SIZE), start.copy()
