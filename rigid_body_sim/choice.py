@@ -60,6 +60,10 @@ class Choice:
         method = 'dop8' if self.method in ('exact', 'taylor') else self.method
         return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
 
+    def many(self, starts, times, out):
+        """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores."""
+        self._prototype.many(starts, times, out)
+
 
 def _stiff(scene):
     """Return whether internal dissipation is: its rate c L^2/I is c L times that of the rotation, L/I."""

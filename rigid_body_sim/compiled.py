@@ -110,11 +110,3 @@ def compiled_allocating(function):
 def compiled_inline(function):
     """Compile a short kernel that is copied into its callers."""
     return _jit(function, forceinline=True, _nrt=False)
-
-
-def compiled_parallel(function):
-    """Compile a kernel whose ``parallel_range`` loops run on all cores."""
-    return _jit(function, parallel=True)
-
-
-parallel_range = numba.prange if HAVE_NUMBA else range

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim import BadInput, Simulation, State, ensemble, parse_scene, scene_names
+from rigid_body_sim.cores import on_all_cores
 
 
 def test_racket_ensemble_has_the_bits_of_single_runs():
@@ -19,6 +20,26 @@ effects: []
 initial: {{angular_velocity: {start.angular_velocity.tolist()}}}
 """))
         assert states[k].vector.tobytes() == alone.states(times).vector.tobytes()
+
+
+def test_many_bodies_come_from_all_cores_in_order():
+    starts = np.tile(State.of(angular_velocity=(0.01, 5.0, 0.01)).vector, (3000, 1))
+    starts[:, 0] = np.arange(3000.0)
+    states = ensemble('tennis_racket', starts, [3010.0])
+    assert len(states) == 3000
+    assert [body.time[0] for body in states] == [3010.0] * 3000
+    for body in (0, 1536, 2999):
+        assert states[body].vector.tobytes() == ensemble('tennis_racket', starts[body:body + 1], [3010.0]).vector.tobytes()
+    assert states[10:20].vector.tobytes() == states.vector[10:20].tobytes()
+    assert len({body.vector.tobytes() for body in states}) == 3000
+
+
+def test_what_fails_on_another_core_is_told():
+    def work(part):
+        if part.stop == 100:
+            raise ValueError('the last one')
+    with pytest.raises(ValueError, match='the last one'):
+        on_all_cores(work, 100)
 
 
 def test_stepped_ensemble_has_the_bits_of_single_runs():

@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.cores import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.integrators import METHODS, dop8, power_series, runnable, scipy_methods, table, track
@@ -115,6 +116,22 @@ class Stepped:
         if len(times):
             self._within(float(times.min()), float(times.max()))
             self._course.states(times, out)
+
+    def many(self, starts, times, out):
+        """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores.
+
+        Raises
+        ------
+        BadInput, NotConverged
+            As `states`; what did not converge is told with the number of the body.
+        """
+        def one_by_one(part):
+            for body in range(part.start, part.stop):
+                try:
+                    self.start(starts[body]).states(times, out[body])
+                except NotConverged as error:
+                    raise NotConverged(f'body {body}: {error}') from None
+        on_all_cores(one_by_one, len(starts))
 
     def _within(self, first, last):
         """Raise unless the times from the first to the last can be reached."""

@@ -6,12 +6,11 @@ either every state comes from the motion's kernel `state`, or the motion has its
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled, compiled_parallel, parallel_range
+from rigid_body_sim.compiled import compiled, compiled_allocating
 from rigid_body_sim.specialise import UNBOUND
 
 BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state', 'states')
 ONE_BY_ONE = 'states = one_by_one\n'     # binding of `states` for a motion that has none of its own
-CHUNK = 64                              # bodies that one thread takes at a time
 
 ANCHOR_SIZE = UNBOUND
 anchor = UNBOUND
@@ -28,9 +27,9 @@ def one_by_one(anchored, times, out):
 states = UNBOUND
 
 
-@compiled_parallel
+@compiled_allocating
 def ensemble(parameters, starts, times, out):
-    """Fill out, shape (bodies, n, 14), with the states at n times of many bodies, on all cores.
+    """Fill out, shape (bodies, n, 14), with the states at n times of many bodies.
 
     Parameters
     ----------
@@ -41,8 +40,7 @@ def ensemble(parameters, starts, times, out):
     times : array (n,)
     """
     stride = 0 if len(parameters) == 1 else 1
-    for chunk in parallel_range((len(starts) + CHUNK - 1) // CHUNK):
-        anchored = np.empty(ANCHOR_SIZE)
-        for body in range(CHUNK * chunk, min(CHUNK * (chunk + 1), len(starts))):
-            anchor(parameters[stride * body], starts[body], anchored)
-            states(anchored, times, out[body])
+    anchored = np.empty(ANCHOR_SIZE)
+    for body in range(len(starts)):
+        anchor(parameters[stride * body], starts[body], anchored)
+        states(anchored, times, out[body])

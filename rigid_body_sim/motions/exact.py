@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.cores import on_all_cores
 from rigid_body_sim.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE
 from rigid_body_sim.motions import bulk
 from rigid_body_sim.motions.weight import WeightImpulse
 from rigid_body_sim.specialise import specialise
 
 CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
+AT_ONCE = 512    # states of many bodies that a thread takes, at least
 
 
 def loops(motion):
@@ -58,6 +60,12 @@ class Exact:
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times, in any order."""
         self._loops.states(self.anchor, times, out)
+
+    def many(self, starts, times, out):
+        """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores."""
+        parameters = self._parameters[np.newaxis]
+        on_all_cores(lambda part: self._loops.ensemble(parameters, starts[part], times, out[part]), len(starts),
+                     AT_ONCE // max(1, len(times)))
 
     def exchanged(self, time):
         """Return what effects exchanged with the body from the anchor to a time, shape (5,): rigid_body_sim/exchange.py."""

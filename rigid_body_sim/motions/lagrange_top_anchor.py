@@ -2,11 +2,9 @@
 
 import math
 
-import numpy as np
-
-from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import two_sum
-from rigid_body_sim.elliptic import carlson_rf, complete_k, nome, root_nome
+from rigid_body_sim.elliptic import carlson_rf_pair, complete_k, nome, root_nome
 from rigid_body_sim.motions.lagrange_top_means import NEVER, mean_rates
 from rigid_body_sim.motions.lagrange_top_roots import (
     ABOVE,
@@ -45,7 +43,8 @@ from rigid_body_sim.turns import nearest, phase, sin_cos
 START, START_A, START_B, RATE, RATE_A, RATE_B = FORM_SIZE, FORM_SIZE + 1, FORM_SIZE + 2, FORM_SIZE + 3, FORM_SIZE + 5, FORM_SIZE + 7
 # hyperbolic phase per turn of nutation; phases of a and b (turns) per unit of it; 1 for an odd position at the start; see `functions`
 IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING, NUTATES = range(FORM_SIZE + 9, FORM_SIZE + 17)
-NUTATION_SIZE = FORM_SIZE + 17
+ROOTS = FORM_SIZE + 17      # what `turning_points` fills
+NUTATION_SIZE = ROOTS + SIZE
 
 QUARTER_TURN = 0.5 * math.pi
 NOTICED = 1e-9
@@ -100,7 +99,7 @@ def functions(anchor, time, time_low):
     return hyperbolic_functions(anchor, time, time_low)
 
 
-@compiled_allocating
+@compiled
 def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     """Fill the anchor from Cayley-Klein parameters (of any norm) and omega_c (rad/s).
 
@@ -122,7 +121,7 @@ def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
     own = max(abs(n[0]), 2.0 * math.sqrt(k[0]))
     scale = _scale(max(tilt, swing / own)) if own > 0.0 else 1.0
     unit_a, unit_b = (1.0, scale) if standing else (scale, 1.0)
-    roots = np.empty(SIZE)
+    roots = anchor[ROOTS:NUTATION_SIZE]
     turning_points(a_re / unit_a, a_im / unit_a, b_re / unit_b, b_im / unit_b, unit_a, unit_b, o_re / scale, o_im / scale, n, k, roots)
     mean, nutation, rate_a, rate_b = mean_rates(roots, scale if roots[SEPARATE] == 1.0 else 1.0)
 
@@ -198,25 +197,32 @@ def _scale(size):
 
 
 @compiled
-def _shift(square, x, y, z):
-    """Return sqrt(square) R_F(x, y, z), infinite where two of x, y, z vanish."""
-    if square == 0.0:
-        return 0.0
-    if min(x + y, y + z, x + z) == 0.0:
-        return math.inf
-    return math.sqrt(square) * carlson_rf(x, y, z)
+def _lengths(square, x, y, z, other, u, v, w):
+    """Return sqrt(square) R_F(x, y, z) and sqrt(other) R_F(u, v, w), infinite where two arguments of R_F vanish, 0 where the root does."""
+    first, second = min(x + y, y + z, x + z) > 0.0, min(u + v, v + w, u + w) > 0.0
+    R, S = carlson_rf_pair(x if first else 1.0, y if first else 1.0, z if first else 1.0,
+                           u if second else 1.0, v if second else 1.0, w if second else 1.0)
+    return (0.0 if square == 0.0 else math.sqrt(square) * R if first else math.inf,
+            0.0 if other == 0.0 else math.sqrt(other) * S if second else math.inf)
 
 
 @compiled
-def _shifts(roots, k):
-    """Return how far the zeros of a (from u1), b and omega_c (from u2) lie along imaginary time, in arguments of Jacobi's functions."""
-    gap, wide, narrow = roots[GAP], roots[WIDE], roots[NARROW]
-    gap2 = 2.0 * k * gap
+def _arguments(roots, k, from_lowest):
+    """Return, as arguments of Jacobi's functions, the places of the zeros of a, b, omega_c in imaginary time and of the state in real time.
+
+    That of a is counted from u1, those of b and omega_c from u2, that of the state from u1 if `from_lowest`, else from u2.
+    """
+    gap, wide, narrow, lower, upper, above = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER], roots[ABOVE]
     if gap == 0.0:    # steady: none has a zero, also where it is 0 all the time
-        return math.inf, math.inf, math.inf
-    return (_shift(roots[X1], gap, gap * roots[X3] / wide, roots[X2]),
-            _shift(roots[Y2] * wide, roots[Y3] * gap, gap * narrow, roots[Y1] * narrow),
-            _shift(roots[W2] * wide, roots[W3] * gap2, gap2 * narrow, roots[W1] * narrow))
+        return math.inf, math.inf, math.inf, 0.0
+    gap2 = 2.0 * k * gap
+    if from_lowest:
+        A, along = _lengths(roots[X1], gap, gap * roots[X3] / wide, roots[X2], lower, upper, above * gap / wide, gap)
+    else:
+        A, along = _lengths(roots[X1], gap, gap * roots[X3] / wide, roots[X2], upper * wide, lower * narrow, narrow * gap, gap * above)
+    B, C_ = _lengths(roots[Y2] * wide, roots[Y3] * gap, gap * narrow, roots[Y1] * narrow,
+                     roots[W2] * wide, roots[W3] * gap2, gap2 * narrow, roots[W1] * narrow)
+    return A, B, C_, along
 
 
 @compiled
@@ -224,7 +230,7 @@ def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w,
     gap, wide = roots[GAP], roots[WIDE]
     per_argument = 2.0 * mean                               # 2v of an argument of Jacobi's functions
     set_nome(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)), anchor)
-    A, B, C_ = _shifts(roots, k)
+    A, B, C_, along = _arguments(roots, k, True)
     set_circular(anchor, 0, math.exp(-per_argument * A), -1.0, side_a, unit_a * math.sqrt(0.5 * roots[X2]))
     set_circular(anchor, 1, math.exp(-per_argument * B), 1.0, side_b, unit_b * math.sqrt(0.5 * roots[Y1]))
     slope_w = set_circular(anchor, 2, math.exp(-per_argument * C_), 1.0, side_w, unit_w * math.sqrt(roots[W1]))
@@ -232,22 +238,20 @@ def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w,
     at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))
     rate = 0.5 * math.sqrt(wide) * per_argument
     anchor[WINDING] = nearest((at_lowest - rate_difference) / rate + slope_w) if roots[STEADY] == 0.0 else 0.0
-    argument = 0.0
-    if gap > 0.0:
-        argument = math.copysign(math.sqrt(roots[LOWER]) * carlson_rf(roots[UPPER], roots[ABOVE] * gap / wide, gap), roots[RISE])
-    anchor[START], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURN[0] * per_argument * argument, 0.0, 0.0
+    anchor[START], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURN[0] * per_argument * math.copysign(along, roots[RISE]), 0.0, 0.0
     anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 0.0, 0.0, 0.0
 
 
 @compiled
 def _hyperbolic(roots, k, mean, scale, rate_unit, side_a, side_b, side_w, anchor):
-    gap, wide, narrow, lower, upper = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER]
-    modulus, complement = math.sqrt(2.0 * k * gap / wide), scale * math.sqrt(narrow / wide)
+    wide, narrow = roots[WIDE], roots[NARROW]
+    modulus, complement = math.sqrt(2.0 * k * roots[GAP] / wide), scale * math.sqrt(narrow / wide)
     per_argument = QUARTER_TURN / complete_k(modulus)       # hyperbolic phase of an argument of Jacobi's functions
     half_period = per_argument * QUARTER_TURN / mean if mean > 0.0 else NEVER
     root = root_nome(complement, modulus)
     set_nome(root * root, anchor)
-    A, B, C_ = _shifts(roots, k)
+    from_lowest = scale * roots[UPPER] * math.sqrt(wide) >= math.sqrt(narrow) * roots[LOWER]     # nearer in time than the highest position
+    A, B, C_, along = _arguments(roots, k, from_lowest)
     A, B, C_ = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN), min(per_argument * C_, QUARTER_TURN)
     set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root)
     set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root)
@@ -258,11 +262,8 @@ def _hyperbolic(roots, k, mean, scale, rate_unit, side_a, side_b, side_w, anchor
     anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 2.0 * half_period, TURN[0] * step_a / half_period, TURN[0] * step_b / half_period
     half_turns = nearest((step_w - step_b + step_a) / math.pi)
     anchor[WINDING] = half_turns - 2.0 * math.floor(0.5 * half_turns)
-    if scale * upper * math.sqrt(wide) >= math.sqrt(narrow) * lower:     # nearer in time to the lowest position than to the highest
-        anchor[PARITY] = 0.0
-        argument = math.copysign(math.sqrt(lower) * carlson_rf(upper, roots[ABOVE] * gap / wide, gap), roots[RISE])
-    else:
-        anchor[PARITY] = 1.0
+    anchor[PARITY], argument = 0.0, math.copysign(along, roots[RISE])
+    if not from_lowest:
+        anchor[PARITY], argument = 1.0, -argument
         anchor[SIDE] *= 1.0 - 2.0 * anchor[WINDING]
-        argument = -math.copysign(math.sqrt(upper * wide) * carlson_rf(lower * narrow, narrow * gap, gap * roots[ABOVE]), roots[RISE])
     anchor[START], anchor[IS_HYPERBOLIC] = per_argument * argument / anchor[STRETCH], 1.0
