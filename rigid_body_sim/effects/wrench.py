@@ -25,7 +25,7 @@ class Wrench:
     frame: str = 'world'
 
     def __bool__(self):
-        return any(self.force) or any(self.torque)
+        return self.force != ZERO or self.torque != ZERO
 
     def acting(self, frame, time):
         """View `rate`: the force or its moment, and the couple.

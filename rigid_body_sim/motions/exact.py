@@ -11,6 +11,7 @@ from rigid_body_sim.motions.weight import WeightImpulse
 from rigid_body_sim.specialise import specialise
 
 CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
+NONE_YET = (-math.inf,) * CROWD
 AT_ONCE = 512    # states of many bodies that a thread takes, at least
 
 
@@ -45,12 +46,10 @@ class Exact:
     def start(self, vector):
         """Anchor the motion at a state (14 doubles, its time included) and return a solver from there."""
         started = object.__new__(Exact)
-        started.__dict__.update(self.__dict__)
-        started.anchor = np.empty(self.motion.ANCHOR_SIZE)
+        started.motion, started._scene, started._parameters, started._loops = self.motion, self._scene, self._parameters, self._loops
+        started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
         self.motion.anchor(self._parameters, vector, started.anchor)
-        started._next_event = started._weight = None
-        started._last_events = (-math.inf,) * CROWD
-        started._start = np.array(vector)
+        started._next_event, started._weight, started._last_events = None, None, NONE_YET
         return started
 
     def state(self, time, out):

@@ -57,13 +57,13 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
             lines.append({'name': runner.name, 'control': runner.control, 'is_peer': runner.is_peer, 'points': points, 'notes': notes})
         else:
             refused[runner.name] = notes[0]
-    samples = [[] for _ in timed]
+    samples, counts = [[] for _ in timed], [_count(run, problem.duration) for _, run in timed]
     gc.collect()
     gc.disable()
     try:
         for _ in tqdm(range(repeats), desc=f'{problem.name}: times', disable=None if watch is None else not watch, leave=False):
-            for (point, run), own in zip(timed, samples):
-                own.append(_sample(run, problem.duration, max(1, math.ceil(SAMPLE / max(point['first_run'], 1e-7)))))
+            for (_, run), own, count in zip(timed, samples, counts, strict=True):
+                own.append(_sample(run, problem.duration, count))
     finally:
         gc.enable()
     for (point, _), own in zip(timed, samples):
@@ -113,7 +113,16 @@ def _along(run, times):
         yield np.array(run.state())
 
 
+def _count(run, end):
+    """Return how many runs make a sample; the first ones of a short run, with cold caches, take ten times as long as later ones."""
+    count = 1
+    while _sample(run, end, count) * count < SAMPLE:
+        count *= 2
+    return count
+
+
 def _sample(run, end, count):
+    """Return the CPU seconds of a run, the mean of so many."""
     began = time.process_time()
     for _ in range(count):
         run.start()
