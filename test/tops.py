@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.motions import lagrange_top as motion
+from rigid_body_sim.motions.exact import loops
 from rigid_body_sim.scenes import parse_scene
 from rigid_body_sim.state import STATE_SIZE
 
@@ -39,5 +40,5 @@ def at(anchor, time):
 
 def many(anchor, times):
     out = np.full((len(times), STATE_SIZE), math.nan)
-    motion.states(anchor, np.asarray(times, dtype=float), out)
+    loops(motion).states(anchor, np.asarray(times, dtype=float), out)
     return out

@@ -18,8 +18,8 @@ AT_ONCE = 512    # states of many bodies that a thread takes, at least
 def loops(motion):
     """Return the module of bulk loops bound to a motion (rigid_body_sim/motions/bulk.py)."""
     bindings = {name: f'{motion.__name__}:{name}' for name in bulk.BINDINGS}
-    if not hasattr(motion, 'states'):
-        bindings['states'] = bulk.ONE_BY_ONE
+    for name, binding in (bulk.IN_COLUMNS if hasattr(motion, 'fill_columns') else bulk.ONE_BY_ONE).items():
+        bindings[name] = binding.format(motion.__name__)
     return specialise(bulk, **bindings)
 
 

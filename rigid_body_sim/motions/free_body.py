@@ -12,13 +12,13 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import free_anchor
+from rigid_body_sim.motions.bulk import BLOCK
 from rigid_body_sim.motions.free_anchor import ROUNDING, TO_BODY, TO_WORLD, TUMBLES, fill_rotation, rotation_parameters
 from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PHASE, RATE, START, circular, hyperbolic, steady, turned
 from rigid_body_sim.rotations import rotate
-from rigid_body_sim.state import STATE_SIZE
 from rigid_body_sim.turns import COUNTABLE
 
 EVENTS = ('flip',)
@@ -30,8 +30,6 @@ PARAMETER_SIZE = GRAVITY + 1
 POSITION, VELOCITY, FIELD, ARM, OFFSET = (free_anchor.SIZE + k for k in (0, 3, 6, 7, 10))
 ANCHOR_SIZE = OFFSET + 1
 
-BLOCK = 128         # states that `states` computes side by side
-FEW = 8             # below that it takes them one by one
 
 
 def absorbs(scene):
@@ -102,24 +100,10 @@ def _origin(c, qx, qy, qz, qw, wx, wy, wz, rx, ry, rz, vx, vy, vz):
     return rx - dx, ry - dy, rz - dz, vx - ux, vy - uy, vz - uz
 
 
-@compiled_allocating
-def states(c, times, out):
-    """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
-    if len(times) < FEW:
-        for k in range(len(times)):
-            state(c, times[k], out[k])
-        return
-    columns = np.empty(STATE_SIZE * BLOCK)
-    for first in range(0, len(times), BLOCK):
-        count = min(BLOCK, len(times) - first)
-        _fill_columns(c, times[first:first + count], columns)
-        for k in range(count):
-            for j in range(STATE_SIZE):
-                out[first + k, j] = columns[j * BLOCK + k]
-
-
 @compiled
-def _fill_columns(c, times, columns):
+def fill_columns(c, times, columns):
+    """Fill columns, BLOCK times, BLOCK times x, ..., with up to BLOCK states: the operations of `state`, arranged to become vector code."""
+    b = BLOCK
     if c[FORM] == CIRCULAR:
         for k in range(len(times)):
             dt, dt_low = two_sum(times[k], -c[START])
@@ -143,12 +127,11 @@ def _fill_columns(c, times, columns):
         rx, ry, rz, vx, vy, vz = _flight(c, dt)
         _keep_flight(columns, k, rx, ry, rz, vx, vy, vz)
     if c[OFFSET] != 0.0:
-        b = BLOCK
         for k in range(len(times)):
             rx, ry, rz, vx, vy, vz = _origin(
                 c, columns[b + k], columns[2 * b + k], columns[3 * b + k], columns[4 * b + k], columns[5 * b + k], columns[6 * b + k],
-                columns[7 * b + k], columns[8 * b + k], columns[9 * b + k], columns[10 * b + k], columns[11 * b + k], columns[12 * b + k],
-                columns[13 * b + k])
+                columns[7 * b + k], columns[8 * b + k], columns[9 * b + k], columns[10 * b + k], columns[11 * b + k],
+                columns[12 * b + k], columns[13 * b + k])
             _keep_flight(columns, k, rx, ry, rz, vx, vy, vz)
 
 

@@ -27,8 +27,9 @@ from fractions import Fraction
 import numpy as np
 
 from rigid_body_sim import bodies
-from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import multiply_double, two_sum
+from rigid_body_sim.motions.bulk import BLOCK
 from rigid_body_sim.motions.lagrange_top_anchor import (
     IS_HYPERBOLIC,
     NEVER,
@@ -56,8 +57,6 @@ TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE +
 ANCHOR_SIZE = NUTATION_SIZE + 9
 
 EVENTS = ('turning point',)
-BLOCK = 128         # states that `states` computes side by side
-FEW = 8             # below that it takes them one by one
 
 
 def absorbs(scene):
@@ -139,47 +138,32 @@ def state(c, time, out):
     out[11], out[12], out[13] = 0.0, 0.0, 0.0
 
 
-@compiled_allocating
-def states(c, times, out):
-    """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
-    if len(times) < FEW:
-        for k in range(len(times)):
-            state(c, times[k], out[k])
-        return
-    columns = np.empty(7 * BLOCK)
-    for first in range(0, len(times), BLOCK):
-        count = min(BLOCK, len(times) - first)
-        _fill_columns(c, times[first:first + count], columns)
-        for k in range(count):
-            row = out[first + k]
-            row[0] = times[first + k]
-            for j in range(7):
-                row[1 + j] = columns[j * BLOCK + k]
-            row[8], row[9], row[10] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
-            row[11], row[12], row[13] = 0.0, 0.0, 0.0
-
-
 @compiled
-def _fill_columns(c, times, columns):
+def fill_columns(c, times, columns):
+    """Fill columns, BLOCK times, BLOCK times x, ..., with up to BLOCK states: the operations of `state`, arranged to become vector code."""
+    b = BLOCK
     if c[IS_HYPERBOLIC] == 0.0:
         for k in range(len(times)):
             elapsed, elapsed_low = two_sum(times[k], -c[TIME])
             a_re, a_im, b_re, b_im, o_re, o_im = circular_functions(c, elapsed, elapsed_low)
             x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
-            _keep(columns, k, x, y, z, w, wx, wy, wz)
+            _keep(columns, k, times[k], x, y, z, w, wx, wy, wz)
     else:
         for k in range(len(times)):
             elapsed, elapsed_low = two_sum(times[k], -c[TIME])
             a_re, a_im, b_re, b_im, o_re, o_im = hyperbolic_functions(c, elapsed, elapsed_low)
             x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
-            _keep(columns, k, x, y, z, w, wx, wy, wz)
+            _keep(columns, k, times[k], x, y, z, w, wx, wy, wz)
+    for k in range(len(times)):
+        columns[8 * b + k], columns[9 * b + k], columns[10 * b + k] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
+        columns[11 * b + k], columns[12 * b + k], columns[13 * b + k] = 0.0, 0.0, 0.0
 
 
 @compiled_inline
-def _keep(columns, k, x, y, z, w, wx, wy, wz):
+def _keep(columns, k, time, x, y, z, w, wx, wy, wz):
     b = BLOCK
-    columns[k], columns[b + k], columns[2 * b + k], columns[3 * b + k] = x, y, z, w
-    columns[4 * b + k], columns[5 * b + k], columns[6 * b + k] = wx, wy, wz
+    columns[k], columns[b + k], columns[2 * b + k], columns[3 * b + k], columns[4 * b + k] = time, x, y, z, w
+    columns[5 * b + k], columns[6 * b + k], columns[7 * b + k] = wx, wy, wz
 
 
 @compiled

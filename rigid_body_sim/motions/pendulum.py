@@ -22,11 +22,10 @@ Sources: Whittaker, Analytical Dynamics, section 44; NIST DLMF 22.19(i).
 
 import math
 
-import numpy as np
-
-from rigid_body_sim.compiled import compiled, compiled_allocating, compiled_inline
+from rigid_body_sim.compiled import compiled, compiled_inline
 from rigid_body_sim.double_double import two_sum
 from rigid_body_sim.motions import pendulum_anchor
+from rigid_body_sim.motions.bulk import BLOCK
 from rigid_body_sim.motions.free_rotation import CIRCULAR, FORM, HYPERBOLIC, PERIOD, PHASE, RATE, START
 from rigid_body_sim.motions.pendulum_anchor import (
     ARM,
@@ -49,12 +48,9 @@ from rigid_body_sim.motions.pendulum_anchor import (
     steady,
 )
 from rigid_body_sim.rotations import rotate, rotate_back
-from rigid_body_sim.state import STATE_SIZE
 from rigid_body_sim.turns import COUNTABLE
 
 EVENTS = ('turning point',)
-BLOCK = 128         # states that `states` computes side by side
-FEW = 8             # below that it takes them one by one
 
 PARAMETER_SIZE, ANCHOR_SIZE = pendulum_anchor.PARAMETER_SIZE, pendulum_anchor.ANCHOR_SIZE
 parameters, anchor = pendulum_anchor.parameters, pendulum_anchor.anchor
@@ -89,24 +85,9 @@ def _pose(c, sine, cosine, half_rate):
             rate * (sine * c[e + 1] - cosine * c[f + 1]), rate * (sine * c[e + 2] - cosine * c[f + 2]))
 
 
-@compiled_allocating
-def states(c, times, out):
-    """Fill out, shape (n, 14), with the states at n times in any order: the operations of `state`, arranged to become vector code."""
-    if len(times) < FEW:
-        for k in range(len(times)):
-            state(c, times[k], out[k])
-        return
-    columns = np.empty(STATE_SIZE * BLOCK)
-    for first in range(0, len(times), BLOCK):
-        count = min(BLOCK, len(times) - first)
-        _fill_columns(c, times[first:first + count], columns)
-        for k in range(count):
-            for j in range(STATE_SIZE):
-                out[first + k, j] = columns[j * BLOCK + k]
-
-
 @compiled
-def _fill_columns(c, times, columns):
+def fill_columns(c, times, columns):
+    """Fill columns, BLOCK times, BLOCK times x, ..., with up to BLOCK states: the operations of `state`, arranged to become vector code."""
     if c[FORM] == CIRCULAR:
         for k in range(len(times)):
             _keep(columns, k, times[k], _pose(c, *circular(c, *two_sum(times[k], -c[START]))))

@@ -53,7 +53,7 @@ def at(anchor, time):
 
 def through(anchor, times):
     out = np.empty((len(times), STATE_SIZE))
-    motion.states(anchor, times, out)
+    loops(motion).states(anchor, times, out)
     return out
 
 

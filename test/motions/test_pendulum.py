@@ -31,7 +31,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim import mechanics
 from rigid_body_sim.bodies import make_body
 from rigid_body_sim.motions import pendulum as motion
-from rigid_body_sim.motions.exact import Exact
+from rigid_body_sim.motions.exact import Exact, loops
 from rigid_body_sim.rotations import multiply
 from rigid_body_sim.scenes import load_scene
 from rigid_body_sim.simulation import Simulation
@@ -178,7 +178,7 @@ def test_attitude_is_continuous(name):
     _, _, anchor = recorded(name)
     times = np.linspace(-30.0, 50.0, 80001)
     states = np.empty((len(times), STATE_SIZE))
-    motion.states(anchor, times, states)
+    loops(motion).states(anchor, times, states)
     rates, jumps = np.linalg.norm(states[:, 5:8], axis=1), np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1)
     assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (1.0 + 1e-5) + 1e-15).all()
     assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 2.0 * EPSILON
@@ -254,12 +254,13 @@ import json, sys
 import numpy as np
 from rigid_body_sim.compiled import HAVE_NUMBA
 from rigid_body_sim.motions import pendulum as motion
+from rigid_body_sim.motions.exact import loops
 assert not HAVE_NUMBA
 answers = []
 for parameters, start, times in json.loads(sys.argv[1]):
     anchor, out, force = np.empty(motion.ANCHOR_SIZE), np.empty((len(times), 14)), np.empty(6)
     motion.anchor(np.array(parameters), np.array(start), anchor)
-    motion.states(anchor, np.array(times), out)
+    loops(motion).states(anchor, np.array(times), out)
     motion.reaction(np.array(parameters), out[0], force)
     answers.append((out.tolist(), force.tolist(), motion.next_event(anchor, 1.0)[0]))
 print(json.dumps(answers))
@@ -276,7 +277,7 @@ def test_the_same_without_numba():
                             timeout=120)
     for (scene, _, anchor), (states, force, event) in zip(cases, json.loads(answer.stdout), strict=True):
         out = np.empty((len(times), STATE_SIZE))
-        motion.states(anchor, times, out)
+        loops(motion).states(anchor, times, out)
         assert np.array_equal(out, states)
         assert bearing(scene, out[0]) == near(force, 1e-15)
         assert motion.next_event(anchor, 1.0)[0] == event
