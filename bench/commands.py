@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-from node import ROOT, SETTLED, cpu_seconds, spawn
+from node import ROOT, SETTLED, children, cpu_seconds, spawn
 
 PUBLISHERS = (1, 2)
 
@@ -69,15 +69,16 @@ def measure(each, seconds):
             for process in (listener, *senders):
                 process.stdout.readline()
             time.sleep(SETTLED)
+            [recorder] = children(node.pid)
             idle = cpu_seconds(node.pid)
             time.sleep(seconds)
             idle = cpu_seconds(node.pid) - idle
-            busy = cpu_seconds(node.pid)
+            busy, recording = cpu_seconds(node.pid), cpu_seconds(recorder)
             for sender in senders:
                 sender.stdin.write('\n')
                 sender.stdin.flush()
             took = max(float(sender.stdout.readline()) for sender in senders)
-            busy = cpu_seconds(node.pid) - busy
+            busy, recording = cpu_seconds(node.pid) - busy, cpu_seconds(recorder) - recording
             time.sleep(SETTLED)
         finally:
             for process in (*senders, node, listener):
@@ -90,7 +91,8 @@ def measure(each, seconds):
     ticks = [tick for tick, _ in commands]
     return {'sent': sent, 'seconds': took, 'applied': len(commands), 'each_once_in_order': whole and ticks == sorted(ticks),
             'cpu_without': 100.0 * idle / seconds, 'cpu_with': 100.0 * busy / took,
-            'cpu_of_commands': 100.0 * (busy / took - idle / seconds), 'us_a_command': 1e6 * (busy - idle * took / seconds) / sent}
+            'cpu_of_commands': 100.0 * (busy / took - idle / seconds), 'us_a_command': 1e6 * (busy - idle * took / seconds) / sent,
+            'cpu_of_recorder': 100.0 * recording / took}
 
 
 def main():
@@ -112,7 +114,8 @@ def main():
         print(f'{found["sent"]} impulses in {found["seconds"]:.1f} s from {len(PUBLISHERS)} publishers: {found["applied"]} applied, '
               f'{"each once and in order" if found["each_once_in_order"] else "NOT each once and in order"}\n'
               f'node at 1 kHz, recording: {found["cpu_without"]:.1f} % of a core without, {found["cpu_with"]:.1f} % with commands: '
-              f'{found["cpu_of_commands"]:.1f} % for them, {found["us_a_command"]:.1f} us each')
+              f'{found["cpu_of_commands"]:.1f} % for them, {found["us_a_command"]:.1f} us each; '
+              f'the recorder takes {found["cpu_of_recorder"]:.1f} %')
     return 0 if found['each_once_in_order'] else 1
 
 

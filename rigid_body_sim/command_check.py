@@ -1,63 +1,118 @@
-"""What is no command, and what a body cannot take: tried on a copy of the present state before a command acts."""
+"""What is no command, and what a body cannot take: each command of a tick is tried on what those before it leave of the state."""
 
 import math
 
 import numpy as np
 
 from rigid_body_sim import mechanics
+from rigid_body_sim.command_rows import AXES, BODY, FORCE, FRAMES, IMPULSE, KIND, TORQUE
+from rigid_body_sim.compiled import compiled_allocating
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE
+from rigid_body_sim.rotations import rotate
+from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
 LARGEST_WORK = 1e250
-"""Work (J) of one command: the energies of all that a tick takes stay far below what a double holds."""
+"""Work (J) of all impulses of a tick, and of what is held within it: energies stay far below what a double holds."""
 LARGEST_TURN = 1e7
 """Angle (rad) through which a held wrench may turn the body within a tick: beyond, a tick would take minutes."""
 
+TAKEN, NOT_FINITE, NOT_SOLVABLE, TOO_MUCH_WORK, TOO_FAST = range(5)
+"""Verdicts on a command."""
 
-class CommandCheck:
-    """Refuses what is no command, and commands that a body cannot take.
+# layout of what the impulses of a tick add up to: force, torque (world axes), work
+SUM_FORCE, SUM_TORQUE, SUM_WORK = slice(0, 3), slice(3, 6), 6
+SUM_SIZE = 7
+_F, _T, _Q, _W = FORCE.start, TORQUE.start, ORIENTATION.start, ANGULAR_VELOCITY.start
+
+
+def well_formed(force, torque, frame, what):
+    """Return the row (command_rows.py) without its kind of a force and a torque; BadInput if they or the frame are none."""
+    force, torque = tuple(map(float, force)), tuple(map(float, torque))
+    if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
+        raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
+    if frame not in FRAMES:
+        raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
+    return (FRAMES.index(frame), *force, *torque)
+
+
+@compiled_allocating
+def take(p, rate, start, rows, left, sums, verdicts, amounts):
+    """Add up the impulses of a tick, and find what is held from it on, each command tried on what those before it leave of the state.
 
     Parameters
     ----------
-    scene : Scene
-    parameters : array
-        Of the scene (mechanics.parameters).
+    p : array
+        mechanics.parameters.
     rate : float
-        Ticks per second: a wrench is tried as what it gives in a tick, an impulse as it is.
+        Ticks per second: what is held is tried as what it gives in a tick.
+    start : array (14,)
+        The state at the tick before its first command; commands in body axes turn with its attitude, so that opposite ones cancel.
+    rows : array (n, 8)
+        See command_rows.py.
+    left : array (14,)
+        The state that the impulses so far leave, and sums, shape (7,), what they add up to; both are changed in place.
+    verdicts, amounts : array (n,)
+        Filled with what becomes of each command, and with what is too much: J or rad.
+
+    Returns
+    -------
+    int
+        Place of the last row that holds or releases, -1 if there is none.
     """
+    last = -1
+    force, torque, after, exchange = np.empty(3), np.empty(3), np.empty(STATE_SIZE), np.empty(mechanics.EXCHANGE_SIZE)
+    for k in range(len(rows)):
+        row = rows[k]
+        impulse = row[KIND] == IMPULSE
+        fx, fy, fz, tx, ty, tz = row[_F], row[_F + 1], row[_F + 2], row[_T], row[_T + 1], row[_T + 2]
+        acts, finite = False, True
+        for j in range(_F, _T + 3):
+            acts = acts or row[j] != 0.0
+            finite = finite and math.isfinite(row[j])
+        if row[AXES] == BODY:
+            fx, fy, fz = rotate(start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3], fx, fy, fz)
+            tx, ty, tz = rotate(start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3], tx, ty, tz)
+        share = 1.0 if impulse else rate
+        force[0], force[1], force[2] = fx / share, fy / share, fz / share
+        torque[0], torque[1], torque[2] = tx / share, ty / share, tz / share
+        for j in range(STATE_SIZE):
+            after[j] = left[j]
+        solvable = mechanics.apply_impulse(p, after, force, torque, exchange)
+        work = exchange[mechanics.WORK]
+        turn = max(abs(after[_W]), abs(after[_W + 1]), abs(after[_W + 2])) / rate
+        verdicts[k], amounts[k] = TAKEN, 0.0
+        if not finite:
+            verdicts[k] = NOT_FINITE
+        elif not solvable:
+            verdicts[k] = NOT_SOLVABLE
+        elif not max(abs(work), abs(sums[SUM_WORK] + work)) <= LARGEST_WORK:
+            verdicts[k], amounts[k] = TOO_MUCH_WORK, work
+        elif impulse:
+            sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
+            sums[3], sums[4], sums[5] = sums[3] + tx, sums[4] + ty, sums[5] + tz
+            sums[SUM_WORK] += work
+            for j in range(STATE_SIZE):
+                left[j] = after[j]
+        elif acts and turn > LARGEST_TURN:
+            verdicts[k], amounts[k] = TOO_FAST, turn
+        else:
+            last = k
+    return last
 
-    def __init__(self, scene, parameters, rate):
-        self._scene, self._parameters, self._rate = scene, parameters, rate
-        # thousands of commands a second are checked: the arrays are made once
-        self._after, self._exchange = np.empty(STATE_SIZE), np.empty(mechanics.EXCHANGE_SIZE)
-        self._force, self._torque = np.empty(3), np.empty(3)
 
-    def well_formed(self, force, torque, frame, what):
-        """Return a force and a torque as tuples of floats; BadInput if they or the frame are none, or the scene refuses commands."""
-        if not self._scene.accepts_commands:
-            raise BadInput(what, f'the scene {self._scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
-        force, torque = tuple(map(float, force)), tuple(map(float, torque))
-        if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
-            raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
-        if frame not in ('world', 'body'):
-            raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
-        return force, torque
-
-    def bearable(self, state, force, torque, what):
-        """Raise BadInput if a force (N or N s) and a torque (N m or N m s), world axes, cannot act on a state; `what`: impulse or wrench."""
-        self._after[:], self._force[:], self._torque[:] = state, force, torque
-        if what == 'wrench':
-            self._force /= self._rate
-            self._torque /= self._rate
-        if not mechanics.apply_impulse(self._parameters, self._after, self._force, self._torque, self._exchange):
-            raise BadInput(what, f'torque {list(torque)} (world axes) about an axis of zero moment',
-                           'leave that component 0: an axis without moment takes no angular momentum')
-        work = self._exchange.item(mechanics.WORK)
-        if not abs(work) <= LARGEST_WORK:
-            raise BadInput(what, f'force {list(force)}, torque {list(torque)} would do a work of {work!r} J',
-                           f'at most {LARGEST_WORK:g} J: energies are doubles')
-        if what == 'wrench' and (any(force) or any(torque)):
-            turn = float(np.abs(self._after[ANGULAR_VELOCITY]).max()) / self._rate
-            if turn > LARGEST_TURN:
-                raise BadInput(what, f'torque {list(torque)} would turn the body by {turn:.3g} rad within a tick',
-                               f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
+def refusal(verdict, amount, row, attitude):
+    """Return the BadInput that says why a command is not taken."""
+    what = 'impulse' if row[KIND] == IMPULSE else 'wrench'
+    force, torque = row[FORCE].tolist(), row[TORQUE].tolist()
+    if verdict == NOT_FINITE:
+        return BadInput(what, f'got force {force}, torque {torque}', 'three finite numbers each')
+    if row[AXES] == BODY:
+        force, torque = list(rotate(*attitude, *force)), list(rotate(*attitude, *torque))
+    if verdict == NOT_SOLVABLE:
+        return BadInput(what, f'torque {torque} (world axes) about an axis of zero moment',
+                        'leave that component 0: an axis without moment takes no angular momentum')
+    if verdict == TOO_MUCH_WORK:
+        return BadInput(what, f'force {force}, torque {torque} would do a work of {amount!r} J',
+                        f'at most {LARGEST_WORK:g} J in a tick: energies are doubles')
+    return BadInput(what, f'torque {torque} would turn the body by {amount:.3g} rad within a tick',
+                    f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')

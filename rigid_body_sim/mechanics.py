@@ -10,7 +10,8 @@ from operator import add
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled
+from rigid_body_sim import exchange as ledger
+from rigid_body_sim.compiled import compiled, compiled_allocating
 from rigid_body_sim.rotations import rotate, rotate_back
 
 FREE, PIVOT, HINGE, TABLE = range(4)
@@ -27,6 +28,7 @@ DIAGNOSIS_SIZE = 6
 # layout of what `apply_impulse` fills beside the state
 WORK, ANGULAR_IMPULSE, REACTION_FORCE, REACTION_COUPLE = 0, 1, 4, 7
 EXCHANGE_SIZE = 10
+GIVEN_WORK, GIVEN_IMPULSE = ledger.WORK, ledger.ANGULAR_IMPULSE.start    # of what `push` adds to
 
 
 def parameters(scene):
@@ -136,7 +138,7 @@ def apply_impulse(p, state, force, couple, exchange):
     Returns
     -------
     bool
-        False if there is a torque about an axis of zero moment; then nothing is changed.
+        False if there is a torque about an axis of zero moment, beyond its rounding; nothing comes of that part.
     """
     kind = p[KIND]
     qx, qy, qz, qw = state[1], state[2], state[3], state[4]
@@ -148,6 +150,7 @@ def apply_impulse(p, state, force, couple, exchange):
     elif kind == HINGE:
         rx, ry, rz = p[CENTER] - p[THROUGH], p[CENTER + 1] - p[THROUGH + 1], p[CENTER + 2] - p[THROUGH + 2]
     tx, ty, tz = tx + ry * fz - rz * fy, ty + rz * fx - rx * fz, tz + rx * fy - ry * fx
+    solvable = True
     if kind == HINGE:
         nx, ny, nz = p[HINGE_AXIS], p[HINGE_AXIS + 1], p[HINGE_AXIS + 2]
         free = nx * tx + ny * ty + nz * tz
@@ -155,8 +158,6 @@ def apply_impulse(p, state, force, couple, exchange):
         gx, gy, gz = free * nx, free * ny, free * nz
     else:
         solvable, dx, dy, dz = _rate_of(p, tx, ty, tz)
-        if not solvable:
-            return False
         gx, gy, gz = tx, ty, tz
     cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
     ox, oy, oz = state[5], state[6], state[7]
@@ -190,15 +191,35 @@ def apply_impulse(p, state, force, couple, exchange):
             ux, uy, uz = rotate(qx, qy, qz, qw, dy * hz - dz * hy, dz * hx - dx * hz, dx * hy - dy * hx)
             state[11], state[12], state[13] = state[11] - ux, state[12] - uy, state[13] - uz
     exchange[ANGULAR_IMPULSE], exchange[ANGULAR_IMPULSE + 1], exchange[ANGULAR_IMPULSE + 2] = rotate(qx, qy, qz, qw, gx, gy, gz)
-    return True
+    return solvable
+
+
+@compiled_allocating
+def push(p, state, force, couple, given):
+    """Change a state by an impulse as `apply_impulse` does, and what was exchanged with the body so far, `given` (exchange.py), by it.
+
+    Returns
+    -------
+    bool, float
+        What `apply_impulse` returned, and the work (J).
+    """
+    if not (force[0] != 0.0 or force[1] != 0.0 or force[2] != 0.0 or couple[0] != 0.0 or couple[1] != 0.0 or couple[2] != 0.0):
+        return True, 0.0
+    exchange = np.empty(EXCHANGE_SIZE)
+    solvable = apply_impulse(p, state, force, couple, exchange)
+    given[GIVEN_WORK] += exchange[WORK]
+    for k in range(3):
+        given[GIVEN_IMPULSE + k] += exchange[ANGULAR_IMPULSE + k]
+    return solvable, exchange[WORK]
 
 
 @compiled
 def _rate_of(p, mx, my, mz):
-    """Return (True, I^-1 m) in body axes, or False where m has a part along an axis of zero moment."""
+    """Return whether m has no part along an axis of zero moment, and I^-1 m of the rest in body axes."""
     ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
     along = rotate_back(ax, ay, az, aw, mx, my, mz)
-    slack = 4e-16 * (abs(mx) + abs(my) + abs(mz))
+    # what turning to the world and back leaves along the axis: 1e-15 of it, 3e-15 of the moment of a force (300,000 random ones)
+    slack = 1e-14 * (abs(mx) + abs(my) + abs(mz))
     solvable = (_turns(p[MOMENTS], along[0], slack) and _turns(p[MOMENTS + 1], along[1], slack)
                 and _turns(p[MOMENTS + 2], along[2], slack))
     x, y, z = rotate(ax, ay, az, aw, _quotient(along[0], p[MOMENTS]), _quotient(along[1], p[MOMENTS + 1]), _quotient(along[2], p[MOMENTS + 2]))

@@ -9,26 +9,23 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
-import contextlib
 import math
 import typing
 
 import numpy as np
 
-from rigid_body_sim import mechanics
+from rigid_body_sim import command_check, mechanics
 from rigid_body_sim.choice import HORIZON, choose
-from rigid_body_sim.command_check import LARGEST_WORK, CommandCheck
+from rigid_body_sim.command_check import LARGEST_WORK, SUM_FORCE, SUM_SIZE, SUM_TORQUE, SUM_WORK, well_formed
+from rigid_body_sim.command_rows import AXES, FORCE, FRAMES, HOLD, IMPULSE, LET_GO, TORQUE
 from rigid_body_sim.dynamics import Dynamics
 from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE, WORK
+from rigid_body_sim.exchange import EXCHANGE_SIZE
 from rigid_body_sim.ledger import balance
-from rigid_body_sim.rotations import rotate
 from rigid_body_sim.scenes import Scene, load_scene
 from rigid_body_sim.spans import Event, Span
 from rigid_body_sim.state import ORIENTATION, STATE_SIZE, State, States
-
-NOTHING = (0.0, 0.0, 0.0)
 
 
 class Simulation:
@@ -79,8 +76,6 @@ class Simulation:
         self._mechanics = mechanics.parameters(self.scene)
         self._dynamics = Dynamics(self.scene)
         self._diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
-        self._check = CommandCheck(self.scene, self._mechanics, self.rate)
-        self._gathering = False
         self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
         self._restart()
 
@@ -103,7 +98,6 @@ class Simulation:
         given = span.given + span.solver.exchanged(now)
         self._spans = [Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
         self._arrive()
-        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
     def _restart(self):
         self._origin, self._origin_time = self.tick, 0.0
@@ -117,7 +111,6 @@ class Simulation:
         self._commands = None
         self._foreseen = _Foreseen(None, 0, ())
         self._arrive()
-        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
     @property
     def time(self):
@@ -146,7 +139,6 @@ class Simulation:
         else:
             self._arrive()
             self.events.extend(self._events_between(self._spans, before, self.time))
-        self._attitude_at_tick = tuple(self.vector[ORIENTATION].tolist())
 
     def advance_through(self, ticks):
         """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
@@ -208,9 +200,7 @@ class Simulation:
         BadInput
             Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
         """
-        force, torque = self._in_world(force, torque, frame, 'impulse')
-        base, total_force, total_torque, wrench = self._present_commands()
-        self._apply(base, _sum(total_force, force), _sum(total_torque, torque), wrench)
+        self._command_one((IMPULSE, *well_formed(force, torque, frame, 'impulse')))
 
     def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
         """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
@@ -218,27 +208,42 @@ class Simulation:
         The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
         the axes turn with the body. The same errors as for :meth:`impulse`.
         """
-        self._in_world(force, torque, frame, 'wrench')
-        base, force_sum, torque_sum, held = self._present_commands()
-        wrench = Wrench(tuple(map(float, force)), tuple(map(float, torque)), frame)
-        wrench = wrench if any(wrench.force) or any(wrench.torque) else Wrench()
-        if wrench != held:
-            self._apply(base, force_sum, torque_sum, wrench)
+        self._command_one((HOLD, *well_formed(force, torque, frame, 'wrench')))
 
     def release(self):
         """Let go of the held wrench at the present tick."""
-        self.hold()
+        self.command(LET_GO)
 
-    @contextlib.contextmanager
-    def together(self):
-        """Gather commands of the present tick: they act at the end of the ``with`` block, to the bit as one by one, but computed once."""
-        self._gathering = True
-        try:
-            yield
-        finally:
-            self._gathering = False
-            if self._commands is not None:
-                self._settle()
+    def _command_one(self, row):
+        for _, refusal in self.command(np.array([row])):
+            raise refusal
+
+    def command(self, rows):
+        """Give commands at the present tick, in their order: to the bit what they do one by one, but computed once.
+
+        Parameters
+        ----------
+        rows : array (n, 8)
+            See command_rows.py.
+
+        Returns
+        -------
+        list of (int, BadInput)
+            Place and reason of each command that is not taken, for the same reasons as of :meth:`impulse`; nothing comes of it.
+        """
+        if not self.scene.accepts_commands:
+            refusal = BadInput('command', f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
+            return [(k, refusal) for k in range(len(rows))]
+        if self._commands is None:
+            self._commands = _Commands(len(self._spans), self.wrench, self.vector.copy(), self.vector.copy(), np.zeros(SUM_SIZE))
+        given = self._commands
+        verdicts, amounts = np.empty(len(rows), np.int64), np.empty(len(rows))
+        last = command_check.take(self._mechanics, self.rate, given.start, rows, given.left, given.sums, verdicts, amounts)
+        if last >= 0:
+            self._commands = given._replace(wrench=_wrench(rows[last]))
+        self._settle()
+        attitude = given.start[ORIENTATION].tolist()
+        return [(k, command_check.refusal(verdicts[k], amounts.item(k), rows[k], attitude)) for k in np.flatnonzero(verdicts).tolist()]
 
     @property
     def wrench(self):
@@ -329,57 +334,40 @@ class Simulation:
         while last.strikes < len(self._strikes) and self._strikes[last.strikes].time <= time:
             strike = self._strikes[last.strikes]
             at = max(strike.time, last.time)
-            struck = np.empty(STATE_SIZE)
+            struck, given = np.empty(STATE_SIZE), last.given + last.solver.exchanged(at)
             last.solver.state(at, struck)
-            force, couple = strike.as_impulse(self.scene.body, struck)
-            last = self._next_span(last, at, force, couple, last.wrench, last.strikes + 1)
+            taken, work = mechanics.push(self._mechanics, struck, *strike.as_impulse(self.scene.body, struck), given)
+            if not abs(work) <= LARGEST_WORK:
+                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it would do a work of {work!r} J',
+                               f'at most {LARGEST_WORK:g} J: energies are doubles')
+            if not taken:
+                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it has a torque about an axis of zero moment',
+                               'a point and an impulse without: such an axis takes no angular momentum')
+            last = Span(at, self.choice.solver(struck, last.wrench), last.wrench, last.strikes + 1, given)
             spans = [*spans, last]
         return spans
 
-    def _next_span(self, span, time, force, couple, wrench, strikes):
-        """Return the span that begins when an impulse (world axes) and a wrench act at the end of another one."""
-        start = np.empty(STATE_SIZE)
-        span.solver.state(time, start)
-        given = span.given + span.solver.exchanged(time)
-        if force.any() or couple.any():
-            exchange = np.empty(mechanics.EXCHANGE_SIZE)
-            mechanics.apply_impulse(self._mechanics, start, force, couple, exchange)
-            work = exchange.item(mechanics.WORK)
-            if not abs(work) <= LARGEST_WORK:
-                raise BadInput(f'{self.scene.name}: strike', f'at {time:g} s it would do a work of {work!r} J',
-                               f'at most {LARGEST_WORK:g} J: energies are doubles')
-            given[WORK] += exchange[mechanics.WORK]
-            given[ANGULAR_IMPULSE] += exchange[mechanics.ANGULAR_IMPULSE:mechanics.ANGULAR_IMPULSE + 3]
-        return Span(time, self.choice.solver(start, wrench), wrench, strikes, given)
-
-    def _present_commands(self):
-        """Return what the commands of this tick start from: the span before them, and what they add up to so far."""
-        if self._commands is None:
-            self._commands = len(self._spans), NOTHING, NOTHING, self._spans[-1].wrench
-        return self._commands
-
-    def _apply(self, *commands):
-        self._commands = commands
-        if not self._gathering:
-            self._settle()
-
     def _settle(self):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""
-        base, force, torque, wrench = self._commands
-        kept = self._spans[:base]
-        if any(force) or any(torque) or wrench != kept[-1].wrench:
-            kept = [*kept, self._next_span(kept[-1], self.time, np.array(force), np.array(torque), wrench, kept[-1].strikes)]
+        commands, time = self._commands, self.time
+        kept = self._spans[:commands.base]
+        last = kept[-1]
+        if any(commands.sums[:SUM_WORK].tolist()) or commands.wrench != last.wrench:
+            start, given = commands.start.copy(), last.given + last.solver.exchanged(time)
+            mechanics.push(self._mechanics, start, commands.sums[SUM_FORCE], commands.sums[SUM_TORQUE], given)
+            kept = [*kept, Span(time, self.choice.solver(start, commands.wrench), commands.wrench, last.strikes, given)]
         self._spans = kept
         self._arrive()
 
-    def _in_world(self, force, torque, frame, what):
-        """Return a command's force and torque in world axes, two tuples, checked."""
-        force, torque = self._check.well_formed(force, torque, frame, what)
-        if frame == 'body':
-            # commands of one tick turn with one attitude, so that opposite ones cancel to the last bit
-            force, torque = rotate(*self._attitude_at_tick, *force), rotate(*self._attitude_at_tick, *torque)
-        self._check.bearable(self.vector, force, torque, what)
-        return force, torque
+
+class _Commands(typing.NamedTuple):
+    """What the commands of the present tick come to: the number of spans before them, the wrench they leave; state and sums as of take."""
+
+    base: int
+    wrench: Wrench
+    start: np.ndarray
+    left: np.ndarray
+    sums: np.ndarray
 
 
 class _Foreseen(typing.NamedTuple):
@@ -395,5 +383,7 @@ def _places(spans, times):
     return np.searchsorted([span.time for span in spans], times, side='right') - 1
 
 
-def _sum(p, q):
-    return p[0] + q[0], p[1] + q[1], p[2] + q[2]
+def _wrench(row):
+    """Return what a row holds from its tick on: the Wrench of all zeros if it lets go."""
+    force, torque = tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist())
+    return Wrench(force, torque, FRAMES[int(row[AXES])]) if any(force) or any(torque) else Wrench()

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 
+from rigid_body_sim.command_rows import rows_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
 from rigid_body_sim.scenes import parse_scene
@@ -136,9 +137,8 @@ class Rerun:
                 self.simulation.reset()
             elif entry['kind'] == 'commands':
                 self.simulation.forget_past()
-                for command in entry['commands']:
-                    act = self.simulation.impulse if command['topic'] == 'cmd_impulse' else self.simulation.hold
-                    act(command['force'], command['torque'], command['frame'])
+                for _, refusal in self.simulation.command(rows_of(entry['commands'])):
+                    raise refusal
             elif SIMULATION_PARAMETERS & set(entry['changed']):
                 following = self._simulation(entry['scene'], entry['simulation'])
                 following.follow(self.simulation, entry['keeps_state'])

@@ -5,41 +5,32 @@ the frame_id is the body's or the world's name, empty means the world, and the s
 """
 
 import collections
+import functools
+import itertools
 import math
 import struct
-import typing
 
+import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from rigid_body_sim.command_rows import BODY, FORCE, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
 from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
 from rigid_body_sim.node.doorbell import Doorbell
 
-WRENCH, IMPULSE = 'cmd_wrench', 'cmd_impulse'
 DEPTH = 10_000
 """Messages that may wait in a subscription: a second of 10,000 a second."""
 MOST_QUEUED = 100_000
 """Commands that may wait for a tick, while paused or at a low rate."""
 LARGEST = 1e100
 """A number beyond this would overflow in the energies."""
-_LENGTH, _NUMBERS = struct.Struct('<I').unpack_from, struct.Struct('<6d').unpack_from
+_LENGTH = struct.Struct('<I').unpack_from
 _FRAME_AT = 16    # encapsulation, stamp (two numbers of four bytes), length of the frame_id
-
-
-class Command(typing.NamedTuple):
-    """A command that was accepted: its topic, the axes of its numbers, the force and torque (or their impulses)."""
-
-    topic: str
-    frame: str
-    force: tuple
-    torque: tuple
-
-
-RELEASE = Command('release', 'world', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_NUMBERS_SIZE = 48
 _REMEDIES = {
     'malformed': 'a geometry_msgs/msg/WrenchStamped',
     'the scene refuses commands': 'in the scene file: commands: accept',
@@ -61,7 +52,7 @@ class TakenElsewhere(CallbackGroup):
 
 
 def decode(data):
-    """Return frame_id (bytes) and the six numbers of a serialised WrenchStamped.
+    """Return frame_id and the six numbers (both bytes) of a serialised WrenchStamped.
 
     Raises
     ------
@@ -70,13 +61,12 @@ def decode(data):
     """
     if data[:2] != ENCAPSULATION[:2]:
         raise ValueError('not little-endian CDR')
-    try:
-        length, = _LENGTH(data, _FRAME_AT - 4)
-        end = _FRAME_AT + length
-        # numbers of eight bytes are aligned, counted after the encapsulation
-        numbers = _NUMBERS(data, end + (4 - end) % 8)
-    except struct.error:
-        raise ValueError('cut short') from None
+    end = _FRAME_AT + _LENGTH(data, _FRAME_AT - 4)[0] if len(data) >= _FRAME_AT else len(data)
+    # numbers of eight bytes are aligned, counted after the encapsulation
+    begin = end + (4 - end) % 8
+    numbers = data[begin:begin + _NUMBERS_SIZE]
+    if len(numbers) < _NUMBERS_SIZE:
+        raise ValueError('cut short')
     return data[_FRAME_AT:max(end - 1, _FRAME_AT)], numbers
 
 
@@ -92,23 +82,28 @@ class Commands:
     ----------
     report : callable
         To be set: called by :meth:`look` with (topic, reason, what was got, the line that would be right) for each refused message.
-    received, accepted, applied : int
+    received, accepted, applied, waiting : int
+        Messages so far, and those that wait for the next tick.
     refusals : collections.Counter
         Refused messages by reason.
     """
 
     def __init__(self, node, frames):
         self.report = None
-        self._axes = {b'': 'world', frames.world.encode(): 'world', frames.body.encode(): 'body'}
+        self._axes = {b'': WORLD, frames.world.encode(): WORLD, frames.body.encode(): BODY}
         self._frames = frames
-        self.received = self.accepted = self.applied = 0
+        self.received = self.accepted = self.applied = self.waiting = 0
         self.refusals = collections.Counter()
-        self.queue = collections.deque()
+        self._rows = []
         group = TakenElsewhere()
-        self._subscriptions = [(topic, self._subscribe(node, topic, group)) for topic in (WRENCH, IMPULSE)]
-        self._mismatches = [qos.SubscriptionMismatch(node, topic, subscription.qos_profile) for topic, subscription in self._subscriptions]
-        self._bell = Doorbell(node, [subscription for _, subscription in self._subscriptions])
-        self._takers = [(topic, subscription.handle.take_message) for topic, subscription in self._subscriptions]
+        self._subscriptions = {kind: self._subscribe(node, TOPICS[kind], group) for kind in (HOLD, IMPULSE)}
+        self._mismatches = [qos.SubscriptionMismatch(node, TOPICS[kind], subscription.qos_profile)
+                            for kind, subscription in self._subscriptions.items()]
+        self._bell = Doorbell(node, list(self._subscriptions.values()))
+        self._takers = [(kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
+                        for kind, subscription in self._subscriptions.items()]
+        # what each row begins with
+        self._heads = {kind: {frame: np.array([kind, axes], float).tobytes() for frame, axes in self._axes.items()} for kind in (HOLD, IMPULSE)}
 
     @staticmethod
     def _subscribe(node, topic, group):
@@ -123,11 +118,19 @@ class Commands:
 
     def look(self, scene_accepts):
         """Take all that has come."""
-        before = self.received
-        for topic, take in self._takers:
-            while (message := take(WrenchStamped, True)) is not None:
-                self._receive(topic, message[0], scene_accepts)
-        self._bell.answer(self.received - before)
+        found = 0
+        for kind, take in self._takers:
+            messages = [data for data, _ in itertools.islice(iter(take, None), DEPTH)]
+            if messages:
+                found += len(messages)
+                self._receive(kind, messages, scene_accepts)
+        self._bell.answer(found)
+
+    def collect(self):
+        """Return the commands that wait, in their order (command_rows.py); they wait no more."""
+        rows = self._rows[0] if len(self._rows) == 1 else np.concatenate(self._rows)
+        self._rows, self.waiting = [], 0
+        return rows
 
     def look_for_mismatches(self):
         """Warn of publishers whose commands do not arrive; from another thread, now and then."""
@@ -138,27 +141,46 @@ class Commands:
         """Take away what the node would not find by itself."""
         self._bell.remove()
 
-    def _receive(self, topic, data, scene_accepts):
-        self.received += 1
-        try:
-            frame, numbers = decode(data)
-        except ValueError as error:
-            self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}')
-            return
-        axes = self._axes.get(frame)
-        if axes is None:
-            self.refuse(topic, 'frame_id', f'frame_id {frame.decode(errors="replace")!r}')
-        elif not all(map(math.isfinite, numbers)):
-            self.refuse(topic, 'not finite', f'force {numbers[:3]}, torque {numbers[3:]}')
-        elif max(map(abs, numbers)) > LARGEST:
-            self.refuse(topic, 'too large', f'force {numbers[:3]}, torque {numbers[3:]}')
-        elif not scene_accepts:
-            self.refuse(topic, 'the scene refuses commands', 'a command')
-        elif len(self.queue) >= MOST_QUEUED:
-            self.refuse(topic, 'too many wait for the next tick', f'one more than {MOST_QUEUED}')
-        else:
-            self.accepted += 1
-            self.queue.append(Command(topic, axes, numbers[:3], numbers[3:]))
+    def _receive(self, kind, messages, scene_accepts):
+        """Put into the queue what may be right among some messages of a topic, refuse the rest."""
+        self.received += len(messages)
+        heads, pieces, topic = self._heads[kind], [], TOPICS[kind]
+        for data in messages:
+            try:
+                frame, numbers = decode(data)
+            except ValueError as error:
+                self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}')
+                continue
+            head = heads.get(frame)
+            if head is None:
+                self.refuse(topic, 'frame_id', f'frame_id {frame.decode(errors="replace")!r}')
+            else:
+                pieces += head, numbers
+        rows = np.frombuffer(bytearray().join(pieces)).reshape(-1, WIDTH)
+        if not (scene_accepts and self.waiting + len(rows) <= MOST_QUEUED and np.abs(rows).max(initial=0.0) <= LARGEST):
+            rows = self._sift(topic, rows, scene_accepts)
+        if len(rows):
+            self._rows.append(rows)
+            self.waiting += len(rows)
+            self.accepted += len(rows)
+
+    def _sift(self, topic, rows, scene_accepts):
+        """Refuse what cannot be right, and what is beyond what may wait; return the other rows."""
+        kept = []
+        for row in rows:
+            numbers = row[FORCE.start:].tolist()
+            got = f'force {tuple(numbers[:3])}, torque {tuple(numbers[3:])}'
+            if not all(map(math.isfinite, numbers)):
+                self.refuse(topic, 'not finite', got)
+            elif max(map(abs, numbers)) > LARGEST:
+                self.refuse(topic, 'too large', got)
+            elif not scene_accepts:
+                self.refuse(topic, 'the scene refuses commands', 'a command')
+            elif self.waiting + len(kept) >= MOST_QUEUED:
+                self.refuse(topic, 'too many wait for the next tick', f'one more than {MOST_QUEUED}')
+            else:
+                kept.append(row)
+        return np.array(kept).reshape(-1, WIDTH)
 
     def refuse(self, topic, reason, got, remedy=None):
         """Count a command that is not applied, and report it with the line that would be right."""
@@ -166,6 +188,6 @@ class Commands:
         self.report(topic, reason, got, remedy or _REMEDIES.get(reason) or self._example(topic))
 
     def _example(self, topic):
-        full_name = next(subscription.topic_name for name, subscription in self._subscriptions if name == topic)
+        full_name = self._subscriptions[TOPICS.index(topic)].topic_name
         return (f'ros2 topic pub --once {full_name} geometry_msgs/msg/WrenchStamped '
                 f'"{{header: {{frame_id: {self._frames.body}}}, wrench: {{torque: {{x: 0.1}}}}}}"')

@@ -100,7 +100,7 @@ class Diagnostics:
         queue = self._commands
         refused = sum(queue.refusals.values())
         new = self._since('refused', refused)
-        values = {'received': queue.received, 'accepted': queue.accepted, 'applied': queue.applied, 'waiting': len(queue.queue),
+        values = {'received': queue.received, 'accepted': queue.accepted, 'applied': queue.applied, 'waiting': queue.waiting,
                   'refused': refused, **{f'refused: {reason}': count for reason, count in queue.refusals.copy().items()}}
         message = f'{new} refused in the last second: see events' if new else 'none refused in the last second'
         return self._status('commands', WARN if new else OK, message, values)

@@ -9,16 +9,14 @@ import datetime
 import pathlib
 import time
 
+from rigid_body_sim.command_rows import HOLD, IMPULSE, TOPICS
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages.layout import Packer
-from rigid_body_sim.node.commands import IMPULSE, RELEASE, WRENCH
 from rigid_body_sim.recording import about, compression
+from rigid_body_sim.recording.command_messages import WRENCH_TYPE, CommandTopics
 from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.topics import Topic, journal_topic
-from rigid_body_sim.timeline import NANOSECONDS
 
 ATTEMPTS = 5
-WRENCH_TYPE = 'geometry_msgs/msg/WrenchStamped'
 
 
 class Journal:
@@ -46,16 +44,13 @@ class Journal:
     def __init__(self, node, settings, simulation, publishing, frames):
         self._simulation = simulation
         journal = journal_topic(node.get_namespace())
-        command_topics = {name: Topic(node.resolve_topic_name(name), WRENCH_TYPE) for name in (WRENCH, IMPULSE)}
-        others = [*publishing.others(), *command_topics.values()]
-        self._command_names = {name: topic.name for name, topic in command_topics.items()}
-        packers = {axes: Packer(WRENCH_TYPE, {'header': {'frame_id': name}}, ('header.stamp', 'wrench'))
-                   for axes, name in (('world', frames.world), ('body', frames.body))}
-        self._pack_command = {axes: packer.pack for axes, packer in packers.items()}
+        command_topics = CommandTopics(tuple(node.resolve_topic_name(TOPICS[kind]) for kind in (IMPULSE, HOLD)), (frames.world, frames.body))
+        others = [*publishing.others(), *(Topic(name, WRENCH_TYPE) for name in reversed(command_topics.topics))]
         ticking = list(zip(publishing.every_tick(), publishing.ticking.sizes, strict=True))
         told = about.about('sim_node', simulation, settings.values)
         asked = settings['recording.compression']
-        options = (compression.DEFAULT if asked == 'auto' else asked, settings['recording.split_bytes'], settings['recording.split_seconds'])
+        options = (compression.DEFAULT if asked == 'auto' else asked, settings['recording.split_bytes'], settings['recording.split_seconds'],
+                   command_topics)
         for attempt in range(ATTEMPTS):
             self.path = _free_path(node, settings, simulation.scene.name)
             try:
@@ -87,13 +82,9 @@ class Journal:
         """Record an entry of the journal; it is never lost."""
         self._recorder.journal(kind, stamp, time.time_ns(), **values)
 
-    def commands(self, tick, stamp, commands):
-        """Record the commands that took effect at a tick, in their order."""
-        now, seconds = time.time_ns(), divmod(stamp, NANOSECONDS)
-        self._recorder.important_all(
-            [(self._command_names[command.topic], self._pack_command[command.frame](*seconds, *command.force, *command.torque))
-             for command in commands if command is not RELEASE], stamp, now)
-        self._recorder.journal('commands', stamp, now, tick=tick, commands=[command._asdict() for command in commands])
+    def commands(self, tick, stamp, rows):
+        """Record the commands that took effect at a tick, in their order (command_rows.py)."""
+        self._recorder.commands(tick, stamp, time.time_ns(), rows)
 
     # -- the main thread ----------------------------------------------------------------------------------------------------------------
 

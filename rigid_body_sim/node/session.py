@@ -15,8 +15,10 @@ import math
 import time
 from fractions import Fraction
 
+import numpy as np
+
+from rigid_body_sim.command_rows import HOLD, KIND, LET_GO, RELEASE, TOPICS
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.node import commands
 from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
@@ -106,7 +108,7 @@ class Session:
             self._catch_up()
             self._serve_requests()
         self._commands.take(self.simulation.scene.accepts_commands)
-        if self._commands.queue or self._release_tick is not None:
+        if self._commands.waiting or self._release_tick is not None:
             self._catch_up()
             self._command(tick)
         if self._ahead:
@@ -235,42 +237,36 @@ class Session:
     # -- commands -----------------------------------------------------------------------------------------------------------------------
 
     def _command(self, tick):
-        """Apply what waits in the queue; let go of a wrench whose time is over."""
+        """Give the commands that wait to the simulation; let go of a wrench whose time is over."""
         self.simulation.forget_past()
-        applied = []
-        queue = self._commands.queue
-        with self.simulation.together():
-            while queue:
-                command = queue.popleft()
-                try:
-                    self._apply(command, tick)
-                except BadInput as refusal:
-                    self._commands.refuse(command.topic, 'the body cannot take it', refusal.problem, refusal.remedy)
-                    continue
-                applied.append(command)
-        self._commands.applied += len(applied)
+        if self._commands.waiting:
+            self._take_effect(tick, self._commands.collect())
         if self._release_tick is not None and tick >= self._release_tick:
             self._release_tick = None
-            self.simulation.release()
-            applied.append(commands.RELEASE)
+            self._take_effect(tick, LET_GO)
             self.event(WARN, 'command timed out', f'no cmd_wrench for {self.command_timeout:g} s: the held wrench ended')
-        if applied:
-            self._disturbed()
-            self._journal.commands(tick, self.stamp, applied)
+
+    def _take_effect(self, tick, rows):
+        refused = self.simulation.command(rows)
+        for place, refusal in refused:
+            self._commands.refuse(TOPICS[int(rows[place, KIND])], 'the body cannot take it', refusal.problem, refusal.remedy)
+        if refused:
+            rows = np.delete(rows, [place for place, _ in refused], axis=0)
+        if not len(rows):
+            return
+        kinds = set(rows[:, KIND].tolist())
+        if HOLD in kinds:
+            timeout = self.timeline.ticks_in(self.command_timeout)
+            self._release_tick = tick + timeout if timeout else None
+        self._commands.applied += len(rows) - (RELEASE in kinds)
+        self._disturbed()
+        self._journal.commands(tick, self.stamp, rows)
 
     def _disturbed(self):
         """Compare theory with the motion from here on, and wait for quiet before looking ahead."""
         self._look_ahead_from = self._tick + QUIET
         simulation = self.simulation
         self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)
-
-    def _apply(self, command, tick):
-        if command.topic == commands.IMPULSE:
-            self.simulation.impulse(command.force, command.torque, command.frame)
-            return
-        self.simulation.hold(command.force, command.torque, command.frame)
-        timeout = self.timeline.ticks_in(self.command_timeout)
-        self._release_tick = tick + timeout if timeout else None
 
     def _report_refusal(self, topic, reason, got, remedy):
         """Tell of a refused command, once a second for each topic and reason."""

@@ -2,12 +2,13 @@
 
 To the recorder: frames. Each has a tag and the length of what follows, then
 
-======= ==========================================================================================================
-SETUP   JSON: all arguments of the Writer, and where to go on after a restart (first frame)
-TICK    number of the tick, log time, publish time (ns), and the messages of all ticking topics end to end: always the same length
-MESSAGE number (from 1 on; 0: may be lost), position of the topic among all, log time, publish time, the message
-END     JSON: ``ticks`` sent or dropped (last frame)
-======= ==========================================================================================================
+======== =========================================================================================================
+SETUP    JSON: all arguments of the Writer, and where to go on after a restart (first frame)
+TICK     number of the tick, log time, publish time (ns), and the messages of all ticking topics end to end: always the same length
+MESSAGE  number (from 1 on; 0: may be lost), position of the topic among all, log time, publish time, the message
+COMMANDS number of the first message made of them, the tick, log time, publish time, n rows (command_rows.py): n + 1 messages
+END      JSON: ``ticks`` sent or dropped (last frame)
+======== =========================================================================================================
 
 Back: lines of JSON, each a complete Report, so that one that is lost does not matter. A numbered message counts as recorded when a report's
 `acknowledged` has reached its number; the recorder takes them in order only, and asks for the missing ones by counting `resend` up.
@@ -17,10 +18,11 @@ import dataclasses
 import json
 import struct
 
-SETUP, TICK, MESSAGE, END = range(1, 5)
+SETUP, TICK, MESSAGE, COMMANDS, END = range(1, 6)
 HEAD = struct.Struct('<BI')
 TICK_HEAD = struct.Struct('<BIQqq')
 MESSAGE_HEAD = struct.Struct('<BIQHqq')
+COMMANDS_HEAD = struct.Struct('<BIQQqq')
 # A pipe takes this much at once or not at all (Linux; see pipe(7)).
 ATOMIC = 4096
 
@@ -34,6 +36,12 @@ def json_frame(tag, values):
 def message_frame(number, topic, log_time, publish_time, data):
     """Return a MESSAGE frame."""
     return MESSAGE_HEAD.pack(MESSAGE, MESSAGE_HEAD.size - HEAD.size + len(data), number, topic, log_time, publish_time) + data
+
+
+def commands_frame(number, tick, log_time, publish_time, rows):
+    """Return a COMMANDS frame."""
+    data = rows.tobytes()
+    return COMMANDS_HEAD.pack(COMMANDS, COMMANDS_HEAD.size - HEAD.size + len(data), number, tick, log_time, publish_time) + data
 
 
 def tick_fields(sizes):

@@ -13,8 +13,10 @@ import time
 
 import numpy as np
 
+from rigid_body_sim.command_rows import WIDTH
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import frames
+from rigid_body_sim.recording.command_messages import CommandMessages, CommandTopics
 from rigid_body_sim.recording.frames import Report
 from rigid_body_sim.recording.resume import resume
 from rigid_body_sim.recording.topics import Topic, journal_message
@@ -82,6 +84,8 @@ class RecorderProcess:
             content = buffer[position + frames.HEAD.size:end]
             if tag == frames.MESSAGE:
                 self._take_message(buffer, position, end)
+            elif tag == frames.COMMANDS:
+                self._take_commands(buffer, position, end)
             elif tag == frames.SETUP:
                 self._open(json.loads(content))
             else:
@@ -94,6 +98,7 @@ class RecorderProcess:
         others, journal = [Topic(**topic) for topic in setup['others']], Topic(**setup['journal'])
         self._names = [topic.name for topic, _ in ticking] + [topic.name for topic in others] + [journal.name]
         self._journal = journal.name
+        self._commands = CommandMessages(CommandTopics(**setup['commands']), journal.name) if setup['commands'] else None
         self._tick = np.dtype(frames.tick_fields([size for _, size in ticking]))
         self.report = Report(**setup['report'])
         files = ()
@@ -113,16 +118,21 @@ class RecorderProcess:
 
     def _take_ticks(self, buffer, position):
         """Take a run of ticks; returns where the next other frame begins."""
-        rows = np.frombuffer(buffer, self._tick, (len(buffer) - position) // self._tick.itemsize, position)
-        others = np.flatnonzero(rows['tag'] != frames.TICK)
-        rows = rows[:others[0]] if len(others) else rows
+        size, end = self._tick.itemsize, position
+        while end + size <= len(buffer) and buffer[end] == frames.TICK:
+            end += size
         if not self.report.error:
+            rows = np.frombuffer(buffer, self._tick, (end - position) // size, position)
+            first, last = rows['number'][[0, -1]].tolist()
+            if last - first == len(rows) - 1:
+                self._record_ticks(rows)
+                return end
             breaks = np.flatnonzero(np.diff(rows['number'].astype(np.int64)) != 1) + 1
             for run in np.split(rows, breaks):
                 self._record_ticks(run)
                 if self.report.error:
                     break
-        return position + len(rows) * self._tick.itemsize
+        return end
 
     def _record_ticks(self, rows):
         """Record ticks with consecutive numbers, and a gap before them if there is one."""
@@ -147,17 +157,29 @@ class RecorderProcess:
 
     def _take_message(self, buffer, position, end):
         _, _, number, topic, log_time, publish_time = frames.MESSAGE_HEAD.unpack_from(buffer, position)
-        if self.report.error or 0 < number < self._expected:
+        self._record(number, log_time, publish_time, [(self._names[topic], buffer[position + frames.MESSAGE_HEAD.size:end])])
+
+    def _take_commands(self, buffer, position, end):
+        _, _, number, tick, log_time, publish_time = frames.COMMANDS_HEAD.unpack_from(buffer, position)
+        rows = np.frombuffer(buffer[position + frames.COMMANDS_HEAD.size:end]).reshape(-1, WIDTH)
+        self._record(number, log_time, publish_time, self._commands.messages(tick, log_time, rows))
+
+    def _record(self, number, log_time, publish_time, messages):
+        """Record messages, (topic name, bytes) or None, of which the first has this number: those that are not recorded yet."""
+        if self.report.error:
             return
         if number > self._expected:
             self._ask_for_missing()
             return
-        try:
-            self._writer.message(self._names[topic], log_time, publish_time, buffer[position + frames.MESSAGE_HEAD.size:end], number)
-        except OSError as error:
-            self._fail(error)
-            return
-        self._expected += number > 0
+        begin = self._expected - number if number else 0
+        for message in messages[begin:]:
+            try:
+                if message:
+                    self._writer.message(message[0], log_time, publish_time, message[1], self._expected if number else 0)
+            except OSError as error:
+                self._fail(error)
+                return
+            self._expected += number > 0
 
     def _ask_for_missing(self):
         """Ask for the numbered messages from the expected one on, once until it comes or RETRY has passed."""

@@ -63,21 +63,25 @@ class Status:
 class Recorder:
     """Starts a recorder and feeds it. Parameters as of the Writer (writer.py); BadInput where nothing can be recorded.
 
+    `commands`: CommandTopics, for who calls :meth:`commands`.
+
     `state_wanted` is True when the full state should be written into the journal; who does so sets it False.
     """
 
-    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0):
+    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
+                 commands=None):
         self._setup = {'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in ticking],
                        'others': [dataclasses.asdict(topic) for topic in others], 'journal': dataclasses.asdict(journal),
-                       'about': about, 'compression': compression_name, 'split_bytes': split_bytes, 'split_seconds': split_seconds}
+                       'about': about, 'compression': compression_name, 'split_bytes': split_bytes, 'split_seconds': split_seconds,
+                       'commands': commands and dataclasses.asdict(commands)}
         self._positions = {topic.name: position for position, topic in enumerate([*(topic for topic, _ in ticking), *others, journal])}
         self._journal = journal.name
         self._tick_size = sum(size for _, size in ticking)
         self._tick_length = frames.TICK_HEAD.size - frames.HEAD.size + self._tick_size
         self._lock = threading.Lock()           # of all below, held for microseconds
-        self._waiting = collections.deque()     # (number, frame); number 0 for what may be lost
+        self._waiting = collections.deque()     # (last number, frame); number 0 for what may be lost
         self._waiting_size = self._begun = 0    # bytes; of the first frame, bytes already in the pipe
-        self._unconfirmed = collections.deque()     # (number, frame)
+        self._unconfirmed = collections.deque()     # (last number, frame)
         self._unconfirmed_size = self._number = self._lost = 0
         self._ticks = self._dropped_now = self._restarts = 0
         self._dropping = self._ready = self._left = self.state_wanted = False
@@ -150,21 +154,24 @@ class Recorder:
 
     def important(self, topic_name, log_time, publish_time, data):
         """Record a message that must not be lost."""
-        self.important_all(((topic_name, data),), log_time, publish_time)
-
-    def important_all(self, messages, log_time, publish_time):
-        """Record messages that must not be lost, each with its topic's name."""
         with self._lock:
-            for topic_name, data in messages:
-                frame = frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data)
-                if self._unconfirmed_size + len(frame) > UNCONFIRMED:
-                    self._lost += 1
-                    continue
-                self._number += 1
-                self._unconfirmed.append((self._number, frame))
-                self._unconfirmed_size += len(frame)
-                self._append(self._number, frame)
-            self._pump()
+            self._keep(1, frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data))
+
+    def commands(self, tick, log_time, publish_time, rows):
+        """Record the commands that took effect at a tick (rows of command_rows.py) as CommandMessages has them; none is ever lost."""
+        with self._lock:
+            self._keep(len(rows) + 1, frames.commands_frame(self._number + 1, tick, log_time, publish_time, rows))
+
+    def _keep(self, count, frame):
+        """Send a frame with the next `count` numbers, and keep it until the recorder has it in its file."""
+        if self._unconfirmed_size + len(frame) > UNCONFIRMED:
+            self._lost += count
+            return
+        self._number += count
+        self._unconfirmed.append((self._number, frame))
+        self._unconfirmed_size += len(frame)
+        self._append(self._number, frame)
+        self._pump()
 
     def journal(self, kind, log_time, publish_time, **values):
         """Record an entry of the journal (see :func:`rigid_body_sim.recording.topics.journal_topic`); it is never lost."""
@@ -247,10 +254,10 @@ class Recorder:
     def status(self):
         """Return the Status. Call it a few times a second, not from the tick thread: it also starts a new recorder where one died."""
         with self._keeping:
-            self._keep()
+            self._look_after()
         return self._status()
 
-    def _keep(self):
+    def _look_after(self):
         """Pump, look, and start a new recorder where there is none."""
         with self._lock:
             self._look()
@@ -285,7 +292,7 @@ class Recorder:
         with self._keeping:
             deadline = time.monotonic() + timeout
             while time.monotonic() < deadline and not self._report.closed:
-                self._keep()
+                self._look_after()
                 if self._ready and not self._waiting:
                     self._end(deadline)
                     if self._report.error:

@@ -7,6 +7,7 @@ test/node/test_shutdown.py (at shutdown).
 import numpy as np
 import pytest
 
+from rigid_body_sim.command_rows import IMPULSE
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
@@ -64,9 +65,7 @@ def test_bursts_at_10_khz_balance(scenes):
     """2000 impulses from both frames, ten a tick: work and momentum add up to round-off, which walks at random."""
     simulation, random = Simulation(scenes['tennis_racket']), np.random.default_rng(9)
     for _ in range(200):
-        with simulation.together():
-            for k in range(10):
-                simulation.impulse(tuple(random.normal(size=3)), tuple(random.normal(size=3)), ('world', 'body')[k % 2])
+        assert simulation.command(np.array([(IMPULSE, k % 2, *random.normal(size=6)) for k in range(10)])) == []
         simulation.advance()
         simulation.forget_past()
     ledger = simulation.ledger()

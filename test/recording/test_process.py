@@ -5,23 +5,29 @@ import errno
 import json
 import os
 
+import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
+from rigid_body_sim.command_rows import FORCE, WIDTH
 from rigid_body_sim.recording import frames
 from rigid_body_sim.recording.frames import Report
 from rigid_body_sim.recording.mcap_file import McapFile
 from rigid_body_sim.recording.process import RecorderProcess
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
+from rigid_body_sim.recording.topics import Topic
 
 SCENE_POSITION = len(TICKING)
+IMPULSES = Topic('/cmd_impulse', 'geometry_msgs/msg/WrenchStamped')
 
 
 def setup(path, resume=False, report=None):
     return frames.json_frame(frames.SETUP, {
-        'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING], 'others': [dataclasses.asdict(SCENE)],
-        'journal': dataclasses.asdict(JOURNAL), 'about': ABOUT, 'compression': 'zstd', 'split_bytes': 0, 'split_seconds': 0.0,
+        'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING],
+        'others': [dataclasses.asdict(SCENE), dataclasses.asdict(IMPULSES)], 'journal': dataclasses.asdict(JOURNAL), 'about': ABOUT,
+        'compression': 'zstd', 'split_bytes': 0, 'split_seconds': 0.0,
+        'commands': {'topics': [IMPULSES.name, '/none'], 'frames': ['world', 'body']},
         'resume': resume, 'report': dataclasses.asdict(report or Report())})
 
 
@@ -33,6 +39,13 @@ def ticks(first, count):
     made, size = Ticks(first, count), sum(size for _, size in TICKING)
     return b''.join(frames.TICK_HEAD.pack(frames.TICK, 24 + size, first + index, int(made.stamps[index]), int(made.wall_clock[index]))
                     + b''.join(made.messages(index)) for index in range(count))
+
+
+def commands(number, count, tick=0):
+    """Impulses of one tick, numbered from `number` on, with their numbers as force; the entry of the journal is the last one."""
+    rows = np.zeros((count, WIDTH))
+    rows[:, FORCE.start] = np.arange(number, number + count)
+    return frames.commands_frame(number, tick, START, START, rows)
 
 
 def end(sent):
@@ -90,6 +103,45 @@ def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
     assert reports[-1].resend == reports[0].resend + 1      # asked once, though two came too early
     run(setup(tmp_path / 'again'), *map(message, (1, 3, 2, 3)))
     assert recorded(tmp_path / 'again')[0] == [1, 2, 3]
+
+
+def recorded_commands(path):
+    """Return the forces of recorded impulses by the topic, and those that the journal has, tick by tick."""
+    with Recording(path) as recording:
+        entries = [entry for entry in recording.journal() if entry['kind'] == 'commands']
+        forces = recording.read(IMPULSES.name, ['wrench.force'])['wrench.force'][:, 0].tolist()
+    return forces, [(entry['tick'], [one['force'][0] for one in entry['commands']]) for entry in entries]
+
+
+def test_commands_of_a_tick_become_messages_and_one_entry_once_each_between_ticks(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag'), message(1), commands(2, 3, 5), ticks(5, 1), commands(2, 3, 5), commands(6, 2, 6), ticks(6, 1))
+    assert (code, reports[-1].acknowledged) == (0, 8)
+    assert recorded_commands(tmp_path / 'bag') == ([2.0, 3.0, 4.0, 6.0, 7.0], [(5, [2.0, 3.0, 4.0]), (6, [6.0, 7.0])])
+    assert recorded(tmp_path / 'bag')[1] == [5, 6]
+
+
+def test_commands_that_are_half_recorded_are_gone_on_with(tmp_path):
+    """The file was full after the second of three messages: the frame comes again."""
+    process = RecorderProcess(-1, lambda line: True)
+    process._buffer = setup(tmp_path / 'bag')
+    process._take_frames()
+    record, left = process._writer.message, [2]
+
+    def fills(*arguments):
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        record(*arguments)
+    process._writer.message = fills
+    process._buffer = commands(1, 3)
+    process._take_frames()
+    assert process.report.error
+    left[0], process.report.error = 10, ''
+    process._buffer = commands(1, 3)
+    process._take_frames()
+    assert process._close() == 0
+    assert process.report.acknowledged == 4
+    assert recorded_commands(tmp_path / 'bag') == ([1.0, 2.0, 3.0], [(0, [1.0, 2.0, 3.0])])
 
 
 def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
