@@ -37,7 +37,8 @@ def ensemble(scene, starts, times, integrator='auto', accuracy=1e-12):
     times : array (n,)
         s, in any order.
     integrator, accuracy
-        As for Simulation.
+        As for Simulation. In closed form and by most methods each body gets the bits that it has alone; `taylor` takes eight bodies at once,
+        with other steps to the same accuracy.
 
     Returns
     -------
@@ -47,7 +48,9 @@ def ensemble(scene, starts, times, integrator='auto', accuracy=1e-12):
     Raises
     ------
     BadInput
-        Starts of another shape, or numbers that are not finite.
+        Starts of another shape, numbers that are not finite, a time before a start where there is no closed form.
+    NotConverged
+        With the number of the body and the time where a method gave up.
     """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     if not isinstance(starts, np.ndarray):

@@ -64,6 +64,32 @@ class Plain:
         """Write one number into an array."""
         array[at] = x
 
+    def put(self, v, array, at):
+        """Write eight numbers into an array."""
+        array[at:at + LANES] = v
+
+    def divided(self, a, b):
+        """Return a / b."""
+        return a / b
+
+    def root(self, a):
+        """Return the square root of a."""
+        return np.sqrt(a)
+
+    def where_less(self, a, b, x, y):
+        """Return x where a < b, else y."""
+        return np.where(a < b, x, y)
+
+    def place(self, at, stride, i):
+        """Return the place at + stride i in an array."""
+        return at + stride * i
+
+    def repeat(self, first, last, values, act):
+        """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+        for i in range(first, last):
+            values = act(i, values)
+        return values
+
 
 if HAVE_NUMBA:
     from llvmlite import ir
@@ -131,8 +157,54 @@ if HAVE_NUMBA:
             """Write one number into an array."""
             self._builder.store(x, self._place(array, at))
 
+        def put(self, v, array, at):
+            """Write eight numbers into an array."""
+            self._builder.store(v, self._builder.bitcast(self._place(array, at), EIGHT.as_pointer())).align = 8
+
+        def divided(self, a, b):
+            """Return a / b."""
+            return self._builder.fdiv(a, b)
+
+        def root(self, a):
+            """Return the square root of a."""
+            kind = ir.FunctionType(EIGHT, [EIGHT])
+            return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, 'llvm.sqrt.v8f64'), [a])
+
+        def where_less(self, a, b, x, y):
+            """Return x where a < b, else y."""
+            return self._builder.select(self._builder.fcmp_ordered('<', a, b), x, y)
+
+        def place(self, at, stride, i):
+            """Return the place at + stride i in an array."""
+            return self._builder.add(self._index(at), self._builder.mul(self._index(stride), self._index(i)))
+
+        def repeat(self, first, last, values, act):
+            """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+            builder, first, last = self._builder, self._index(first), self._index(last)
+            before, body, after = builder.block, builder.append_basic_block('body'), builder.append_basic_block('after')
+            builder.cbranch(builder.icmp_signed('<', first, last), body, after)
+            builder.position_at_end(body)
+            i, running = builder.phi(INDEX), [builder.phi(value.type) for value in values]
+            made = act(i, running)
+            following, end = builder.add(i, self._index(1)), builder.block
+            builder.cbranch(builder.icmp_signed('<', following, last), body, after)
+            for phi, begin, then in zip([i, *running], [first, *values], [following, *made], strict=True):
+                phi.add_incoming(begin, before)
+                phi.add_incoming(then, end)
+            builder.position_at_end(after)
+            results = []
+            for begin, then in zip(values, made, strict=True):
+                phi = builder.phi(begin.type)
+                phi.add_incoming(begin, before)
+                phi.add_incoming(then, end)
+                results.append(phi)
+            return results
+
+        def _index(self, i):
+            return ir.Constant(INDEX, i) if isinstance(i, int) else i
+
         def _place(self, array, at):
-            return self._builder.gep(array, [ir.Constant(INDEX, at)])
+            return self._builder.gep(array, [self._index(at)])
 
         def _shuffled(self, u, v, places):
             return self._builder.shuffle_vector(u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))

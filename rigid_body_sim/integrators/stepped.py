@@ -10,16 +10,19 @@ the scene are the business of rigid_body_sim/simulation.py, which starts a solve
 """
 
 import bisect
+import contextlib
 import math
 
 import numpy as np
 
+from rigid_body_sim.compiled import HAVE_NUMBA
 from rigid_body_sim.cores import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.exchange import EXCHANGE_SIZE
-from rigid_body_sim.integrators import METHODS, dop8, power_series, runnable, scipy_methods, table, track
+from rigid_body_sim.integrators import METHODS, batch, dop8, power_series, runnable, scipy_methods, table, track
 from rigid_body_sim.integrators.adaptive import TIME as NODE_TIME
 from rigid_body_sim.integrators.adaptive import VALUES
+from rigid_body_sim.integrators.lanes import LANES
 from rigid_body_sim.mechanics import drive, swing_rate
 from rigid_body_sim.specialise import specialise
 from rigid_body_sim.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
@@ -89,8 +92,7 @@ class Stepped:
         started.__dict__.update(self.__dict__)
         started.vector = vector = np.array(vector, dtype=float)
         started._begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
-        # later the body has turned by more radians than doubles can count
-        started._latest = started._begin + 1.0 / max(ULP * math.hypot(wx, wy, wz), LEAST)
+        started._latest = _latest(started._begin, math.hypot(wx, wy, wz))
         started._course = self._plain.course(started)
         started._booked_course = started._course if self._with_books is self._plain else None
         started._watcher = None
@@ -120,6 +122,8 @@ class Stepped:
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores.
 
+        taylor has a mode of its own for it, batch.py; the other methods take the bodies one by one.
+
         Raises
         ------
         BadInput, NotConverged
@@ -127,11 +131,29 @@ class Stepped:
         """
         def one_by_one(part):
             for body in range(part.start, part.stop):
-                try:
+                with _naming(body):
                     self.start(starts[body]).states(times, out[body])
-                except NotConverged as error:
-                    raise NotConverged(f'body {body}: {error}') from None
-        on_all_cores(one_by_one, len(starts))
+
+        def eight_by_eight(part):
+            failed = together.run(starts[part], out[part])
+            if failed:
+                with _naming(part.start + failed[0]):
+                    self.lost(failed[1])
+
+        if not (HAVE_NUMBA and self.method.FAMILY is power_series and self.step is None and len(times)):
+            on_all_cores(one_by_one, len(starts))
+            return
+        begins, rates = starts[:, TIME], np.hypot(np.hypot(starts[:, 5], starts[:, 6]), starts[:, 7])
+        for body in np.flatnonzero((times.min() < begins) | (times.max() > _latest(begins, rates))):
+            with _naming(body):
+                self.start(starts[body])._within(float(times.min()), float(times.max()))
+        together = batch.Batch(self._plain.equations, self.accuracy / self.horizon, times)
+        on_all_cores(eight_by_eight, len(starts), 2 * LANES)
+
+    def lost(self, time):
+        """Raise what a march raises that ends at a time (s)."""
+        raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {float(time)!r} s the state is no longer finite, '
+                           'or the step fell below what the clock resolves')
 
     def _within(self, first, last):
         """Raise unless the times from the first to the last can be reached."""
@@ -167,6 +189,20 @@ class Stepped:
         row = np.empty(STATE_SIZE + EXCHANGE_SIZE)
         self._booked_course.state(float(time), row)
         return row[STATE_SIZE:]
+
+
+def _latest(begin, rate):
+    """Return the time after which a body has turned by more radians than doubles can count."""
+    return begin + 1.0 / (ULP * rate + LEAST)
+
+
+@contextlib.contextmanager
+def _naming(body):
+    """Say in what did not converge which body it is."""
+    try:
+        yield
+    except NotConverged as error:
+        raise NotConverged(f'body {body}: {error}') from None
 
 
 class _Bound:
@@ -252,6 +288,4 @@ class _Course:
 
     def _check(self, good, piece):
         if not good:
-            method, scene = self._stepped.method.NAME, self._stepped.scene.name
-            raise NotConverged(f'{method} on {scene}: at t = {float(piece[self._bound.node + NODE_TIME])!r} s the state is no longer finite, '
-                               'or the step fell below what the clock resolves')
+            self._stepped.lost(piece[self._bound.node + NODE_TIME])

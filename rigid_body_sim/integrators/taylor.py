@@ -4,6 +4,8 @@ Coefficients follow one from the other by Cauchy's products, eight orders at onc
 the last two coefficients allow, is three to five times cheaper than one of dop8 and twice to thrice as long. The series of a step are also
 its dense output.
 
+Ensembles have a mode of their own: eight bodies at once (batch.py).
+
 Caveat: it needs products only, so no drag and no dissipation. Energy and momentum are kept to the accuracy of the method; the norm of the
 quaternion is restored after each step. The ledger's sums, and what holds while a wrench is held, are made by dop8.
 """

@@ -1,0 +1,143 @@
+"""taylor's mode for ensembles: eight bodies at once."""
+
+import json
+import pathlib
+
+import numpy as np
+import pytest
+from data import smooth_cases
+from near import near
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim import BadInput, NotConverged, ensemble
+from rigid_body_sim.compiled import HAVE_NUMBA, compiled
+from rigid_body_sim.integrators import batch_series as series
+from rigid_body_sim.integrators.lanes import LANES, Plain
+from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.rotations import angle_between, rotate
+from rigid_body_sim.scenes import parse_scene
+
+pytestmark = pytest.mark.skipif(not HAVE_NUMBA, reason='without numba the bodies are taken one by one')
+
+REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data' / 'smooth.json').read_text())
+ULP = np.finfo(float).eps
+
+
+def starts_of(scene, factors):
+    """Return the start of a scene with its angular velocity times each factor."""
+    starts = np.tile(scene.initial.vector, (len(factors), 1))
+    starts[:, 5:8] *= np.reshape(factors, (-1, 1))
+    return starts
+
+
+@pytest.mark.parametrize('name', ['asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest', 'driven_in_pieces'])
+def test_one_of_many_bodies_is_where_the_reference_says(name):
+    """At the round-off floor: an ulp on omega turns the body by an ulp of all the angle it went through, 4 ulp are for input and output."""
+    scene, reference = parse_scene(smooth_cases.text(name)), REFERENCE[name]
+    times = [float(time) for time in reference]
+    bodies = ensemble(scene, starts_of(scene, [0.0, 3.0, 0.1, *[2.0] * 7, 1.0]), times[::-1], 'taylor', 1e-14)
+    speed = np.linalg.norm(scene.initial.angular_velocity)
+    for state, (time, expected) in zip(bodies[10].vector[::-1], reference.items(), strict=True):
+        exact = np.array([float(x) for x in expected['state']])
+        speed = max(speed, np.linalg.norm(exact[4:7]))
+        floor = ULP * (4.0 + speed * float(time))
+        assert state[0] == float(time)
+        assert state[1:5] @ exact[:4] > 0.0, 'the sign of q is continuous'
+        assert angle_between(*state[1:5], *exact[:4]) < 0.5 * floor    # measured: at most 0.27 of the floor (driven_in_pieces)
+        assert np.linalg.norm(state[5:8] - exact[4:7]) <= 0.2 * floor * speed    # 0.09 (driven_from_rest)
+        assert np.abs(state[8:] - exact[7:]).max() <= 4 * ULP    # 1.5 (driven_in_pieces)
+
+
+def test_slow_and_fast_bodies_share_the_lanes():
+    """19 tops, a resting one and one that turns with 240 rad/s, each with its own start, beside the method one by one."""
+    scene = parse_scene(smooth_cases.text('asymmetric_heavy_top'))
+    starts = starts_of(scene, np.random.default_rng(2).permutation(np.linspace(0.0, 4.0, 19)))
+    starts[:, 0] = np.linspace(0.0, 0.5, 19)
+    times = np.array([2.0, 0.5, 1.7, 3.0, *np.linspace(0.51, 0.52, 20)])
+    alone, one = np.empty((19, 24, 14)), Stepped(scene, 'taylor', accuracy=1e-13)
+    for start, states in zip(starts, alone, strict=True):
+        one.start(start).states(times, states)
+    for accuracy in (1e-12, 1e-6):
+        together = ensemble(scene, starts, times, 'taylor', accuracy).vector
+        errors = [angle_between(*a[1:5], *b[1:5]) for a, b in zip(together.reshape(-1, 14), alone.reshape(-1, 14), strict=True)]
+        assert max(errors) < 0.1 * accuracy    # 1.5e-14, 2.5e-9
+        assert (np.einsum('kni,kni->kn', together[:, :, 1:5], alone[:, :, 1:5]) > 0.0).all(), 'the sign of q is continuous'
+    other = ensemble(scene, starts[4:], times[[1, 3, 0]], 'taylor', 1e-6)    # other lanes, other times
+    assert (other.vector == together[4:, [1, 3, 0]]).all()
+
+
+def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
+    """Spun about a principal axis the angle is 5 t + 0.005 t^2; to 0.1 rad in 100 s a step takes 4 rad."""
+    spun = parse_scene('scene: spun\nbody: {mass: 1.0, inertia: [1.0, 1.5, 2.0]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0.02]}]\n'
+                       'initial: {angular_velocity: [0, 0, 5]}\n')
+    times = np.linspace(0.0, 40.0, 400)
+    half = 0.5 * (5.0 * times + 0.005 * times ** 2)
+    for body in ensemble(spun, starts_of(spun, [1.0, 1.0]), times, 'taylor', 0.1):
+        assert np.abs(body.orientation[:, 2:] - np.transpose([np.sin(half), np.cos(half)])).max() < 1e-3    # 1.9e-4
+
+
+def test_force_and_couple_change_the_angular_momentum():
+    """A top under its weight and a couple askew to it: L is at every time what it was and the integral of r x F + couple."""
+    body, constraint, _, initial, _, _ = smooth_cases.CASES['skew_heavy_top']
+    couple = np.array([0.2, -0.3, 0.4])
+    scene = parse_scene(f'scene: pulled\nbody: {body}\nconstraint: {constraint}\n'
+                        f'effects: [gravity: {{g: 9.81}}, torque: {{value: {couple.tolist()}, frame: world}}]\ninitial: {initial}\n')
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    nodes, weights = np.add.outer(np.arange(20.0), 0.5 + 0.5 * nodes).ravel() / 10.0, np.tile(weights, 20) / 20.0
+    states = ensemble(scene, starts_of(scene, [1.0]), [*nodes, 0.0, 2.0], 'taylor', 1e-12)[0]
+    turn = Rotation.from_quat(states.orientation)
+    L = turn.apply(states.angular_velocity @ scene.body.about_origin.matrix.T)
+    torques = np.cross(turn.apply(scene.body.center_of_mass), [0.0, 0.0, -9.81 * scene.body.mass]) + couple
+    assert L[-1] - L[-2] == near(weights @ torques[:-2], 1e-13)    # 1e-14
+
+
+def test_bodies_that_do_not_move_stay():
+    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
+                        'initial: {}\n')
+    starts = starts_of(still, [1.0] * 3)
+    assert (ensemble(still, starts, [0.0, 1000.0], 'taylor', 1e-9).vector[:, :, 1:] == starts[:, np.newaxis, 1:]).all()
+    assert ensemble(still, starts, [], 'taylor', 1e-9).vector.shape == (3, 0, 14)
+
+
+def test_who_fails_is_named():
+    scene = parse_scene(smooth_cases.text('driven_body'))
+    starts = starts_of(scene, [1.0, 2.0, 1e18])    # powers of omega leave the range of doubles
+    with pytest.raises(NotConverged, match=r'body 2: taylor on driven_body: at t = 0\.0 s'):
+        ensemble(scene, starts, [1e-10], 'taylor', 1e-9)
+    with pytest.raises(NotConverged, match=r'body 2: .*more radians than'):
+        ensemble(scene, starts, [1.0], 'taylor', 1e-9)
+    starts[1, 0] = 3.0
+    with pytest.raises(BadInput, match=r'from the start, 3\.0 s'):
+        ensemble(scene, starts[:2], [1.0], 'taylor', 1e-9)
+
+
+def test_a_step_is_the_same_in_plain_python():
+    """The recurrence on arrays and compiled: coefficients to the rounding of sums of 18 terms, and the step's end."""
+    draw = np.random.default_rng(1)
+    table = np.zeros((series.ROWS, LANES))
+    table[series.EULER:series.EULER + 3] = [[-0.3], [0.6], [-0.4]]
+    table[series.CONSTANT:series.INVERSES] = draw.uniform(-1.0, 1.0, (15, 1))
+    table[series.INVERSES:] = 1.0 / np.arange(1.0, series.ORDER + 1.0).reshape(-1, 1)
+    for lane in range(LANES):
+        q = draw.normal(size=4)
+        q /= np.linalg.norm(q)
+        table[series.QUATERNION:series.SERIES, lane] = q
+        table[series.SERIES:series.OMEGA, lane] = *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)
+        table[series.OMEGA:series.NODE_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
+    table[series.END] = 1e3
+
+    @compiled
+    def advance(W):
+        series.advance(W, (1e-20,))
+    plain, written = table.ravel().copy(), table.ravel().copy()
+    series._advance(Plain(), plain, 1e-20)
+    advance(written)
+    plain, written = plain.reshape(table.shape), written.reshape(table.shape)
+    orders, end = slice(series.SERIES, series.FOLLOWING), slice(series.FOLLOWING, series.FOLLOWING + series.NODE_SIZE)
+    assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()    # 1
+    assert written[end][series.STEP] == near(plain[end][series.STEP], 1e-14)    # the same
+    for rows in (slice(series.QUATERNION, series.SERIES), slice(series.SERIES, series.NODE_SIZE)):
+        assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
+    # the quaternion turns with the directions
+    for q, e in zip(written[end][series.QUATERNION:series.SERIES].T, written[end][series.SERIES:series.OMEGA].T, strict=True):
+        assert np.abs(np.append(rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)) - e).max() < 8 * ULP    # 3.5
