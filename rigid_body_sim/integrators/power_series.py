@@ -10,6 +10,7 @@ from rigid_body_sim.specialise import specialise
 
 CONSTANT, FORCE, PULL, COUPLE = (euler.FIXED + k for k in (0, 3, 6, 12))
 COUNT = COUPLE + 3
+SAFETY = 0.25    # steps planned from the node before err by up to four times what is allowed (taylor_march.py)
 
 
 def equations(scene, wrench, books):
@@ -63,13 +64,13 @@ class Series(Equations):
 
 def march(method, bound, adapts):
     """Return the module that marches: taylor_march.py bound to what acts."""
-    return specialise(taylor_march, settled=f'{bound.kernels.__name__}:settled', expand=_expand(bound.pushed, bound.coupled))
+    return specialise(taylor_march, expand=_expand(bound.pushed, bound.coupled))
 
 
 def begin(stepped, kernels):
     """Return (control, node) of a march, to be copied for each start."""
     control = np.zeros(kernels.WORK + kernels.PLACES * (taylor_series.ORDER + 1))
-    control[kernels.TOLERANCE] = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
+    control[kernels.TOLERANCE] = SAFETY * stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     control[kernels.FIXED] = stepped.step or 0.0
     return control, np.zeros(kernels.VALUES + 2 * kernels.SIZE)
 

@@ -1,20 +1,24 @@
 """Template: march by Taylor series (taylor.py).
 
-A node is one point of the march: [time, step that led here or number of the node, squared scale of omega, 0, 0, unknowns, what their sums
-lost]. `control` holds [tolerance per second, fixed step or 0, origin, time of the node whose series stand behind] and from WORK on the
-coefficients, order by order.
+A node is one point of the march: [time, step planned from here or number of the node, squared scale of omega, 0, 0, unknowns, what their
+sums lost]. `control` holds [tolerance per second, fixed step or 0, origin, time of the node whose series stand behind] and from WORK on
+the coefficients, order by order.
+
+A step h should make the larger of its last two terms, c, what the tolerance allows in that time: c h^ORDER = tolerance h. What c says at one
+node is the plan for the next one: so a step is known while its coefficients are still being made, and nothing waits for the last of them.
+Where c says at the node itself that the plan is not nearly right, the step is chosen anew.
 """
 
 import math
 
 from rigid_body_sim.compiled import compiled
+from rigid_body_sim.integrators.euler import lost_norm
 from rigid_body_sim.integrators.nodes import onward
 from rigid_body_sim.integrators.taylor_series import ORDER, along
 from rigid_body_sim.integrators.taylor_series import UNKNOWNS as SIZE
 from rigid_body_sim.rotations import rotate_back  # noqa: F401 (for the bound source)
 from rigid_body_sim.specialise import UNBOUND
 
-settled = UNBOUND
 expand = UNBOUND
 
 TIME, STEP, SCALE, VALUES = 0, 1, 2, 5
@@ -24,6 +28,11 @@ NEARLY = 1e-9            # of a fixed step: an end that close to a node is that 
 GROWTH = 4.0             # of a step, at most
 UNMOVED = 1e-3           # s, the first step where nothing moves
 NOTHING = 1e-300         # (rad/s)^2, of a body that neither turns nor is turned
+NEAR = 16.0              # a plan is taken if the square of the last terms is what is allowed but for this factor
+ROOT = 0.5 / (ORDER - 2)
+PART = 0.6 * ROOT        # of what a node says about the step, the next plan follows part
+# of the approximation (Pade's) to x^PART near 1
+UPPER, MIDDLE, LOWER = (1.0 + PART) * (2.0 + PART), 2.0 * (4.0 - PART * PART), (1.0 - PART) * (2.0 - PART)
 
 
 @compiled
@@ -56,21 +65,30 @@ def _square(S, order, weight):
 
 
 @compiled
-def _longest(S, tolerance, last, scale):
-    """Return the step at which the larger of the last two terms is what the tolerance allows in that time.
+def _step(S, tolerance, planned, scale):
+    """Return (the step from here, the plan for the next node); a step is GROWTH times the plan at most.
 
-    The lower one counts as it would at the step before; a step grows by GROWTH at most.
+    Of the last two terms the lower one counts as it would at the step that is planned.
     """
     weight = 1.0 / scale if scale > NOTHING else 0.0
     final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
-    if last == 0.0:    # the first step: by the last term alone
+    allowed = tolerance * tolerance
+    if planned == 0.0:    # the first step: by the last term alone
         if final == 0.0:
-            return UNMOVED
-        last = math.pow(tolerance * tolerance / final, 0.5 / (ORDER - 1))
-    square = max(final * last * last, before)
-    if square == 0.0:
-        return GROWTH * last
-    return min(GROWTH * last, math.pow(tolerance * tolerance / square, 0.5 / (ORDER - 2)))
+            return UNMOVED, UNMOVED
+        planned = math.pow(allowed / final, 0.5 / (ORDER - 1))
+    second = planned * planned
+    fourth = second * second
+    eighth = fourth * fourth
+    square = max(final * second, before)
+    reached = square * (fourth * eighth * (eighth * eighth))
+    if allowed < NEAR * reached and reached < NEAR * allowed:
+        a, b, c = allowed * allowed, allowed * reached, reached * reached
+        return planned, planned * ((UPPER * a + MIDDLE * b + LOWER * c) / (LOWER * a + MIDDLE * b + UPPER * c))
+    h = GROWTH * planned
+    if square != 0.0:
+        h = min(h, math.pow(allowed / square, ROOT))
+    return h, h
 
 
 @compiled
@@ -98,16 +116,17 @@ def march(p, control, node, following, target, end, limit):
             if t1 + NEARLY * fixed >= end:
                 t1, h = end, end - t
         else:
-            h = _longest(S, tolerance, last, scale1)
+            h, step = _step(S, tolerance, last, scale1)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
-            step = h
         d = along(S, (h,))
-        d = d[0] + c[0], d[1] + c[1], d[2] + c[2], d[3] + c[3], d[4] + c[4], d[5] + c[5], d[6] + c[6]
+        # q is stretched by what it lacked at the beginning of the step, which is known before its end is
+        lost = lost_norm(y[0], y[1], y[2], y[3]) - (y[0] * c[0] + y[1] * c[1] + y[2] * c[2] + y[3] * c[3])
+        d = (d[0] + (c[0] + lost * (y[0] + d[0])), d[1] + (c[1] + lost * (y[1] + d[1])), d[2] + (c[2] + lost * (y[2] + d[2])),
+             d[3] + (c[3] + lost * (y[3] + d[3])), d[4] + c[4], d[5] + c[5], d[6] + c[6])
         y1 = y[0] + d[0], y[1] + d[1], y[2] + d[2], y[3] + d[3], y[4] + d[4], y[5] + d[5], y[6] + d[6]
         c1 = (d[0] - (y1[0] - y[0]), d[1] - (y1[1] - y[1]), d[2] - (y1[2] - y[2]), d[3] - (y1[3] - y[3]), d[4] - (y1[4] - y[4]),
               d[5] - (y1[5] - y[5]), d[6] - (y1[6] - y[6]))
-        y1, c1 = settled(y1, c1)
         good = t1 > t and y1[0] * y1[0] + y1[4] * y1[4] + y1[5] * y1[5] + y1[6] * y1[6] < math.inf
         if not good or target < t1 or moved == limit:
             following[TIME], following[STEP], following[SCALE] = t1, step, scale1

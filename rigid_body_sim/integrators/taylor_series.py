@@ -14,6 +14,7 @@ lanes at once: up to order 16 no pair is left out.
 from rigid_body_sim.integrators.lanes import LANES, compiled_lanes
 
 ORDER = 2 * LANES
+CHAINS = 3      # of sums side by side: the latency of one sum after the other would cost more than to join them
 UNKNOWNS = 7    # q, omega; the coefficients of an order stand in LANES places, the last one is not used
 
 
@@ -43,17 +44,18 @@ class _Products:
     def at(self, k):
         """Return the coefficient k, to be asked for in turn, once the series are known to order k."""
         o = self._operations
-        sums, others = (o.next(self._sums) if k else None), None
-        for sign, a, b in self._terms:
-            if k:
-                sums = o.gather(self._signed(sign, b.spread[k]), a.low[k - 1], sums)
-        for place, (sign, a, b) in enumerate(self._terms):
-            factor = self._signed(sign, a.spread[k])
-            if place == 0:    # two short chains instead of a long one
-                sums = o.gather(factor, b.low[k], sums) if k else o.times(factor, b.low[k])
+        pairs = [(sign, b.spread[k], a.low[k - 1]) for sign, a, b in self._terms if k] + [
+            (sign, a.spread[k], b.low[k]) for sign, a, b in self._terms]
+        sums = [o.next(self._sums)] if k else []
+        for place, (sign, factor, low) in enumerate(pairs):
+            factor = self._signed(sign, factor)
+            if place < CHAINS and place >= len(sums):
+                sums.append(o.times(factor, low))
             else:
-                others = o.times(factor, b.low[k]) if others is None else o.gather(factor, b.low[k], others)
-        self._sums = sums if others is None else o.plus(sums, others)
+                sums[place % len(sums)] = o.gather(factor, low, sums[place % len(sums)])
+        while len(sums) > 1:
+            sums = [*sums[2:], o.plus(sums[0], sums[1])]
+        self._sums = sums[0]
         return o.first(self._sums)
 
     def _signed(self, sign, factor):
@@ -119,13 +121,13 @@ def expansion(pushed, coupled):
 
 
 def _along(o, S, h):
-    """Return by how much the unknowns change in a time h: the even and the odd orders by Horner's rule, side by side."""
-    step = o.everywhere(h)
-    square = o.times(step, step)
-    odd, even = o.load(S, LANES * (ORDER - 1)), o.load(S, LANES * ORDER)
-    for k in range(ORDER - 2, 0, -2):
-        odd, even = o.gather(odd, square, o.load(S, LANES * (k - 1))), o.gather(even, square, o.load(S, LANES * k))
-    change = o.gather(even, square, o.times(odd, step))
+    """Return by how much the unknowns change in a time h: neighbours are joined, then neighbours of these, and so on."""
+    terms, power = [o.load(S, LANES * k) for k in range(1, ORDER + 1)], o.everywhere(h)
+    step = power
+    while len(terms) > 1:
+        terms = [o.gather(after, power, before) for before, after in zip(terms[::2], terms[1::2], strict=True)]
+        power = o.times(power, power)
+    change = o.times(terms[0], step)
     found = []
     for _ in range(UNKNOWNS):
         found.append(o.first(change))
