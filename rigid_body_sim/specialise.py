@@ -5,6 +5,7 @@ some names are declared ``NAME = UNBOUND``; :func:`specialise` writes a module w
 cache folder, where its kernels are cached like any others. What a scene does not list is then not in its code at all.
 """
 
+import functools
 import hashlib
 import importlib.util
 import inspect
@@ -35,12 +36,17 @@ def specialise(template, **bindings):
     TypeError
         If a declared name is left unbound, or a name is given that the template does not declare.
     """
-    source = inspect.getsource(template)
+    return _bound(template, tuple(sorted(bindings.items())))
+
+
+@functools.cache
+def _bound(template, bindings):
+    source, bindings = inspect.getsource(template), dict(bindings)
     declared = set(_DECLARATION.findall(source))
     if declared != set(bindings):
         raise TypeError(f'{template.__name__} declares {sorted(declared)}, got {sorted(bindings)}')
 
-    def bound(match):
+    def definition(match):
         name = match.group(1)
         binding = bindings[name]
         if '\n' in binding:
@@ -48,7 +54,7 @@ def specialise(template, **bindings):
         module, _, function = binding.partition(':')
         return f'from {module} import {function} as {name}'
 
-    return _load(_DECLARATION.sub(bound, source), template.__name__.rpartition('.')[2])
+    return _load(_DECLARATION.sub(definition, source), template.__name__.rpartition('.')[2])
 
 
 def _load(source, stem):
