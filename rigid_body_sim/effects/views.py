@@ -16,7 +16,7 @@ and the methods for views. One that an effect lacks is simply not defined; a met
 ================ ==================================================================================================================
 acting           (frame, time) -> tuple of Acting: the continuous right-hand side that holds just after `time` (view `rate`)
 as_impulse       (body, vector) -> impulses of force and torque at its `time` (view `kick`)
-series           (frame, time) -> Pull, or None where it is none: a torque without quotients and velocities (view `series`)
+series           (frame, time) -> Pull, or None where it is none: torque and force without quotients and velocities (view `series`)
 flow             (frame) -> Flow: what the effect does alone over a time h (view `flow`, for compositions)
 ================ ==================================================================================================================
 
@@ -108,14 +108,14 @@ class Acting:
 
 @dataclass(frozen=True)
 class Pull:
-    """What turns a body by a torque without quotients, roots or velocities.
+    """What turns or moves a body without quotients, roots or velocities.
 
     Attributes
     ----------
     constant : tuple of 3 floats
         Torque about the reference point, frame components (N m).
     force : tuple of 3 floats, optional
-        At the centre of mass, world components (N): it turns the body by arm x R^T force.
+        At the centre of mass, world components (N): it turns a pivoted body by arm x R^T force, and moves a free one.
     couple : tuple of 3 floats, optional
         World components (N m).
     """

@@ -37,6 +37,8 @@ class Equations:
     kernels : module
         `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, node, at)``,
         ``write(p, time, y, out)``.
+    write : str
+        Where the last of them is: for :func:`rigid_body_sim.specialise.specialise`.
     breakpoints : tuple of floats
         Times (s) at which the parameters jump.
     acts : bool
@@ -75,6 +77,7 @@ class Equations:
         if self.kind is flying:
             sources['force'] = force_source(calls)
         self.kernels = specialise(self.kind, **sources)
+        self.write = f'{self.kernels.__name__}:write'
         self._fixed, self._held = self._constants(), {}
         self.fixed_count = len(self._fixed)
 

@@ -4,11 +4,11 @@ import numpy as np
 
 from rigid_body_sim.effects.views import Frame
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators import euler, taylor_march, taylor_series, turning
+from rigid_body_sim.integrators import euler, falling, taylor_march, taylor_series, turning
 from rigid_body_sim.integrators.equations import Equations
 from rigid_body_sim.specialise import specialise
 
-CONSTANT, FORCE, PULL, COUPLE = (euler.FIXED + k for k in (0, 3, 6, 12))
+CONSTANT, FORCE, PULL, COUPLE = (falling.END + k for k in (0, 3, 6, 12))
 COUNT = COUPLE + 3
 SAFETY = 0.25    # steps planned from the node before err by up to four times what is allowed (taylor_march.py)
 
@@ -27,8 +27,10 @@ def equations(scene, wrench, books):
 class Series(Equations):
     """The equations of turning as taylor_series.py has them: a constant torque, a force on an arm, a couple.
 
-    Behind the parameters of every kind (euler.py) stand the constant part of omega', the force in world components, six numbers that make
-    its part of omega' from its components in the frame, and the couple in world components.
+    A free body's centre of mass falls in closed form (falling.py).
+
+    Behind the parameters of every kind (euler.py) stand those of the fall, the constant part of omega', the force in world components, six
+    numbers that make its part of omega' from its components in the frame, and the couple in world components.
     """
 
     def __init__(self, scene):
@@ -37,12 +39,14 @@ class Series(Equations):
         self.breakpoints = tuple(sorted({time for actor in self._actors for time in actor.breakpoints}))
         pulls = [actor.series(self.frame, -np.inf) if hasattr(actor, 'series') else None for actor in self._actors]
         if None in pulls or self.frame.kind not in ('free', 'pivot'):
-            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}', 'bodies that turn under gravity and torques only')
+            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}', 'free and pivoted bodies under gravity and torques only')
         self.acts, self.extra, self.kind = bool(pulls), 0, turning
-        self.pushed = any(pull.force is not None for pull in pulls)
+        forced = any(pull.force is not None for pull in pulls)
+        self.pushed, self.falls = forced and self.frame.kind == 'pivot', forced and self.frame.kind == 'free'
         self.coupled = any(pull.couple is not None for pull in pulls)
         # the sums of what acts stay unbound: nothing asks for rates
         self.kernels = specialise(turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n'))
+        self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
         self._axis, self._fixed, self._held = None, None, {}
         self._fixed = self._constants()
         self.parameter_count, self.fixed_count = COUNT, len(self._fixed)
@@ -57,6 +61,7 @@ class Series(Equations):
             constant += pull.constant
             force += pull.force or 0.0
             couple += pull.couple or 0.0
+        p[falling.FALL:falling.FALL + 3] = force / self.frame.mass if self.falls else 0.0
         p[CONSTANT:CONSTANT + 3], p[FORCE:FORCE + 3], p[COUPLE:COUPLE + 3] = inverse * constant, force, couple
         p[PULL:PULL + 6] = np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)
         return p

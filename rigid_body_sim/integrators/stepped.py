@@ -140,7 +140,7 @@ class Stepped:
                 with _naming(part.start + failed[0]):
                     self.lost(failed[1])
 
-        if not (HAVE_NUMBA and self.method.FAMILY is power_series and self.step is None and len(times)):
+        if not (HAVE_NUMBA and self.method.FAMILY is power_series and self.step is None and len(times) and not self._plain.equations.falls):
             on_all_cores(one_by_one, len(starts))
             return
         begins, rates = starts[:, TIME], np.hypot(np.hypot(starts[:, 5], starts[:, 6]), starts[:, 7])
@@ -220,7 +220,7 @@ class _Bound:
         places = np.cumsum([equations.parameter_count, len(control), len(node), len(node)]).tolist()
         self.node, self.piece_size = places[1], places[-1] + track.STORE + track.CHECKPOINTS * len(node)
         shared = {name: f'{self.march.__name__}:{name}' for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
-        shared |= {name: f'{equations.kernels.__name__}:{name}' for name in ('start', 'write')}
+        shared |= {'start': f'{equations.kernels.__name__}:start', 'write': equations.write}
         shared |= {name: f'{name} = {place}\n' for name, place in zip(('CONTROL', 'NODE', 'FOLLOWING', 'COUNTS'), places, strict=True)}
         self.track = specialise(track, **shared)
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from data import smooth_cases
+from near import near
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import lanes, runnable, taylor_series
@@ -87,3 +88,17 @@ def test_a_body_that_hardly_turns_is_set_turning():
     # omega' = 1/2.5; measured 6e-17 rad
     assert found[7] == pytest.approx(0.4, rel=4e-16)
     assert angle_between(*found[1:5], 0.0, 0.0, np.sin(0.1), np.cos(0.1)) < 5e-16
+
+
+def test_a_thrown_body_turns_as_if_it_did_not_fall_and_falls_in_a_parabola():
+    """Centre of mass off the body's origin; torque in the body."""
+    def scene(effects):
+        return parse_scene('scene: thrown\nbody: {mass: 2.0, inertia: [0.8, 0.9, 1.3], center_of_mass: [0.1, -0.2, 0.3]}\nconstraint: free\n'
+                           f'effects: [{effects}torque: {{value: [0.1, 0, 0.5], frame: body}}]\n'
+                           'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, 8.0], position: [1.0, 2.0, 3.0]}\n')
+    thrown = scene('gravity: {g: 9.81}, ')
+    assert 'taylor' in runnable(thrown)
+    still, fallen = (state(one, 5.0, accuracy=1e-9) for one in (scene(''), thrown))
+    assert np.array_equal(still[:8], fallen[:8])
+    assert fallen[8:11] == near(np.add(still[8:11], (0.0, 0.0, -4.905 * 25.0)), 4.0 * ULP)    # 1 ulp
+    assert fallen[11:] == near(np.add(still[11:], (0.0, 0.0, -9.81 * 5.0)), 4.0 * ULP)        # 1 ulp
