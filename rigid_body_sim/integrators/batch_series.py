@@ -16,7 +16,7 @@ from functools import partial
 
 from rigid_body_sim.integrators.lanes import LANES, compiled_lanes
 
-ORDER = 18          # the step is a 16th root then
+ORDER = 18
 UNKNOWNS = 9        # e1, e2, omega
 LOW = 8             # orders of omega that decide a sign
 GROWTH = 4.0        # of a step, at most
@@ -65,11 +65,11 @@ def _series(o, W):
         e = rows(k, 0, 6)
         changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
         for i in range(3):
-            rate = o.times(row(EULER + i), sums[12 + i])
+            # what is known first comes first
+            rate = o.gather(row(V + i), e[3 + i], row(CONSTANT + i)) if constant else o.times(row(V + i), e[3 + i])
             for j in range(3):
                 rate = o.gather(row(U + 3 * i + j), e[j], rate)
-            rate = o.gather(row(V + i), e[3 + i], rate)
-            changes.append(o.plus(rate, row(CONSTANT + i)) if constant else rate)
+            changes.append(o.gather(row(EULER + i), sums[12 + i], rate))
         share = o.load(W, o.place(LANES * INVERSES, LANES, k))
         for i, change in enumerate(changes):
             o.put(o.times(share, change), W, o.place(LANES * (SERIES + UNKNOWNS + i), LANES * UNKNOWNS, k))
@@ -110,9 +110,7 @@ def _longest(o, W, row, tolerance2, scale):
     last = o.where_less(o.none(), last, last, o.where_less(nothing, scale, o.root(weight), o.everywhere(o.number(UNMOVED))))
     final, before = o.times(square(ORDER, weight), o.times(last, last)), square(ORDER - 1, weight)
     larger = o.where_less(final, before, before, final)
-    step = o.divided(o.everywhere(tolerance2), o.where_less(larger, nothing, nothing, larger))
-    for _ in range(5):
-        step = o.root(step)
+    step = o.power(o.divided(o.everywhere(tolerance2), o.where_less(larger, nothing, nothing, larger)), 0.5 / (ORDER - 2))
     most = o.times(o.everywhere(o.number(GROWTH)), last)
     return o.where_less(step, most, step, most)
 

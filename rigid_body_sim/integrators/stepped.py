@@ -148,7 +148,7 @@ class Stepped:
             with _naming(body):
                 self.start(starts[body])._within(float(times.min()), float(times.max()))
         together = batch.Batch(self._plain.equations, self.accuracy / self.horizon, times)
-        on_all_cores(eight_by_eight, len(starts), 2 * LANES)
+        on_all_cores(eight_by_eight, len(starts), 4 * LANES)
 
     def lost(self, time):
         """Raise what a march raises that ends at a time (s)."""
