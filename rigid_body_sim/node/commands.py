@@ -21,6 +21,7 @@ from rigid_body_sim.command_rows import BODY, FORCE, HOLD, IMPULSE, TOPICS, WIDT
 from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
 from rigid_body_sim.node.doorbell import Doorbell
+from rigid_body_sim.node.gaps import NUMBER, Gaps
 
 DEPTH = 10_000
 """Messages that may wait in a subscription: a second of 10,000 a second."""
@@ -102,6 +103,7 @@ class Commands:
         self._bell = Doorbell(node, list(self._subscriptions.values()))
         self._takers = [(kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
                         for kind, subscription in self._subscriptions.items()]
+        self._gaps = {kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind])) for kind in (HOLD, IMPULSE)}
         # what each row begins with
         self._heads = {kind: {frame: np.array([kind, axes], float).tobytes() for frame, axes in self._axes.items()} for kind in (HOLD, IMPULSE)}
 
@@ -120,11 +122,17 @@ class Commands:
         """Take all that has come."""
         found = 0
         for kind, take in self._takers:
-            messages = [data for data, _ in itertools.islice(iter(take, None), DEPTH)]
-            if messages:
-                found += len(messages)
-                self._receive(kind, messages, scene_accepts)
+            taken = list(itertools.islice(iter(take, None), DEPTH))
+            if taken:
+                found += len(taken)
+                self._gaps[kind].look([about[NUMBER] for _, about in taken])
+                self._receive(kind, [data for data, _ in taken], scene_accepts)
         self._bell.answer(found)
+
+    @property
+    def lost(self):
+        """Messages that never came, since more than DEPTH waited or for another reason."""
+        return sum(gaps.lost for gaps in self._gaps.values())
 
     def collect(self):
         """Return the commands that wait, in their order (command_rows.py); they wait no more."""

@@ -37,7 +37,7 @@ class Diagnostics:
         self._node, self._settings = node, settings
         self._session, self._ticker, self._commands, self._journal = session, ticker, command_queue, journal
         self._name = node.get_fully_qualified_name().lstrip('/')
-        self._before = {'ticks': 0, 'running': 0, 'overruns': 0, 'slipped': 0, 'refused': 0, 'dropped': 0}
+        self._before = {'ticks': 0, 'running': 0, 'overruns': 0, 'slipped': 0, 'refused': 0, 'lost': 0, 'dropped': 0}
         self._same_name_checks = SAME_NAME_CHECKS
         self.rate = 0.0
         self.lateness = ticker.lateness.since_last()
@@ -98,12 +98,14 @@ class Diagnostics:
 
     def _command(self):
         queue = self._commands
-        refused = sum(queue.refusals.values())
-        new = self._since('refused', refused)
-        values = {'received': queue.received, 'accepted': queue.accepted, 'applied': queue.applied, 'waiting': queue.waiting,
+        refused, lost = sum(queue.refusals.values()), queue.lost
+        new_refused, new_lost = self._since('refused', refused), self._since('lost', lost)
+        values = {'received': queue.received, 'accepted': queue.accepted, 'applied': queue.applied, 'waiting': queue.waiting, 'lost': lost,
                   'refused': refused, **{f'refused: {reason}': count for reason, count in queue.refusals.copy().items()}}
-        message = f'{new} refused in the last second: see events' if new else 'none refused in the last second'
-        return self._status('commands', WARN if new else OK, message, values)
+        message = f'{new_refused or "none"} refused in the last second{": see events" if new_refused else ""}'
+        if new_lost:
+            message = f'{new_lost} lost on the way in the last second: send fewer; {message}'
+        return self._status('commands', WARN if new_refused or new_lost else OK, message, values)
 
     def _recording(self):
         status = self._journal.status

@@ -4,10 +4,19 @@ import contextlib
 import ctypes
 import gc
 import os
+import platform
+import struct
 import sys
 
 PRIORITY = 10
 PR_SET_TIMERSLACK = 29
+SLICE = 100_000
+"""How long the thread asks to run at a time, ns, the least there is: where real-time scheduling is not allowed, who asks for less comes first.
+
+A thread that sleeps in time is then late by 0.1 to 0.7 ms where it was by 3 to 4 (p99, both processors busy with others).
+"""
+SCHED_SETATTR = {'x86_64': 314, 'aarch64': 274}
+"""Number of the system call, which Python does not offer."""
 SWITCH_INTERVAL = 1e-4
 """How long another thread may keep the interpreter from the one that keeps deadlines, s."""
 
@@ -21,12 +30,21 @@ def ask_for_priority(real_time, priority=PRIORITY):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
     scheduling = 'normal'
     with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        _ask_for_slice(SLICE if real_time else 0)
         if real_time:
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
             scheduling = f'SCHED_FIFO {priority}'
-        else:
-            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     return scheduling
+
+
+def _ask_for_slice(nanoseconds):
+    """Ask for a slice of that length in normal scheduling, 0 for the usual one; anybody may. Linux before 6.12 takes no notice."""
+    number = SCHED_SETATTR.get(platform.machine())
+    if number is not None:
+        # struct sched_attr, see sched_setattr(2): its sched_runtime is the slice
+        nice = os.getpriority(os.PRIO_PROCESS, 0)
+        ctypes.CDLL(None).syscall(number, 0, struct.pack('=IIQiIQQQ', 48, os.SCHED_OTHER, 0, nice, 0, nanoseconds, 0, 0), 0)
 
 
 def quicken():

@@ -10,6 +10,11 @@ WEAKEST = {'RELIABILITY': 'best_effort', 'DURABILITY': 'volatile'}
 STRONGEST = {'RELIABILITY': 'reliable', 'DURABILITY': 'transient_local'}
 
 
+def publishers_of(node, topic):
+    """Return who publishes to a topic now, a set of identities."""
+    return {bytes(publisher.endpoint_gid) for publisher in node.get_publishers_info_by_topic(node.resolve_topic_name(topic))}
+
+
 def publisher_mismatch(node, topic):
     """Return event callbacks that say once a policy that a subscriber of the topic asks for more than this node offers."""
     return PublisherEventCallbacks(incompatible_qos=_Mismatch(

@@ -79,6 +79,27 @@ def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
         assert [command['torque'][2] for command in commands if command['force'][0] == sender] == [1e-9 * k for k in range(count)]
 
 
+def test_commands_that_a_full_queue_drives_out_are_counted(run_node):
+    """Room for five, and a look every 10 ms: of 2000 at once most are lost, and none is lost unseen."""
+    count = 2000
+    with run_node('-p', 'rate:=1', '-p', 'record:=false', '-p', 'qos_overrides./cmd_impulse.subscription.depth:=5') as node:
+        arrays = node.client.collect(DiagnosticArray, '/diagnostics')
+        publisher = node.client.publisher(WrenchStamped, 'cmd_impulse', QoSProfile(depth=count))
+        publisher.publish(WrenchStamped())
+        node.client.until(lambda: diagnosis(arrays, 'commands').get('received') == '1', what='the first command')
+        for _ in range(count):
+            publisher.publish(WrenchStamped())
+
+        def counted():
+            found = diagnosis(arrays, 'commands')
+            return int(found['received']) + int(found['lost']) == count + 1
+        node.client.until(counted, what='all commands')
+        warned = [status for array in arrays for status in array.status
+                  if status.name == 'sim_node: commands' and 'lost on the way' in status.message]
+        assert {status.level for status in warned} == {DiagnosticStatus.WARN}
+        assert int(diagnosis(arrays, 'commands')['lost']) > count // 2
+
+
 def test_rate_that_cannot_be_held_is_told_and_recovers(run_node):
     with run_node('-p', 'record:=false', '-p', 'stamp_origin:=zero') as node:
         client = node.client
