@@ -18,8 +18,8 @@ from rigid_body_sim.integrators.batch_series import (
     between,
 )
 from rigid_body_sim.integrators.euler import read_state
+from rigid_body_sim.integrators.falling import write
 from rigid_body_sim.integrators.lanes import LANES
-from rigid_body_sim.integrators.turning import write
 from rigid_body_sim.rotations import multiply, rotate_back
 
 NOBODY = -1

@@ -91,6 +91,22 @@ def test_force_and_couple_change_the_angular_momentum():
     assert L[-1] - L[-2] == near(weights @ torques[:-2], 1e-13)    # 1e-14
 
 
+def test_thrown_bodies_fall():
+    """Beside the same bodies without weight: centre of mass off the origin, the torque changes on the way."""
+    def states(effects):
+        return ensemble(scene_with(effects), starts, [0.5, 5.0], 'taylor', 1e-9).vector
+
+    def scene_with(effects):
+        return parse_scene('scene: thrown\nbody: {mass: 2.0, inertia: [0.8, 0.9, 1.3], center_of_mass: [0.1, -0.2, 0.3]}\nconstraint: free\n'
+                           f'effects: [{effects}torque: {{times: [0, 2], values: [[0.1, 0, 0.5], [0, 1, 0]], frame: body}}]\n'
+                           'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, 8.0], position: [1.0, 2.0, 3.0]}\n')
+    starts = starts_of(scene_with(''), [1.0, 2.0])
+    drop = states('gravity: {g: 10.0}, ') - states('')
+    expected = np.zeros((2, 2, 14))
+    expected[:, :, 10], expected[:, :, 13] = [-1.25, -125.0], [-5.0, -50.0]
+    assert np.abs(drop - expected).max() < 1e-11    # 2.4e-13 of the attitude: the directions that are followed are others
+
+
 def test_bodies_that_do_not_move_stay():
     still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
                         'initial: {}\n')
