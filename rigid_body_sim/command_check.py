@@ -56,10 +56,10 @@ def take(p, rate, start, rows, left, sums, verdicts, amounts):
 
     Returns
     -------
-    int
-        Place of the last row that holds or releases, -1 if there is none.
+    int, int
+        Place of the last row that holds or releases, -1 if there is none; how many are not taken.
     """
-    last = -1
+    last, taken = -1, 0
     force, torque, after, exchange = np.empty(3), np.empty(3), np.empty(STATE_SIZE), np.empty(mechanics.EXCHANGE_SIZE)
     for k in range(len(rows)):
         row = rows[k]
@@ -91,13 +91,15 @@ def take(p, rate, start, rows, left, sums, verdicts, amounts):
             sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
             sums[3], sums[4], sums[5] = sums[3] + tx, sums[4] + ty, sums[5] + tz
             sums[SUM_WORK] += work
+            taken += 1
             for j in range(STATE_SIZE):
                 left[j] = after[j]
         elif acts and turn > LARGEST_TURN:
             verdicts[k], amounts[k] = TOO_FAST, turn
         else:
             last = k
-    return last
+            taken += 1
+    return last, len(rows) - taken
 
 
 def refusal(verdict, amount, row, attitude):

@@ -238,10 +238,12 @@ class Simulation:
             self._commands = _Commands(len(self._spans), self.wrench, self.vector.copy(), self.vector.copy(), np.zeros(SUM_SIZE))
         given = self._commands
         verdicts, amounts = np.empty(len(rows), np.int64), np.empty(len(rows))
-        last = command_check.take(self._mechanics, self.rate, given.start, rows, given.left, given.sums, verdicts, amounts)
+        last, refused = command_check.take(self._mechanics, self.rate, given.start, rows, given.left, given.sums, verdicts, amounts)
         if last >= 0:
             self._commands = given._replace(wrench=_wrench(rows[last]))
         self._settle()
+        if not refused:
+            return []
         attitude = given.start[ORIENTATION].tolist()
         return [(k, command_check.refusal(verdicts[k], amounts.item(k), rows[k], attitude)) for k in np.flatnonzero(verdicts).tolist()]
 

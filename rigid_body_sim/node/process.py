@@ -3,12 +3,15 @@
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node.shutdown import say
+
+RCLError = rclpy_implementation.RCLError
 
 
 def run(make_node, arguments, stop):
@@ -25,7 +28,7 @@ def run(make_node, arguments, stop):
     Returns
     -------
     int
-        0, or 2 after one line about bad input, or 1 after one line about a failure.
+        0, or 2 after one line about bad input or what ROS refuses, or 1 after one line about a failure.
     """
     # its complaint about arguments would come in two lines, and ours says the same
     set_logger_level('rcl', LoggingSeverity.FATAL)
@@ -43,6 +46,9 @@ def run(make_node, arguments, stop):
         return _spin(node, stop)
     except BadInput as refusal:
         say(refusal)
+        return BAD_INPUT
+    except RCLError as error:
+        say(f'ROS: {_one_line(error)}')
         return BAD_INPUT
     except InvalidParameterTypeException as error:
         say(f'parameter {_one_line(error)}')

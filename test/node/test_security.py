@@ -3,7 +3,10 @@
 import pathlib
 from xml.etree import ElementTree
 
+import pytest
+
 POLICY = pathlib.Path(__file__).resolve().parents[2] / 'config' / 'security' / 'policy.xml'
+FILES = ('identity_ca.cert.pem', 'cert.pem', 'key.pem', 'permissions_ca.cert.pem', 'governance.p7s', 'permissions.p7s')
 NOT_HERE = {'/tf', '/joint_states', '/reaction'}
 """Published only where tf2 is installed, by a hinge, by what is held."""
 
@@ -40,3 +43,19 @@ def test_listener_can_change_nothing():
     assert allowed('listener', 'service', 'request') == set()
     assert allowed('operator', 'service', 'request') <= allowed('sim_node', 'service', 'reply')
     assert {'/cmd_wrench', '/cmd_impulse'} <= allowed('operator', 'topic', 'publish') & allowed('sim_node', 'topic', 'subscribe')
+
+
+@pytest.mark.parametrize('keys', [False, True])
+def test_node_that_cannot_be_as_secure_as_asked_does_not_run(ros_domain, tmp_path, keys):
+    """Without keys nothing of ROS runs, nor with files that are none; the Fast DDS among the wheels, built without security, never does."""
+    enclave = tmp_path / 'enclaves' / 'rigid_body_sim' / 'sim_node'
+    enclave.mkdir(parents=True)
+    for name in FILES if keys else ():
+        (enclave / name).write_text('none')
+    environment = {**ros_domain.environment, 'ROS_SECURITY_KEYSTORE': str(tmp_path), 'ROS_SECURITY_ENABLE': 'true',
+                   'ROS_SECURITY_STRATEGY': 'Enforce'}
+    done = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '--enclave', '/rigid_body_sim/sim_node', '-p', 'record:=false',
+                          env=environment)
+    assert done.returncode == 2
+    assert 'Traceback' not in done.stderr
+    assert done.stderr.splitlines()[-1].lower().startswith('ros')
