@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from rigid_body_sim.compiled import compiled
-from rigid_body_sim.effects.views import Acting
+from rigid_body_sim.effects.views import Acting, Pull
 from rigid_body_sim.errors import BadInput
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
@@ -43,6 +45,15 @@ class Drag:
         if self.angular:
             acting.append(Acting(f'{__name__}:couple', (self.angular,), 'torque', 'heat'))
         return tuple(acting)
+
+    def series(self, frame, time):
+        """View `series`: the couple and, at a pivot, the moment; a body that flies is slowed down too, which is no turning."""
+        if frame.kind == 'hinge' or (self.linear and frame.kind == 'free'):
+            return None
+        r = np.array(frame.arm)
+        # of `couple` and `moment`
+        matrix = -self.angular * np.eye(3) - self.linear * (r @ r * np.eye(3) - np.outer(r, r))
+        return Pull(drag=tuple(map(tuple, matrix.tolist())))
 
 
 @compiled

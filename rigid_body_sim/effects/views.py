@@ -16,7 +16,7 @@ and the methods for views. One that an effect lacks is simply not defined; a met
 ================ ==================================================================================================================
 acting           (frame, time) -> tuple of Acting: the continuous right-hand side that holds just after `time` (view `rate`)
 as_impulse       (body, vector) -> impulses of force and torque at its `time` (view `kick`)
-series           (frame, time) -> Pull, or None where it is none: torque and force without quotients and velocities (view `series`)
+series           (frame, time) -> Pull, or None where it is none: torque and force without quotients (view `series`)
 flow             (frame) -> Flow: what the effect does alone over a time h (view `flow`, for compositions)
 ================ ==================================================================================================================
 
@@ -108,7 +108,7 @@ class Acting:
 
 @dataclass(frozen=True)
 class Pull:
-    """What turns or moves a body without quotients, roots or velocities.
+    """What turns or moves a body without quotients and roots.
 
     Attributes
     ----------
@@ -118,11 +118,14 @@ class Pull:
         At the centre of mass, world components (N): it turns a pivoted body by arm x R^T force, and moves a free one.
     couple : tuple of 3 floats, optional
         World components (N m).
+    drag : tuple of 3 tuples of 3 floats, optional
+        Rows of the matrix that makes a torque of omega, frame components (N m s).
     """
 
     constant: tuple = (0.0, 0.0, 0.0)
     force: tuple | None = None
     couple: tuple | None = None
+    drag: tuple | None = None
 
 
 def as_floats(values):

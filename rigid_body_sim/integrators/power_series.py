@@ -8,8 +8,8 @@ from rigid_body_sim.integrators import euler, falling, taylor_march, taylor_seri
 from rigid_body_sim.integrators.equations import Equations
 from rigid_body_sim.specialise import specialise
 
-CONSTANT, FORCE, PULL, COUPLE = (falling.END + k for k in (0, 3, 6, 12))
-COUNT = COUPLE + 3
+CONSTANT, FORCE, PULL, COUPLE, DRAG = (falling.END + k for k in (0, 3, 6, 12, 15))
+COUNT = DRAG + 9
 SAFETY = 0.25    # steps planned from the node before err by up to four times what is allowed (taylor_march.py)
 
 
@@ -25,12 +25,13 @@ def equations(scene, wrench, books):
 
 
 class Series(Equations):
-    """The equations of turning as taylor_series.py has them: a constant torque, a force on an arm, a couple.
+    """The equations of turning as taylor_series.py has them: a constant torque, a force on an arm, a couple, drag.
 
     A free body's centre of mass falls in closed form (falling.py).
 
     Behind the parameters of every kind (euler.py) stand those of the fall, the constant part of omega', the force in world components, six
-    numbers that make its part of omega' from its components in the frame, and the couple in world components.
+    numbers that make its part of omega' from its components in the frame, the couple in world components, and the matrix that makes the
+    part of drag of omega, row by row.
     """
 
     def __init__(self, scene):
@@ -39,11 +40,13 @@ class Series(Equations):
         self.breakpoints = tuple(sorted({time for actor in self._actors for time in actor.breakpoints}))
         pulls = [actor.series(self.frame, -np.inf) if hasattr(actor, 'series') else None for actor in self._actors]
         if None in pulls or self.frame.kind not in ('free', 'pivot'):
-            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}', 'free and pivoted bodies under gravity and torques only')
+            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}',
+                           'free and pivoted bodies under gravity, torques, drag that does not slow down a flight')
         self.acts, self.extra, self.kind = bool(pulls), 0, turning
         forced = any(pull.force is not None for pull in pulls)
         self.pushed, self.falls = forced and self.frame.kind == 'pivot', forced and self.frame.kind == 'free'
         self.coupled = any(pull.couple is not None for pull in pulls)
+        self.dragged = any(pull.drag is not None for pull in pulls)
         # the sums of what acts stay unbound: nothing asks for rates
         self.kernels = specialise(turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n'))
         self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
@@ -56,20 +59,22 @@ class Series(Equations):
         p = np.zeros(COUNT)
         p[:len(fixed)] = fixed
         inverse, (rx, ry, rz) = p[euler.INVERSE:euler.INVERSE + 3], self.frame.arm
-        constant, force, couple = np.zeros((3, 3))
+        (constant, force, couple), drag = np.zeros((3, 3)), np.zeros((3, 3))
         for pull in (actor.series(self.frame, time) for actor in self._actors):
             constant += pull.constant
             force += pull.force or 0.0
             couple += pull.couple or 0.0
+            drag += pull.drag or 0.0
         p[falling.FALL:falling.FALL + 3] = force / self.frame.mass if self.falls else 0.0
         p[CONSTANT:CONSTANT + 3], p[FORCE:FORCE + 3], p[COUPLE:COUPLE + 3] = inverse * constant, force, couple
         p[PULL:PULL + 6] = np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)
+        p[DRAG:] = (inverse[:, np.newaxis] * drag).ravel()
         return p
 
 
 def march(method, bound, adapts):
     """Return the module that marches: taylor_march.py bound to what acts."""
-    return specialise(taylor_march, expand=_expand(bound.pushed, bound.coupled))
+    return specialise(taylor_march, expand=_expand(bound.pushed, bound.coupled, bound.dragged))
 
 
 def begin(stepped, kernels):
@@ -80,7 +85,7 @@ def begin(stepped, kernels):
     return control, np.zeros(kernels.VALUES + 2 * kernels.SIZE)
 
 
-def _expand(pushed, coupled):
+def _expand(pushed, coupled, dragged):
     """Return the source of ``expand(p, S, y)``: the series of y."""
     def numbers(first, count):
         return f'({"".join(f"p[{first + k}], " for k in range(count))})'
@@ -89,6 +94,7 @@ def _expand(pushed, coupled):
         return f'*rotate_back(y[0], y[1], y[2], y[3], p[{first}], p[{first + 1}], p[{first + 2}])'
     push = f'({along_frame(FORCE)}, *{numbers(PULL, 6)})' if pushed else '()'
     couple = f'({along_frame(COUPLE)}, *{numbers(euler.INVERSE, 3)})' if coupled else '()'
+    drag = numbers(DRAG, 9) if dragged else '()'
     return '\n'.join([f'from {taylor_series.__name__} import expansion as kernel_for', '',
-                      f'expansion = kernel_for({pushed}, {coupled})', '', '', '@compiled', 'def expand(p, S, y):',
-                      f'    expansion(S, (y, {numbers(euler.EULER, 3)}, {numbers(CONSTANT, 3)}, {push}, {couple}))', ''])
+                      f'expansion = kernel_for({pushed}, {coupled}, {dragged})', '', '', '@compiled', 'def expand(p, S, y):',
+                      f'    expansion(S, (y, {numbers(euler.EULER, 3)}, {numbers(CONSTANT, 3)}, {push}, {couple}, {drag}))', ''])

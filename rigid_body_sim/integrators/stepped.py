@@ -122,7 +122,7 @@ class Stepped:
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores.
 
-        taylor has a mode of its own for it, batch.py; the other methods take the bodies one by one.
+        taylor has a mode of its own for it, batch.py, where there is no drag; else the bodies are taken one by one.
 
         Raises
         ------
@@ -140,7 +140,8 @@ class Stepped:
                 with _naming(part.start + failed[0]):
                     self.lost(failed[1])
 
-        if not (HAVE_NUMBA and self.method.FAMILY is power_series and self.step is None and len(times) and not self._plain.equations.falls):
+        plain = self._plain.equations if self.method.FAMILY is power_series else None
+        if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.falls and not plain.dragged):
             on_all_cores(one_by_one, len(starts))
             return
         begins, rates = starts[:, TIME], np.hypot(np.hypot(starts[:, 5], starts[:, 6]), starts[:, 7])

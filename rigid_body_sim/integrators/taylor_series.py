@@ -2,8 +2,9 @@
 
     q' = q omega/2,   omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + Gamma_1/I1 and so on in turn,   f' = f x omega
 
-Gamma = constant + arm x f + c, where f and c are the components in the frame of a force and a couple that keep their direction in the world;
-a scene that lacks one has no f or no c. All right-hand sides are products of two unknowns, so that the series follow from Cauchy's products:
+Gamma = constant + arm x f + c - D omega, where f and c are the components in the frame of a force and a couple that keep their direction in
+the world, and D is the matrix of drag; a scene that lacks one has no f, no c or no D. All right-hand sides are products of two unknowns or
+linear, so that the series follow from Cauchy's products:
 
     (a b)_k = sum over i of a_i b_(k - i),    q_(k + 1) = (q omega)_k/(2 (k + 1)),  ...
 
@@ -74,21 +75,21 @@ def _turning(o, q, w):
             _Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])), _Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])))
 
 
-def expansion(pushed, coupled):
-    """Return the kernel ``(S, (y, euler, constant, push, couple)) -> ()`` that fills S with the coefficients of y, order by order.
+def expansion(pushed, coupled, dragged):
+    """Return the kernel ``(S, (y, euler, constant, push, couple, drag)) -> ()`` that fills S with the coefficients of y, order by order.
 
     Parameters
     ----------
-    pushed, coupled : bool
-        Whether there is a force on an arm, and a couple, that keep their direction in the world.
+    pushed, coupled, dragged : bool
+        Whether there is a force on an arm, and a couple, that keep their direction in the world, and drag.
 
     Notes
     -----
     euler holds (I2 - I3)/I1 ..., constant a torque's part in omega', push (if `pushed`) f at the start and the six numbers that make
     omega' of it: omega_1' = u_1 f_2 + u_2 f_3, omega_2' = u_3 f_3 + u_4 f_1, omega_3' = u_5 f_1 + u_6 f_2; couple (if `coupled`) holds c at
-    the start and 1/I1 ...
+    the start and 1/I1 ...; drag (if `dragged`) -D_11/I1, -D_12/I1 ..., row by row.
     """
-    def recurrence(o, S, y, euler, constant, push, couple):
+    def recurrence(o, S, y, euler, constant, push, couple, drag):
         q, w = [_Series(o, value) for value in y[:4]], [_Series(o, value) for value in y[4:]]
         f, u = ([_Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
         c, inverse = ([_Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
@@ -108,6 +109,9 @@ def expansion(pushed, coupled):
                 if c:
                     turn = c[i].coefficients[k]
                     driven = o.times(inverse[i], turn) if driven is None else o.gather(inverse[i], turn, driven)
+                for place, share in enumerate(drag[3 * i:3 * i + 3]):
+                    turn = w[place].coefficients[k]
+                    driven = o.times(share, turn) if driven is None else o.gather(share, turn, driven)
                 own = gyroscopic[i].at(k)
                 rates.append(o.times(euler[i], own) if driven is None else o.gather(euler[i], own, driven))
             following = [o.times(o.number(1.0 / (k + 1)), rate) for rate in rates]
