@@ -141,14 +141,14 @@ class Stepped:
                     self.lost(failed[1])
 
         plain = self._plain.equations if self.method.FAMILY is power_series else None
-        if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.falls and not plain.dragged):
+        if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.dragged):
             on_all_cores(one_by_one, len(starts))
             return
         begins, rates = starts[:, TIME], np.hypot(np.hypot(starts[:, 5], starts[:, 6]), starts[:, 7])
         for body in np.flatnonzero((times.min() < begins) | (times.max() > _latest(begins, rates))):
             with _naming(body):
                 self.start(starts[body])._within(float(times.min()), float(times.max()))
-        together = batch.Batch(self._plain.equations, self.accuracy / self.horizon, times)
+        together = batch.Batch(plain, self.accuracy / self.horizon, times)
         on_all_cores(eight_by_eight, len(starts), 4 * LANES)
 
     def lost(self, time):
