@@ -30,8 +30,10 @@ MOST_QUEUED = 100_000
 LARGEST = 1e100
 """A number beyond this would overflow in the energies."""
 _LENGTH = struct.Struct('<I').unpack_from
-_FRAME_AT = 16    # encapsulation, stamp (two numbers of four bytes), length of the frame_id
-_NUMBERS_SIZE = 48
+# encapsulation and stamp (4 and 8 bytes), length and text of the frame_id, the numbers
+_LITTLE_ENDIAN, _FRAME_FROM, _FRAME_AT, _NUMBERS_SIZE = ENCAPSULATION[:2], 12, 16, 48
+MOST_HEADS = 64
+"""Forms of messages that are known again: padding may hold anything."""
 _REMEDIES = {
     'malformed': 'a geometry_msgs/msg/WrenchStamped',
     'the scene refuses commands': 'in the scene file: commands: accept',
@@ -53,22 +55,23 @@ class TakenElsewhere(CallbackGroup):
 
 
 def decode(data):
-    """Return frame_id and the six numbers (both bytes) of a serialised WrenchStamped.
+    """Return the frame_id (bytes) of a serialised WrenchStamped, and where its six numbers end.
 
     Raises
     ------
     ValueError
         If these bytes are no such message.
     """
-    if data[:2] != ENCAPSULATION[:2]:
+    if data[:2] != _LITTLE_ENDIAN:
         raise ValueError('not little-endian CDR')
-    end = _FRAME_AT + _LENGTH(data, _FRAME_AT - 4)[0] if len(data) >= _FRAME_AT else len(data)
-    # numbers of eight bytes are aligned, counted after the encapsulation
-    begin = end + (4 - end) % 8
-    numbers = data[begin:begin + _NUMBERS_SIZE]
-    if len(numbers) < _NUMBERS_SIZE:
+    if len(data) < _FRAME_AT:
         raise ValueError('cut short')
-    return data[_FRAME_AT:max(end - 1, _FRAME_AT)], numbers
+    frame_end = _FRAME_AT + _LENGTH(data, _FRAME_FROM)[0]
+    # numbers of eight bytes are aligned, counted after the encapsulation
+    end = frame_end + (4 - frame_end) % 8 + _NUMBERS_SIZE
+    if len(data) < end:
+        raise ValueError('cut short')
+    return data[_FRAME_AT:max(frame_end - 1, _FRAME_AT)], end
 
 
 class Commands:
@@ -104,8 +107,8 @@ class Commands:
         self._takers = [(kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
                         for kind, subscription in self._subscriptions.items()]
         self._gaps = {kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind])) for kind in (HOLD, IMPULSE)}
-        # what each row begins with
-        self._heads = {kind: {frame: np.array([kind, axes], float).tobytes() for frame, axes in self._axes.items()} for kind in (HOLD, IMPULSE)}
+        # what rows begin with, by what messages have between stamp and numbers: senders hardly ever change it
+        self._heads = {HOLD: {}, IMPULSE: {}}
 
     @staticmethod
     def _subscribe(node, topic, group):
@@ -154,23 +157,37 @@ class Commands:
         self.received += len(messages)
         heads, pieces, topic = self._heads[kind], [], TOPICS[kind]
         for data in messages:
-            try:
-                frame, numbers = decode(data)
-            except ValueError as error:
-                self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}')
-                continue
-            head = heads.get(frame)
-            if head is None:
-                self.refuse(topic, 'frame_id', f'frame_id {frame.decode(errors="replace")!r}')
-            else:
-                pieces += head, numbers
+            head = heads.get(data[_FRAME_FROM:-_NUMBERS_SIZE])
+            if head is None or data[:2] != _LITTLE_ENDIAN:
+                head, data = self._examine(kind, data)
+            if head is not None:
+                pieces += head, data[-_NUMBERS_SIZE:]
+        if not pieces:
+            return
         rows = np.frombuffer(bytearray().join(pieces)).reshape(-1, WIDTH)
-        if not (scene_accepts and self.waiting + len(rows) <= MOST_QUEUED and np.abs(rows).max(initial=0.0) <= LARGEST):
+        # so written, it is false for what is not a number too
+        if not (scene_accepts and self.waiting + len(rows) <= MOST_QUEUED and rows.min() >= -LARGEST and rows.max() <= LARGEST):
             rows = self._sift(topic, rows, scene_accepts)
-        if len(rows):
-            self._rows.append(rows)
-            self.waiting += len(rows)
-            self.accepted += len(rows)
+        self._rows.append(rows)
+        self.waiting += len(rows)
+        self.accepted += len(rows)
+
+    def _examine(self, kind, data):
+        """Return what the row of a message begins with, None if it is refused, and the message without what may follow its numbers."""
+        topic = TOPICS[kind]
+        try:
+            frame, end = decode(data)
+        except ValueError as error:
+            self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}')
+            return None, data
+        axes = self._axes.get(frame)
+        if axes is None:
+            self.refuse(topic, 'frame_id', f'frame_id {frame.decode(errors="replace")!r}')
+            return None, data
+        head = np.array([kind, axes], float).tobytes()
+        if end == len(data) and len(self._heads[kind]) < MOST_HEADS:
+            self._heads[kind][data[_FRAME_FROM:-_NUMBERS_SIZE]] = head
+        return head, data[:end]
 
     def _sift(self, topic, rows, scene_accepts):
         """Refuse what cannot be right, and what is beyond what may wait; return the other rows."""
