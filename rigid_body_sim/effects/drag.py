@@ -47,13 +47,13 @@ class Drag:
         return tuple(acting)
 
     def series(self, frame, time):
-        """View `series`: the couple and, at a pivot, the moment; a body that flies is slowed down too, which is no turning."""
-        if frame.kind == 'hinge' or (self.linear and frame.kind == 'free'):
+        """View `series`: the couple and, at a pivot, the moment turn a body; the force slows down one that flies."""
+        if frame.kind == 'hinge':
             return None
         r = np.array(frame.arm)
         # of `couple` and `moment`
         matrix = -self.angular * np.eye(3) - self.linear * (r @ r * np.eye(3) - np.outer(r, r))
-        return Pull(drag=tuple(map(tuple, matrix.tolist())))
+        return Pull(drag=tuple(map(tuple, matrix.tolist())) if matrix.any() else None, slowing=self.linear if frame.kind == 'free' else 0.0)
 
 
 @compiled

@@ -120,12 +120,15 @@ class Pull:
         World components (N m).
     drag : tuple of 3 tuples of 3 floats, optional
         Rows of the matrix that makes a torque of omega, frame components (N m s).
+    slowing : float
+        c of a force -c v at the centre of mass of a free body (N s/m).
     """
 
     constant: tuple = (0.0, 0.0, 0.0)
     force: tuple | None = None
     couple: tuple | None = None
     drag: tuple | None = None
+    slowing: float = 0.0
 
 
 def as_floats(values):

@@ -41,10 +41,11 @@ class Series(Equations):
         pulls = [actor.series(self.frame, -np.inf) if hasattr(actor, 'series') else None for actor in self._actors]
         if None in pulls or self.frame.kind not in ('free', 'pivot'):
             raise BadInput('integrator', f'taylor cannot run the scene {scene.name}',
-                           'free and pivoted bodies under gravity, torques, drag that does not slow down a flight')
+                           'free and pivoted bodies under gravity, torques and drag only')
         self.acts, self.extra, self.kind = bool(pulls), 0, turning
         forced = any(pull.force is not None for pull in pulls)
-        self.pushed, self.falls = forced and self.frame.kind == 'pivot', forced and self.frame.kind == 'free'
+        self.pushed = forced and self.frame.kind == 'pivot'
+        self.falls = self.frame.kind == 'free' and (forced or any(pull.slowing for pull in pulls))
         self.coupled = any(pull.couple is not None for pull in pulls)
         self.dragged = any(pull.drag is not None for pull in pulls)
         # the sums of what acts stay unbound: nothing asks for rates
@@ -59,13 +60,15 @@ class Series(Equations):
         p = np.zeros(COUNT)
         p[:len(fixed)] = fixed
         inverse, (rx, ry, rz) = p[euler.INVERSE:euler.INVERSE + 3], self.frame.arm
-        (constant, force, couple), drag = np.zeros((3, 3)), np.zeros((3, 3))
+        (constant, force, couple), drag, slowing = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
         for pull in (actor.series(self.frame, time) for actor in self._actors):
             constant += pull.constant
             force += pull.force or 0.0
             couple += pull.couple or 0.0
             drag += pull.drag or 0.0
-        p[falling.FALL:falling.FALL + 3] = force / self.frame.mass if self.falls else 0.0
+            slowing += pull.slowing
+        if self.falls:
+            p[falling.FALL:falling.FALL + 3], p[falling.SLOWING] = force / self.frame.mass, slowing / self.frame.mass
         p[CONSTANT:CONSTANT + 3], p[FORCE:FORCE + 3], p[COUPLE:COUPLE + 3] = inverse * constant, force, couple
         p[PULL:PULL + 6] = np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)
         p[DRAG:] = (inverse[:, np.newaxis] * drag).ravel()

@@ -19,7 +19,7 @@ REFERENCE = json.loads((TEST / 'data' / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
 
 
-BY_SERIES = ('asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest', 'driven_in_pieces', 'damped_top')
+BY_SERIES = ('asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest', 'driven_in_pieces', 'damped_top', 'thrown_with_drag')
 
 
 @pytest.fixture(scope='module', params=['dop8', 'gauss16', 'taylor'])
