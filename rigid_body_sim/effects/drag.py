@@ -48,8 +48,6 @@ class Drag:
 
     def series(self, frame, time):
         """View `series`: the couple and, at a pivot, the moment turn a body; the force slows down one that flies."""
-        if frame.kind == 'hinge':
-            return None
         r = np.array(frame.arm)
         # of `couple` and `moment`
         matrix = -self.angular * np.eye(3) - self.linear * (r @ r * np.eye(3) - np.outer(r, r))

@@ -36,8 +36,8 @@ class Gravity:
         return Acting('rigid_body_sim.effects.elementary:moment_of_weight', values, 'torque', 'potential'),
 
     def series(self, frame, time):
-        """View `series`: the weight; none on a hinge."""
-        return None if frame.kind == 'hinge' else Pull(force=(0.0, 0.0, -frame.mass * self.g))
+        """View `series`: the weight."""
+        return Pull(force=(0.0, 0.0, -frame.mass * self.g))
 
     def energy(self, frame, height):
         """Return the potential energy (J) of the centre of mass at a height (m) above the world's origin."""

@@ -64,7 +64,5 @@ class Torque:
 
     def series(self, frame, time):
         """View `series`: the couple."""
-        if frame.kind == 'hinge':
-            return None
         value = self.value(time)
         return Pull(couple=value) if self.frame == 'world' else Pull(constant=frame.from_body(value))

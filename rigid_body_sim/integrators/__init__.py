@@ -37,10 +37,4 @@ def runnable(scene):
     acting = [one for effect in effects if hasattr(effect, 'acting') for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' for one in acting)
     return [name for name, method in METHODS.items()
-            if all(_shows(effect, method.NEEDS, frame) for effect in effects) and (method.HEAT or not hot)
-            and not (method.NEEDS == 'series' and frame.kind == 'hinge')]
-
-
-def _shows(effect, view, frame):
-    """Return whether an effect has a view of itself in a frame."""
-    return hasattr(effect, view) and (view != 'series' or effect.series(frame, 0.0) is not None)
+            if all(hasattr(effect, method.NEEDS) for effect in effects) and (method.HEAT or not hot)]

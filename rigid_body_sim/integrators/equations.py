@@ -60,9 +60,7 @@ class Equations:
         self.acts = bool(acting)
         self.extra = EXCHANGE_SIZE if books else 0
         if self.frame.kind == 'hinge':
-            self.kind, self._moment = hinged, moment_about_hinge(scene.body, scene.constraint)
-            if not self._moment > 0.0:
-                raise BadInput(f'{scene.name}: constraint.hinge', 'the moment of inertia about the axis is zero', 'move the axis')
+            self.kind, self._moment = hinged, moment_on_hinge(scene)
         else:
             self.kind = flying if any(one.gives == 'force' for one in acting) else turning
         fixed = hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED
@@ -121,6 +119,14 @@ class Equations:
     def parameters(self, fixed, time):
         """Return the parameters that hold just after a time: the fixed ones, then the values of all that acts."""
         return np.array([*fixed, *(value for one in self._acting(time) for value in one.values)])
+
+
+def moment_on_hinge(scene):
+    """Return the moment of inertia about the hinge (kg m^2); BadInput if it is zero."""
+    moment = moment_about_hinge(scene.body, scene.constraint)
+    if not moment > 0.0:
+        raise BadInput(f'{scene.name}: constraint.hinge', 'the moment of inertia about the axis is zero', 'move the axis')
+    return moment
 
 
 class _Call:

@@ -23,9 +23,10 @@ def table():
 
 
 def kind(scene):
-    """Return the kind of a scene: its constraint, and whether anything damps it."""
-    damped = scene.effect('drag') or scene.effect('internal_dissipation')
-    return f'{scene.constraint.kind}, damped' if damped else scene.constraint.kind
+    """Return the kind of a scene: its constraint, and what makes heat."""
+    if scene.effect('internal_dissipation'):
+        return f'{scene.constraint.kind}, dissipating'
+    return f'{scene.constraint.kind}, damped' if scene.effect('drag') else scene.constraint.kind
 
 
 def pace(scene):

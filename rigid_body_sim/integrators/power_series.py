@@ -1,11 +1,14 @@
 """Family of the methods by power series: taylor. Its equations are not those of a scene but of a few kinds: what acts is in their numbers."""
 
+import dataclasses
+
 import numpy as np
 
-from rigid_body_sim.effects.views import Frame
+from rigid_body_sim.effects.views import Frame, turned_back
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import euler, falling, taylor_march, taylor_series, turning
-from rigid_body_sim.integrators.equations import Equations
+from rigid_body_sim.integrators.equations import Equations, moment_on_hinge
+from rigid_body_sim.rotations import normalised
 from rigid_body_sim.specialise import specialise
 
 CONSTANT, FORCE, PULL, COUPLE, DRAG = (falling.END + k for k in (0, 3, 6, 12, 15))
@@ -35,16 +38,15 @@ class Series(Equations):
     """
 
     def __init__(self, scene):
-        self.frame = Frame.of(scene.body, scene.constraint)
+        self.frame = _frame(scene)
         self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')]
         self.breakpoints = tuple(sorted({time for actor in self._actors for time in actor.breakpoints}))
-        pulls = [actor.series(self.frame, -np.inf) if hasattr(actor, 'series') else None for actor in self._actors]
-        if None in pulls or self.frame.kind not in ('free', 'pivot'):
-            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}',
-                           'free and pivoted bodies under gravity, torques and drag only')
+        if not all(hasattr(actor, 'series') for actor in self._actors):
+            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}', 'bodies under gravity, torques and drag only')
+        pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
         self.acts, self.extra, self.kind = bool(pulls), 0, turning
         forced = any(pull.force is not None for pull in pulls)
-        self.pushed = forced and self.frame.kind == 'pivot'
+        self.pushed = forced and self.frame.kind != 'free'
         self.falls = self.frame.kind == 'free' and (forced or any(pull.slowing for pull in pulls))
         self.coupled = any(pull.couple is not None for pull in pulls)
         self.dragged = any(pull.drag is not None for pull in pulls)
@@ -73,6 +75,16 @@ class Series(Equations):
         p[PULL:PULL + 6] = np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)
         p[DRAG:] = (inverse[:, np.newaxis] * drag).ravel()
         return p
+
+
+def _frame(scene):
+    """Return the frame of a scene's equations; that of a hinge has its third axis along it, and takes no torque about the others."""
+    frame = Frame.of(scene.body, scene.constraint)
+    if frame.kind != 'hinge':
+        return frame
+    nx, ny, nz = scene.constraint.axis
+    axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)
+    return dataclasses.replace(frame, moments=(0.0, 0.0, moment_on_hinge(scene)), axes=axes, arm=turned_back(axes, frame.arm))
 
 
 def march(method, bound, adapts):

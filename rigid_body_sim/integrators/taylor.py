@@ -1,6 +1,7 @@
 """taylor: the Taylor series of order 16 of a body turned by constant torques, its weight and drag.
 
-A torque is constant in the body or in the world. The centre of mass of a free body moves in closed form (falling.py), drag or not.
+A torque is constant in the body or in the world. The centre of mass of a free body moves in closed form (falling.py), drag or not; a body on
+a hinge is one that takes no torque across it (power_series.py).
 
 Coefficients follow one from the other by Cauchy's products, eight orders at once in the vector unit (taylor_series.py); a step, as long as
 the last two coefficients allow, is three to five times cheaper than one of dop8 and twice to thrice as long. The series of a step are also
@@ -8,8 +9,8 @@ its dense output.
 
 Ensembles have a mode of their own: eight bodies at once (batch.py).
 
-Caveat: it needs products only, so no internal dissipation and no hinge. Energy and momentum are kept to the accuracy of the
-method; the norm of the quaternion is restored after each step. The ledger's sums, and what holds while a wrench is held, are made by dop8.
+Caveat: it needs products only, so no internal dissipation. Energy and momentum are kept to the accuracy of the method; the norm of the
+quaternion is restored after each step. The ledger's sums, and what holds while a wrench is held, are made by dop8.
 """
 
 from rigid_body_sim.integrators import power_series as FAMILY  # noqa: F401, N812

@@ -59,6 +59,9 @@ _TRAINING = {
     'damped_heavy_top': ('drag on an asymmetric top', 10.0, _written(
         '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}', 'pivot',
         '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]', '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}')),
+    'driven_body_with_drag': ('thrown, driven and held back by the air', 20.0, _written(
+        FREE, 'free', '[gravity: {g: 9.81}, torque: {value: [0.3, -0.2, 0.5]}, drag: {linear: 0.1, angular: 0.05}]',
+        '{angular_velocity: [0.1, 2.0, 0.3], velocity: [3.0, 0.0, 9.0]}')),
     'driven_pendulum': ('a pendulum under a constant couple', 20.0, _written(
         '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}',
         '[gravity: {g: 9.81}, torque: {value: [0, 1.5, 0]}]', '{angle: 0.3, rate: 4.0}')),
