@@ -14,6 +14,7 @@ from rigid_body_sim.compiled import HAVE_NUMBA, compiled
 from rigid_body_sim.integrators import batch_series as series
 from rigid_body_sim.integrators.lanes import LANES, Plain
 from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.mechanics import moment_about_hinge
 from rigid_body_sim.rotations import angle_between, rotate
 from rigid_body_sim.scenes import parse_scene
 
@@ -105,6 +106,18 @@ def test_thrown_bodies_fall():
     expected = np.zeros((2, 2, 14))
     expected[:, :, 10], expected[:, :, 13] = [-1.25, -125.0], [-5.0, -50.0]
     assert np.abs(drop - expected).max() < 1e-11    # 2.4e-13 of the attitude: the directions that are followed are others
+
+
+def test_hinged_bodies_keep_their_hinge_and_their_energy():
+    scene = parse_scene(smooth_cases.text('held_hinge_body'))
+    axis, through = np.array(scene.constraint.axis), np.array(scene.constraint.through)
+    I, M = moment_about_hinge(scene.body, scene.constraint), scene.body.mass
+    for body in ensemble(scene, starts_of(scene, [0.0, 0.5, 1.0]), [0.0, 0.4, 3.0], 'taylor', 1e-13):
+        turn = Rotation.from_quat(body.orientation)
+        height = (body.position + turn.apply(scene.body.center_of_mass))[:, 2]
+        E = 0.5 * I * np.sum(body.angular_velocity ** 2, axis=1) + M * 9.81 * height
+        for kept, bound in ((turn.apply(axis), 8 * ULP), (body.position + turn.apply(through), 8 * ULP), (E, 1e-13 * np.abs(E).max())):
+            assert np.abs(kept - kept[0]).max() <= bound    # 0.2, 0.03, 0.12 of it
 
 
 def test_bodies_that_do_not_move_stay():
