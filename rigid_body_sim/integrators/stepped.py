@@ -138,7 +138,7 @@ class Stepped:
             failed = together.run(starts[part], out[part])
             if failed:
                 with _naming(part.start + failed[0]):
-                    self.lost(failed[1])
+                    raise _lost(self.method, self.scene, failed[1])
 
         plain = self._plain.equations if self.method.FAMILY is power_series else None
         if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.dragged):
@@ -150,11 +150,6 @@ class Stepped:
                 self.start(starts[body])._within(float(times.min()), float(times.max()))
         together = batch.Batch(plain, self.accuracy / self.horizon, times)
         on_all_cores(eight_by_eight, len(starts), 4 * LANES)
-
-    def lost(self, time):
-        """Raise what a march raises that ends at a time (s)."""
-        raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {float(time)!r} s the state is no longer finite, '
-                           'or the step fell below what the clock resolves')
 
     def _within(self, first, last):
         """Raise unless the times from the first to the last can be reached."""
@@ -195,6 +190,12 @@ class Stepped:
 def _latest(begin, rate):
     """Return the time after which a body has turned by more radians than doubles can count."""
     return begin + 1.0 / (ULP * rate + LEAST)
+
+
+def _lost(method, scene, time):
+    """Return the error of a march that ends at a time (s)."""
+    return NotConverged(f'{method.NAME} on {scene.name}: at t = {float(time)!r} s the state is no longer finite, or the step fell below what '
+                        'the clock resolves')
 
 
 @contextlib.contextmanager
@@ -241,14 +242,16 @@ class _Course:
     """One march from a start: a piece for each stretch between breakpoints, made when it is reached."""
 
     def __init__(self, stepped, bound):
-        self._stepped, self._bound, self._pieces, self._ends = stepped, bound, [], FOR_EVER
+        # the solver itself is not kept: two that hold each other stay in memory until the garbage is collected
+        self._method, self._scene, self._begin, self._vector = stepped.method, stepped.scene, stepped._begin, stepped.vector
+        self._bound, self._pieces, self._ends = bound, [], FOR_EVER
         if bound.equations.breakpoints:
-            self._ends = [time for time in bound.equations.breakpoints if time > stepped._begin] + [math.inf]
+            self._ends = [time for time in bound.equations.breakpoints if time > self._begin] + [math.inf]
 
     def _first_piece(self):
         """Return the piece at the start, not filled yet."""
         self._pieces.append(np.empty(self._bound.piece_size))
-        return self._bound.prototype(self._stepped._begin), self._stepped.vector, self._pieces[0]
+        return self._bound.prototype(self._begin), self._vector, self._pieces[0]
 
     def _next_piece(self, begin):
         """Return the piece that begins where the last one ends."""
@@ -289,4 +292,4 @@ class _Course:
 
     def _check(self, good, piece):
         if not good:
-            self._stepped.lost(piece[self._bound.node + NODE_TIME])
+            raise _lost(self._method, self._scene, piece[self._bound.node + NODE_TIME])
