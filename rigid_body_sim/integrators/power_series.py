@@ -89,7 +89,7 @@ def _frame(scene):
 
 def march(method, bound, adapts):
     """Return the module that marches: taylor_march.py bound to what acts."""
-    return specialise(taylor_march, expand=_expand(bound.pushed, bound.coupled, bound.dragged))
+    return specialise(taylor_march, expand=_expand(bound.pushed, bound.coupled, bound.dragged, bound.frame.kind == 'hinge'))
 
 
 def begin(stepped, kernels):
@@ -100,7 +100,7 @@ def begin(stepped, kernels):
     return control, np.zeros(kernels.VALUES + 2 * kernels.SIZE)
 
 
-def _expand(pushed, coupled, dragged):
+def _expand(pushed, coupled, dragged, hinged):
     """Return the source of ``expand(p, S, y)``: the series of y."""
     def numbers(first, count):
         return f'({"".join(f"p[{first + k}], " for k in range(count))})'
@@ -111,5 +111,5 @@ def _expand(pushed, coupled, dragged):
     couple = f'({along_frame(COUPLE)}, *{numbers(euler.INVERSE, 3)})' if coupled else '()'
     drag = numbers(DRAG, 9) if dragged else '()'
     return '\n'.join([f'from {taylor_series.__name__} import expansion as kernel_for', '',
-                      f'expansion = kernel_for({pushed}, {coupled}, {dragged})', '', '', '@compiled', 'def expand(p, S, y):',
+                      f'expansion = kernel_for({pushed}, {coupled}, {dragged}, {hinged})', '', '', '@compiled', 'def expand(p, S, y):',
                       f'    expansion(S, (y, {numbers(euler.EULER, 3)}, {numbers(CONSTANT, 3)}, {push}, {couple}, {drag}))', ''])

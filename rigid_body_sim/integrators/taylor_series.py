@@ -37,14 +37,19 @@ class _Series:
 
 
 class _Products:
-    """A sum of products of series with signs, [(sign, a, b), ...]; b should be the one whose coefficients are known first."""
+    """A sum of products of series with signs, [(sign, a, b), ...]; b should be the one whose coefficients are known first.
+
+    None stands for a series that is zero throughout: its products are left out.
+    """
 
     def __init__(self, operations, *terms):
-        self._operations, self._terms, self._sums = operations, terms, None
+        self._operations, self._terms, self._sums = operations, [term for term in terms if None not in term], None
 
     def at(self, k):
         """Return the coefficient k, to be asked for in turn, once the series are known to order k."""
         o = self._operations
+        if not self._terms:
+            return o.number(0.0)
         pairs = [(sign, b.spread[k], a.low[k - 1]) for sign, a, b in self._terms if k] + [
             (sign, a.spread[k], b.low[k]) for sign, a, b in self._terms]
         sums = [o.next(self._sums)] if k else []
@@ -75,13 +80,15 @@ def _turning(o, q, w):
             _Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])), _Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])))
 
 
-def expansion(pushed, coupled, dragged):
+def expansion(pushed, coupled, dragged, hinged):
     """Return the kernel ``(S, (y, euler, constant, push, couple, drag)) -> ()`` that fills S with the coefficients of y, order by order.
 
     Parameters
     ----------
     pushed, coupled, dragged : bool
         Whether there is a force on an arm, and a couple, that keep their direction in the world, and drag.
+    hinged : bool
+        Whether omega keeps to the third axis; the coefficients of its other components stay as they are in S.
 
     Notes
     -----
@@ -90,17 +97,19 @@ def expansion(pushed, coupled, dragged):
     the start and 1/I1 ...; drag (if `dragged`) -D_11/I1, -D_12/I1 ..., row by row.
     """
     def recurrence(o, S, y, euler, constant, push, couple, drag):
-        q, w = [_Series(o, value) for value in y[:4]], [_Series(o, value) for value in y[4:]]
+        turns = (2,) if hinged else (0, 1, 2)
+        q, w = [_Series(o, value) for value in y[:4]], [_Series(o, y[4 + i]) if i in turns else None for i in range(3)]
         f, u = ([_Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
         c, inverse = ([_Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
         gyroscopic = [_Products(o, (1, w[i - 2], w[i - 1])) for i in range(3)]
         products = [*_turning(o, q, w), *(_turned(o, f, w) if f else ()), *(_turned(o, c, w) if c else ())]
         shares = [0.5] * 4 + [1.0] * (len(f) + len(c))
-        for place, one in enumerate(q + w):
+        unknowns = [(place, one) for place, one in enumerate(q + w) if one]
+        for place, one in unknowns:
             o.store(one.coefficients[0], S, place)
         for k in range(ORDER):
             rates = []
-            for i in range(3):
+            for i in turns:
                 driven = constant[i] if k == 0 else None
                 if f:
                     near, far = f[i - 2].coefficients[k], f[i - 1].coefficients[k]
@@ -109,16 +118,17 @@ def expansion(pushed, coupled, dragged):
                 if c:
                     turn = c[i].coefficients[k]
                     driven = o.times(inverse[i], turn) if driven is None else o.gather(inverse[i], turn, driven)
-                for place, share in enumerate(drag[3 * i:3 * i + 3]):
-                    turn = w[place].coefficients[k]
-                    driven = o.times(share, turn) if driven is None else o.gather(share, turn, driven)
+                for share, one in zip(drag[3 * i:3 * i + 3], w if drag else (), strict=True):
+                    if one:
+                        turn = one.coefficients[k]
+                        driven = o.times(share, turn) if driven is None else o.gather(share, turn, driven)
                 own = gyroscopic[i].at(k)
                 rates.append(o.times(euler[i], own) if driven is None else o.gather(euler[i], own, driven))
             following = [o.times(o.number(1.0 / (k + 1)), rate) for rate in rates]
             others = [o.times(o.number(share / (k + 1)), product.at(k)) for share, product in zip(shares, products, strict=True)]
-            for one, coefficient in zip([*w, *q, *f, *c], [*following, *others], strict=True):
+            for one, coefficient in zip([*(w[i] for i in turns), *q, *f, *c], [*following, *others], strict=True):
                 one.add(coefficient)
-            for place, one in enumerate(q + w):
+            for place, one in unknowns:
                 o.store(one.coefficients[k + 1], S, LANES * (k + 1) + place)
         return []
     return compiled_lanes(recurrence, 0)
