@@ -76,6 +76,20 @@ def test_refusals_are_recorded_and_nan_is_one(racket):
     assert found['refused']['weak'] == 'too far'
 
 
+def test_what_fails_in_a_later_run_is_recorded_and_ends_nothing(racket):
+    sound = made_up(*racket, 'sound', OFF)
+    run, runs = sound.make(None), []
+
+    def start():
+        runs.append(None)
+        if len(runs) > 5:
+            raise NotConverged('a singularity')
+    weak = runner.Runner('weak', 'step', (0.25,), lambda _: runner.Run(start, run.to, run.state))
+    found = measure.measure(*racket, [weak, sound], 1.0, 5)
+    assert [line['name'] for line in found['lines']] == ['sound']
+    assert found['refused'] == {'weak': 'at 0.25, in a later run: a singularity'}
+
+
 def test_exact_is_at_the_floor_of_the_racket(racket):
     lines = [one for one in runner.ours(*racket) if one.control == 'none']
     found = measure.measure(*racket, lines, 1.0, 5)

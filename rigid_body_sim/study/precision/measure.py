@@ -50,26 +50,28 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
         try:
             for point, run in _sweep(problem, reference, runner, limit, balance, notes):
                 points.append(point)
-                timed.append((point, run))
+                timed.append(_Timed(run, point, notes, problem.duration))
         except (RefusedError, BadInput) as error:
             notes.append(str(error))
         if points:
             lines.append({'name': runner.name, 'control': runner.control, 'is_peer': runner.is_peer, 'points': points, 'notes': notes})
         else:
             refused[runner.name] = notes[0]
-    samples, counts = [[] for _ in timed], [_count(run, problem.duration) for _, run in timed]
     gc.collect()
     gc.disable()
     try:
         for _ in tqdm(range(repeats), desc=f'{problem.name}: times', disable=None if watch is None else not watch, leave=False):
-            for (_, run), own, count in zip(timed, samples, counts, strict=True):
-                own.append(_sample(run, problem.duration, count))
+            for one in timed:
+                one.sample()
     finally:
         gc.enable()
-    for (point, _), own in zip(timed, samples):
-        per_second = [value / problem.duration for value in own]
-        point['cpu'] = {'median': statistics.median(per_second), 'least': min(per_second), 'most': max(per_second)}
-    return {'lines': lines, 'refused': refused}
+    for one in timed:
+        one.tell()
+    for line in lines:
+        line['points'] = [point for point in line['points'] if 'cpu' in point]
+        if not line['points']:
+            refused[line['name']] = line['notes'][-1]
+    return {'lines': [line for line in lines if line['points']], 'refused': refused}
 
 
 def _sweep(problem, reference, runner, limit, balance, notes):
@@ -113,21 +115,38 @@ def _along(run, times):
         yield np.array(run.state())
 
 
-def _count(run, end):
-    """Return how many runs make a sample; the first ones of a short run, with cold caches, take ten times as long as later ones."""
-    count = 1
-    while _sample(run, end, count) * count < SAMPLE:
-        count *= 2
-    return count
+class _Timed:
+    """The timed samples of a run; one that fails at last, though its first runs went well, is noted and has no time."""
 
+    def __init__(self, run, point, notes, end):
+        self._run, self._point, self._notes, self._end = run, point, notes, end
+        self._samples, self._count, self._failed = [], 1, False
 
-def _sample(run, end, count):
-    """Return the CPU seconds of a run, the mean of so many."""
-    began = time.process_time()
-    for _ in range(count):
-        run.start()
-        run.to(end)
-    return (time.process_time() - began) / count
+    def sample(self):
+        """Time it once more."""
+        if self._failed:
+            return
+        try:
+            # the first runs of a short one, with cold caches, take ten times as long as later ones
+            while not self._samples and self._once() * self._count < SAMPLE:
+                self._count *= 2
+            self._samples.append(self._once())
+        except NotConverged as error:
+            self._failed = True
+            self._notes.append(f'at {self._point["setting"]!r}, in a later run: {error}')
+
+    def _once(self):
+        """Return the CPU seconds of a run, the mean of as many as make a sample."""
+        began = time.process_time()
+        for _ in range(self._count):
+            _go(self._run, self._end)
+        return (time.process_time() - began) / self._count
+
+    def tell(self):
+        """Write median, least and most per simulated second into the point."""
+        if not self._failed:
+            per_second = [value / self._end for value in self._samples]
+            self._point['cpu'] = {'median': statistics.median(per_second), 'least': min(per_second), 'most': max(per_second)}
 
 
 class Balance:
