@@ -78,12 +78,12 @@ class Client:
         self.until(publisher.get_subscription_count, what=f'a subscription to {topic}')
         return publisher
 
-    def call(self, service_type, name, **fields):
+    def call(self, service_type, name, timeout=TIMEOUT, **fields):
         """Call a service; return the response."""
         client = self.node.create_client(service_type, name)
         self.until(client.service_is_ready, what=f'the service {name}')
         future = client.call_async(service_type.Request(**fields))
-        self.until(future.done, what=f'an answer from {name}')
+        self.until(future.done, timeout, what=f'an answer from {name}')
         self.node.destroy_client(client)
         return future.result()
 

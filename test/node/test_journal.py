@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, Vector3, Wrench, WrenchStamped
 from mcap.reader import make_reader
+from node.conftest import START
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Trigger
@@ -38,7 +39,8 @@ def recording(tmp_path_factory, run_node_in):
         client.spin(0.1)
         impulses.publish(command('', z=0.7))
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value='dop8')
-        client.call(SetParameters, '/sim_node/set_parameters', parameters=[Parameter(name='integrator', value=value)])
+        # the node answers when the method is compiled, which it may not be yet
+        client.call(SetParameters, '/sim_node/set_parameters', timeout=START, parameters=[Parameter(name='integrator', value=value)])
         client.spin(0.2)
         node.process.terminate()
         assert node.process.wait(5.0) == 0
