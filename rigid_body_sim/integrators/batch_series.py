@@ -15,13 +15,11 @@ would have led.
 from functools import partial
 
 from rigid_body_sim.integrators.lanes import LANES, compiled_lanes
+from rigid_body_sim.integrators.taylor_march import GROWTH, NOTHING, UNMOVED
 
 ORDER = 18
 UNKNOWNS = 9        # e1, e2, omega
 LOW = 8             # orders of omega that decide a sign
-GROWTH = 4.0        # of a step, at most
-UNMOVED = 1e-3      # s, the first step where nothing moves
-NOTHING = 1e-300    # (rad/s)^2, of a body that neither turns nor is turned
 
 # Layout, in rows of eight numbers. A node: time, step that led here, squared scale of omega, what the sums of the unknowns lost, quaternion,
 # unknowns; behind it the coefficients of higher orders, the node that follows, where the march ends, squared norm of the unknowns there; the
@@ -122,10 +120,10 @@ def _turned(o, q, angle):
     cosine, sine = o.none(), o.none()
     for c, s in ((1 / 40320, 1 / 362880), (-1 / 720, -1 / 5040), (1 / 24, 1 / 120), (-1 / 2, -1 / 6), (1.0, 1.0)):
         cosine, sine = o.gather(cosine, square, o.everywhere(o.number(c))), o.gather(sine, square, o.everywhere(o.number(s)))
-    return quaternion_product(o, q, [*(o.times(sine, component) for component in half), cosine])
+    return _quaternion_product(o, q, [*(o.times(sine, component) for component in half), cosine])
 
 
-def quaternion_product(o, p, q):
+def _quaternion_product(o, p, q):
     """Return the quaternion of the rotation q followed by p."""
     def sum_of(*terms):
         found = o.times(terms[0][1], terms[0][2])

@@ -53,8 +53,7 @@ class Series(Equations):
         # the sums of what acts stay unbound: nothing asks for rates
         self.kernels = specialise(turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n'))
         self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
-        self._axis, self._fixed, self._held = None, None, {}
-        self._fixed = self._constants()
+        self._fixed, self._held = self._constants(), {}
         self.parameter_count, self.fixed_count = COUNT, len(self._fixed)
 
     def parameters(self, fixed, time):

@@ -1,4 +1,7 @@
-"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes."""
+"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes; what they cost to keep."""
+
+import gc
+import weakref
 
 import numpy as np
 import pytest
@@ -41,3 +44,16 @@ def test_states_between_nodes_are_as_good_as_nodes(top, method, control):
     times = np.linspace(0.0, 0.4, 101)
     pairs = zip(states(top, method, times, **control), states(top, 'dop8', times, accuracy=1e-15), strict=True)
     assert max(angle_between(*a[1:5], *b[1:5]) for a, b in pairs) < 1e-13
+
+
+def test_a_solver_that_is_let_go_leaves_memory_at_once(top):
+    """Each holds some 20 kB: those that stayed until the garbage is collected would fill the caches."""
+    gc.disable()
+    try:
+        solver = Stepped(top, 'taylor', accuracy=1e-9).start(top.initial.vector)
+        solver.state(1.0, np.empty(14))
+        gone = weakref.ref(solver)
+        del solver
+        assert gone() is None
+    finally:
+        gc.enable()
