@@ -2,8 +2,8 @@
 
     .venv/bin/python bench/ensembles.py [--case 'top 2' 'driven body'] [--goal 1e-6] [--json]
 
-CPU seconds of all threads, medians of interleaved repeats, the Python around the kernels included. A case of smooth_scenes.py runs for 20 s to an
-error of at most 1e-9 rad, the largest of CHECKED bodies; heyoka gets the same equations, and of its batches the set-up is left out.
+CPU seconds of all threads, medians of interleaved repeats, the Python around the kernels included. A case of smooth_scenes.py runs for 20 s to
+an error of at most 1e-9 rad, the largest of CHECKED bodies; heyoka gets the same equations, and of its batches the set-up is left out.
 """
 
 import argparse

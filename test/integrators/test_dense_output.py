@@ -1,4 +1,4 @@
-"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes; what they cost to keep."""
+"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes."""
 
 import gc
 import weakref
