@@ -8,7 +8,7 @@ from setuptools import find_packages, setup
 
 ROOT = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(ROOT))
-from rigid_body_sim.commands import COMMANDS  # noqa: E402  (the table imports nothing but the standard library)
+from rigid_body_sim.cli.subcommands import COMMANDS  # noqa: E402  (the table imports nothing but the standard library)
 
 NAME = 'rigid_body_sim'
 manifest = xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot()

@@ -19,13 +19,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / 'test' / 'data'))
 import choice_cases  # noqa: E402
 
-from rigid_body_sim.choice import choose  # noqa: E402
-from rigid_body_sim.effects.wrench import Wrench  # noqa: E402
+from rigid_body_sim.choice import measured  # noqa: E402
+from rigid_body_sim.choice.choose import choose  # noqa: E402
 from rigid_body_sim.errors import NotConverged  # noqa: E402
-from rigid_body_sim.integrators import METHODS, measured, runnable  # noqa: E402
-from rigid_body_sim.integrators.stepped import Stepped  # noqa: E402
-from rigid_body_sim.rotations import angle_between  # noqa: E402
-from rigid_body_sim.scenes import parse_scene  # noqa: E402
+from rigid_body_sim.integrators import METHODS, runnable  # noqa: E402
+from rigid_body_sim.integrators.solver import Stepped  # noqa: E402
+from rigid_body_sim.numerics.rotations import angle_between  # noqa: E402
+from rigid_body_sim.scene.effects.wrench import Wrench  # noqa: E402
+from rigid_body_sim.scene.scene import parse_scene  # noqa: E402
 
 REFERENCE = json.loads((ROOT / 'test' / 'data' / 'choice.json').read_text())
 MISSED, COSTLY, REPEATS, COUNT = 10.0, 2.0, 7, 5

@@ -16,13 +16,14 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.choice import choose
-from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.choice import measured
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.integrators import measured, runnable
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators import runnable
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.study.precision.peers import given, heyoka_taylor
 from rigid_body_sim.study.precision.suite import Problem
 

@@ -14,11 +14,11 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.compiled import HAVE_NUMBA, compiled_allocating, processor
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_allocating, processor
 from rigid_body_sim.motions import absorbing_motion
-from rigid_body_sim.motions.exact import Exact
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.motions.solver import Exact
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.state import STATE_SIZE
 
 SCENES = {'free body': 'tennis_racket', 'free body, generic': 'asymmetric_top', 'Lagrange top': 'heavy_top', 'pendulum': 'kater_pendulum',
           'ball': 'billiard_follow'}

@@ -15,10 +15,13 @@ import types
 
 import numpy as np
 
-from rigid_body_sim.integrators import METHODS, composition, split4
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.mechanics import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose, parameters
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.families import composition
+from rigid_body_sim.integrators.methods import split4
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.scene.scene import parse_scene
 
 SCENE = """scene: counted
 body: {mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}

@@ -16,9 +16,9 @@ import numpy as np
 from smooth_scenes import CASES, exact_attitude, heyoka_system, in_frame
 
 from rigid_body_sim import ensemble
-from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.rotations import angle_between, multiply
-from rigid_body_sim.scenes import load_scene, parse_scene
+from rigid_body_sim.numerics.rotations import angle_between, multiply
+from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 CLOSED = {'free body': 'asymmetric_top', 'racket': 'tennis_racket', 'Lagrange top': 'heavy_top'}
 BODIES, TIMES, REPEATS = 20_000, 50, 7

@@ -22,9 +22,9 @@ import tempfile
 
 import numpy as np
 
-from rigid_body_sim.effects import EFFECTS
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.effects import EFFECTS
+from rigid_body_sim.scene.scene import parse_scene
 
 TOP = """scene: counted
 body: {mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}

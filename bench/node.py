@@ -39,10 +39,10 @@ def floor(rate):
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
+    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
     from rigid_body_sim.node.shutdown import leave, signals
     from rigid_body_sim.node.ticking import Steady, Ticker
-    from rigid_body_sim.simulation import Simulation
-    from rigid_body_sim.topics import EVERY_TICK, Frames, TickMessages
+    from rigid_body_sim.simulation.simulation import Simulation
     simulation = Simulation('tennis_racket')
     ticking = TickMessages(EVERY_TICK, simulation.scene, Frames())
     [messages] = ticking.messages(simulation.vector[None], [simulation.energy], [simulation.angular_momentum_squared], [0])
@@ -191,9 +191,9 @@ def main():
         return subscribe()
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
-    from rigid_body_sim.compiled import processor
+    from rigid_body_sim.compilation.jit import processor
     from rigid_body_sim.node.engine import warm_up
-    from rigid_body_sim.simulation import Simulation
+    from rigid_body_sim.simulation.simulation import Simulation
     warm_up(Simulation('tennis_racket'))
     cases = []
     with tempfile.TemporaryDirectory() as folder:

@@ -18,14 +18,14 @@ import time
 
 import numpy as np
 
+from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic, journal_topic
 from rigid_body_sim.recording.writer import Writer
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
-from rigid_body_sim.topics import EVERY_TICK, Frames
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 MILLISECOND = 1_000_000
 HERE = pathlib.Path(__file__).resolve().parent

@@ -17,12 +17,12 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.choice import choose
-from rigid_body_sim.compiled import HAVE_NUMBA, processor
-from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, processor
 from rigid_body_sim.integrators import METHODS, runnable
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 
 GOALS = {1e-3: 0.25, 1e-6: 0.33, 1e-9: 0.4, 1e-12: 0.4}
 """Accuracy -> the part of heyoka's time that is aimed at."""
@@ -54,10 +54,10 @@ CASES = {
 
 
 def heyoka_system(scene):
-    """Return heyoka's equations: those of rigid_body_sim/integrators/turning.py, written for what the scene has, in its frame."""
+    """Return heyoka's equations: those of rigid_body_sim/integrators/equations/turning.py, written for what the scene has, in its frame."""
     import heyoka
 
-    from rigid_body_sim.effects.views import Frame
+    from rigid_body_sim.scene.effects.views import Frame
     qx, qy, qz, qw, wx, wy, wz = heyoka.make_vars('qx', 'qy', 'qz', 'qw', 'wx', 'wy', 'wz')
     frame, torque = Frame.of(scene.body, scene.constraint), scene.effect('torque')
     I1, I2, I3 = frame.moments
@@ -86,8 +86,8 @@ def heyoka_system(scene):
 
 def in_frame(scene, vector):
     """Return q and omega of the frame of a state vector."""
-    from rigid_body_sim.effects.views import Frame
-    from rigid_body_sim.rotations import multiply, rotate_back
+    from rigid_body_sim.numerics.rotations import multiply, rotate_back
+    from rigid_body_sim.scene.effects.views import Frame
     axes = Frame.of(scene.body, scene.constraint).axes
     return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
 
@@ -103,8 +103,8 @@ def exact_attitude(scene, duration, vector):
 
 def our_run(scene, duration, method, accuracy):
     """Return act(): a start and the final state; it returns the frame's attitude."""
-    from rigid_body_sim.effects.views import Frame
-    from rigid_body_sim.rotations import multiply
+    from rigid_body_sim.numerics.rotations import multiply
+    from rigid_body_sim.scene.effects.views import Frame
     choice, start, out, axes = choose(scene, method, accuracy, horizon=duration), scene.initial.vector, np.empty(14), Frame.of(
         scene.body, scene.constraint).axes
 

@@ -21,11 +21,11 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import node as node_bench
 
-from rigid_body_sim import simulate
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.cli import simulate
+from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.precision import suite
-from rigid_body_sim.topics import EVERY_TICK, Frames, TickMessages
 
 SCENES = {'racket (exact)': load_scene('tennis_racket'), 'asymmetric top (stepped)': suite.problem('asymmetric_heavy_top').scene}
 ACCURACIES = (1e-3, 1e-6, 1e-9, 1e-12)

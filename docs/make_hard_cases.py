@@ -16,9 +16,9 @@ import numpy as np
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt
 
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.beside import PATIENCE
 
 DOCS = pathlib.Path(__file__).resolve().parent

@@ -2,8 +2,8 @@
 
 import importlib
 
-_OFFERED = {'Simulation': 'simulation', 'load_scene': 'scenes', 'parse_scene': 'scenes', 'scene_names': 'scenes', 'State': 'state',
-            'States': 'state', 'ensemble': 'ensembles', 'BadInput': 'errors', 'NotConverged': 'errors'}
+_OFFERED = {'Simulation': 'simulation.simulation', 'load_scene': 'scene.scene', 'parse_scene': 'scene.scene', 'scene_names': 'scene.scene',
+            'State': 'scene.state', 'States': 'scene.state', 'ensemble': 'simulation.ensemble', 'BadInput': 'errors', 'NotConverged': 'errors'}
 __all__ = sorted(_OFFERED)    # loaded when first asked for, so that the table of commands imports nothing
 
 

@@ -4,7 +4,7 @@ import difflib
 import importlib
 import sys
 
-from rigid_body_sim.commands import COMMANDS
+from rigid_body_sim.cli.subcommands import COMMANDS
 
 
 def main(arguments=None):

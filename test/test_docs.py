@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from rigid_body_sim.commands import COMMANDS
-from rigid_body_sim.scenes import load_scene, scene_names
+from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.scene.scene import load_scene, scene_names
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
 sys.path.insert(0, str(DOCS))

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from rigid_body_sim.commands import COMMANDS
+from rigid_body_sim.cli.subcommands import COMMANDS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -53,7 +53,7 @@ def test_all_files_of_config_and_launch_are_installed(prefix):
 
 
 def test_what_is_imported_is_what_was_installed(prefix, tmp_path):
-    code = 'from rigid_body_sim import scenes; print(scenes.__file__, scenes.scene_folder())'
+    code = 'from rigid_body_sim.scene import scene; print(scene.__file__, scene.scene_folder())'
     imported = subprocess.run([sys.executable, '-c', code], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=True).stdout
     # colcon build --symlink-install leaves everything where it is
     home = ROOT if (prefix / 'share' / 'rigid_body_sim' / 'package.xml').is_symlink() else prefix

@@ -11,7 +11,7 @@ import xml.etree.ElementTree
 import pytest
 import yaml
 
-from rigid_body_sim.commands import COMMANDS
+from rigid_body_sim.cli.subcommands import COMMANDS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / 'rigid_body_sim'
@@ -74,7 +74,7 @@ def test_every_folder_is_a_package_that_gets_installed():
 
 
 def test_the_table_of_commands_needs_no_package():
-    code = 'import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.commands import COMMANDS; print(*COMMANDS)'
+    code = 'import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.cli.subcommands import COMMANDS; print(*COMMANDS)'
     listed = subprocess.run([sys.executable, '-I', '-S', '-c', code, ROOT], capture_output=True, text=True, timeout=30, check=True).stdout
     assert listed.split() == list(COMMANDS)
 

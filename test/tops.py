@@ -5,10 +5,10 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.motions import lagrange_top as motion
-from rigid_body_sim.motions.exact import loops
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.motions.lagrange_top import lagrange_top as motion
+from rigid_body_sim.motions.solver import loops
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import STATE_SIZE
 
 HEAVY = {'moments': [0.03, 0.03, 0.01], 'mass': 1.0, 'center': [0.0, 0.0, 0.1], 'g': 9.81}
 ROUND = {'moments': [1.0, 1.0, 1.0], 'mass': 1.0, 'center': [0.0, 0.0, 0.5], 'g': 2.0}      # k = M g h/I1 = 1, n = omega_3

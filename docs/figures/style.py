@@ -5,8 +5,8 @@ import pathlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 IMAGES = pathlib.Path(__file__).resolve().parent.parent / 'images'
 

@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent

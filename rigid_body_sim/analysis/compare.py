@@ -5,8 +5,8 @@ import numpy as np
 from rigid_body_sim.analysis.collectors import Curve
 from rigid_body_sim.analysis.measure import check_numbers
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME
 
 # topic -> column of the message, what of the rerun it should be
 QUANTITIES = {

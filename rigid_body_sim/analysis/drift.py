@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rigid_body_sim import mechanics
 from rigid_body_sim.analysis.collectors import Curve
+from rigid_body_sim.mechanics import energy, parameters
 
 FLOOR = 4 * np.finfo(float).eps
 """Round-off floor of a relative residual: a few units in the last place, for each value is made of a handful of products and sums."""
@@ -91,6 +91,6 @@ def scales(scene):
     """Return the scales of energy (J) and of L^2 in a scene: the largest of its kinetic and potential energy at the start, and 0."""
     if scene is None:
         return 0.0, 0.0
-    out = np.empty(mechanics.DIAGNOSIS_SIZE)
-    mechanics.diagnose(mechanics.parameters(scene), scene.initial.vector, out)
-    return max(out[mechanics.KINETIC], abs(out[mechanics.POTENTIAL])), 0.0
+    out = np.empty(energy.DIAGNOSIS_SIZE)
+    energy.diagnose(parameters.parameters(scene), scene.initial.vector, out)
+    return max(out[energy.KINETIC], abs(out[energy.POTENTIAL])), 0.0

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigid_body_sim.scenes import Scene, parse_scene
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.scene.scene import Scene, parse_scene
 
 KEEP_ENERGY = {'gravity', 'strike'}
 KEEP_MOMENTUM = {'gravity', 'strike', 'internal_dissipation'}

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim import mechanics
-from rigid_body_sim.bodies import IDENTITY
+from rigid_body_sim.mechanics import parameters
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.theory import asymmetric_top, heavy_top, kater_pendulum, symmetric_top
 
 
@@ -82,7 +82,7 @@ def _pendulum(scene, g):
     arm = np.subtract(body.center_of_mass, constraint.through)
     across = arm - (arm @ n) * n
     Mgl = body.mass * g * np.linalg.norm(across) * np.linalg.norm(attitude.apply(n)[:2])
-    moment, rate = mechanics.moment_about_hinge(body, constraint), scene.initial.angular_velocity @ n
+    moment, rate = parameters.moment_about_hinge(body, constraint), scene.initial.angular_velocity @ n
     if Mgl > 0.0:
         k2 = (0.5 * moment * rate * rate + body.mass * g * attitude.apply(across)[2] + Mgl) / (2.0 * Mgl)
         if 0.0 < k2 < 1.0:

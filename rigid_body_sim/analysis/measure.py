@@ -10,7 +10,7 @@ from rigid_body_sim.analysis.motion import Motion
 from rigid_body_sim.analysis.source import COLUMNS, EVERY_TICK
 from rigid_body_sim.analysis.timing import Punctuality
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.messages.timeline import NANOSECONDS
 
 HAVE_STAMPS = ('pose', 'angular_velocity')
 LARGEST = 1e150     # its square is finite

@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 
-from rigid_body_sim.command_rows import rows_of
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
-from rigid_body_sim.state import States
-from rigid_body_sim.timeline import NANOSECONDS, Timeline
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import States
+from rigid_body_sim.simulation.command_rows import rows_of
+from rigid_body_sim.simulation.simulation import Simulation
 
 LONGEST = 10**12     # ticks
 

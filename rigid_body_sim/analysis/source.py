@@ -12,8 +12,8 @@ import numpy as np
 
 from rigid_body_sim.analysis.history import History, Segment, history
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.scene.scene import parse_scene
 
 EVERY_TICK = {'pose': 'geometry_msgs/msg/PoseStamped', 'angular_velocity': 'geometry_msgs/msg/Vector3Stamped',
               'energy': 'std_msgs/msg/Float64', 'angular_momentum_squared': 'std_msgs/msg/Float64'}

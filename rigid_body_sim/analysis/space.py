@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.topics import box_of
+from rigid_body_sim.messages.state_topics import box_of
 
 FLATTEST = 1e-6
 """Below this ratio of moments an ellipsoid is a cylinder for all that can be seen, and is not drawn."""

@@ -7,7 +7,7 @@ it is never later than the promptest of them, follows the wall clock by at most 
 
 import numpy as np
 
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.messages.timeline import NANOSECONDS
 
 SLEW = 5e-4                 # s a second: what adjusts clocks gently changes them by no more
 STANDSTILL = 100_000_000    # ns; a node that is further behind slips (node/ticking.py)

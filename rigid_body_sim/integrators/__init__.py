@@ -1,25 +1,13 @@
 """The table of methods: one file each, one line each.
 
 A method is a module with NAME, ORDER, PRESERVES (what it keeps exactly), SOURCE (where it is published), NEEDS (the view of every effect
-that it asks for, rigid_body_sim/effects/views.py), HEAT (whether it runs scenes in which anything makes heat), TAKES (what controls it:
+that it asks for, rigid_body_sim/scene/effects/views.py), HEAT (whether it runs scenes in which anything makes heat), TAKES (what controls it:
 accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
-from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.integrators import (
-    dop8,
-    gauss16,
-    lsoda,
-    radau,
-    rk4,
-    runge_kutta,
-    semi_implicit_euler,
-    split2,
-    split4,
-    split6,
-    split8,
-    taylor,
-)
+from rigid_body_sim.integrators.families import runge_kutta
+from rigid_body_sim.integrators.methods import dop8, gauss16, lsoda, radau, rk4, semi_implicit_euler, split2, split4, split6, split8, taylor
+from rigid_body_sim.scene.effects.views import Frame
 
 METHODS = {method.NAME: method for method in (dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 

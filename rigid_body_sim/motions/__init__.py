@@ -5,7 +5,7 @@ A motion declares in `absorbs(scene)` which constraint, effects and bodies it so
 
 import importlib
 
-MOTIONS = ('free_body', 'lagrange_top', 'pendulum', 'sliding_sphere')
+MOTIONS = ('free_body.free_body', 'lagrange_top.lagrange_top', 'pendulum.pendulum', 'sliding_sphere')
 
 
 def absorbing_motion(scene):

@@ -10,7 +10,7 @@ direction and dies at the onset of rolling,
     t_r = k |u0|/((1 + k) mu g),  v_r = (v0 + k a omega0 x z)/(1 + k)   (solid: t = 2 |v0 - a omega0|/(7 mu g), v = 5 v0 (1 + h/a)/7).
 
 From there on v and omega are constant and the slip is exactly zero. Spin about the vertical is untouched. While sliding omega runs along
-a straight line, so the attitude is a ramped rotation (rigid_body_sim/ramped_rotation.py): elementary without side spin, else
+a straight line, so the attitude is a ramped rotation (rigid_body_sim/numerics/ramped_rotation.py): elementary without side spin, else
 parabolic-cylinder functions, with checkpoints along the slide so that a later state costs one short step.
 
 A state whose slip is below ROUNDING (|v| + a |omega|) rolls: that much is left of zero when a rolling state goes through body axes.
@@ -22,11 +22,11 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled
-from rigid_body_sim.exchange import DISSIPATED, EXCHANGE_SIZE
-from rigid_body_sim.ramped_rotation import HALF_STEP, RIM, ramped_rotation
-from rigid_body_sim.rotations import multiply, normalised, rotate, rotate_back
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.mechanics.exchange import DISSIPATED, EXCHANGE_SIZE
+from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
+from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
+from rigid_body_sim.scene.state import STATE_SIZE
 
 ROUNDING = 2.0 ** -49    # 8 ulp; body axes and back were seen to leave 2.9 in 200,000 random states
 CHECKPOINTS = 32
@@ -234,7 +234,7 @@ def reaction(anchor, time):
 
 @compiled
 def exchanged(anchor, time, out):
-    """Fill out (rigid_body_sim/exchange.py) with what friction did since the anchor.
+    """Fill out (rigid_body_sim/mechanics/exchange.py) with what friction did since the anchor.
 
     Heat: mu M g times the distance slid. Angular impulse about the centre: a mu M g z x e times the time slid.
     """

@@ -9,9 +9,9 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.effects.views import Frame
-from rigid_body_sim.mechanics import swing_rate
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 RADIANS_A_PANEL = 8.0

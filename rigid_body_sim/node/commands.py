@@ -17,11 +17,11 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from rigid_body_sim.command_rows import BODY, FORCE, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
 from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
 from rigid_body_sim.node.doorbell import Doorbell
 from rigid_body_sim.node.gaps import NUMBER, Gaps
+from rigid_body_sim.simulation.command_rows import BODY, FORCE, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
 
 DEPTH = 10_000
 """Messages that may wait in a subscription: a second of 10,000 a second."""

@@ -6,7 +6,7 @@ import threading
 
 from std_srvs.srv import SetBool, Trigger
 
-from rigid_body_sim.choice import HORIZON
+from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
@@ -17,8 +17,8 @@ from rigid_body_sim.node.session import Session
 from rigid_body_sim.node.shutdown import say, tell
 from rigid_body_sim.node.ticking import Followed, Steady, Ticker
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 ANSWER_WITHIN = 0.2
 """How long a service waits for the tick that does what it asks, s; later it answers what will happen."""

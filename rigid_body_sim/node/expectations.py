@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.theory import billiard, euler_equations, largest_axis
 
 

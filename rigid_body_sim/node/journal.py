@@ -9,12 +9,12 @@ import datetime
 import pathlib
 import time
 
-from rigid_body_sim.command_rows import HOLD, IMPULSE, TOPICS
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.command_messages import WRENCH_TYPE, CommandTopics
 from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.topics import Topic, journal_topic
+from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, TOPICS
 
 ATTEMPTS = 5
 

@@ -14,12 +14,12 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParam
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
-from rigid_body_sim import topics
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import state_topics
 from rigid_body_sim.recording import compression
 
-STATE_TOPICS = tuple(output.name for output in topics.EVERY_TICK)
-EXTRA_TOPICS = tuple(output.name for output in topics.ON_REQUEST)
+STATE_TOPICS = tuple(output.name for output in state_topics.EVERY_TICK)
+EXTRA_TOPICS = tuple(output.name for output in state_topics.ON_REQUEST)
 
 
 @dataclasses.dataclass(frozen=True)

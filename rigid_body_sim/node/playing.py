@@ -10,9 +10,9 @@ import threading
 import time
 from fractions import Fraction
 
+from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.node.lateness import Lateness
 from rigid_body_sim.node.priority import ask_for_priority
-from rigid_body_sim.timeline import NANOSECONDS
 
 CLOCK_PERIOD = 10_000_000
 """From one message on /clock to the next, ns of the steady clock."""

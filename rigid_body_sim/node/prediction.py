@@ -21,9 +21,9 @@ import threading
 
 import numpy as np
 
-from rigid_body_sim.bodies import IDENTITY
 from rigid_body_sim.node.expectations import Interval, Relaxing, Rolling, Steady, Turning
-from rigid_body_sim.rotations import rotate_back
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.theory import asymmetric_top, baseball_bat, driven_body, heavy_top, kater_pendulum, symmetric_top
 
 

@@ -7,8 +7,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from std_msgs.msg import String
 
-from rigid_body_sim import topics
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import state_topics
 from rigid_body_sim.node import qos
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.topics import Topic
@@ -23,7 +23,7 @@ def frames_of(node, settings):
     if prefix == 'auto':
         namespace = node.get_namespace().strip('/')
         prefix = f'{namespace}/' if namespace else ''
-    frames = topics.Frames(prefix + settings.world_frame, prefix + settings.body_frame, prefix)
+    frames = state_topics.Frames(prefix + settings.world_frame, prefix + settings.body_frame, prefix)
     if frames.world == frames.body or not settings.world_frame or not settings.body_frame:
         raise BadInput('parameter body_frame', f'got the frames {frames.world!r} and {frames.body!r}', 'needs two names that differ')
     return frames
@@ -36,18 +36,18 @@ class Publishing:
     ----------
     node : rclpy.node.Node
     settings : parameters.Settings
-    frames : topics.Frames
+    frames : state_topics.Frames
     scene : scenes.Scene
 
     Attributes
     ----------
-    ticking : topics.TickMessages
+    ticking : state_topics.TickMessages
         Makes the messages of a tick for the present scene.
     """
 
     def __init__(self, node, settings, frames, scene):
         self._node, self._frames = node, frames
-        self._outputs = [*topics.EVERY_TICK, *(output for output in topics.ON_REQUEST if output.name in settings.publish)]
+        self._outputs = [*state_topics.EVERY_TICK, *(output for output in state_topics.ON_REQUEST if output.name in settings.publish)]
         self._publishers = [self._create(output.type, output.name, QoSProfile(depth=DEPTH), output.absolute) for output in self._outputs]
         self._publish = [publisher.handle.publish_raw for publisher in self._publishers]
         self._events = self._create(DiagnosticStatus, 'events', _latched(EVENTS_KEPT))
@@ -66,7 +66,7 @@ class Publishing:
 
     def messages_for(self, scene):
         """Return the TickMessages for a scene; BadInput where a topic that is published has no meaning for it."""
-        return topics.TickMessages(self._outputs, scene, self._frames)
+        return state_topics.TickMessages(self._outputs, scene, self._frames)
 
     def tick(self, messages):
         """Publish the messages of a tick, as `ticking` made them."""

@@ -12,9 +12,9 @@ import threading
 import time
 from fractions import Fraction
 
+from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
 from rigid_body_sim.node.lateness import Lateness
 from rigid_body_sim.node.priority import ask_for_priority
-from rigid_body_sim.timeline import NANOSECONDS, Timeline
 
 LONGEST_SLEEP = 0.01
 """While it waits longer than this, the thread looks after commands and requests, s."""

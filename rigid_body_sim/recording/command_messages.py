@@ -3,10 +3,10 @@
 import dataclasses
 import struct
 
-from rigid_body_sim.command_rows import FORCE, RELEASE, WIDTH, commands_of
 from rigid_body_sim.messages import cdr
+from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.recording.topics import journal_message
-from rigid_body_sim.timeline import NANOSECONDS
+from rigid_body_sim.simulation.command_rows import FORCE, RELEASE, WIDTH, commands_of
 
 WRENCH_TYPE = 'geometry_msgs/msg/WrenchStamped'
 _STAMP, _NUMBERS_SIZE = slice(4, 12), 48

@@ -13,7 +13,6 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.command_rows import WIDTH
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import frames
 from rigid_body_sim.recording.command_messages import CommandMessages, CommandTopics
@@ -21,6 +20,7 @@ from rigid_body_sim.recording.frames import Report
 from rigid_body_sim.recording.resume import resume
 from rigid_body_sim.recording.topics import Topic, journal_message
 from rigid_body_sim.recording.writer import Writer
+from rigid_body_sim.simulation.command_rows import WIDTH
 
 LOOK = 0.02             # s between looks at the pipe
 FLUSH = 0.1             # s after which what was received is in the file

@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 

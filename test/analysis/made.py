@@ -5,14 +5,14 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as ForeignWriter
 from rosbags.typesys import Stores, get_typestore
 
+from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
 from rigid_body_sim.recording.writer import Writer
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
-from rigid_body_sim.state import States
-from rigid_body_sim.timeline import Timeline
-from rigid_body_sim.topics import EVERY_TICK, Frames
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.state import States
+from rigid_body_sim.simulation.simulation import Simulation
 
 START = 1_795_000_000_000_000_000
 

@@ -12,7 +12,7 @@ from rigid_body_sim.analysis.analyze import analyze, main, report_folder
 from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.recording.reader import Recording
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.simulation.simulation import Simulation
 
 PAGE = ['report.html'] if page.available() else []
 FIGURES = ('overview', 'motion', 'ledger', 'spectrum', 'polhode', 'axis')

@@ -5,7 +5,7 @@ import pytest
 
 from rigid_body_sim.analysis.drift import Residual, scales
 from rigid_body_sim.analysis.history import History, Segment
-from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.scene.scene import load_scene
 
 STAMPS = np.arange(1000, dtype=np.int64) * 1_000_000
 

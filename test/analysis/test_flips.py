@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.analysis.flips import Flips, can_flip
-from rigid_body_sim.scenes import load_scene, parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 
 def counted(scene, omega, sizes):

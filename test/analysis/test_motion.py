@@ -5,11 +5,11 @@ import types
 import numpy as np
 import pytest
 
-from rigid_body_sim import rotations
 from rigid_body_sim.analysis.history import History, Segment
 from rigid_body_sim.analysis.motion import Motion, conserved
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.numerics import rotations
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory import billiard
 
 

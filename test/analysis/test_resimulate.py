@@ -11,10 +11,10 @@ from rosbags.rosbag2 import Writer as ForeignWriter
 from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.analysis.resimulate import main
+from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.recording import metadata
 from rigid_body_sim.recording.reader import Recording
-from rigid_body_sim.simulate import main as simulate
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.simulation.simulation import Simulation
 
 ZERO = (0.0, 0.0, 0.0)
 ACTS = {0: [('cmd_impulse', ZERO, (0.1, 0.0, 0.2), 'body')],

@@ -8,8 +8,8 @@ import pytest
 from rigid_body_sim.analysis.history import History, Segment
 from rigid_body_sim.analysis.lines import predicted_lines
 from rigid_body_sim.analysis.spectrum import Spectrum
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 
 def spectrum_of(times, orientation, omega, scene=None, changes=()):

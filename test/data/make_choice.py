@@ -10,7 +10,7 @@ from concurrent.futures import ProcessPoolExecutor
 import choice_cases
 from mpmath import mp
 
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.study.precision import reference
 
 

@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 import mpmath as mp
 import smooth_cases
 
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.scene.scene import parse_scene
 
 HERE = pathlib.Path(__file__).resolve().parent
 mp.mp.dps = 60

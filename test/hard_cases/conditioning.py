@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from rigid_body_sim.integrators import dop8
-from rigid_body_sim.mechanics import moment_about_hinge, swing_rate
+from rigid_body_sim.integrators.methods import dop8
+from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.motions.weight import MOST_PANELS, RADIANS_A_PANEL
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
 EPSILON = float(np.finfo(float).eps)
 SMALLEST = 5e-324       # energies of 1e-320 J are whole multiples of this

@@ -6,8 +6,8 @@ from hard_cases.conditioning import Allowed
 from hypothesis import strategies as st
 
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 unit = st.one_of(st.just(0.0), st.floats(-1.0, 1.0), st.floats(-1e-9, 1e-9), st.sampled_from([1.0, -1.0, 5e-324, 1e-160]))
 vectors = st.tuples(unit, unit, unit).map(list)

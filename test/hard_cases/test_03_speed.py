@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
 
 FREE = 'scene: fast\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\ninitial: {angular_velocity: [%s, %s, %s]}\n'

@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from rigid_body_sim.effects.wrench import Wrench
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
 
 EPSILON = np.finfo(float).eps

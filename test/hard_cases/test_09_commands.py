@@ -1,15 +1,15 @@
 """Group 9, commands: bursts, opposites, enormous and denormal values, at odd moments.
 
-More: test/test_simulation.py (opposite impulses cancel, bad commands), test/node/test_running.py (paused, before the first tick),
+More: test/simulation/test_simulation.py (opposite impulses cancel, bad commands), test/node/test_running.py (paused, before the first tick),
 test/node/test_shutdown.py (at shutdown).
 """
 
 import numpy as np
 import pytest
 
-from rigid_body_sim.command_rows import IMPULSE
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.simulation.command_rows import IMPULSE
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
 
 NONE = (0.0, 0.0, 0.0)

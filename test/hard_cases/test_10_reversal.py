@@ -6,9 +6,9 @@ The cases stand in rigid_body_sim/study/hard_cases, each with why it is hard and
 import numpy as np
 import pytest
 
-from rigid_body_sim.effects.wrench import Wrench
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
 
 

@@ -15,11 +15,11 @@ from hard_cases.random_scenes import commands, run, scenes, stepped_scenes
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from rigid_body_sim import simulate
-from rigid_body_sim.compiled import HAVE_NUMBA
+from rigid_body_sim.cli import simulate
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scenes import load_scene, parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 CHECKS = settings(deadline=None, derandomize=True, phases=(Phase.generate, Phase.shrink),

@@ -9,9 +9,9 @@ import sys
 import numpy as np
 from data import smooth_cases
 
-from rigid_body_sim.effects.wrench import Wrench
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 
 
 def solve(name, method, **control):

@@ -9,9 +9,9 @@ import math
 import numpy as np
 from data import smooth_cases
 
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import parse_scene
 
 # method, case, time (s), numbers of steps
 CASES = (('semi_implicit_euler', 'driven_body', 4.0, (200, 400)), ('rk4', 'asymmetric_heavy_top', 0.4, (40, 80)),

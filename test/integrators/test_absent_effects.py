@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from data import smooth_cases
 
-from rigid_body_sim.effects import EFFECTS
-from rigid_body_sim.integrators.equations import Equations
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.effects import EFFECTS
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 KERNELS = {'gravity': 'moment_of_weight', 'torque': 'constant_elementary', 'drag': 'couple_drag',
            'internal_dissipation': 'turning_internal_dissipation'}

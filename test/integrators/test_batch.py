@@ -10,13 +10,13 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim import BadInput, NotConverged, ensemble
-from rigid_body_sim.compiled import HAVE_NUMBA, compiled
-from rigid_body_sim.integrators import batch_series as series
-from rigid_body_sim.integrators.lanes import LANES, Plain
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.mechanics import moment_about_hinge
-from rigid_body_sim.rotations import angle_between, rotate
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
+from rigid_body_sim.compilation.lanes import LANES, Plain
+from rigid_body_sim.integrators.marching import batch_series as series
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.mechanics.parameters import moment_about_hinge
+from rigid_body_sim.numerics.rotations import angle_between, rotate
+from rigid_body_sim.scene.scene import parse_scene
 
 pytestmark = pytest.mark.skipif(not HAVE_NUMBA, reason='without numba the bodies are taken one by one')
 

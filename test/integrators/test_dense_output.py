@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from data import smooth_cases
 
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import parse_scene
 
 METHODS = ('gauss16', 'taylor')
 

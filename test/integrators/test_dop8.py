@@ -7,12 +7,12 @@ import pytest
 from data import smooth_cases
 from integrators.order_conditions import largest_defect
 
-from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators import dop8
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.methods import dop8
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 
 
 @pytest.fixture(scope='module')

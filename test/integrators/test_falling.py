@@ -4,7 +4,7 @@ import mpmath
 import pytest
 from near import near
 
-from rigid_body_sim.integrators.falling import SMALL, fallen, phi
+from rigid_body_sim.integrators.equations.falling import SMALL, fallen, phi
 
 EPS = 2.0 ** -53
 

@@ -9,9 +9,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rigid_body_sim.integrators.euler import EULER, FIXED, MOMENTS
-from rigid_body_sim.integrators.free_turn import LEAST, turned_freely
-from rigid_body_sim.rotations import angle_between
+from rigid_body_sim.integrators.equations.euler import EULER, FIXED, MOMENTS
+from rigid_body_sim.integrators.equations.free_turn import LEAST, turned_freely
+from rigid_body_sim.numerics.rotations import angle_between
 
 RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
 NOTHING = (0.0,) * 7

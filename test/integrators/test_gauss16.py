@@ -9,11 +9,12 @@ import tops
 from data import smooth_cases
 
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.integrators import gauss_nodes
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.mechanics import DIAGNOSIS_SIZE, diagnose, parameters
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators.marching import gauss_nodes
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, diagnose
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import parse_scene
 
 ULP = np.finfo(float).eps
 

@@ -13,13 +13,15 @@ from data import smooth_cases
 from integrators import slopes
 from integrators.order_conditions import largest_defect
 
-from rigid_body_sim.choice import choose, methods_for
-from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators import METHODS, rk4, runnable
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.mechanics import DIAGNOSIS_SIZE, diagnose, parameters
-from rigid_body_sim.scenes import load_scene, parse_scene
+from rigid_body_sim.integrators import METHODS, runnable
+from rigid_body_sim.integrators.methods import rk4
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, diagnose
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 TEST = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = json.loads((pathlib.Path(smooth_cases.__file__).parent / 'smooth.json').read_text())

@@ -11,8 +11,8 @@ import pytest
 from data import smooth_cases
 from integrators import plain_python
 
-from rigid_body_sim.mechanics import moment_about_hinge
-from rigid_body_sim.rotations import angle_between
+from rigid_body_sim.mechanics.parameters import moment_about_hinge
+from rigid_body_sim.numerics.rotations import angle_between
 
 TEST = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = json.loads((TEST / 'data' / 'smooth.json').read_text())

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from rigid_body_sim.effects.wrench import Wrench
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.stepped import Stepped
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import sliding_sphere
-from rigid_body_sim.motions.exact import Exact
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.motions.solver import Exact
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 
 a, M, mu, g, k = 0.028575, 0.17, 0.2, 9.81, 0.4
 I = k * M * a * a

@@ -7,13 +7,15 @@ import pytest
 from data import smooth_cases
 from near import near
 
-from rigid_body_sim.choice import choose
-from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.compilation import lanes
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators import lanes, runnable, taylor_series
-from rigid_body_sim.integrators.stepped import Stepped
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.integrators import runnable
+from rigid_body_sim.integrators.marching import taylor_series
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.study.precision import reference, suite
 
 ULP = np.finfo(float).eps

@@ -6,11 +6,11 @@ import pathlib
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.bodies import Body, Inertia, make_body
-from rigid_body_sim.effects.gravity import Gravity
-from rigid_body_sim.motions import pendulum as motion
-from rigid_body_sim.scenes import Constraint, Scene
-from rigid_body_sim.state import STATE_SIZE, State
+from rigid_body_sim.motions.pendulum import pendulum as motion
+from rigid_body_sim.scene.bodies import Body, Inertia, make_body
+from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.scene import Constraint, Scene
+from rigid_body_sim.scene.state import STATE_SIZE, State
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDS = json.loads((ROOT / 'test' / 'data' / 'pendulum.json').read_text())

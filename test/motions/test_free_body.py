@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.bodies import IDENTITY, Body, Inertia
-from rigid_body_sim.effects.gravity import Gravity
-from rigid_body_sim.motions import free_body as motion
-from rigid_body_sim.motions.exact import loops
-from rigid_body_sim.scenes import Constraint, Scene, parse_scene
-from rigid_body_sim.state import STATE_SIZE, State
+from rigid_body_sim.motions.free_body import free_body as motion
+from rigid_body_sim.motions.solver import loops
+from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia
+from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.scene import Constraint, Scene, parse_scene
+from rigid_body_sim.scene.state import STATE_SIZE, State
 
 RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
 EPSILON = np.finfo(float).eps

@@ -13,14 +13,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from near import near
 
-from rigid_body_sim.bodies import Body, Inertia
-from rigid_body_sim.compiled import HAVE_NUMBA, compiled_allocating
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_allocating
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.motions import free_body as motion
-from rigid_body_sim.motions.exact import loops
-from rigid_body_sim.rotations import angle_between, rotate
-from rigid_body_sim.scenes import Constraint, Scene
-from rigid_body_sim.state import STATE_SIZE, State
+from rigid_body_sim.motions.free_body import free_body as motion
+from rigid_body_sim.motions.solver import loops
+from rigid_body_sim.numerics.rotations import angle_between, rotate
+from rigid_body_sim.scene.bodies import Body, Inertia
+from rigid_body_sim.scene.scene import Constraint, Scene
+from rigid_body_sim.scene.state import STATE_SIZE, State
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EPSILON = np.finfo(float).eps

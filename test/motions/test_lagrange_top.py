@@ -12,8 +12,8 @@ import pytest
 from mpmath import mp, mpf
 from tops import HEAVY, ROUND, UPRIGHT, anchored, at, many
 
-from rigid_body_sim.motions import lagrange_top as motion
-from rigid_body_sim.rotations import from_euler_zyz
+from rigid_body_sim.motions.lagrange_top import lagrange_top as motion
+from rigid_body_sim.numerics.rotations import from_euler_zyz
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = json.loads((ROOT / 'test' / 'data' / 'lagrange_top.json').read_text())

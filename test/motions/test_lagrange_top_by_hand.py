@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from tops import HEAVY, ROUND, UPRIGHT, anchored, at, many, scene_of
 
-from rigid_body_sim.motions import lagrange_top as motion
-from rigid_body_sim.motions import pendulum
-from rigid_body_sim.motions.exact import Exact
-from rigid_body_sim.rotations import from_euler_zyz, rotate, to_euler_zyz
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.motions.lagrange_top import lagrange_top as motion
+from rigid_body_sim.motions.pendulum import pendulum
+from rigid_body_sim.motions.solver import Exact
+from rigid_body_sim.numerics.rotations import from_euler_zyz, rotate, to_euler_zyz
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import STATE_SIZE
 
 
 def test_rod_in_a_plane_moves_as_the_hinged_one():

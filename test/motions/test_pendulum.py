@@ -28,14 +28,14 @@ from mpmath import cos, mp, mpf, sin
 from near import near
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim import mechanics
-from rigid_body_sim.bodies import make_body
-from rigid_body_sim.motions import pendulum as motion
-from rigid_body_sim.motions.exact import Exact, loops
-from rigid_body_sim.rotations import multiply
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.mechanics import energy, parameters
+from rigid_body_sim.motions.pendulum import pendulum as motion
+from rigid_body_sim.motions.solver import Exact, loops
+from rigid_body_sim.numerics.rotations import multiply
+from rigid_body_sim.scene.bodies import make_body
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.simulation.simulation import Simulation
 
 EPSILON = np.finfo(float).eps
 
@@ -137,17 +137,17 @@ def test_the_start_comes_back():
 def test_energy_and_hinge_stay():
     """Whatever the scene: kinetic plus potential energy, the place of the hinge in the world, and the direction of the axis."""
     rng = np.random.default_rng(4)
-    diagnosis = np.empty(mechanics.DIAGNOSIS_SIZE)
+    diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
     for _ in range(100):
         scene, start = random_scene(rng)
-        anchor, numbers = anchored(scene, start), mechanics.parameters(scene)
-        energies, sizes, weight = [], [], scene.body.mass * numbers[mechanics.GRAVITY]
+        anchor, numbers = anchored(scene, start), parameters.parameters(scene)
+        energies, sizes, weight = [], [], scene.body.mass * numbers[parameters.GRAVITY]
         hinge = start[8:11] + Rotation.from_quat(start[1:5]).apply(scene.constraint.through)
         axis = Rotation.from_quat(start[1:5]).apply(scene.constraint.axis)
         for time in (0.0, 0.1, 1.0, 10.0, 1e3, 1e6, -1e5):
             state = at(anchor, time)
             turn = Rotation.from_quat(state[1:5])
-            mechanics.diagnose(numbers, state, diagnosis)
+            energy.diagnose(numbers, state, diagnosis)
             energies.append(diagnosis[0] + diagnosis[1])
             sizes.append(diagnosis[0] + weight * (np.linalg.norm(state[8:11]) + np.linalg.norm(scene.body.center_of_mass)))
             arm = turn.apply(scene.constraint.through)
@@ -252,9 +252,9 @@ def test_what_it_absorbs():
 PLAIN = """
 import json, sys
 import numpy as np
-from rigid_body_sim.compiled import HAVE_NUMBA
-from rigid_body_sim.motions import pendulum as motion
-from rigid_body_sim.motions.exact import loops
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
+from rigid_body_sim.motions.pendulum import pendulum as motion
+from rigid_body_sim.motions.solver import loops
 assert not HAVE_NUMBA
 answers = []
 for parameters, start, times in json.loads(sys.argv[1]):

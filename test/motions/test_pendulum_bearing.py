@@ -8,9 +8,9 @@ from motions.hinged import HANGING, anchored, at, bearing, random_scene, scene_o
 from near import near
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.bodies import make_body
-from rigid_body_sim.scenes import load_scene, parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.bodies import make_body
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory import kater_pendulum
 
 EPSILON = np.finfo(float).eps

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE
+from rigid_body_sim.mechanics.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE
 from rigid_body_sim.motions import sliding_sphere as motion
-from rigid_body_sim.rotations import rotate
-from rigid_body_sim.state import STATE_SIZE
+from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.scene.state import STATE_SIZE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RECORDS = json.loads((ROOT / 'test' / 'data' / 'sliding_sphere.json').read_text())
@@ -276,7 +276,7 @@ def test_enormous_blow_stays_finite():
 PLAIN = """
 import json, sys
 import numpy as np
-from rigid_body_sim.compiled import HAVE_NUMBA
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.motions import sliding_sphere as motion
 assert not HAVE_NUMBA
 anchor, out = np.empty(motion.ANCHOR_SIZE), np.empty(14)

@@ -20,7 +20,7 @@ START = 60.0
 def compiled_kernels():
     """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
     from rigid_body_sim.node.engine import warm_up
-    from rigid_body_sim.simulation import Simulation
+    from rigid_body_sim.simulation.simulation import Simulation
     with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}', 'w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for scene in ('tennis_racket', 'sphere'):

@@ -10,7 +10,7 @@ from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Trigger
 
 from rigid_body_sim.recording.reader import Recording
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.simulation.simulation import Simulation
 
 RATE = 200.0
 

@@ -13,7 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
-from rigid_body_sim.rotations import rotate
+from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.theory import asymmetric_top
 
 RATE = 250

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from rigid_body_sim.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, rows_of
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.definitions import schema
 from rigid_body_sim.recording.command_messages import WRENCH_TYPE, CommandMessages, CommandTopics
+from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, rows_of
 
 ROWS = np.concatenate([np.array([(HOLD, WORLD, 1.0, -0.0, 1e-300, 0.1, 0.2, 0.3), (IMPULSE, BODY, 4.0, 5.0, 6.0, 7.0, 8.0, np.pi)]), LET_GO])
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
-from rigid_body_sim.command_rows import FORCE, WIDTH
 from rigid_body_sim.recording import frames
 from rigid_body_sim.recording.frames import Report
 from rigid_body_sim.recording.mcap_file import McapFile
@@ -17,6 +16,7 @@ from rigid_body_sim.recording.process import RecorderProcess
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic
+from rigid_body_sim.simulation.command_rows import FORCE, WIDTH
 
 SCENE_POSITION = len(TICKING)
 IMPULSES = Topic('/cmd_impulse', 'geometry_msgs/msg/WrenchStamped')

@@ -191,7 +191,7 @@ def test_empty_recording_is_whole(tmp_path):
 
 
 def test_real_racket_takes_at_most_095_of_its_payload(tmp_path):
-    from rigid_body_sim.simulation import Simulation
+    from rigid_body_sim.simulation.simulation import Simulation
     simulation, ticks = Simulation('tennis_racket'), Ticks(0, 20_000)
     states = simulation.states(np.arange(20_000) / 1000)
     energy, momentum = simulation.diagnose(states)

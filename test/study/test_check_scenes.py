@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 
-from rigid_body_sim.scenes import load_scene, scene_names
+from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.study import check_scenes
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from rigid_body_sim.compiled import HAVE_NUMBA
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.study.precision import figure, measure, peers, reference, runner, suite, table, work_precision
 

@@ -8,7 +8,7 @@ import pytest
 from data import smooth_cases
 from mpmath import mp, mpf
 
-from rigid_body_sim.scenes import parse_scene
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.study.precision import inputs, reference, suite
 from rigid_body_sim.study.precision.ball import Ball
 from rigid_body_sim.study.precision.taylor import Turning

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim import rotations
+from rigid_body_sim.numerics import rotations
 from rigid_body_sim.theory import euler_angles as theory
 
 ANGLES, RATES, MOMENTS = (0.7, 1.2, -0.4), (1.1, -0.6, 2.3), (1.0, 2.5, 3.1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim import bodies
+from rigid_body_sim.scene import bodies
 from rigid_body_sim.theory import inertia_tensors as theory
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -13,8 +13,8 @@ import pathlib
 import numpy as np
 from mpmath import mp, mpf
 
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import beside
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
 

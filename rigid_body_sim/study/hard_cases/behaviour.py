@@ -10,9 +10,9 @@ import sys
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import load_scene, parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import questions
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
 from rigid_body_sim.study.hard_cases.contact import A, G, Shot, question

@@ -11,10 +11,10 @@ import platform
 
 import numpy as np
 
-from rigid_body_sim import compiled
+from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scenes import parse_scene, scene_names
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene, scene_names
+from rigid_body_sim.simulation.simulation import Simulation
 
 DURATION, STATES = 20.0, 500    # s
 COMPOSITE = """scene: composite
@@ -69,7 +69,7 @@ def main():
     found |= {f'{name} by {method}': of_method(name, method, control) for name, method, control in METHODS}
     found |= {f'{name} under a held wrench': held(name) for name in ('tennis_racket', 'heavy_top')}
     found['composite'] = of_scene(parse_scene(COMPOSITE))
-    print(json.dumps({'python': platform.python_version(), 'numba': compiled.HAVE_NUMBA and compiled.numba.__version__, 'digests': found}))
+    print(json.dumps({'python': platform.python_version(), 'numba': jit.HAVE_NUMBA and jit.numba.__version__, 'digests': found}))
 
 
 if __name__ == '__main__':

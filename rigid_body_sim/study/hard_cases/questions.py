@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.hard_cases import beside
 from rigid_body_sim.study.hard_cases.case import Question
 

@@ -10,10 +10,10 @@ import os
 
 import numpy as np
 
-from rigid_body_sim.compiled import compiled_allocating
-from rigid_body_sim.motions import free_body
-from rigid_body_sim.scenes import load_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.compilation.jit import compiled_allocating
+from rigid_body_sim.motions.free_body import free_body
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
 
 SIGMAS = 5.0

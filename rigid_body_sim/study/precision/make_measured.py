@@ -1,4 +1,4 @@
-"""Measure what auto chooses by: rigid_body_sim/integrators/measured.json, from the problems of the suite without a closed form.
+"""Measure what auto chooses by: rigid_body_sim/choice/measured.json, from the problems of the suite without a closed form.
 
 ::
 
@@ -14,7 +14,7 @@ import time
 
 from tqdm import tqdm
 
-from rigid_body_sim.integrators import measured
+from rigid_body_sim.choice import measured
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.recording.about import machine
 from rigid_body_sim.study.precision import measure, reference, runner, suite

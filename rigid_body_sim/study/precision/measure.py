@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.study.precision.runner import RefusedError
 
 SAMPLE = 1e-3

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigid_body_sim.choice import choose, methods_for
-from rigid_body_sim.effects.wrench import Wrench
+from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.integrators import METHODS
-from rigid_body_sim.mechanics import swing_rate
-from rigid_body_sim.simulation import Simulation
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+from rigid_body_sim.simulation.simulation import Simulation
 
 TOLERANCES = tuple(10.0 ** -k for k in range(1, 16))
 STEPS_OF_A_RADIAN = tuple(2.0 ** k for k in range(-1, 16))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rigid_body_sim.scenes import load_scene, parse_scene
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from rigid_body_sim.choice import methods_for
+from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.rotations import angle_between
-from rigid_body_sim.scenes import load_scene
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.scenes import inertia_tensors
 from rigid_body_sim.study.scenes.experiment import Experiment
 from rigid_body_sim.study.scenes.quantity import Quantity

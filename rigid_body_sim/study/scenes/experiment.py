@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.optimize import brentq
 
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACY = 1e-13    # rad in 100 s, far below the tolerances
 NODES = 17          # of the interpolation that differentiates

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rigid_body_sim.scenes import parse_scene
-from rigid_body_sim.simulation import Simulation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import inertia_tensors as theory
 

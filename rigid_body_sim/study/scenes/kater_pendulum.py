@@ -3,7 +3,7 @@
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.rotations import from_rotation_vector, multiply
+from rigid_body_sim.numerics.rotations import from_rotation_vector, multiply
 from rigid_body_sim.study.scenes import instruments
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity

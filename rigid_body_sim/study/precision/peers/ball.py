@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.study.precision.peers import start
 
 ROLLS = 4e-16

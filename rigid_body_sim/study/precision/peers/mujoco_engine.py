@@ -3,7 +3,7 @@
 import numpy as np
 
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 

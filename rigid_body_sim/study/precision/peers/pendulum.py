@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from rigid_body_sim.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.study.precision.peers import start
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rigid_body_sim.rotations import rotate_back
+from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.study.precision.peers import body, given
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 

@@ -1,6 +1,6 @@
 """Where a problem begins, and which of its effects change on the way."""
 
-from rigid_body_sim.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 from rigid_body_sim.study.precision.runner import RefusedError, begun
 
 

@@ -1,0 +1,250 @@
+"""Eight numbers side by side: one recurrence in Python, run as it stands or written into compiled code for the vector unit.
+
+Whoever writes a recurrence for an object of :class:`Plain` can have it compiled: with a :class:`Written` the same lines append vector
+instructions to a function that numba is compiling. Sums are made in the order in which they are written; only a product and the sum that
+takes it may round once instead of twice, where the processor has an instruction for that.
+"""
+
+import numpy as np
+
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
+
+LANES = 8
+PLACES = tuple(range(LANES))
+ONE_BITS = 1023 << 52    # of the double 1.0
+
+
+class Plain:
+    """The operations, on floats and on arrays of eight of them."""
+
+    def number(self, value):
+        """Return a constant."""
+        return value
+
+    def none(self):
+        """Return eight zeros."""
+        return np.zeros(LANES)
+
+    def times(self, a, b):
+        """Return a b."""
+        return a * b
+
+    def plus(self, a, b):
+        """Return a + b."""
+        return a + b
+
+    def minus(self, a):
+        """Return -a."""
+        return -a
+
+    def gather(self, a, b, c):
+        """Return a b + c."""
+        return a * b + c
+
+    def everywhere(self, x):
+        """Return eight times x."""
+        return np.full(LANES, x)
+
+    def next(self, v):
+        """Return the lanes one place on, and 0 in the last."""
+        return np.append(v[1:], 0.0)
+
+    def first(self, v):
+        """Return the number in the first lane."""
+        return float(v[0])
+
+    def with_lane(self, v, lane, x):
+        """Return v with x in one lane."""
+        return np.where(np.arange(LANES) == lane, x, v)
+
+    def load(self, array, at):
+        """Return the eight numbers of an array from a place on."""
+        return array[at:at + LANES]
+
+    def store(self, x, array, at):
+        """Write one number into an array."""
+        array[at] = x
+
+    def put(self, v, array, at):
+        """Write eight numbers into an array."""
+        array[at:at + LANES] = v
+
+    def divided(self, a, b):
+        """Return a / b."""
+        return a / b
+
+    def root(self, a):
+        """Return the square root of a."""
+        return np.sqrt(a)
+
+    def power(self, a, exponent):
+        """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent: the bits of a double count its logarithm."""
+        bits = (a.view(np.int64) - ONE_BITS) * exponent
+        return (bits.astype(np.int64) + ONE_BITS).view(np.float64)
+
+    def where_less(self, a, b, x, y):
+        """Return x where a < b, else y."""
+        return np.where(a < b, x, y)
+
+    def place(self, at, stride, i):
+        """Return the place at + stride i in an array."""
+        return at + stride * i
+
+    def repeat(self, first, last, values, act):
+        """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+        for i in range(first, last):
+            values = act(i, values)
+        return values
+
+
+if HAVE_NUMBA:
+    from llvmlite import ir
+    from numba.core import cgutils
+
+    DOUBLE, INDEX, PLACE = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
+    EIGHT = ir.VectorType(DOUBLE, LANES)
+    ABSENT = ir.Constant(EIGHT, ir.Undefined)
+
+    class Written:
+        """The operations of Plain as instructions; an array is the address of its first number."""
+
+        def __init__(self, builder):
+            self._builder = builder
+
+        def number(self, value):
+            """Return a constant."""
+            return ir.Constant(DOUBLE, value)
+
+        def none(self):
+            """Return eight zeros."""
+            return ir.Constant(EIGHT, [0.0] * LANES)
+
+        def times(self, a, b):
+            """Return a b."""
+            return self._builder.fmul(a, b)
+
+        def plus(self, a, b):
+            """Return a + b."""
+            return self._builder.fadd(a, b)
+
+        def minus(self, a):
+            """Return -a."""
+            return self._builder.fneg(a)
+
+        def gather(self, a, b, c):
+            """Return a b + c."""
+            name = 'llvm.fmuladd.v8f64' if a.type == EIGHT else 'llvm.fmuladd.f64'
+            kind = ir.FunctionType(a.type, [a.type] * 3)
+            return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, name), [a, b, c])
+
+        def everywhere(self, x):
+            """Return eight times x."""
+            return self._shuffled(self.with_lane(ABSENT, 0, x), ABSENT, [0] * LANES)
+
+        def next(self, v):
+            """Return the lanes one place on, and 0 in the last."""
+            return self._shuffled(v, self.none(), [place + 1 for place in PLACES])
+
+        def first(self, v):
+            """Return the number in the first lane."""
+            return self._builder.extract_element(v, ir.Constant(PLACE, 0))
+
+        def with_lane(self, v, lane, x):
+            """Return v with x in one lane."""
+            return self._builder.insert_element(v, x, ir.Constant(PLACE, lane))
+
+        def load(self, array, at):
+            """Return the eight numbers of an array from a place on."""
+            found = self._builder.load(self._builder.bitcast(self._place(array, at), EIGHT.as_pointer()))
+            found.align = 8    # of a double: arrays begin anywhere
+            return found
+
+        def store(self, x, array, at):
+            """Write one number into an array."""
+            self._builder.store(x, self._place(array, at))
+
+        def put(self, v, array, at):
+            """Write eight numbers into an array."""
+            self._builder.store(v, self._builder.bitcast(self._place(array, at), EIGHT.as_pointer())).align = 8
+
+        def divided(self, a, b):
+            """Return a / b."""
+            return self._builder.fdiv(a, b)
+
+        def root(self, a):
+            """Return the square root of a."""
+            kind = ir.FunctionType(EIGHT, [EIGHT])
+            return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, 'llvm.sqrt.v8f64'), [a])
+
+        def power(self, a, exponent):
+            """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent: the bits of a double count its logarithm."""
+            builder, one = self._builder, ir.Constant(ir.VectorType(INDEX, LANES), [ONE_BITS] * LANES)
+            bits = builder.sitofp(builder.sub(builder.bitcast(a, one.type), one), EIGHT)
+            bits = builder.fptosi(builder.fmul(bits, ir.Constant(EIGHT, [exponent] * LANES)), one.type)
+            return builder.bitcast(builder.add(bits, one), EIGHT)
+
+        def where_less(self, a, b, x, y):
+            """Return x where a < b, else y."""
+            return self._builder.select(self._builder.fcmp_ordered('<', a, b), x, y)
+
+        def place(self, at, stride, i):
+            """Return the place at + stride i in an array."""
+            return self._builder.add(self._index(at), self._builder.mul(self._index(stride), self._index(i)))
+
+        def repeat(self, first, last, values, act):
+            """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+            builder, first, last = self._builder, self._index(first), self._index(last)
+            before, body, after = builder.block, builder.append_basic_block('body'), builder.append_basic_block('after')
+            builder.cbranch(builder.icmp_signed('<', first, last), body, after)
+            builder.position_at_end(body)
+            i, running = builder.phi(INDEX), [builder.phi(value.type) for value in values]
+            made = act(i, running)
+            following, end = builder.add(i, self._index(1)), builder.block
+            builder.cbranch(builder.icmp_signed('<', following, last), body, after)
+            for phi, begin, then in zip([i, *running], [first, *values], [following, *made], strict=True):
+                phi.add_incoming(begin, before)
+                phi.add_incoming(then, end)
+            builder.position_at_end(after)
+            results = []
+            for begin, then in zip(values, made, strict=True):
+                phi = builder.phi(begin.type)
+                phi.add_incoming(begin, before)
+                phi.add_incoming(then, end)
+                results.append(phi)
+            return results
+
+        def _index(self, i):
+            return ir.Constant(INDEX, i) if isinstance(i, int) else i
+
+        def _place(self, array, at):
+            return self._builder.gep(array, [self._index(at)])
+
+        def _shuffled(self, u, v, places):
+            return self._builder.shuffle_vector(u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
+
+
+def compiled_lanes(recurrence, results):
+    """Return a kernel ``(array, numbers) -> tuple`` that runs a recurrence.
+
+    Parameters
+    ----------
+    recurrence : function (operations, array, *numbers)
+        It may load from the array and store into it, and returns a list of `results` numbers. Each of the numbers is a float, or a tuple of
+        floats that it sees as a list.
+    results : int
+    """
+    if not HAVE_NUMBA:
+        return lambda array, numbers: tuple(recurrence(Plain(), array, *numbers))
+    from numba import types
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def kernel(typing, array, numbers):
+        def write(context, builder, signature, given):
+            address = context.make_array(signature.args[0])(context, builder, given[0]).data
+            values = [cgutils.unpack_tuple(builder, one) if isinstance(kind, types.BaseTuple) else one
+                      for kind, one in zip(signature.args[1], cgutils.unpack_tuple(builder, given[1]), strict=True)]
+            found = recurrence(Written(builder), address, *values)
+            return context.make_tuple(builder, signature.return_type, found)
+        return types.UniTuple(types.float64, results)(array, numbers), write
+    return kernel

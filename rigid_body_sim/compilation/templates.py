@@ -1,0 +1,81 @@
+"""One kernel template, many uses: a loop or a stepper bound to the functions of one motion or one scene kind.
+
+numba cannot cache kernels that are closed over other functions, so the binding is done in source: a template is an ordinary module in which
+some names are declared ``NAME = UNBOUND``; :func:`specialise` writes a module with those lines replaced by imports (or by source text) into the
+cache folder, where its kernels are cached like any others. What a scene does not list is then not in its code at all.
+"""
+
+import functools
+import hashlib
+import importlib.util
+import inspect
+import linecache
+import os
+import re
+import sys
+import types
+
+from rigid_body_sim.compilation.jit import CACHE_FOLDER
+
+UNBOUND = None
+_DECLARATION = re.compile(r'^(\w+) = UNBOUND\b.*$', re.MULTILINE)
+
+
+def specialise(template, **bindings):
+    """Return the template module with its unbound names bound.
+
+    Parameters
+    ----------
+    template : module
+        A module with lines ``NAME = UNBOUND``.
+    bindings : str
+        For each such name: ``'package.module:function'``, or source text that defines the name (it contains a newline).
+
+    Raises
+    ------
+    TypeError
+        If a declared name is left unbound, or a name is given that the template does not declare.
+    """
+    return _bound(template, tuple(sorted(bindings.items())))
+
+
+@functools.cache
+def _bound(template, bindings):
+    source, bindings = inspect.getsource(template), dict(bindings)
+    declared = set(_DECLARATION.findall(source))
+    if declared != set(bindings):
+        raise TypeError(f'{template.__name__} declares {sorted(declared)}, got {sorted(bindings)}')
+
+    def definition(match):
+        name = match.group(1)
+        binding = bindings[name]
+        if '\n' in binding:
+            return binding
+        module, _, function = binding.partition(':')
+        return f'from {module} import {function} as {name}'
+
+    return _load(_DECLARATION.sub(definition, source), template.__name__.rpartition('.')[2])
+
+
+def _load(source, stem):
+    """Import the source as a module, by way of a file in the cache folder so that its compiled code is cached too."""
+    name = f'{stem}_{hashlib.sha256(source.encode()).hexdigest()[:12]}'
+    if name in sys.modules:
+        return sys.modules[name]
+    if CACHE_FOLDER is None:
+        module = types.ModuleType(name)
+        module.__file__ = f'<{name}>'
+        # so that tracebacks and inspect show it
+        linecache.cache[module.__file__] = len(source), None, source.splitlines(keepends=True), module.__file__
+        exec(compile(source, module.__file__, 'exec'), module.__dict__)
+    else:
+        path = CACHE_FOLDER / f'{name}.py'
+        if not path.exists():
+            partial = path.with_suffix(f'.{os.getpid()}')
+            partial.write_text(source)
+            partial.replace(path)
+        specification = importlib.util.spec_from_file_location(name, path)
+        module = importlib.util.module_from_spec(specification)
+        specification.loader.exec_module(module)
+    sys.modules[name] = module
+    return module

@@ -1,0 +1,51 @@
+"""Template: the equations of a free body on which a force acts.
+
+Unknowns are q (4) and omega (3) of the frame, position x and velocity v of the centre of mass (world). Rotation as in
+rigid_body_sim/integrators/equations/turning.py, about the centre of mass; x' = v, M v' = F.
+"""
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.euler import MASS, attitude_rate, read_state, taken, unit, write_state  # noqa: F401
+from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
+
+# `taken` and `rotate` are for the bound sums
+omega_rate = UNBOUND
+axes_rate = UNBOUND
+force = UNBOUND
+booked = UNBOUND
+
+UNKNOWNS = 13
+GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
+
+
+@compiled
+def start(p, vector, node, at):
+    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+    q, omega, place, drift = read_state(p, vector)
+    y = (*q, *omega, *place, *drift)
+    for u in range(UNKNOWNS):
+        node[at + u] = y[u]
+
+
+@compiled
+def rate(p, y):
+    """Return the rates of the unknowns, then of the books."""
+    qx, qy, qz, qw, wx, wy, wz, vx, vy, vz = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[10], y[11], y[12]
+    ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
+    fx, fy, fz = force(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
+    return (*attitude_rate(qx, qy, qz, qw, ax, ay, az), *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz),
+            vx, vy, vz, fx / p[MASS], fy / p[MASS], fz / p[MASS], *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz))
+
+
+@compiled
+def settled(y, c):
+    """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
+    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
+    return (*q, *y[4:]), (*lost, *c[4:])
+
+
+@compiled
+def write(p, time, y, out):
+    """Fill out, the state vector."""
+    write_state(p, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], y[10], y[11], y[12], out)

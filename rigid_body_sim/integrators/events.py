@@ -1,0 +1,150 @@
+"""Events of scenes that are followed step by step: zero crossings of a watched quantity, bracketed and refined on the solver itself.
+
+Motions in closed form know the times of their events (their kernel `next_event`); these are the same events for all other solvers.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.scene.state import STATE_SIZE
+
+RADIANS_BETWEEN_LOOKS = 0.2
+
+
+@dataclass(frozen=True)
+class Watch:
+    """A quantity whose changes of sign are events.
+
+    Attributes
+    ----------
+    name : str
+        Of the event.
+    value : callable
+        State vector -> float, relative to its natural size.
+    share : float
+        Hysteresis: a change of sign counts if the value has been at least this large since the one before.
+    largest : callable
+        State vector -> float: how large the value becomes from there if nothing but the free motion acts; stands for the past of a start.
+    """
+
+    name: str
+    value: object
+    share: float
+    largest: object
+
+
+def watches(scene):
+    """Return what is watched in a scene.
+
+    Free body with three different moments: `flip`, the momentum along the middle axis changes its sign. Pivot: `turning point`, the height
+    of the third body axis turns (nutation). Hinge: `turning point`, the rate changes its sign.
+    """
+    kind, body = scene.constraint.kind, scene.body
+    if kind == 'free' and len(set(body.about_center.moments)) == 3:
+        return (Watch('flip', *_momentum_along_middle_axis(body.about_center)),)
+    if kind == 'pivot':
+        return (Watch('turning point', _rise_of_third_axis, 1e-9, _rise_of_third_axis),)
+    if kind == 'hinge':
+        rate = _rate_about(scene.constraint.axis)
+        return (Watch('turning point', rate, 0.0, rate),)
+    return ()
+
+
+def _momentum_along_middle_axis(inertia):
+    """Return the share of the momentum that lies along the middle axis, the share that makes a flip, and the largest it becomes."""
+    order = np.argsort(inertia.moments)
+
+    def components(vector):
+        omega = rotate_back(*inertia.axes, *vector[5:8])
+        return [(float(inertia.moments[k]), omega[k]) for k in order]
+
+    def share(vector):
+        m = [I * w for I, w in components(vector)]
+        size = math.hypot(*m)
+        return m[1] / size if size > 0.0 else 0.0
+
+    def largest(vector):
+        # where the motion crosses the plane of omega1 = 0 or omega3 = 0, whichever comes first, by the constancy of E and L^2
+        (I1, w1), (I2, w2), (I3, w3) = components(vector)
+        size = math.hypot(I1 * w1, I2 * w2, I3 * w3)
+        by_first = w2 * w2 + I1 * (I3 - I1) / (I2 * (I3 - I2)) * w1 * w1
+        by_third = w2 * w2 + I3 * (I3 - I1) / (I2 * (I2 - I1)) * w3 * w3
+        return I2 * math.sqrt(min(by_first, by_third)) / size if size > 0.0 else 0.0
+
+    return share, 0.5, largest
+
+
+def _rise_of_third_axis(vector):
+    """Return the rate at which the height of body axis 3 grows, over |omega|."""
+    wx, wy, wz = vector[5:8]
+    size = math.hypot(wx, wy, wz)
+    return rotate(*vector[1:5], wy, -wx, 0.0)[2] / size if size > 0.0 else 0.0
+
+
+def _rate_about(axis):
+    def rate(vector):
+        return axis[0] * vector[5] + axis[1] * vector[6] + axis[2] * vector[7]
+
+    return rate
+
+
+class Watcher:
+    """Finds the events of one solver, going forward in time.
+
+    Parameters
+    ----------
+    solver : object
+        With `state(time, out)`.
+    watched : sequence of Watch
+    start : float
+        Time of the solver's start, s.
+    swing : float
+        What may come to the rate at once, rad/s (mechanics/bounds.py): a body at rest soon is not.
+    drive : float
+        What may come to it in a second, rad/s^2 (mechanics/bounds.py).
+    """
+
+    def __init__(self, solver, watched, start, swing, drive):
+        self._swing, self._drive = swing, drive
+        self._solver, self._watched = solver, watched
+        self._vector = np.empty(STATE_SIZE)
+        self._time = start
+        self._values = self._look(start)
+        self._strong = [abs(watch.largest(self._vector.tolist())) >= watch.share for watch in watched]
+
+    def _look(self, time):
+        self._solver.state(time, self._vector)
+        vector = self._vector.tolist()
+        # the time s in which rate s + drive s^2/2 is that angle
+        rate = math.hypot(*vector[5:8]) + self._swing
+        self._spacing = 2.0 * RADIANS_BETWEEN_LOOKS / max(
+            rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300)
+        return [watch.value(vector) for watch in self._watched]
+
+    def events(self, until):
+        """Return the (time, name, values) of the events since the last call and not later than `until`, in order."""
+        found = []
+        while self._watched and self._time < until:
+            time = min(until, self._time + self._spacing)
+            values = self._look(time)
+            for k, (watch, before, after) in enumerate(zip(self._watched, self._values, values, strict=True)):
+                if (before < 0.0) != (after < 0.0):
+                    if self._strong[k]:
+                        found.append((self._crossing(watch, self._time, time), watch.name, {}))
+                    self._strong[k] = False
+                self._strong[k] = self._strong[k] or abs(after) >= watch.share
+            self._time, self._values = time, values
+        return sorted(found)
+
+    def _crossing(self, watch, begin, end):
+        def value(time):
+            self._solver.state(time, self._vector)
+            return watch.value(self._vector.tolist())
+
+        if value(begin) == 0.0:
+            return begin
+        return brentq(value, begin, end, xtol=4e-16 * max(abs(end), 1e-300), rtol=8.9e-16)

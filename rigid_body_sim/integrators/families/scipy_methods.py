@@ -1,0 +1,86 @@
+"""Family of SciPy's solvers, on the scene's own compiled rates: a method is a module with SOLVER, a ``scipy.integrate.OdeSolver``.
+
+They run forward as far as they were asked and keep the interpolant of each step (about 1 kB a step); states come from these, so a state
+does not depend on which other times were asked. `accuracy` is what SciPy is asked for at each step: rtol = accuracy, atol = accuracy times
+the size of the unknown at the start, at least 1 of its unit. Errors of steps add up beyond it. Below 100 ulp (2.2e-14) it is 100 ulp,
+SciPy's own limit.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.scene.state import STATE_SIZE, TIME
+
+FINEST = 100.0 * np.finfo(float).eps
+
+
+class Bound:
+    """The rates of one scene for one solver."""
+
+    def __init__(self, stepped, books):
+        self.equations = Equations(stepped.scene, stepped.wrench, books)
+        self.acts = self.equations.acts
+
+    def course(self, stepped):
+        """Return the course of a started solver."""
+        return _Course(stepped, self.equations)
+
+
+class _Course:
+    """One run from a start: interpolants of the steps so far, one solver for each stretch between breakpoints."""
+
+    def __init__(self, stepped, equations):
+        self._equations, self._method, self._scene = equations, stepped.method, stepped.scene
+        self._first, self._y = equations.start(stepped.vector)
+        y = self._y
+        self._begin = float(stepped.vector[TIME])
+        self._accuracy = max(stepped.accuracy, FINEST)
+        self._scales = np.ones(len(y))
+        for first, last, absolute in equations.kind.GROUPS:
+            if not absolute:
+                self._scales[first:last] = max(1.0, math.hypot(*y[first:last]))
+        self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
+        self._reached, self._steps, self._parameters = [], [], []
+        self._solver = None
+
+    def _enter(self, begin, y):
+        """Start the solver of the stretch that begins at a time."""
+        p = self._equations.continued(self._first, begin)
+        rate = self._equations.kernels.rate
+        self._p = p
+        end = next(time for time in self._ends if time > begin)
+        self._solver = self._method.SOLVER(lambda time, y: np.array(rate(p, tuple(y.tolist()))), begin, y, end, rtol=self._accuracy,
+                                           atol=self._accuracy * self._scales)
+
+    def _advance(self):
+        message = self._solver.step()
+        if self._solver.status == 'failed' or not np.isfinite(self._solver.y).all():
+            raise NotConverged(f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
+                               f'{message or "the state is no longer finite"}')
+        self._reached.append(self._solver.t)
+        self._steps.append(self._solver.dense_output())
+        self._parameters.append(self._p)
+        if self._solver.status == 'finished':
+            self._enter(self._solver.t, self._solver.y)
+
+    def state(self, time, out):
+        """Fill out with the state at a time not before the start."""
+        self.states(np.array([time]), out[np.newaxis])
+
+    def states(self, times, out):
+        """Fill out with the states at times not before the start."""
+        if self._solver is None:
+            self._enter(self._begin, self._y)
+        while not self._reached or self._reached[-1] < times.max():
+            self._advance()
+        write, extra = self._equations.kernels.write, self._equations.extra
+        for time, row in zip(times, out, strict=True):
+            k = bisect.bisect_left(self._reached, time)
+            y = self._steps[k](time)
+            write(self._parameters[k], time, tuple(y.tolist()), row)
+            if extra:
+                row[STATE_SIZE:] = y[-extra:]

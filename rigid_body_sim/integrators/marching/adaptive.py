@@ -1,0 +1,96 @@
+"""Template: march with a Runge-Kutta method that chooses its own steps.
+
+A node is one point of the march: [time, next step, squared scales (3), unknowns, what their sums lost]. A step is accepted when its
+estimated error per second is below the tolerance, so that errors add up in proportion to time and not to the number of steps.
+"""
+
+import math
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.marching.points import onward
+
+rate = UNBOUND
+settled = UNBOUND
+trial = UNBOUND
+fastest = UNBOUND
+load = UNBOUND
+put = UNBOUND
+load_scales = UNBOUND
+put_scales = UNBOUND
+SIZE = UNBOUND
+ORDER = UNBOUND
+
+TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
+GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
+SPEED = 10.0               # 1/s, of a first step where nothing moves yet
+TRIALS = 60                # of one step: after so many refusals it is given up
+
+
+@compiled
+def begin(p, control, node):
+    """Choose the first step from a node whose time and unknowns are set."""
+    y = load(node, VALUES)
+    speed = fastest(y, rate(p, y))
+    node[STEP] = math.pow(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+
+
+@compiled
+def march(p, control, node, following, target, end, limit):
+    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+
+    Parameters
+    ----------
+    control : array
+        [tolerance per second].
+    node, following : array
+        The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed.
+    end : float
+        The last node stands there exactly.
+    """
+    tolerance = control[0]
+    moved = onward(node, following, target)
+    if moved < 0:
+        return 0, True
+    t, planned = node[TIME], node[STEP]
+    scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
+    good = True
+    while t < end:
+        k0 = rate(p, y)
+        h = planned
+        good = False
+        for _ in range(TRIALS):
+            t1 = end if t + 1.1 * h >= end else t + h
+            y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
+            allowed = tolerance * (t1 - t)
+            good = error <= allowed and t1 > t
+            if error > 1e-9 * allowed and error < math.inf:
+                h = (t1 - t) * min(GROWTH, max(SHRINK, SAFETY * math.pow(allowed / error, 1.0 / (ORDER - 1))))
+            else:    # nothing to be seen of the error, or not a number
+                h = (t1 - t) * (GROWTH if good else SHRINK)
+            if good:
+                break
+        y1, c1 = settled(y1, c1)
+        if not good or target < t1 or moved == limit:
+            following[TIME], following[STEP] = t1, h
+            put_scales(scales1, following, SCALES)
+            put(y1, following, VALUES)
+            put(c1, following, VALUES + SIZE)
+            break
+        t, planned, y, c, scales = t1, h, y1, c1, scales1
+        moved += 1
+    node[TIME], node[STEP] = t, planned
+    put_scales(scales, node, SCALES)
+    put(y, node, VALUES)
+    put(c, node, VALUES + SIZE)
+    return moved, good
+
+
+@compiled
+def between(p, control, node, following, dt):
+    """Return the unknowns a time dt after a node and within the step from it: one step of the method."""
+    y = load(node, VALUES)
+    if dt > 0.0:
+        # the same step as in the march, so that there is one to compile; its error is not looked at
+        y, _, _, _ = trial(p, y, load(node, VALUES + SIZE), rate(p, y), dt, load_scales(node, SCALES))
+    return y

@@ -1,0 +1,90 @@
+"""Many bodies of a scene by Taylor series, eight at once in the vector unit (batch_series.py, batch_march.py): taylor's mode for ensembles.
+
+The states are those of the method to the accuracy asked, not to the bit: order and steps are others.
+"""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.integrators.equations import euler
+from rigid_body_sim.integrators.families import power_series
+from rigid_body_sim.integrators.marching import batch_series
+from rigid_body_sim.integrators.marching.batch_march import NOBODY, march
+
+LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
+
+
+def directions(force, couple):
+    """Return the unit vectors along a force and, in the plane of it and a couple, across it, and a third one, as rows of a rotation."""
+    first = force if np.any(force) else couple
+    first = first / np.linalg.norm(first) if np.any(first) else np.array((1.0, 0.0, 0.0))
+    for other in (couple, np.eye(3)[np.argmin(np.abs(first))]):
+        across = other - (other @ first) * first
+        if np.linalg.norm(across) > 1e-3 * np.linalg.norm(other):
+            break
+    second = across / np.linalg.norm(across)
+    return np.array((first, second, np.cross(first, second)))
+
+
+def rows_for(p):
+    """Return the directions, and the rows of lanes with the numbers of the equations that parameters p (power_series.py) stand for."""
+    inverse, force, couple = (p[at:at + 3] for at in (euler.INVERSE, power_series.FORCE, power_series.COUPLE))
+    rows, u, table = directions(force, couple), p[power_series.PULL:power_series.PULL + 6], np.zeros((batch_series.ROWS, LANES))
+    along, across, _ = rows @ couple
+    pull = np.linalg.norm(force) * np.array(((0.0, u[0], u[1]), (u[3], 0.0, u[2]), (u[4], u[5], 0.0)))
+    for at, values in ((batch_series.EULER, p[euler.EULER:euler.EULER + 3]),
+                       (batch_series.CONSTANT, p[power_series.CONSTANT:power_series.CONSTANT + 3]),
+                       (batch_series.U, (pull + np.diag(along * inverse)).ravel()),
+                       (batch_series.V, across * inverse), (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0))):
+        table[at:at + len(values)] = np.reshape(values, (-1, 1))
+    return rows, table
+
+
+class Batch:
+    """Bodies under one scene's equations at some times.
+
+    Parameters
+    ----------
+    equations : power_series.Series
+    tolerance : float
+        For a second.
+    times : array (n,)
+        s, in any order, n > 0.
+    """
+
+    def __init__(self, equations, tolerance, times):
+        self._tolerance, self._times, self._stretches = tolerance, times, []
+        self._order = np.argsort(times, kind='stable')
+        rising, begin = times[self._order], -math.inf
+        # between two breakpoints the equations hold, and what they give at the end is the start behind it
+        for end in (*(time for time in equations.breakpoints if time <= rising[-1]), math.inf):
+            p, (first, last) = equations.held(begin), np.searchsorted(rising, (begin, end)).tolist()
+            rows, table = rows_for(p)
+            turn = tuple(Rotation.from_matrix(rows.T).as_quat().tolist())
+            self._stretches.append((table, np.tile(p, (LANES, 1)), turn, first, last, end))
+            begin = end
+
+    def run(self, starts, out):
+        """Fill out, shape (bodies, n, 14), with the states of many starts, shape (bodies, 14), none later than a time.
+
+        Return (number of a body whose state is no longer finite or whose step fell below what the clock resolves, its time), or None.
+        """
+        states, seats = starts.copy(), np.empty(2 * LANES, dtype=np.int64)
+        for table, p, turn, first, last, end in self._stretches:
+            body, time = march(_on_lines(table), p.copy(), turn, self._tolerance, seats, states, self._times, self._order, first, last, end,
+                               out)
+            if body != NOBODY:
+                return body, time
+        return None
+
+
+def _on_lines(table):
+    """Return a copy, flat, that begins with a line of the cache."""
+    room = np.empty(table.size + LINE // 8)
+    begin = -room.ctypes.data % LINE // 8
+    copy = room[begin:begin + table.size]
+    copy[:] = table.ravel()
+    return copy

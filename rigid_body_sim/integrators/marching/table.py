@@ -1,0 +1,246 @@
+"""A sphere on a table under a held wrench: phases of sliding and rolling, each smooth, followed by an adaptive Runge-Kutta method.
+
+What the phases are and why sliding has its own independent variable says rigid_body_sim/integrators/equations/table_rates.py.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.equations import table_rates
+from rigid_body_sim.integrators.equations.euler import unit
+from rigid_body_sim.integrators.equations.table_rates import CREEPING, GLIDING, PLACE, ROLLING, SLIDING, SPIN, UNKNOWNS, P, Q, U
+from rigid_body_sim.integrators.marching import steps, unroll
+from rigid_body_sim.integrators.marching.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
+from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
+from rigid_body_sim.motions import sliding_sphere
+from rigid_body_sim.numerics.rotations import normalised, rotate, rotate_back
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, VELOCITY
+from rigid_body_sim.scene.state import TIME as STATE_TIME
+
+CLOCK = table_rates.TIME
+KEPT = 2048              # nodes of a phase; beyond, every other one is dropped
+CREEP = 1e-4             # rad: as far the ball turns before a new slip leaves the direction of its drive; its lag is of the order of CREEP^2
+DEAD = 2.0 ** -56        # slip below that share of the speeds is none
+FLOOR = 1e-17            # of an error: none is asked to be smaller
+
+
+class OnTable:
+    """The kernels and the numbers of one scene and wrench."""
+
+    acts = True
+
+    def __init__(self, scene, method, wrench, step):
+        if step is not None:
+            raise BadInput('step', f'got {step!r} for a ball on the table', 'steps end where sliding begins and ends: give an accuracy')
+        self.parameters = np.zeros(table_rates.PARAMETERS)
+        self.parameters[:sliding_sphere.PARAMETER_SIZE] = sliding_sphere.parameters(scene)
+        if wrench:
+            in_body = wrench.frame == 'body'
+            self.parameters[table_rates.BODY_FORCE if in_body else table_rates.WORLD_FORCE:][:3] = wrench.force
+            self.parameters[table_rates.BODY_COUPLE if in_body else table_rates.WORLD_COUPLE:][:3] = wrench.torque
+        self.turns_with_body = bool(wrench) and wrench.frame == 'body'
+        extra = EXCHANGE_SIZE
+        self.kernels = specialise(
+            steps, rate='rigid_body_sim.integrators.equations.table_rates:rate', step=unroll.step_source(method, UNKNOWNS, extra),
+            trial=unroll.trial_source(method, UNKNOWNS, extra, table_rates.GROUPS))
+        self.order = method.ORDER
+
+    def course(self, stepped):
+        """Return the course of a started solver."""
+        return TableCourse(stepped, self)
+
+
+class TableCourse:
+    """One course from a start."""
+
+    def __init__(self, stepped, bound):
+        self._bound, self._scene, vector = bound, stepped.scene, stepped.vector
+        self._tolerance = stepped.accuracy / stepped.horizon
+        p = bound.parameters
+        q = normalised(*vector[ORIENTATION])
+        omega, v = np.array(rotate(*q, *vector[ANGULAR_VELOCITY])), vector[VELOCITY]
+        e = p[table_rates.RADIUS] * np.array([omega[1], -omega[0]])
+        u = v[:2] - e
+        if math.hypot(*u) <= sliding_sphere.ROUNDING * (math.hypot(*v[:2]) + p[table_rates.RADIUS] * np.linalg.norm(omega)):
+            u = np.zeros(2)
+            e = v[:2]
+        y = np.zeros(UNKNOWNS + EXCHANGE_SIZE)
+        y[Q:U], y[U:P], y[P:SPIN], y[SPIN] = q, u, v[:2] + p[table_rates.RATIO] * e, omega[2]
+        self._start, self._begin = np.array(vector), float(vector[STATE_TIME])
+        self._phases = [self._phase_from(tuple(y.tolist()))]
+
+    def _phase_from(self, y):
+        """Return the phase that begins with the unknowns y."""
+        p = self._bound.parameters.copy()
+        gx, gy, c = table_rates.drive(p, y)
+        if p[table_rates.FRICTION] * p[table_rates.GRAVITY] == 0.0:
+            p[table_rates.MODE] = GLIDING
+        elif y[U] != 0.0 or y[U + 1] != 0.0:
+            p[table_rates.MODE] = SLIDING
+        elif math.hypot(gx, gy) <= c:
+            p[table_rates.MODE] = ROLLING
+        else:
+            p[table_rates.MODE] = CREEPING
+        return _Phase(self._bound, p, y, self._tolerance)
+
+    def states(self, times, out):
+        """Fill out with the states at times not before the start, and its columns from 14 on with the books."""
+        for row, time in enumerate(times):
+            self.state(time, out[row])
+
+    def state(self, time, out):
+        """Fill out with the state at a time not before the start, and what is behind it with the books."""
+        self._write(time, self._at(time - self._begin), out)
+
+    def events(self, after, until):
+        """Return the (time, name, values) after one time (s) and not later than another: rolling began, sliding began."""
+        self._reach(until - self._begin)
+        names = {CREEPING: 'sliding began', ROLLING: 'rolling began'}
+        changes = [(self._begin + phase.begin, names[phase.mode], {}) for phase in self._phases[1:] if phase.mode in names]
+        return [change for change in changes if after < change[0] <= until]
+
+    def _reach(self, elapsed):
+        while self._phases[-1].reach(elapsed):
+            self._phases.append(self._phase_from(self._phases[-1].last))
+
+    def _at(self, elapsed):
+        self._reach(elapsed)
+        place = bisect.bisect_right([phase.begin for phase in self._phases], elapsed) - 1
+        return self._phases[place].at(elapsed)
+
+    def _write(self, time, y, out):
+        vx, vy, *omega = table_rates.motion(self._bound.parameters, y)
+        q = normalised(*y[Q:U])
+        out[STATE_TIME], out[ORIENTATION], out[ANGULAR_VELOCITY] = time, q, rotate_back(*q, *omega)
+        out[POSITION] = self._start[POSITION] + [y[PLACE], y[PLACE + 1], 0.0]
+        out[VELOCITY] = vx, vy, 0.0
+        out[STATE_SIZE:] = y[UNKNOWNS:][:len(out) - STATE_SIZE]
+
+
+class _Phase:
+    """Sliding, rolling or gliding from one change to the next.
+
+    A node is (unknowns with books, what their sums lost, squared scales, (next step, step that led here)); the nodes depend on the start of
+    the phase only.
+
+    Attributes
+    ----------
+    mode : int
+        SLIDING, ROLLING or GLIDING.
+    begin : float
+        Time since the start of the course, s.
+    last : tuple
+        Unknowns at the end, once it is reached.
+    """
+
+    def __init__(self, bound, p, y, tolerance):
+        self._bound, self._p, self._tolerance, self.mode = bound, p, tolerance, int(p[table_rates.MODE])
+        self.begin, self.last = float(y[CLOCK]), None
+        self._kept, self._stride, self._count = [], 1, 0
+        gx, gy, c = table_rates.drive(p, y)
+        _, _, *omega = table_rates.motion(p, y)
+        pace = math.hypot(y[U], y[U + 1]) if self.mode == SLIDING else 1.0
+        swift = c + math.hypot(gx, gy) + pace * math.hypot(*omega)
+        h = tolerance ** (1.0 / bound.order) / (swift if swift > 0.0 else 1.0)
+        if self.mode == CREEPING:
+            h = CREEP / max(1.0, math.hypot(*omega))
+        self._front = (y, (0.0,) * len(y), (0.0,) * 4, (h, 0.0))
+        self._keep()
+
+    def reach(self, elapsed):
+        """March until the time is passed or the phase ends; return whether it ends not later than that."""
+        while self.last is None and self._front[0][CLOCK] <= elapsed:
+            following = self._next(self._front)
+            self.last = self._end(self._front, following)
+            self._front = following
+            self._count += 1
+            self._keep()
+        return self.last is not None and self.last[CLOCK] <= elapsed
+
+    def at(self, elapsed):
+        """Return the unknowns and books at a time that the march has passed."""
+        node = self._kept[max(0, bisect.bisect_right(self._kept, elapsed, key=lambda node: node[0][CLOCK]) - 1)]
+        following = self._next(node)
+        while following[0][CLOCK] <= elapsed:
+            node, following = following, self._next(following)
+        if node[0][CLOCK] == elapsed:
+            return node[0]
+        if self.mode != SLIDING:
+            return self._part(node, elapsed - node[0][CLOCK])
+        # time is an unknown: Newton's method for the part of the step that ends at it, within what is known to hold it
+        low, high = 0.0, following[3][1]
+        part = high * (elapsed - node[0][CLOCK]) / (following[0][CLOCK] - node[0][CLOCK])
+        for _ in range(TRIALS):
+            y = self._part(node, part)
+            late = y[CLOCK] - elapsed
+            if late > 0.0:
+                high = part
+            else:
+                low = part
+            pace = math.hypot(y[U], y[U + 1])
+            better = part - late / pace if pace > 0.0 else low
+            better = better if low <= better <= high else 0.5 * (low + high)
+            if abs(better - part) <= 1e-16 * high:
+                break
+            part = better
+        return y
+
+    def _keep(self):
+        if self._count % self._stride == 0:
+            self._kept.append(self._front)
+            if len(self._kept) == KEPT:
+                self._kept, self._stride = self._kept[::2], 2 * self._stride
+
+    def _part(self, node, h):
+        y, lost, _, _ = node
+        kernels = self._bound.kernels
+        return kernels.step(self._p, y, lost, kernels.rate(self._p, y), h)[0]
+
+    def _next(self, node):
+        """Return the node after one accepted step."""
+        y, lost, scales, (h, _) = node
+        kernels, p = self._bound.kernels, self._p
+        first = kernels.rate(p, y)
+        for _ in range(TRIALS):
+            after, lost_after, scales_after, error = kernels.trial(p, y, lost, first, h, scales)
+            allowed = self._tolerance * (after[CLOCK] - y[CLOCK]) + FLOOR
+            factor = SHRINK
+            if error < math.inf:
+                factor = SAFETY * (allowed / max(error, 1e-9 * allowed)) ** (1.0 / self._bound.order)
+                factor = min(GROWTH, max(SHRINK, factor))
+            if error <= allowed:
+                q, lost_q = unit(*after[Q:U], *lost_after[Q:U])
+                return (*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after, (h * factor, h)
+            h *= factor
+        raise NotConverged(f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start of the hold')
+
+    def _end(self, node, following):
+        """Return the unknowns where the phase ends if it does so within a step, else None."""
+        before, after = node[0], following[0]
+        if self.mode == SLIDING:
+            vx, vy, *omega = table_rates.motion(self._p, after)
+            slip, c = math.hypot(after[U], after[U + 1]), table_rates.drive(self._p, after)[2]
+            speed = math.hypot(vx, vy) + self._p[table_rates.RADIUS] * math.hypot(*omega)
+            dead = slip < math.hypot(before[U], before[U + 1]) and slip <= DEAD * max(speed, c * (after[CLOCK] - self.begin))
+            return (*after[:U], 0.0, 0.0, *after[P:]) if dead else None
+        if self.mode == CREEPING:
+            return after if after[U] != 0.0 or after[U + 1] != 0.0 else None
+        if self.mode == GLIDING or not self._bound.turns_with_body or self._grips(after):
+            return None
+        low, high = 0.0, following[3][1]
+        for _ in range(TRIALS):
+            middle = 0.5 * (low + high)
+            if self._grips(self._part(node, middle)):
+                low = middle
+            else:
+                high = middle
+        return self._part(node, high)
+
+    def _grips(self, y):
+        """Return whether friction can hold the lowest point."""
+        gx, gy, c = table_rates.drive(self._p, y)
+        return math.hypot(gx, gy) <= c

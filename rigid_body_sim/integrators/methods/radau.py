@@ -1,0 +1,14 @@
+"""radau: SciPy's Radau IIA of order 5, implicit, for stiff scenes; scipy_methods.py."""
+
+from scipy import integrate
+
+from rigid_body_sim.integrators.families import scipy_methods as FAMILY  # noqa: F401, N812
+
+NAME = 'radau'
+ORDER = 5
+PRESERVES = ()
+NEEDS = 'acting'
+HEAT = True
+TAKES = ('accuracy',)
+SOLVER = integrate.Radau
+SOURCE = 'Hairer, Wanner, Solving ODEs II (1996), IV.8, by SciPy'

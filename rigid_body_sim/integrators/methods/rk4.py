@@ -1,0 +1,17 @@
+"""rk4: the classical Runge-Kutta method, what general engines call their accurate one; here for comparison.
+
+Four stages, order 4, fixed steps only: it has no error estimate, so it needs `step`.
+"""
+
+from rigid_body_sim.integrators.families import runge_kutta as FAMILY  # noqa: F401, N812
+
+NAME = 'rk4'
+ORDER = 4
+PRESERVES = ()
+NEEDS = 'acting'
+HEAT = True
+TAKES = ('step',)
+SOURCE = 'W. Kutta, Z. Math. Phys. 46 (1901) 435'
+
+A = ({}, {0: 0.5}, {1: 0.5}, {2: 1.0})
+B = {0: 1.0 / 6.0, 1: 1.0 / 3.0, 2: 1.0 / 3.0, 3: 1.0 / 6.0}

@@ -1,0 +1,22 @@
+"""split4: Blanes and Moan's SRKN 6b, order 4, six drifts a step, for kicks that depend on the attitude alone.
+
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says composition.py. Fixed steps only: it needs
+`step`.
+"""
+
+from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
+
+NAME = 'split4'
+ORDER = 4
+PRESERVES = ('symplectic form', 'reversal of time')
+NEEDS = 'acting'
+HEAT = False
+TAKES = ('step',)
+SOURCE = 'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S6 of order 4 (b)'
+
+_A1, _A2 = 0.245298957184271, 0.604872665711080
+_A3 = 0.5 - (_A1 + _A2)
+_B1, _B2, _B3 = 0.0829844064174052, 0.396309801498368, -0.0390563049223486
+_B4 = 1.0 - 2.0 * (_B1 + _B2 + _B3)
+DRIFTS = (_A1, _A2, _A3, _A3, _A2, _A1)
+KICKS = (_B1, _B2, _B3, _B4, _B3, _B2, _B1)

@@ -1,0 +1,67 @@
+"""Template of the loops over a motion in closed form: many times from one start, many starts.
+
+solver.py binds it to a motion. A state has the same bits whether it is asked for alone, among a million, or out of order:
+either every state comes from the motion's kernel `state`, or the motion has a kernel `fill_columns` of the same operations in the same order.
+"""
+
+import numpy as np
+
+from rigid_body_sim.compilation.jit import compiled, compiled_allocating
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.scene.state import STATE_SIZE
+
+BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state')
+# bindings of `fill_columns` and `states`: for a motion that has the first, and for one that has not
+ONE_BY_ONE = {'fill_columns': 'fill_columns = None\n', 'states': 'states = one_by_one\n'}
+IN_COLUMNS = {'fill_columns': '{}:fill_columns', 'states': 'states = in_columns\n'}
+BLOCK = 128         # states that are computed side by side
+FEW = 8             # below that they are taken one by one
+
+ANCHOR_SIZE = UNBOUND
+anchor = UNBOUND
+state = UNBOUND
+fill_columns = UNBOUND
+
+
+@compiled
+def one_by_one(anchored, times, out):
+    """Fill out, shape (n, 14), with the states at n times, in any order, of a motion anchored before."""
+    for k in range(len(times)):
+        state(anchored, times[k], out[k])
+
+
+@compiled_allocating
+def in_columns(anchored, times, out):
+    """Fill out as `one_by_one` does, many times side by side."""
+    if len(times) < FEW:
+        one_by_one(anchored, times, out)
+        return
+    columns = np.empty(STATE_SIZE * BLOCK)
+    for first in range(0, len(times), BLOCK):
+        count = min(BLOCK, len(times) - first)
+        fill_columns(anchored, times[first:first + count], columns)
+        for k in range(count):
+            for j in range(STATE_SIZE):
+                out[first + k, j] = columns[j * BLOCK + k]
+
+
+states = UNBOUND
+
+
+@compiled_allocating
+def ensemble(parameters, starts, times, out):
+    """Fill out, shape (bodies, n, 14), with the states at n times of many bodies.
+
+    Parameters
+    ----------
+    parameters : array (bodies, PARAMETER_SIZE) or (1, PARAMETER_SIZE)
+        One row a body, or one for all.
+    starts : array (bodies, 14)
+        Each with its own time.
+    times : array (n,)
+    """
+    stride = 0 if len(parameters) == 1 else 1
+    anchored = np.empty(ANCHOR_SIZE)
+    for body in range(len(starts)):
+        anchor(parameters[stride * body], starts[body], anchored)
+        states(anchored, times, out[body])

@@ -1,0 +1,112 @@
+"""Arithmetic with the unevaluated sum of two doubles (high, low), about 32 digits, for the few numbers that must not lose any.
+
+A pair is a tuple of two floats with |low| <= ulp(high)/2. The error of a product is one fused multiply-add where numba compiles, else Dekker's
+split: both are exact, so the bits agree, as long as factors stay below 1e150 and products above 1e-290 (beyond, low parts are lost).
+
+Sources: T. J. Dekker, Numerische Mathematik 18 (1971) 224; M. Joldes, J.-M. Muller, V. Popescu, ACM TOMS 44 (2017) 15, whose error bounds are
+quoted in units of u^2 = 2^-106.
+"""
+
+import math
+
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled, compiled_inline
+
+SPLITTER = 134217729.0     # 2^27 + 1
+
+
+def _product_error(a, b, product):
+    """Return a b - product exactly, for product = a b rounded; both factors split into halves of 26 bits."""
+    c, d = SPLITTER * a, SPLITTER * b
+    ah, bh = c - (c - a), d - (d - b)
+    al, bl = a - ah, b - bh
+    return al * bl - (((product - ah * bh) - al * bh) - ah * bl)
+
+
+if HAVE_NUMBA:
+    from numba.core import types
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def _product_error(typing_context, a, b, product):
+        """Return a b - product exactly: the machine's fused multiply-add."""
+        def generate(context, builder, signature, arguments):
+            a, b, product = arguments
+            return builder.fma(a, b, builder.fneg(product))
+        return types.float64(types.float64, types.float64, types.float64), generate
+
+
+@compiled_inline
+def two_sum(a, b):
+    """Return the exact sum of two doubles."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+@compiled_inline
+def quick_two_sum(a, b):
+    """Return the exact sum of two doubles with |a| >= |b| or a = 0."""
+    total = a + b
+    return total, b - (total - a)
+
+
+@compiled_inline
+def two_product(a, b):
+    """Return the exact product of two doubles."""
+    product = a * b
+    return product, _product_error(a, b, product)
+
+
+@compiled
+def add(a, al, b, bl):
+    """Return a + b to 3 u^2 of the result, whatever the signs."""
+    s, e = two_sum(a, b)
+    t, f = two_sum(al, bl)
+    s, e = quick_two_sum(s, e + t)
+    return quick_two_sum(s, e + f)
+
+
+@compiled_inline
+def add_double(a, al, b):
+    """Return a + b for a pair a and a double b: how sums are carried on with what they lose."""
+    s, e = two_sum(a, b)
+    return quick_two_sum(s, e + al)
+
+
+@compiled
+def add_alike(a, al, b, bl):
+    """Return a + b to 3 u^2 of the result, for a and b of one sign."""
+    s, e = two_sum(a, b)
+    return quick_two_sum(s, e + (al + bl))
+
+
+@compiled
+def multiply(a, al, b, bl):
+    """Return a b to 7 u^2."""
+    p, e = two_product(a, b)
+    return quick_two_sum(p, e + (a * bl + al * b))
+
+
+@compiled
+def multiply_double(a, al, b):
+    """Return a b to 3 u^2 for a pair a and a double b."""
+    p, e = two_product(a, b)
+    return quick_two_sum(p, e + al * b)
+
+
+@compiled
+def divide(a, al, b, bl):
+    """Return a / b to 15 u^2; b must not be zero."""
+    quotient = a / b
+    p, e = multiply_double(b, bl, quotient)
+    return quick_two_sum(quotient, ((a - p) + (al - e)) / b)
+
+
+@compiled
+def root(a, al):
+    """Return the square root of a pair a >= 0 to 4 u^2."""
+    if a <= 0.0:
+        return 0.0, 0.0
+    s = math.sqrt(a)
+    p, e = two_product(s, s)
+    return quick_two_sum(s, ((a - p) - e + al) / (s + s))

@@ -1,0 +1,392 @@
+"""Simulation: a scene in motion, tick by tick or at any times, with commands.
+
+::
+
+    from rigid_body_sim import Simulation
+    simulation = Simulation('tennis_racket')
+    simulation.advance(1000)
+    print(simulation.state.angular_velocity)
+    print(simulation.states([10.0, 20.0, 5.0]).orientation)
+"""
+
+import math
+import typing
+
+import numpy as np
+
+from rigid_body_sim.choice.choose import HORIZON, choose
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.mechanics import energy, impulse, parameters
+from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import balance
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import Scene, load_scene
+from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, State, States
+from rigid_body_sim.simulation import admission
+from rigid_body_sim.simulation.admission import LARGEST_WORK, SUM_FORCE, SUM_SIZE, SUM_TORQUE, SUM_WORK, well_formed
+from rigid_body_sim.simulation.command_rows import AXES, FORCE, FRAMES, HOLD, IMPULSE, LET_GO, TORQUE
+from rigid_body_sim.simulation.spans import Event, Span
+
+
+class Simulation:
+    """A scene that runs.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A scene, the name of one that ships, or the path of a .yaml file.
+    integrator : str
+        A method of ``rigid_body_sim.integrators.METHODS``, ``exact`` or ``auto``.
+    accuracy : float
+        Error of the attitude (rad) that is asked for; closed forms give the round-off floor whatever is asked.
+    rate : float
+        Ticks per second, for :meth:`advance`.
+    step : float, optional
+        Fixed step of the method, s, instead of step control.
+    horizon : float
+        Duration over which the accuracy is asked for, s.
+    settled : tuple, optional
+        What `auto` chose in an earlier run (choice.choose).
+
+    Attributes
+    ----------
+    tick : int
+        Ticks so far; it never falls, also across :meth:`reset`.
+    vector : array (14,)
+        The present state; it changes with the next call, so copy what you keep (or take :attr:`state`).
+    events : list of Event
+        What happened so far.
+
+    Raises
+    ------
+    BadInput
+        By name and value, before anything runs.
+    """
+
+    def __init__(self, scene, integrator='auto', accuracy=1e-12, rate=1000.0, step=None, horizon=HORIZON, settled=None):
+        self.scene = scene if isinstance(scene, Scene) else load_scene(scene)
+        if not (math.isfinite(rate) and rate > 0.0):
+            raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
+        self.rate = float(rate)
+        self.integrator, self.accuracy = integrator, accuracy
+        self.choice = choose(self.scene, integrator, accuracy, step, horizon, settled)
+        self.tick = 0
+        self.events = []
+        self.vector = np.empty(STATE_SIZE)
+        self._mechanics = parameters.parameters(self.scene)
+        self._dynamics = Dynamics(self.scene)
+        self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
+        self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
+        self._restart()
+
+    def follow(self, previous, keep_state):
+        """Begin at the present tick of another simulation, instead of at 0; called before anything else.
+
+        With `keep_state`, for another method, accuracy or rate on the same scene: state, time, held wrench and ledger go on from there.
+        Without it, for another scene: only the tick counter goes on.
+        """
+        self.tick = previous.tick
+        self._restart()
+        if not keep_state:
+            return
+        if self.rate == previous.rate:
+            self._origin, self._origin_time = previous._origin, previous._origin_time
+        else:
+            self._origin_time = previous.time
+        self._initial = previous._initial
+        span, now = previous._spans[-1], previous.time
+        given = span.given + span.solver.exchanged(now)
+        self._spans = [Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
+        self._arrive()
+
+    def _restart(self):
+        self._origin, self._origin_time = self.tick, 0.0
+        start = self.scene.initial.vector
+        energy.diagnose(self._mechanics, start, self._diagnosis)
+        if not np.isfinite(self._diagnosis).all():
+            raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
+                           'a smaller angular velocity, velocity or height')
+        self._initial = self._diagnosis.copy()
+        self._spans = [Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
+        self._commands = None
+        self._foreseen = _Foreseen(None, 0, ())
+        self._arrive()
+
+    @property
+    def time(self):
+        """Simulated time since the start or the last reset, s: ticks over rate, never a sum."""
+        return self.time_at(self.tick)
+
+    def time_at(self, tick):
+        """Return the simulated time of a tick since the start or the last reset, s."""
+        return self._origin_time + (tick - self._origin) / self.rate
+
+    @property
+    def state(self):
+        """The present State."""
+        return State(self.vector.copy())
+
+    def advance(self, ticks=1):
+        """Go on by a number of ticks; events on the way are appended to `events`."""
+        before = self.time
+        self.tick += ticks
+        self._commands = None
+        foreseen = self._foreseen
+        place = self.tick - foreseen.tick
+        if foreseen.spans is self._spans and 0 <= place < len(foreseen.vectors):
+            self.vector[:] = foreseen.vectors[place]
+            self._diagnosed_tick = None
+        else:
+            self._arrive()
+            self.events.extend(self._events_between(self._spans, before, self.time))
+
+    def advance_through(self, ticks):
+        """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
+        self._commands = None
+        states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
+        self.advance(ticks)
+        return states
+
+    def foresee(self, ticks):
+        """Return the States at the next ticks, to the bit what :meth:`advance` meets if no command comes, without going there.
+
+        There are `ticks` of them, or as many as come before the tick of the next event. They are kept: to advance to one of them costs
+        nothing more.
+        """
+        times = self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1))
+        spans = self._spans_until(times[-1])
+        event = next(self._events_between(spans, self.time, times[-1]), None)
+        states = self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
+        self._foreseen = _Foreseen(spans, self.tick + 1, states.vector.copy())
+        return states
+
+    def diagnose(self, states):
+        """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
+        out = np.empty((len(states), energy.DIAGNOSIS_SIZE))
+        energy.diagnose_many(self._mechanics, states.vector, out)
+        return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[:, energy.MOMENTUM_SQUARED].copy()
+
+    def states(self, times):
+        """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
+
+        Raises
+        ------
+        BadInput
+            A time before the first one kept, or not finite.
+        """
+        times = np.ascontiguousarray(times, dtype=float).reshape(-1)
+        if len(times) and not (np.isfinite(times).all() and times.min() >= self._spans[0].time):
+            raise BadInput('states', f'got times from {times.min()!r} to {times.max()!r} s', f'finite times from {self._spans[0].time!r} s on')
+        spans = self._spans_until(times.max()) if len(times) else []
+        out = np.empty((len(times), STATE_SIZE))
+        if len(spans) == 1:
+            spans[0].solver.states(times, out)
+            return States(out)
+        place = _places(spans, times)
+        for k, span in enumerate(spans):
+            chosen = np.flatnonzero(place == k)
+            part = np.empty((len(chosen), STATE_SIZE))
+            span.solver.states(times[chosen], part)
+            out[chosen] = part
+        return States(out)
+
+    def impulse(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
+        """Strike the body at the present tick: an impulse of force (N s, at the centre of mass) and of torque (N m s).
+
+        Impulses of one tick are added before they act, so opposite ones cancel to the last bit.
+
+        Raises
+        ------
+        BadInput
+            Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
+        """
+        self._command_one((IMPULSE, *well_formed(force, torque, frame, 'impulse')))
+
+    def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
+        """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
+
+        The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
+        the axes turn with the body. The same errors as for :meth:`impulse`.
+        """
+        self._command_one((HOLD, *well_formed(force, torque, frame, 'wrench')))
+
+    def release(self):
+        """Let go of the held wrench at the present tick."""
+        self.command(LET_GO)
+
+    def _command_one(self, row):
+        for _, refusal in self.command(np.array([row])):
+            raise refusal
+
+    def command(self, rows):
+        """Give commands at the present tick, in their order: to the bit what they do one by one, but computed once.
+
+        Parameters
+        ----------
+        rows : array (n, 8)
+            See command_rows.py.
+
+        Returns
+        -------
+        list of (int, BadInput)
+            Place and reason of each command that is not taken, for the same reasons as of :meth:`impulse`; nothing comes of it.
+        """
+        if not self.scene.accepts_commands:
+            refusal = BadInput('command', f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
+            return [(k, refusal) for k in range(len(rows))]
+        if self._commands is None:
+            self._commands = _Commands(len(self._spans), self.wrench, self.vector.copy(), self.vector.copy(), np.zeros(SUM_SIZE))
+        given = self._commands
+        verdicts, amounts = np.empty(len(rows), np.int64), np.empty(len(rows))
+        last, refused = admission.take(self._mechanics, self.rate, given.start, rows, given.left, given.sums, verdicts, amounts)
+        if last >= 0:
+            self._commands = given._replace(wrench=_wrench(rows[last]))
+        self._settle()
+        if not refused:
+            return []
+        attitude = given.start[ORIENTATION].tolist()
+        return [(k, admission.refusal(verdicts[k], amounts.item(k), rows[k], attitude)) for k in np.flatnonzero(verdicts).tolist()]
+
+    @property
+    def wrench(self):
+        """The Wrench that is held now; all zero if none is."""
+        return self._spans[-1].wrench
+
+    def reset(self):
+        """Put the state back to the scene's initial one, without commands; the tick counter goes on."""
+        self._restart()
+        self.events.append(Event(self.tick, self.time, 'reset', {}))
+
+    def forget_past(self):
+        """Drop what is needed for :meth:`states` before the present; a simulation that takes commands for days calls it now and then."""
+        if self._commands is None:
+            self._spans = self._spans_until(self.time)[-1:]
+
+    @property
+    def acceleration(self):
+        """The (linear, angular) acceleration at the present: of the body's origin (world axes, m/s^2), and omega' (body axes, rad/s^2).
+
+        Exact, by the balance of forces (rigid_body_sim/mechanics/balance.py), with the held wrench; an impulse has none.
+        """
+        balance = self._dynamics.balance(self.vector, self.wrench)
+        return balance.acceleration, balance.angular_acceleration
+
+    def reactions(self, times):
+        """Return what the constraint exerts on the body at times (s) as in :meth:`states`, as dynamics.Reactions.
+
+        Force (N) and torque (N m) in world axes; the torque about `point` (m, world): the fixed point (torque 0), the point `through` of a
+        hinge, the point of contact with the table (torque 0).
+
+        Of a strike or an impulse the reaction is an impulse too and not among these.
+
+        Raises
+        ------
+        BadInput
+            A free body; times as in :meth:`states`.
+        """
+        if self.scene.constraint.kind == 'free':
+            raise BadInput('reactions', f'nothing holds the body of {self.scene.name}', 'a scene with a pivot, a hinge or a table')
+        states = self.states(times)
+        spans = self._spans_until(states.time.max()) if len(states) else []
+        return self._dynamics.reactions(states.vector, [spans[k].wrench for k in _places(spans, states.time)])
+
+    @property
+    def energy(self):
+        """Kinetic plus potential energy of the present state, J."""
+        return float(self._diagnose()[energy.KINETIC] + self._diagnosis[energy.POTENTIAL])
+
+    @property
+    def angular_momentum_squared(self):
+        """L . L about the point of reference (mechanics.py), (kg m^2/s)^2."""
+        return float(self._diagnose()[energy.MOMENTUM_SQUARED])
+
+    def ledger(self):
+        """Return the balance of energy (J) and angular momentum since the start or the last reset, a dict of floats (ledger.balance)."""
+        span = self._spans[-1]
+        given = span.given + span.solver.exchanged(self.time)
+        return balance(self._initial, self._diagnose(), given)
+
+    def _diagnose(self):
+        if self._diagnosed_tick != (self.tick, len(self._spans)):
+            energy.diagnose(self._mechanics, self.vector, self._diagnosis)
+            self._diagnosed_tick = (self.tick, len(self._spans))
+        return self._diagnosis
+
+    def _arrive(self):
+        """Evaluate the present state."""
+        time = self.time
+        self._spans = self._spans_until(time)
+        self._spans[-1].solver.state(time, self.vector)
+        self._diagnosed_tick = None
+
+    def _events_between(self, spans, before, now):
+        """Yield the events after `before` up to the tick at `now` (s), in the order of their times."""
+        last_tick = self._origin + round((now - self._origin_time) * self.rate)
+        for k, span in enumerate(spans):
+            end = spans[k + 1].time if k + 1 < len(spans) else now
+            if end > before:
+                for time, name, values in span.events(before, min(end, now), 1.0 / self.rate):
+                    tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
+                    yield Event(min(tick, last_tick), time, name, values)
+
+    def _spans_until(self, time):
+        """Return the spans up to a time, with the scene's strikes on the way."""
+        spans = self._spans
+        last = spans[-1]
+        while last.strikes < len(self._strikes) and self._strikes[last.strikes].time <= time:
+            strike = self._strikes[last.strikes]
+            at = max(strike.time, last.time)
+            struck, given = np.empty(STATE_SIZE), last.given + last.solver.exchanged(at)
+            last.solver.state(at, struck)
+            taken, work = impulse.push(self._mechanics, struck, *strike.as_impulse(self.scene.body, struck), given)
+            if not abs(work) <= LARGEST_WORK:
+                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it would do a work of {work!r} J',
+                               f'at most {LARGEST_WORK:g} J: energies are doubles')
+            if not taken:
+                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it has a torque about an axis of zero moment',
+                               'a point and an impulse without: such an axis takes no angular momentum')
+            last = Span(at, self.choice.solver(struck, last.wrench), last.wrench, last.strikes + 1, given)
+            spans = [*spans, last]
+        return spans
+
+    def _settle(self):
+        """Begin a new span at the present tick, or none where the commands of the tick cancel."""
+        commands, time = self._commands, self.time
+        kept = self._spans[:commands.base]
+        last = kept[-1]
+        if any(commands.sums[:SUM_WORK].tolist()) or commands.wrench != last.wrench:
+            start, given = commands.start.copy(), last.given + last.solver.exchanged(time)
+            impulse.push(self._mechanics, start, commands.sums[SUM_FORCE], commands.sums[SUM_TORQUE], given)
+            kept = [*kept, Span(time, self.choice.solver(start, commands.wrench), commands.wrench, last.strikes, given)]
+        self._spans = kept
+        self._arrive()
+
+
+class _Commands(typing.NamedTuple):
+    """What the commands of the present tick come to: the number of spans before them, the wrench they leave; state and sums as of take."""
+
+    base: int
+    wrench: Wrench
+    start: np.ndarray
+    left: np.ndarray
+    sums: np.ndarray
+
+
+class _Foreseen(typing.NamedTuple):
+    """States that were computed ahead: the spans they belong to, the tick of the first one, their vectors; no event falls among them."""
+
+    spans: list
+    tick: int
+    vectors: object
+
+
+def _places(spans, times):
+    """Return for each time the number of the span it lies in."""
+    return np.searchsorted([span.time for span in spans], times, side='right') - 1
+
+
+def _wrench(row):
+    """Return what a row holds from its tick on: the Wrench of all zeros if it lets go."""
+    force, torque = tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist())
+    return Wrench(force, torque, FRAMES[int(row[AXES])]) if any(force) or any(torque) else Wrench()

@@ -1,0 +1,103 @@
+"""What `auto` chooses: it meets the accuracy on scenes outside its table, says what it expects, and a recorded choice is taken again."""
+
+import json
+import pathlib
+
+import numpy as np
+import pytest
+from data import choice_cases
+
+from rigid_body_sim.analysis import resimulate
+from rigid_body_sim.choice import measured, trial
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.cli import simulate
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+REFERENCE = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'choice.json').read_text())
+
+
+def scene_of(name):
+    return parse_scene(choice_cases.text(name))
+
+
+# the other cases need kernels that no other test compiles: bench/choice.py has them all
+@pytest.mark.parametrize('accuracy', choice_cases.ACCURACIES)
+@pytest.mark.parametrize('name', ['slow_top', 'fast_top'])
+def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
+    scene, duration, expected = scene_of(name), choice_cases.CASES[name][-1], REFERENCE[name]
+    choice, out = choose(scene, accuracy=accuracy, horizon=duration), np.empty(14)
+    choice.solver(scene.initial.vector, Wrench()).state(duration, out)
+    error = angle_between(*out[1:5], *map(float, expected['orientation']))
+    assert error < 10.0 * accuracy + expected['floor']
+    assert choice.expected_error < 2.0 * accuracy + 1e-12
+
+
+@pytest.mark.parametrize('name', choice_cases.CASES)
+def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
+    # what the table says, untried: trials of all kinds take minutes to compile
+    monkeypatch.setattr(trial, 'HAVE_NUMBA', False)
+    choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
+    assert all(choice.method in METHODS for choice in choices)
+    assert [choice.expected_error for choice in choices] == sorted((choice.expected_error for choice in choices), reverse=True)
+    assert all(choice.expected_error <= asked for choice, asked in zip(choices, (1e-2, 1e-6, 1e-10), strict=True))
+
+
+def test_the_cheapest_that_is_good_enough_is_taken(monkeypatch):
+    def rows(*costs):
+        return [{'tolerance': 10.0 ** -k, 'error': 10.0 ** -k, 'cost': cost} for k, cost in zip((3, 6, 9), costs, strict=True)]
+    monkeypatch.setattr(measured, 'table', lambda: {'kinds': {'pivot': {'one': rows(1.0, 4.0, 9.0), 'other': rows(2.0, 3.0, 8.0)}}})
+    scene = scene_of('slow_top')
+    assert measured.pick(scene, ['one', 'other'], 1e-3, 1.0)[:2] == ('one', 1e-3)
+    assert measured.pick(scene, ['one', 'other'], 1e-5, 1.0)[:2] == ('other', 1e-6)
+    assert measured.pick(scene, ['one'], 1e-5, 1.0)[:2] == ('one', 1e-6)
+    assert measured.pick(scene, ['one', 'other'], 1e-12, 1.0) == ('other', 1e-9, 1e-9)
+    assert measured.pick(scene, ['one', 'other'], 1e-9, 1e12)[2] > 1e-4
+
+
+@pytest.mark.skipif(not trial.HAVE_NUMBA, reason='without numba the table is taken at its word')
+def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_of_the_scene(monkeypatch):
+    honest = measured.table()
+    rows = {method: [entry | {'error': 1e-5 * entry['error']} for entry in found] for method, found in honest['kinds']['pivot'].items()}
+    monkeypatch.setattr(measured, 'table', lambda: {'kinds': {'pivot': rows}})
+    scene, duration, out = scene_of('slow_top'), choice_cases.CASES['slow_top'][-1], np.empty(14)
+    choice = choose(scene, accuracy=1e-6, horizon=duration)
+    choice.solver(scene.initial.vector, Wrench()).state(duration, out)
+    error = angle_between(*out[1:5], *map(float, REFERENCE['slow_top']['orientation']))
+    # measured: 1.3e-8 both
+    assert 0.9 * error < choice.expected_error <= 1e-6
+
+
+def test_closed_forms_cost_no_choice():
+    choice = choose(load_scene('tennis_racket'), accuracy=1e-3)
+    assert (choice.method, choice.expected_error < 1e-12) == ('exact', True)
+
+
+def test_a_recorded_choice_is_taken_whatever_the_table_says(monkeypatch):
+    now = choose(scene_of('slow_top'), accuracy=1e-6)
+    monkeypatch.setattr(trial, 'settle', lambda *_: pytest.fail('it looked into the table'))
+    then = choose(scene_of('slow_top'), accuracy=1e-6, settled=(now.method, now.tolerance, now.expected_error))
+    assert (then.method, then.tolerance) == (now.method, now.tolerance)
+
+
+def test_the_horizon_is_the_duration_and_counts():
+    short, long = (Simulation(load_scene('heavy_top'), horizon=horizon) for horizon in (1.0, 1e6))
+    assert short.choice.expected_error < long.choice.expected_error
+    with pytest.raises(BadInput, match='horizon'):
+        choose(scene_of('slow_top'), horizon=0.0)
+
+
+def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch):
+    (tmp_path / 'top.yaml').write_text(choice_cases.text('slow_top'))
+    asked = ['--scene', str(tmp_path / 'top.yaml'), '--duration', '0.2', '--accuracy', '1e-6', '--output', str(tmp_path / 'run'), '--json']
+    assert simulate.main(asked) == 0
+    method = json.loads(capsys.readouterr().out)['method']
+    assert method['horizon'] == 0.2
+    assert 0.0 < method['expected_error'] <= 1e-6
+    monkeypatch.setattr(trial, 'settle', lambda *_: ('rk4', None, 1.0))
+    assert resimulate.main([str(tmp_path / 'run')]) == 0
+    assert 'identical' in capsys.readouterr().out

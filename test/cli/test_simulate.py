@@ -1,0 +1,198 @@
+"""The command `simulate`: its recording is read by rosbags, which nobody here wrote; its numbers are those of Simulation."""
+
+import json
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import yaml
+
+from rigid_body_sim.cli.simulate import main
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.recover import recover
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+rosbags = pytest.importorskip('rosbags.highlevel')
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FLIPPING = """
+scene: flipping
+body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
+constraint: free
+effects: []
+initial: {orientation: [0, 0, 0, 1], angular_velocity: [0.3, 5.0, 0.2], position: [1, 2, 3], velocity: [0.1, 0.2, 0.3]}
+"""
+
+
+@pytest.fixture(scope='module')
+def flipping(tmp_path_factory):
+    """Return the path of a recording of 2 s at 500 Hz, in several blocks and chunks."""
+    folder = tmp_path_factory.mktemp('simulate')
+    (folder / 'flipping.yaml').write_text(FLIPPING)
+    assert main(['--scene', str(folder / 'flipping.yaml'), '--set', 'body.mass=2.0', '--duration', '10', '--rate', '500',
+                 '--output', str(folder / 'run')]) == 0
+    return folder / 'run'
+
+
+def read(path):
+    """Return {topic: [(log time, message)]} as rosbags reads it."""
+    found = {}
+    with rosbags.AnyReader([path]) as reader:
+        for connection, stamp, data in reader.messages():
+            found.setdefault(connection.topic, []).append((stamp, reader.deserialize(data, connection.msgtype)))
+    return found
+
+
+def test_a_stranger_reads_every_tick_with_all_its_bits(flipping):
+    found = read(flipping)
+    assert set(found) == {'/pose', '/angular_velocity', '/energy', '/angular_momentum_squared', '/scene', '/events', '/journal'}
+    scene = yaml.safe_load(found['/scene'][0][1].data)
+    assert scene['body']['mass'] == 2.0
+    simulation = Simulation(load_scene(flipping.parent / 'flipping.yaml', ['body.mass=2.0']), rate=500.0)
+    epoch = found['/pose'][0][0]
+    for name in ('/pose', '/angular_velocity', '/energy', '/angular_momentum_squared'):
+        assert [stamp - epoch for stamp, _ in found[name]] == [k * 2_000_000 for k in range(5001)]
+    # one by one, not in blocks
+    for k in range(5001):
+        pose, omega = found['/pose'][k][1], found['/angular_velocity'][k][1]
+        assert (pose.header.frame_id, omega.header.frame_id) == ('world', 'body')
+        assert pose.header.stamp.sec * 10**9 + pose.header.stamp.nanosec == found['/pose'][k][0]
+        q, p = pose.pose.orientation, pose.pose.position
+        recorded = [simulation.time, q.x, q.y, q.z, q.w, omega.vector.x, omega.vector.y, omega.vector.z, p.x, p.y, p.z]
+        assert recorded == simulation.vector[:11].tolist()
+        assert found['/energy'][k][1].data == simulation.energy
+        assert found['/angular_momentum_squared'][k][1].data == simulation.angular_momentum_squared
+        simulation.advance()
+
+
+def test_events_stand_at_their_ticks(flipping):
+    simulation = Simulation(flipping.parent / 'flipping.yaml', rate=500.0)
+    simulation.advance(5000)
+    found = read(flipping)
+    events = found['/events']
+    assert len(events) == len(simulation.events) == 3
+    for (stamp, message), event in zip(events, simulation.events, strict=True):
+        values = {pair.key: pair.value for pair in message.values}
+        assert (message.name, values['tick'], values['time']) == (event.name, str(event.tick), repr(event.time))
+        assert stamp == found['/pose'][event.tick][0]
+
+
+def test_it_says_all_that_is_needed_to_run_it_again(flipping):
+    recording = Recording(flipping)
+    about = {key: json.loads(recording.about[key]) for key in ('simulation', 'parameters', 'machine')}
+    assert recording.about['made_by'] == 'simulate' and recording.about['version']
+    assert about['simulation'] == {'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact',
+                                   'horizon': 10.0, 'tolerance': 1e-12, 'expected_error': about['simulation']['expected_error']}
+    assert 0.0 < about['simulation']['expected_error'] < 1e-13
+    assert about['parameters'] == {'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'], 'rate': 500.0,
+                                   'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0}
+    assert {'processor', 'libc', 'python', 'numpy', 'numba', 'sources'} <= set(about['machine'])
+    begin, state = recording.journal()
+    assert begin['kind'] == 'begin' and begin['scene'] == recording.about['scene']
+    pose = recording.read('/pose', ['pose.orientation'])
+    assert state['kind'] == 'state' and state['tick'] == 0 and state['vector'][1:5] == pose['pose.orientation'][0].tolist()
+    assert pose['sequence'].tolist() == list(range(5001))
+
+
+def test_json_is_the_state_to_the_last_bit_with_and_without_a_recording(tmp_path, capsys):
+    arguments = ['--duration', '3.5', '--rate', '333', '--json']
+    assert main(arguments) == 0
+    result = json.loads(capsys.readouterr().out)
+    simulation = Simulation('tennis_racket', rate=333.0)
+    simulation.advance(1166)    # the first tick at 3.5 s or later
+    state = result['state']
+    assert [state['time'], *state['orientation'], *state['angular_velocity'], *state['position'], *state['velocity']] == \
+        simulation.vector.tolist()
+    assert result['ledger'] == simulation.ledger()
+    assert result['method']['method'] == 'exact'
+    assert result['cost']['ticks'] == 1166 and result['cost']['messages'] == 0
+    assert main([*arguments, '--output', str(tmp_path / 'run')]) == 0
+    recorded = json.loads(capsys.readouterr().out)
+    assert {**recorded, 'cost': None} == {**result, 'cost': None}
+    assert recorded['cost']['messages'] == Recording(tmp_path / 'run').message_count
+
+
+def test_no_duration_is_the_first_state_alone(tmp_path, capsys):
+    assert main(['--duration', '0', '--output', str(tmp_path / 'run'), '--json']) == 0
+    assert json.loads(capsys.readouterr().out)['state']['time'] == 0.0
+    assert Recording(tmp_path / 'run').topics['/pose'].count == 1
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['--scene', 'tennis_rackett'], 'did you mean tennis_racket?'),
+    (['--set', 'body.mass=-1'], 'body.mass'),
+    (['--integrator', 'exakt'], "did you mean 'exact'?"),
+    (['--accuracy', '0'], 'accuracy'),
+    (['--rate', '-5'], 'rate'),
+    (['--rate', 'abc'], "invalid float value: 'abc'"),
+    (['--duration', 'nan'], '--duration: got nan'),
+    (['--duration', '-1'], '--duration: got -1.0'),
+    (['--duration', '1e300'], '--duration'),
+    (['--output', '/proc/run'], '/proc/run'),
+    (['--output', '.'], 'exists already'),
+])
+def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
+    try:
+        status = main(arguments)
+    except SystemExit as ended:
+        status = ended.code
+    captured = capsys.readouterr()
+    assert (status, captured.out) == (2, '')
+    assert said in captured.err and captured.err.count('\n') == 1
+
+
+def start(*arguments, **options):
+    return subprocess.Popen([sys.executable, '-m', 'rigid_body_sim', 'simulate', *arguments], cwd=ROOT, text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, **options)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_with_a_whole_recording(tmp_path, number):
+    path = tmp_path / 'run'
+    with start('--duration', '100000', '--output', path) as process:
+        while not (path / 'run_0.mcap').exists() or (path / 'run_0.mcap').stat().st_size < 2**20:
+            assert process.poll() is None, process.stderr.read()
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, error = process.communicate(timeout=30)
+    assert process.returncode == 128 + number
+    [line] = error.splitlines()
+    assert line.startswith('interrupted at t = ') and line.endswith('is whole up to there')
+    pose = Recording(path).read('/pose', ['pose.orientation'])
+    assert np.diff(pose['log_time']).tolist() == [1_000_000] * (len(pose['log_time']) - 1)
+    with rosbags.AnyReader([path]) as reader:
+        assert reader.message_count == Recording(path).message_count > 4 * 5000
+
+
+def test_a_full_disk_loses_nothing_recorded(tmp_path):
+    def small_disk():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2**20, 2**20))
+
+    path = tmp_path / 'run'
+    with start('--duration', '1000', '--output', path, preexec_fn=small_disk) as process:
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 1
+    [line] = error.splitlines()
+    assert line.startswith(f'{path}: the disk refuses (File too large) at t = ') and 'recover' in line
+    recover(path)
+    count = Recording(path).topics['/pose'].count
+    assert count > 5000
+    with rosbags.AnyReader([path]) as reader:
+        assert reader.message_count == Recording(path).message_count
+
+
+def test_files_are_split_and_compressed_as_asked(tmp_path, capsys):
+    run = ['--duration', '3', '--rate', '100', '--output', str(tmp_path / 'run')]
+    assert main([*run, '--split-seconds', '-1']) == 2 and '--split-seconds: got -1; a number from 0' in capsys.readouterr().err
+    assert main([*run, '--split-seconds', '0.5', '--compression', 'lz4']) == 0
+    names = sorted(path.name for path in (tmp_path / 'run').glob('*.mcap'))
+    assert len(names) > 1
+    with rosbags.AnyReader([tmp_path / 'run']) as reader:
+        assert sum(connection.msgcount for connection in reader.connections if connection.topic == '/pose') == 301
+    assert len([entry for entry in Recording(tmp_path / 'run').journal() if entry['kind'] == 'state']) == len(names)

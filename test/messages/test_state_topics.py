@@ -1,0 +1,150 @@
+"""Messages of a tick: decoded by the message classes of ROS, they hold what the state says."""
+
+import importlib
+import math
+
+import numpy as np
+import pytest
+from rclpy.serialization import deserialize_message
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import cdr, definitions, state_topics
+from rigid_body_sim.numerics.rotations import from_rotation_vector, multiply
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.state import State, States
+
+STAMP = 1_795_263_252_907_662_526
+FRAMES = state_topics.Frames('map', 'racket', '')
+STATE = State.of(2.5, from_rotation_vector(0.3, -1.1, 2.0), (0.1, 0.2, -0.3), (4.0, 5.0, 6.0), (-7.0, 8.0, 9.0))
+
+
+def ros(kind, data):
+    package, _, name = kind.split('/')
+    return deserialize_message(data, getattr(importlib.import_module(f'{package}.msg'), name))
+
+
+def messages(scene, *names, moments=(STATE,), stamp=STAMP):
+    """Return the messages of the last of some states, by name, decoded by ROS."""
+    outputs = [state_topics.OUTPUTS[name] for name in names]
+    made = state_topics.TickMessages(outputs, load_scene(scene) if isinstance(scene, str) else scene, FRAMES)
+    for state in moments:
+        [data] = made.messages(state.vector[None], [0.1], [0.2], [stamp])
+    assert [len(one) for one in data] == made.sizes
+    return [ros(output.type, one) for output, one in zip(outputs, data, strict=True)]
+
+
+def seconds(stamp):
+    return stamp.sec * 10**9 + stamp.nanosec
+
+
+def values(vector):
+    return [getattr(vector, name) for name in 'xyzw' if hasattr(vector, name)]
+
+
+def test_topics_of_every_tick():
+    pose, spin, energy, square = messages('free_body', *(output.name for output in state_topics.EVERY_TICK))
+    assert (seconds(pose.header.stamp), pose.header.frame_id) == (STAMP, 'map')
+    assert (seconds(spin.header.stamp), spin.header.frame_id) == (STAMP, 'racket')
+    assert values(pose.pose.position) == STATE.position.tolist()
+    assert values(pose.pose.orientation) == STATE.orientation.tolist()
+    assert values(spin.vector) == STATE.angular_velocity.tolist()
+    assert (energy.data, square.data) == (0.1, 0.2)
+
+
+def test_many_at_once_are_the_same_bytes():
+    scene = load_scene('free_body')
+    made = state_topics.TickMessages(state_topics.EVERY_TICK, scene, FRAMES)
+    stamps = np.array([STAMP, STAMP + 1_000_000])
+    states = States(np.array([STATE.vector, -STATE.vector]))
+    energies, squares = np.array([0.1, 0.3]), np.array([0.2, 0.4])
+    ticks = made.messages(states.vector, energies, squares, stamps)
+    alone = [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1], stamps[k:k + 1])[0] for k in range(2)]
+    assert ticks == alone
+    for output, data in zip(state_topics.EVERY_TICK, zip(*ticks, strict=True), strict=True):
+        columns = output.columns(stamps, states, energies, squares)
+        assert output.packer(scene, FRAMES).pack_many(columns).tobytes() == b''.join(data), output.name
+
+
+def test_odometry_has_its_twist_in_body_axes():
+    quarter = State.of(0.0, from_rotation_vector(0.0, 0.0, math.pi / 2), (0.1, 0.2, 0.3), (1.0, 2.0, 3.0), (5.0, 0.0, 0.0))
+    [odometry] = messages('free_body', 'odom', moments=[quarter])
+    assert (odometry.header.frame_id, odometry.child_frame_id) == ('map', 'racket')
+    np.testing.assert_allclose(values(odometry.twist.twist.linear), [0.0, -5.0, 0.0], atol=1e-15)
+    assert values(odometry.twist.twist.angular) == [0.1, 0.2, 0.3]
+    assert values(odometry.pose.pose.position) == [1.0, 2.0, 3.0]
+
+
+def test_imu_measures_what_holds_the_body_up():
+    """A top stands on its point: the origin does not accelerate, so g is felt upwards, here along -x of a body turned by 90 degrees about y."""
+    upset = from_rotation_vector(0.0, math.pi / 2, 0.0)
+    [imu] = messages('heavy_top', 'imu', moments=[State.of(0.0, upset)])
+    np.testing.assert_allclose(values(imu.linear_acceleration), [-9.81, 0.0, 0.0], atol=1e-14)
+    assert imu.linear_acceleration_covariance[0] == imu.orientation_covariance[0] == 0.0
+    assert imu.header.frame_id == 'racket'
+
+
+def test_imu_in_free_fall_measures_nothing_and_on_the_table_the_weight():
+    thrown = load_scene('free_body', ['effects=[gravity: {g: 9.81}]'])
+    [imu] = messages(thrown, 'imu', moments=[State.of(0.5, velocity=(1.0, 0.0, -4.9))])
+    assert values(imu.linear_acceleration) == [0.0, 0.0, 0.0]
+    ball = load_scene('billiard_center')
+    friction = ball.effect('sliding_friction')
+    [imu] = messages(ball, 'imu', moments=[State.of(0.0, velocity=(2.0, 0.0, 0.0))])
+    np.testing.assert_allclose(values(imu.linear_acceleration), [-friction.mu * friction.g, 0.0, friction.g], rtol=1e-15)
+
+
+def test_reaction_of_a_top_that_hangs_at_rest_is_its_weight():
+    hanging = from_rotation_vector(math.pi, 0.0, 0.0)
+    scene = load_scene('heavy_top')
+    [reaction] = messages(scene, 'reaction', moments=[State.of(0.0, hanging)])
+    np.testing.assert_allclose(values(reaction.wrench.force), [0.0, 0.0, 9.81 * scene.body.mass], atol=1e-14)
+    assert values(reaction.wrench.torque) == [0.0, 0.0, 0.0]
+    assert reaction.header.frame_id == 'map'
+    with pytest.raises(BadInput, match='nothing holds a free body'):
+        messages('free_body', 'reaction')
+
+
+@pytest.mark.parametrize('angle', [0.3, 2.9, 3.3, 6.0, -3.3, -6.0])
+def test_joint_state_counts_the_angle_as_the_scene_does(angle):
+    start = 0.1
+    scene = load_scene('kater_pendulum', [f'initial.angle={start}'])
+    axis = np.array(scene.constraint.axis)
+    turned = from_rotation_vector(*((angle - start) * axis))
+    made = state_topics.TickMessages([state_topics.OUTPUTS['joint_states']], scene, FRAMES)
+    vector = State.of(1.0, multiply(*scene.initial.orientation, *turned), 0.7 * axis).vector
+    [[data]] = made.messages(vector[None], [0.1], [0.2], [STAMP])
+    joint = ros('sensor_msgs/msg/JointState', data)
+    assert list(joint.name) == ['hinge']
+    assert joint.position[0] == pytest.approx(angle, abs=1e-14)
+    assert joint.velocity[0] == pytest.approx(0.7, abs=1e-15)
+
+
+def test_joint_states_of_a_free_body_are_refused():
+    with pytest.raises(BadInput, match='only a hinge is a joint'):
+        messages('free_body', 'joint_states')
+
+
+def test_marker_is_a_box_with_the_moments_of_the_body():
+    [marker] = messages('free_body', 'marker')
+    x, y, z = values(marker.scale)
+    body = load_scene('free_body').body
+    assert np.array([y * y + z * z, x * x + z * z, x * x + y * y]) * body.mass / 12.0 == pytest.approx(body.about_center.moments, rel=1e-12)
+    assert values(marker.pose.orientation) == STATE.orientation.tolist()
+    assert (marker.type, marker.action, marker.color.a) == (1, 0, 1.0)
+
+
+def test_clock_is_the_stamp():
+    [clock] = messages('free_body', 'clock')
+    assert seconds(clock.clock) == STAMP
+
+
+def test_transform_is_the_pose():
+    """No class for tf2_msgs among the wheels: decoded by our own codec."""
+    kind = 'tf2_msgs/msg/TFMessage'
+    made = state_topics.TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']], load_scene('free_body'), FRAMES)
+    [[_, data]] = made.messages(STATE.vector[None], [0.1], [0.2], [STAMP])
+    [transform] = cdr.decode(definitions.schema(kind), kind, data)['transforms']
+    assert transform['header'] == {'stamp': {'sec': STAMP // 10**9, 'nanosec': STAMP % 10**9}, 'frame_id': 'map'}
+    assert transform['child_frame_id'] == 'racket'
+    assert list(transform['transform']['translation'].values()) == STATE.position.tolist()
+    assert list(transform['transform']['rotation'].values()) == STATE.orientation.tolist()

@@ -1,0 +1,146 @@
+"""Inertia of shapes against integrals done by hand, composites against their parts, tensors that no body has."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from near import near
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene import bodies
+
+EPS = np.finfo(float).eps
+
+# name, dimensions, moments for M = 1 (by hand from the integrals)
+SHAPES = [
+    ('rod', {'length': 2.0}, (1 / 3, 1 / 3, 0.0)),
+    ('lamina', {'width': 3.0, 'height': 2.0}, (1 / 3, 3 / 4, 13 / 12)),
+    ('hoop', {'radius': 2.0}, (2.0, 2.0, 4.0)),
+    ('disk', {'radius': 2.0}, (1.0, 1.0, 2.0)),
+    ('spherical_shell', {'radius': 3.0}, (6.0, 6.0, 6.0)),
+    ('solid_sphere', {'radius': 5.0}, (10.0, 10.0, 10.0)),
+    ('box', {'size': (1.0, 2.0, 3.0)}, (13 / 12, 10 / 12, 5 / 12)),
+    ('cylinder', {'radius': 2.0, 'length': 6.0}, (4.0, 4.0, 2.0)),
+    ('cone', {'radius': 2.0, 'height': 4.0}, (1.2, 1.2, 1.2)),
+    ('ellipsoid', {'semi_axes': (1.0, 2.0, 3.0)}, (13 / 5, 2.0, 1.0)),
+    ('torus', {'radius': 2.0, 'tube': 1.0}, (2.625, 2.625, 4.75)),
+]
+
+
+@pytest.mark.parametrize(('name', 'dimensions', 'moments'), SHAPES, ids=[shape[0] for shape in SHAPES])
+def test_shape_has_the_moments_of_its_integral(name, dimensions, moments):
+    body = bodies.of_shape(name, 1.0, dimensions)
+    # a few roundings: measured 2.2e-16 relative at most
+    assert body.about_center.moments == pytest.approx(moments, rel=4 * EPS, abs=0.0)
+
+
+def test_every_shape_is_checked():
+    assert set(bodies.SHAPES) == {shape[0] for shape in SHAPES}
+
+
+def test_rod_about_its_end_by_the_parallel_axis():
+    rod = bodies.of_shape('rod', 2.0, {'length': 3.0}, center_of_mass=(0.0, 0.0, 1.5))
+    assert rod.about_origin.moments == near((6.0, 6.0, 0.0), EPS)    # M L^2 / 3
+
+
+def test_flat_shapes_have_perpendicular_axes():
+    for name, dimensions in (('lamina', {'width': 0.3, 'height': 0.7}), ('hoop', {'radius': 0.3}), ('disk', {'radius': 0.7})):
+        I1, I2, I3 = bodies.of_shape(name, 1.3, dimensions).about_center.moments
+        assert abs(I1 + I2 - I3) <= 2 * EPS * I3
+
+
+def test_given_tensor_is_kept_to_the_last_bit():
+    body = bodies.make_body(1.0, (0.03, 0.03, 0.01), (0.0, 0.0, 0.1), about='origin')
+    assert body.about_origin.moments == (0.03, 0.03, 0.01)
+    assert body.about_center.moments == near((0.02, 0.02, 0.01), 4 * EPS)
+    assert body.about_center.moments[0] == body.about_center.moments[1]
+
+
+@pytest.mark.parametrize('moments', [(1.0, 2.0, 2.5), (1.0, 1.0 + 1e-9, 1.9), (1e-9, 1.0, 1.0 + 1e-9)])
+def test_turned_tensor_gives_back_its_moments_and_axes(moments):
+    turn = Rotation.from_rotvec([0.2, -0.1, 0.3])
+    matrix = turn.as_matrix() @ np.diag(moments) @ turn.as_matrix().T
+    inertia = bodies.Inertia.of_matrix((matrix + matrix.T) / 2)
+    # conditioning: an eigenvalue moves by the rounding of the matrix, eps times its norm
+    assert inertia.moments == pytest.approx(moments, abs=4 * EPS * max(moments))
+    assert np.abs(inertia.matrix - matrix).max() <= 8 * EPS * max(moments)    # measured 4.4e-16
+
+
+def test_axes_are_the_nearest_to_the_input_axes():
+    turn = Rotation.from_rotvec([0.02, -0.01, 0.03])
+    matrix = turn.as_matrix() @ np.diag([2.0, 1.0, 2.5]) @ turn.as_matrix().T
+    inertia = bodies.Inertia.of_matrix((matrix + matrix.T) / 2)
+    assert Rotation.from_quat(inertia.axes).magnitude() == near(turn.magnitude(), 1e-13)
+
+
+def test_equal_moments_keep_the_input_axes():
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.7])
+    # a disk turned about its own axis is the same disk; the rounding of the turn must not turn its axes
+    matrix = turn.as_matrix() @ np.diag([1.0, 1.0, 2.0]) @ turn.as_matrix().T
+    inertia = bodies.Inertia.of_matrix((matrix + matrix.T) / 2)
+    assert inertia.moments[0] == inertia.moments[1]
+    assert Rotation.from_quat(inertia.axes).magnitude() <= 1e-15
+
+
+def test_dumbbell_of_two_balls_and_a_rod():
+    ball = bodies.of_shape('solid_sphere', 2.0, {'radius': 0.1})
+    rod = bodies.of_shape('rod', 1.0, {'length': 1.0})
+    body = bodies.composite([(rod, (0, 0, 0), bodies.IDENTITY), (ball, (0, 0, 0.5), bodies.IDENTITY), (ball, (0, 0, -0.5), bodies.IDENTITY)])
+    across = 1 / 12 + 2 * (0.4 * 2.0 * 0.01 + 2.0 * 0.25)
+    assert body.mass == 5.0
+    assert body.about_center.moments == near((across, across, 2 * 0.4 * 2.0 * 0.01), 1e-15)
+    assert body.about_center.axes == bodies.IDENTITY
+
+
+def test_composite_keeps_its_own_axes_and_origin():
+    parts = [(bodies.of_shape('box', 1.0, {'size': (0.1, 0.2, 0.3)}), (0.3, 0.1, 0.0), (0.0, 0.0, math.sin(0.2), math.cos(0.2))),
+             (bodies.of_shape('disk', 2.0, {'radius': 0.1}), (-0.2, 0.0, 0.1), bodies.IDENTITY)]
+    body = bodies.composite(parts)
+    assert body.center_of_mass == pytest.approx((-0.1 / 3, 0.1 / 3, 0.2 / 3), abs=1e-16)
+    # the tensor about the origin is the sum of the parts' tensors about the origin
+    tensor = np.zeros((3, 3))
+    for part, at, orientation in parts:
+        turn = Rotation.from_quat(orientation).as_matrix()
+        tensor += turn @ part.about_center.matrix @ turn.T + part.mass * (np.dot(at, at) * np.eye(3) - np.outer(at, at))
+    # a dozen roundings of numbers up to 0.2: measured 1.1e-16
+    assert np.abs(body.about_origin.matrix - tensor).max() <= 4 * EPS * 0.22
+
+
+@pytest.mark.parametrize('order', list(itertools.permutations((1.0, 2.0, 3.0 + 1e-15))))
+def test_lamina_is_legal_in_any_order(order):
+    assert bodies.make_body(1.0, order).about_center.moments == order
+
+
+@pytest.mark.parametrize(('moments', 'words'), [
+    ((1.0, 2.0, 3.00001), 'triangle inequality'), ((-1.0, 2.0, 2.0), 'negative'), ((0.0, 0.0, 0.0), 'at least two'),
+    ([[1, 2, 0], [0, 1, 0], [0, 0, 1]], 'not symmetric')])
+def test_impossible_tensor_is_refused_by_name(moments, words):
+    with pytest.raises(BadInput, match=words) as caught:
+        bodies.make_body(1.0, moments)
+    assert '\n' not in str(caught.value)
+
+
+def test_tensor_about_the_origin_is_checked_at_the_centre_of_mass():
+    # 0.01 about the pivot with the centre of mass 0.2 m away would leave -0.03 about the centre
+    with pytest.raises(BadInput, match='parallel-axis'):
+        bodies.make_body(1.0, (0.01, 0.01, 0.01), (0.0, 0.0, 0.2), about='origin')
+
+
+def test_needle_keeps_its_small_moment_when_turned():
+    turn = Rotation.from_euler('z', 90, degrees=True)
+    matrix = np.round(turn.as_matrix()) @ np.diag([1.0, 1e-12, 1.0]) @ np.round(turn.as_matrix()).T
+    assert sorted(bodies.Inertia.of_matrix(matrix).moments) == [1e-12, 1.0, 1.0]
+
+
+@pytest.mark.filterwarnings('error')
+def test_graded_tensors_are_solved_without_overflow():
+    """A rotation leaves an off-diagonal element of 1e-4900 here and there; its quotient is beyond extended precision."""
+    rng = np.random.default_rng(0)
+    for _ in range(400):
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        tensor = turn @ np.diag([1.0, 2.0, 2.5] * 10.0 ** rng.integers(-8, 8, 3)) @ turn.T
+        moments, vectors = bodies._jacobi_eigenvectors((tensor + tensor.T) / 2.0)
+        assert np.abs(vectors.T @ vectors - np.eye(3)).max() < 1e-15
+        assert np.trace(tensor) == near(moments.sum(), 1e-14)
