@@ -6,7 +6,19 @@ accuracy, step) and FAMILY (the module that makes its kernels).
 """
 
 from rigid_body_sim.integrators.families import runge_kutta
-from rigid_body_sim.integrators.methods import dop8, gauss16, lsoda, radau, rk4, semi_implicit_euler, split2, split4, split6, split8, taylor
+from rigid_body_sim.integrators.methods import (
+    dop8,
+    gauss16,
+    lsoda,
+    radau,
+    rk4,
+    semi_implicit_euler,
+    split2,
+    split4,
+    split6,
+    split8,
+    taylor,
+)
 from rigid_body_sim.scene.effects.views import Frame
 
 METHODS = {method.NAME: method for method in (dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}

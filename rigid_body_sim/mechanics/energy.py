@@ -7,7 +7,19 @@ reference (world axes), g acceleration of gravity (along -z of the world).
 """
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.mechanics.parameters import AXES, CENTER, FREE, GRAVITY, HINGE, HINGE_AXIS, HINGE_MOMENT, KIND, MASS, MOMENTS, TABLE
+from rigid_body_sim.mechanics.parameters import (
+    AXES,
+    CENTER,
+    FREE,
+    GRAVITY,
+    HINGE,
+    HINGE_AXIS,
+    HINGE_MOMENT,
+    KIND,
+    MASS,
+    MOMENTS,
+    TABLE,
+)
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 
 # layout of what `diagnose` fills

@@ -10,7 +10,20 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.mechanics import exchange as ledger
-from rigid_body_sim.mechanics.parameters import AXES, CENTER, FREE, HINGE, HINGE_AXIS, HINGE_MOMENT, KIND, MASS, MOMENTS, PIVOT, TABLE, THROUGH
+from rigid_body_sim.mechanics.parameters import (
+    AXES,
+    CENTER,
+    FREE,
+    HINGE,
+    HINGE_AXIS,
+    HINGE_MOMENT,
+    KIND,
+    MASS,
+    MOMENTS,
+    PIVOT,
+    TABLE,
+    THROUGH,
+)
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 
 # layout of what `apply_impulse` fills beside the state

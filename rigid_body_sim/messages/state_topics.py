@@ -32,7 +32,13 @@ from rigid_body_sim.messages.layout import Layout, Packer
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, VELOCITY
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    ORIENTATION,
+    POSITION,
+    STATE_SIZE,
+    VELOCITY,
+)
 
 VECTOR = slice(0, STATE_SIZE)
 ENERGY, SQUARE = 14, 15

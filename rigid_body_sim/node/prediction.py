@@ -24,7 +24,14 @@ import numpy as np
 from rigid_body_sim.node.expectations import Interval, Relaxing, Rolling, Steady, Turning
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.theory import asymmetric_top, baseball_bat, driven_body, heavy_top, kater_pendulum, symmetric_top
+from rigid_body_sim.theory import (
+    asymmetric_top,
+    baseball_bat,
+    driven_body,
+    heavy_top,
+    kater_pendulum,
+    symmetric_top,
+)
 
 
 def expectation(scene, state):

@@ -8,7 +8,12 @@ import numpy as np
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import compression, mcap_format
 from rigid_body_sim.recording.scan import Scan
-from rigid_body_sim.recording.summary import ChunkPlace, chunk_places, read_metadata_record, read_summary
+from rigid_body_sim.recording.summary import (
+    ChunkPlace,
+    chunk_places,
+    read_metadata_record,
+    read_summary,
+)
 from rigid_body_sim.recording.walk import Cut, heads, walk
 
 _LARGEST_RECORD = compression.LARGEST_CHUNK + 2**16

@@ -24,8 +24,23 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene
 from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, State, States
 from rigid_body_sim.simulation import admission
-from rigid_body_sim.simulation.admission import LARGEST_WORK, SUM_FORCE, SUM_SIZE, SUM_TORQUE, SUM_WORK, well_formed
-from rigid_body_sim.simulation.command_rows import AXES, FORCE, FRAMES, HOLD, IMPULSE, LET_GO, TORQUE
+from rigid_body_sim.simulation.admission import (
+    LARGEST_WORK,
+    SUM_FORCE,
+    SUM_SIZE,
+    SUM_TORQUE,
+    SUM_WORK,
+    well_formed,
+)
+from rigid_body_sim.simulation.command_rows import (
+    AXES,
+    FORCE,
+    FRAMES,
+    HOLD,
+    IMPULSE,
+    LET_GO,
+    TORQUE,
+)
 from rigid_body_sim.simulation.spans import Event, Span
 
 

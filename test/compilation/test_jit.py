@@ -38,7 +38,7 @@ def test_editing_a_callee_changes_the_answer_of_its_cached_caller(copy_of_packag
     caller = 'from rigid_body_sim.numerics.rotations import rotate_back\nprint(rotate_back(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0)[0])'
     before = run(caller, copy_of_package, **cache)
     assert run(caller, copy_of_package, **cache) == before
-    module = copy_of_package / 'rigid_body_sim' / 'rotations.py'
+    module = copy_of_package / 'rigid_body_sim' / 'numerics' / 'rotations.py'
     stamp = module.stat()
     module.write_text(module.read_text().replace('+ qy * tz - qz * ty,', '- qy * tz + qz * ty,', 1))
     os.utime(module, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))    # as an unpacked archive may leave it

@@ -6,7 +6,14 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose
-from rigid_body_sim.mechanics.impulse import ANGULAR_IMPULSE, EXCHANGE_SIZE, REACTION_COUPLE, REACTION_FORCE, WORK, apply_impulse
+from rigid_body_sim.mechanics.impulse import (
+    ANGULAR_IMPULSE,
+    EXCHANGE_SIZE,
+    REACTION_COUPLE,
+    REACTION_FORCE,
+    WORK,
+    apply_impulse,
+)
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene

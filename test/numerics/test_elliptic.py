@@ -4,7 +4,17 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rigid_body_sim.numerics.elliptic import agm, agm_pair, carlson_rc, carlson_rf, carlson_rf_pair, carlson_rj, complete_k, jacobi, nome
+from rigid_body_sim.numerics.elliptic import (
+    agm,
+    agm_pair,
+    carlson_rc,
+    carlson_rf,
+    carlson_rf_pair,
+    carlson_rj,
+    complete_k,
+    jacobi,
+    nome,
+)
 
 EPSILON = np.finfo(float).eps
 TRIPLES = 10.0 ** np.random.default_rng(11).uniform(-8.0, 3.0, (60, 4))

@@ -13,7 +13,18 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as TheirWriter
 from mcap_ros2.decoder import DecoderFactory
-from recording.conftest import ABOUT, JOURNAL, PACKERS, SCENE, SOAK, START, TICKING, Ticks, scene_text, write
+from recording.conftest import (
+    ABOUT,
+    JOURNAL,
+    PACKERS,
+    SCENE,
+    SOAK,
+    START,
+    TICKING,
+    Ticks,
+    scene_text,
+    write,
+)
 from recording.damage import damaged_copy, without_checksums
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter

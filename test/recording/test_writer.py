@@ -10,7 +10,18 @@ import yaml
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
-from recording.conftest import ABOUT, JOURNAL, LATE, PACKERS, SCENE, START, TICKING, Ticks, scene_text, write
+from recording.conftest import (
+    ABOUT,
+    JOURNAL,
+    LATE,
+    PACKERS,
+    SCENE,
+    START,
+    TICKING,
+    Ticks,
+    scene_text,
+    write,
+)
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability, QosReliability
 from rosbags.rosbag2 import Reader

@@ -173,7 +173,6 @@ def test_a_wrong_turn_gets_one_line(scene, assignment, line):
 @pytest.mark.parametrize(('scene', 'overrides'), [
     ('heavy_top', ['body.center_of_mass=[0, 0, 0]']), ('kater_pendulum', ['constraint.hinge.through=[0, 0, -0.4]'])])
 def test_held_at_its_centre_of_mass_a_body_runs_with_a_note(scene, overrides, capsys):
-    from rigid_body_sim.cli import scene
     assert load_scene(scene).notes == []
     [note] = load_scene(scene, overrides).notes
     assert note.endswith('holds the body at its centre of mass: gravity does nothing there')

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, commands_of, rows_of
+from rigid_body_sim.simulation.command_rows import (
+    BODY,
+    HOLD,
+    IMPULSE,
+    LET_GO,
+    WORLD,
+    commands_of,
+    rows_of,
+)
 from rigid_body_sim.simulation.simulation import Simulation
 
 NONE = (0.0, 0.0, 0.0)

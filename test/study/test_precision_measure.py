@@ -7,7 +7,16 @@ import pytest
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.study.precision import figure, measure, peers, reference, runner, suite, table, work_precision
+from rigid_body_sim.study.precision import (
+    figure,
+    measure,
+    peers,
+    reference,
+    runner,
+    suite,
+    table,
+    work_precision,
+)
 
 OFF = 1e-5
 

@@ -6,7 +6,14 @@ rigid_body_sim/integrators/equations/turning.py, about the centre of mass; x' = 
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import MASS, attitude_rate, read_state, taken, unit, write_state  # noqa: F401
+from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+    MASS,
+    attitude_rate,
+    read_state,
+    taken,
+    unit,
+    write_state,
+)
 from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
 
 # `taken` and `rotate` are for the bound sums

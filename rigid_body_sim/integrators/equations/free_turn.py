@@ -16,7 +16,13 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.integrators.equations.euler import EULER, MOMENTS
-from rigid_body_sim.numerics.double_double import add, add_double, multiply, multiply_double, two_sum
+from rigid_body_sim.numerics.double_double import (
+    add,
+    add_double,
+    multiply,
+    multiply_double,
+    two_sum,
+)
 
 REACH = 0.25                   # of M
 TERMS = 32

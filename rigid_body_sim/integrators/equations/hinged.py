@@ -9,7 +9,13 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import FIXED, INVERSE, PLACE, read_state, write_state
+from rigid_body_sim.integrators.equations.euler import (
+    FIXED,
+    INVERSE,
+    PLACE,
+    read_state,
+    write_state,
+)
 from rigid_body_sim.numerics.rotations import multiply, rotate  # noqa: F401 (rotate: for the bound sums)
 
 torque = UNBOUND

@@ -8,7 +8,16 @@ between -1 and 1 for every body, needles included. The point of reference moves 
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import DRIFT, PLACE, START, attitude_rate, read_state, taken, unit, write_state  # noqa: F401
+from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+    DRIFT,
+    PLACE,
+    START,
+    attitude_rate,
+    read_state,
+    taken,
+    unit,
+    write_state,
+)
 from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
 
 # `taken` and `rotate` are for the bound sums

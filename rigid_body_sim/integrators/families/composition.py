@@ -16,8 +16,19 @@ as two steps of dop8: compositions are for their long-time behaviour, not for sp
 """
 
 from rigid_body_sim.compilation.templates import specialise
-from rigid_body_sim.integrators.equations import flows_flying, flows_hinged, flows_turning, flying, hinged
-from rigid_body_sim.integrators.equations.equations import Equations, force_source, torque_source, turning_source
+from rigid_body_sim.integrators.equations import (
+    flows_flying,
+    flows_hinged,
+    flows_turning,
+    flying,
+    hinged,
+)
+from rigid_body_sim.integrators.equations.equations import (
+    Equations,
+    force_source,
+    torque_source,
+    turning_source,
+)
 from rigid_body_sim.integrators.families.one_step import begin, march  # noqa: F401
 from rigid_body_sim.integrators.marching import composed, quadrature
 

@@ -12,13 +12,30 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.equations import table_rates
 from rigid_body_sim.integrators.equations.euler import unit
-from rigid_body_sim.integrators.equations.table_rates import CREEPING, GLIDING, PLACE, ROLLING, SLIDING, SPIN, UNKNOWNS, P, Q, U
+from rigid_body_sim.integrators.equations.table_rates import (
+    CREEPING,
+    GLIDING,
+    PLACE,
+    ROLLING,
+    SLIDING,
+    SPIN,
+    UNKNOWNS,
+    P,
+    Q,
+    U,
+)
 from rigid_body_sim.integrators.marching import steps, unroll
 from rigid_body_sim.integrators.marching.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
 from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.numerics.rotations import normalised, rotate, rotate_back
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, STATE_SIZE, VELOCITY
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    ORIENTATION,
+    POSITION,
+    STATE_SIZE,
+    VELOCITY,
+)
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 CLOCK = table_rates.TIME

@@ -37,7 +37,15 @@ from rigid_body_sim.motions.free_body.rotation import (
     fill_hyperbolic,
     turned,
 )
-from rigid_body_sim.numerics.double_double import add, add_alike, divide, multiply, multiply_double, root, two_product
+from rigid_body_sim.numerics.double_double import (
+    add,
+    add_alike,
+    divide,
+    multiply,
+    multiply_double,
+    root,
+    two_product,
+)
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete_k
 from rigid_body_sim.numerics.rotations import multiply as compose
 from rigid_body_sim.numerics.rotations import normalised, rotate

@@ -14,8 +14,26 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.motions.free_body import anchor as rotation_anchor
-from rigid_body_sim.motions.free_body.anchor import ROUNDING, TO_BODY, TO_WORLD, TUMBLES, fill_rotation, rotation_parameters
-from rigid_body_sim.motions.free_body.rotation import CIRCULAR, FORM, HYPERBOLIC, PHASE, RATE, START, circular, hyperbolic, steady, turned
+from rigid_body_sim.motions.free_body.anchor import (
+    ROUNDING,
+    TO_BODY,
+    TO_WORLD,
+    TUMBLES,
+    fill_rotation,
+    rotation_parameters,
+)
+from rigid_body_sim.motions.free_body.rotation import (
+    CIRCULAR,
+    FORM,
+    HYPERBOLIC,
+    PHASE,
+    RATE,
+    START,
+    circular,
+    hyperbolic,
+    steady,
+    turned,
+)
 from rigid_body_sim.motions.loops import BLOCK
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE

@@ -33,7 +33,14 @@ from rigid_body_sim.motions.lagrange_top.roots import (
     Y,
     turning_points,
 )
-from rigid_body_sim.motions.lagrange_top.theta import FORM_SIZE, circular, hyperbolic, set_circular, set_hyperbolic, set_nome
+from rigid_body_sim.motions.lagrange_top.theta import (
+    FORM_SIZE,
+    circular,
+    hyperbolic,
+    set_circular,
+    set_hyperbolic,
+    set_nome,
+)
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.elliptic import carlson_rf_pair, complete_k, nome, root_nome
 from rigid_body_sim.numerics.pairs import TURN, minus, plus, put, scaled, times

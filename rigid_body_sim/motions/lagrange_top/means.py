@@ -12,7 +12,19 @@ that r = 0, the passage through a pole, is an ordinary value; b is the same with
 import math
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.motions.lagrange_top.roots import DELTA, NARROW, SIGMA, STEADY, WIDE, X1, X2, X3, Y1, Y2, Y3
+from rigid_body_sim.motions.lagrange_top.roots import (
+    DELTA,
+    NARROW,
+    SIGMA,
+    STEADY,
+    WIDE,
+    X1,
+    X2,
+    X3,
+    Y1,
+    Y2,
+    Y3,
+)
 from rigid_body_sim.numerics.pairs import TURN, over, pair_at, plus, root_of, scaled, times
 
 NEVER = 2.0 ** 200              # stands for the half period on the separatrix, in units of 2/sqrt(WIDE)

@@ -20,7 +20,17 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.double_double import multiply_double, quick_two_sum
-from rigid_body_sim.numerics.pairs import minus, not_negative, over, plus, products, put, root_of, scaled, times
+from rigid_body_sim.numerics.pairs import (
+    minus,
+    not_negative,
+    over,
+    plus,
+    products,
+    put,
+    root_of,
+    scaled,
+    times,
+)
 
 # layout of what `turning_points` fills: pairs, then their like as single doubles; index 1, 2, 3: value at that root
 X1, X2, X3, Y1, Y2, Y3, X, Y, WIDE, NARROW, SIGMA, DELTA = range(0, 24, 2)     # X, Y at the state; 2 k (u3 - u1), 2 k (u3 - u2)

@@ -28,7 +28,19 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf, complete_k
-from rigid_body_sim.numerics.pairs import TURN, minus, over, pair_at, pair_of, plus, products, put, root_of, scaled, times
+from rigid_body_sim.numerics.pairs import (
+    TURN,
+    minus,
+    over,
+    pair_at,
+    pair_of,
+    plus,
+    products,
+    put,
+    root_of,
+    scaled,
+    times,
+)
 from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.scene import bodies

@@ -23,7 +23,15 @@ Sources: Whittaker, Analytical Dynamics, section 44; NIST DLMF 22.19(i).
 import math
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
-from rigid_body_sim.motions.free_body.rotation import CIRCULAR, FORM, HYPERBOLIC, PERIOD, PHASE, RATE, START
+from rigid_body_sim.motions.free_body.rotation import (
+    CIRCULAR,
+    FORM,
+    HYPERBOLIC,
+    PERIOD,
+    PHASE,
+    RATE,
+    START,
+)
 from rigid_body_sim.motions.loops import BLOCK
 from rigid_body_sim.motions.pendulum import anchor
 from rigid_body_sim.motions.pendulum.anchor import (

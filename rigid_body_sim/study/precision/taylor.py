@@ -16,7 +16,15 @@ from operator import mul
 
 from mpmath import mp, mpf
 
-from rigid_body_sim.study.precision.inputs import ZERO, cross, dot, product, turned, turned_back, unit
+from rigid_body_sim.study.precision.inputs import (
+    ZERO,
+    cross,
+    dot,
+    product,
+    turned,
+    turned_back,
+    unit,
+)
 
 
 class Turning:

@@ -102,7 +102,12 @@ def _joined(plant, turning, scene, numbers):
     from pydrake.geometry import HalfSpace, Sphere
     from pydrake.math import RigidTransform
     from pydrake.multibody.plant import CoulombFriction
-    from pydrake.multibody.tree import BallRpyJoint, FixedOffsetFrame, QuaternionFloatingJoint, RevoluteJoint
+    from pydrake.multibody.tree import (
+        BallRpyJoint,
+        FixedOffsetFrame,
+        QuaternionFloatingJoint,
+        RevoluteJoint,
+    )
     world, frame = plant.world_frame(), turning.body_frame()
     if isinstance(numbers, pendulum.Pendulum):
         through = np.array(scene.constraint.through)
