@@ -4,7 +4,6 @@ The measurements are those of rigid_body_sim/choice/measured.py, and are tried o
 """
 
 import difflib
-import math
 from dataclasses import dataclass
 
 from rigid_body_sim.choice import measured, trial
@@ -13,6 +12,8 @@ from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import apply
 
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # rates of dissipation beyond so many times that of the rotation
@@ -70,8 +71,8 @@ def _stiff(scene):
     inner = scene.effect('internal_dissipation')
     if inner is None:
         return False
-    momentum = scene.body.about_center.matrix @ scene.initial.angular_velocity
-    return inner.coefficient * math.hypot(*momentum) > STIFF
+    momentum = apply(scene.body.about_center.matrix.tolist(), scene.initial.angular_velocity.tolist())
+    return inner.coefficient * hypot3(*momentum) > STIFF
 
 
 def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):

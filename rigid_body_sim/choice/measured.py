@@ -7,10 +7,10 @@ and the CPU time for each radian that the body may turn (s).
 
 import functools
 import json
-import math
 import pathlib
 
 from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.numerics.functions import hypot3
 
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
@@ -31,7 +31,7 @@ def kind(scene):
 
 def pace(scene):
     """Return how fast a body may turn (rad/s): its rate at the start, and what its weight can add."""
-    return math.hypot(*scene.initial.angular_velocity) + swing_rate(scene)
+    return hypot3(*scene.initial.angular_velocity) + swing_rate(scene)
 
 
 def floor(scene, horizon):

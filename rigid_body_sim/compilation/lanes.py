@@ -1,12 +1,13 @@
 """Eight numbers side by side: one recurrence in Python, run as it stands or written into compiled code for the vector unit.
 
 Whoever writes a recurrence for an object of :class:`Plain` can have it compiled: with a :class:`Written` the same lines append vector
-instructions to a function that numba is compiling. Sums are made in the order in which they are written; only a product and the sum that
-takes it may round once instead of twice, where the processor has an instruction for that.
+instructions to a function that numba is compiling. Sums are made in the order in which they are written; a product and the
+sum that takes it (`gather`) round once, on every processor.
 """
 
 import numpy as np
 
+from rigid_body_sim.compilation.fused import fma_array, python_fma
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 LANES = 8
@@ -38,8 +39,10 @@ class Plain:
         return -a
 
     def gather(self, a, b, c):
-        """Return a b + c."""
-        return a * b + c
+        """Return a b + c, rounded once."""
+        if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) or isinstance(c, np.ndarray):
+            return fma_array(*np.broadcast_arrays(a, b, c))
+        return python_fma(a, b, c)
 
     def everywhere(self, x):
         """Return eight times x."""
@@ -132,8 +135,8 @@ if HAVE_NUMBA:
             return self._builder.fneg(a)
 
         def gather(self, a, b, c):
-            """Return a b + c."""
-            name = 'llvm.fmuladd.v8f64' if a.type == EIGHT else 'llvm.fmuladd.f64'
+            """Return a b + c, rounded once."""
+            name = 'llvm.fma.v8f64' if a.type == EIGHT else 'llvm.fma.f64'
             kind = ir.FunctionType(a.type, [a.type] * 3)
             return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, name), [a, b, c])
 

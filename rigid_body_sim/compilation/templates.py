@@ -15,7 +15,7 @@ import re
 import sys
 import types
 
-from rigid_body_sim.compilation.jit import CACHE_FOLDER
+from rigid_body_sim.compilation.environment import cache_folder
 
 UNBOUND = None
 _DECLARATION = re.compile(r'^(\w+) = UNBOUND\b.*$', re.MULTILINE)
@@ -62,14 +62,15 @@ def _load(source, stem):
     name = f'{stem}_{hashlib.sha256(source.encode()).hexdigest()[:12]}'
     if name in sys.modules:
         return sys.modules[name]
-    if CACHE_FOLDER is None:
+    folder = cache_folder()
+    if folder is None:
         module = types.ModuleType(name)
         module.__file__ = f'<{name}>'
         # so that tracebacks and inspect show it
         linecache.cache[module.__file__] = len(source), None, source.splitlines(keepends=True), module.__file__
         exec(compile(source, module.__file__, 'exec'), module.__dict__)
     else:
-        path = CACHE_FOLDER / f'{name}.py'
+        path = folder / f'{name}.py'
         if not path.exists():
             partial = path.with_suffix(f'.{os.getpid()}')
             partial.write_text(source)

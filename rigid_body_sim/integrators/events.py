@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.scene.state import STATE_SIZE
 
@@ -64,13 +65,13 @@ def _momentum_along_middle_axis(inertia):
 
     def share(vector):
         m = [I * w for I, w in components(vector)]
-        size = math.hypot(*m)
+        size = hypot3(*m)
         return m[1] / size if size > 0.0 else 0.0
 
     def largest(vector):
         # where the motion crosses the plane of omega1 = 0 or omega3 = 0, whichever comes first, by the constancy of E and L^2
         (I1, w1), (I2, w2), (I3, w3) = components(vector)
-        size = math.hypot(I1 * w1, I2 * w2, I3 * w3)
+        size = hypot3(I1 * w1, I2 * w2, I3 * w3)
         by_first = w2 * w2 + I1 * (I3 - I1) / (I2 * (I3 - I2)) * w1 * w1
         by_third = w2 * w2 + I3 * (I3 - I1) / (I2 * (I2 - I1)) * w3 * w3
         return I2 * math.sqrt(min(by_first, by_third)) / size if size > 0.0 else 0.0
@@ -81,7 +82,7 @@ def _momentum_along_middle_axis(inertia):
 def _rise_of_third_axis(vector):
     """Return the rate at which the height of body axis 3 grows, over |omega|."""
     wx, wy, wz = vector[5:8]
-    size = math.hypot(wx, wy, wz)
+    size = hypot3(wx, wy, wz)
     return rotate(*vector[1:5], wy, -wx, 0.0)[2] / size if size > 0.0 else 0.0
 
 
@@ -120,7 +121,7 @@ class Watcher:
         self._solver.state(time, self._vector)
         vector = self._vector.tolist()
         # the time s in which rate s + drive s^2/2 is that angle
-        rate = math.hypot(*vector[5:8]) + self._swing
+        rate = hypot3(*vector[5:8]) + self._swing
         self._spacing = 2.0 * RADIANS_BETWEEN_LOOKS / max(
             rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300)
         return [watch.value(vector) for watch in self._watched]

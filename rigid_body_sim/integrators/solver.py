@@ -29,6 +29,7 @@ from rigid_body_sim.integrators.marching.adaptive import VALUES
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 
 FINEST = 1e-15          # accuracy below this is not in the doubles
@@ -95,7 +96,7 @@ class Stepped:
         started.__dict__.update(self.__dict__)
         started.vector = vector = np.array(vector, dtype=float)
         started._begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
-        started._latest = _latest(started._begin, math.hypot(wx, wy, wz))
+        started._latest = _latest(started._begin, hypot3(wx, wy, wz))
         started._course = self._plain.course(started)
         started._booked_course = started._course if self._with_books is self._plain else None
         started._watcher = None
@@ -147,7 +148,8 @@ class Stepped:
         if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.dragged):
             on_all_cores(one_by_one, len(starts))
             return
-        begins, rates = starts[:, TIME], np.hypot(np.hypot(starts[:, 5], starts[:, 6]), starts[:, 7])
+        begins, squares = starts[:, TIME], starts[:, ANGULAR_VELOCITY] ** 2
+        rates = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2])
         for body in np.flatnonzero((times.min() < begins) | (times.max() > _latest(begins, rates))):
             with _naming(body):
                 self.start(starts[body])._within(float(times.min()), float(times.max()))
@@ -161,7 +163,7 @@ class Stepped:
         if not (first >= self._begin and math.isfinite(last)):
             raise BadInput('time', f'asked from {first!r} to {last!r} s', f'finite times from the start, {self._begin!r} s, on')
         raise NotConverged(f'{self.method.NAME} on {self.scene.name}: at t = {self._begin!r} s the body turns with '
-                           f'{math.hypot(*self.vector[ANGULAR_VELOCITY].tolist())!r} rad/s; until {last!r} s that is more radians than '
+                           f'{hypot3(*self.vector[ANGULAR_VELOCITY].tolist())!r} rad/s; until {last!r} s that is more radians than '
                            'doubles can count')
 
     def events(self, after, until, tick=0.0):

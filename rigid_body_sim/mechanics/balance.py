@@ -17,13 +17,24 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
-from rigid_body_sim.numerics.rotations import multiply
+from rigid_body_sim.numerics.functions import hypot, hypot3
+from rigid_body_sim.numerics.rotations import matrix, multiply, rotate, rotate_back
+from rigid_body_sim.numerics.vectors import (
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    product,
+    scaled,
+    transposed,
+)
 from rigid_body_sim.scene.effects.views import Frame
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY
+from rigid_body_sim.scene.state import STATE_SIZE
 
 STICKS = 1e-11    # slip below that share of the speeds is the rounding of rolling
-UP = np.array([0.0, 0.0, 1.0])
+NOTHING = (0.0, 0.0, 0.0)
 
 
 class Balance(NamedTuple):
@@ -48,6 +59,25 @@ class Balance(NamedTuple):
     point: np.ndarray
 
 
+class Motion(NamedTuple):
+    """A state as the balance takes it, in tuples.
+
+    Attributes
+    ----------
+    R : tuple of 3 rows
+        Rotation matrix, body -> world.
+    omega : tuple of 3 floats
+        Angular velocity, body axes, rad/s.
+    position, velocity : tuple of 3 floats
+        Of the body's origin, world axes, m and m/s.
+    """
+
+    R: tuple
+    omega: tuple
+    position: tuple
+    velocity: tuple
+
+
 class Reactions(NamedTuple):
     """What a pivot, a hinge or the table exerts on the body at n times: force, torque and point of a Balance, arrays of shape (n, 3)."""
 
@@ -67,28 +97,28 @@ class Dynamics:
     def __init__(self, scene):
         body, constraint = scene.body, scene.constraint
         self._effects = [effect for effect in scene.effects if hasattr(effect, 'acting')]
-        self._kind, self._mass, self._center = constraint.kind, body.mass, np.array(body.center_of_mass)
+        self._kind, self._mass, self._center = constraint.kind, body.mass, body.center_of_mass
         # effects are asked as if the body were free: only then do they name their forces
         self._frame = Frame.of(body, dataclasses.replace(constraint, kind='free'))
         inertia = body.about_origin if self._kind == 'pivot' else body.about_center
-        self._axes, self._moments = _matrix(*inertia.axes), np.array(inertia.moments)
-        self._inverse = np.divide(1.0, self._moments, out=np.zeros(3), where=self._moments > 0.0)
-        self._frame_axes = _matrix(*self._frame.axes)
-        self._fixed = np.zeros(3) if self._kind == 'pivot' else np.array(constraint.through)
+        self._axes, self._moments = inertia.axes, inertia.moments
+        self._fixed = (0.0, 0.0, 0.0) if self._kind == 'pivot' else constraint.through
         if self._kind == 'hinge':
-            self._axis, self._moment = np.array(constraint.axis), moment_about_hinge(body, constraint)
+            self._axis, self._moment = constraint.axis, moment_about_hinge(body, constraint)
         if self._kind == 'table':
             friction = scene.effect('sliding_friction')
             self._mu, self._g = (friction.mu, friction.g) if friction else (0.0, 0.0)
-            self._radius, self._moment = body.radius, float(np.mean(body.about_center.moments))
+            self._radius, self._moment = body.radius, body.about_center.moments[0]
 
     def balance(self, vector, wrench=Wrench()):    # noqa: B008 (immutable)
         """Return the Balance at a state (14 doubles) under a held wrench, just after the state's time."""
-        q, omega = tuple(vector[ORIENTATION].tolist()), np.array(vector[ANGULAR_VELOCITY])
-        R = _matrix(*q)
-        velocity = vector[VELOCITY] + R @ _cross(omega, self._center)
-        force, couple, turning = self._given(float(vector[TIME]), q, omega, velocity, wrench)
-        return getattr(self, f'_{self._kind}')(vector, R, omega, force, couple, turning)
+        time, qx, qy, qz, qw, wx, wy, wz, px, py, pz, vx, vy, vz = vector[:STATE_SIZE].tolist()
+        q, omega, velocity = (qx, qy, qz, qw), (wx, wy, wz), (vx, vy, vz)
+        R = matrix(*q)
+        of_center = plus(velocity, apply(R, cross(omega, self._center)))
+        given = self._given(time, q, omega, of_center, wrench)
+        found = getattr(self, f'_{self._kind}')(Motion(R, omega, (px, py, pz), velocity), *given)
+        return Balance(*(np.array(part) for part in found))
 
     def reactions(self, vectors, wrenches):
         """Return the Reactions at states (n, 14) under the wrench held at each."""
@@ -98,84 +128,70 @@ class Dynamics:
 
     def _given(self, time, q, omega, velocity, wrench):
         """Return the force (world), the couple and the extra turning rate (body axes) of effects and wrench."""
-        q_frame = multiply(*q, *self._frame.axes)
-        omega_frame, velocity = (omega @ self._frame_axes).tolist(), velocity.tolist()
-        sums = {'force': np.zeros(3), 'torque': np.zeros(3), 'turning': np.zeros(3)}
+        axes = self._frame.axes
+        q_frame, omega_frame = multiply(*q, *axes), rotate_back(*axes, *omega)
+        sums = {'force': NOTHING, 'torque': NOTHING, 'turning': NOTHING}
         for actor in [*self._effects, *([wrench] if wrench else [])]:
             for one in actor.acting(self._frame, time):
-                sums[one.gives] += _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity)
-        return sums['force'], self._frame_axes @ sums['torque'], self._frame_axes @ sums['turning']
+                sums[one.gives] = plus(sums[one.gives], _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity))
+        return sums['force'], rotate(*axes, *sums['torque']), rotate(*axes, *sums['turning'])
 
     def _growth(self, omega, torque):
         """Return I^-1 (torque - omega x I omega); nothing about an axis without moment."""
-        spin = omega @ self._axes
-        left = torque @ self._axes - _cross(spin, self._moments * spin)
-        return self._axes @ (self._inverse * left)
+        spin = rotate_back(*self._axes, *omega)
+        left = minus(rotate_back(*self._axes, *torque), cross(spin, product(self._moments, spin)))
+        return rotate(*self._axes, *(part / moment if moment > 0.0 else 0.0 for part, moment in zip(left, self._moments, strict=True)))
 
     def _momentum(self, omega):
-        return self._axes @ (self._moments * (omega @ self._axes))
+        return rotate(*self._axes, *product(self._moments, rotate_back(*self._axes, *omega)))
 
-    def _free(self, vector, R, omega, force, couple, turning):
-        growth = self._growth(omega, couple + _cross(self._momentum(omega), turning))
+    def _free(self, motion, force, couple, turning):
+        omega = motion.omega
+        growth = self._growth(omega, plus(couple, cross(self._momentum(omega), turning)))
         # the velocity of the origin has omega x c, but its axes turn with the extra rate too
-        lever = _carried(omega, growth, self._center) + _cross(turning, _cross(omega, self._center))
-        return Balance(force / self._mass - R @ lever, growth, np.zeros(3), np.zeros(3), vector[POSITION].copy())
+        lever = plus(_carried(omega, growth, self._center), cross(turning, cross(omega, self._center)))
+        return minus(scaled(1.0 / self._mass, force), apply(motion.R, lever)), growth, NOTHING, NOTHING, motion.position
 
-    def _pivot(self, vector, R, omega, force, couple, turning):
-        growth = self._growth(omega, couple + _cross(self._center, force @ R))
-        held = self._mass * (R @ _carried(omega, growth, self._center)) - force
-        return Balance(np.zeros(3), growth, held, np.zeros(3), vector[POSITION].copy())
+    def _pivot(self, motion, force, couple, turning):
+        growth = self._growth(motion.omega, plus(couple, cross(self._center, apply(transposed(motion.R), force))))
+        lever = _carried(motion.omega, growth, self._center)
+        held = minus(scaled(self._mass, apply(motion.R, lever)), force)
+        return NOTHING, growth, held, NOTHING, motion.position
 
-    def _hinge(self, vector, R, omega, force, couple, turning):
-        arm = self._center - self._fixed
-        torque = couple + _cross(arm, force @ R)
-        growth = self._axis * (self._axis @ torque) / self._moment
+    def _hinge(self, motion, force, couple, turning):
+        R, omega, arm = motion.R, motion.omega, minus(self._center, self._fixed)
+        torque = plus(couple, cross(arm, apply(transposed(R), force)))
+        growth = scaled(dot(self._axis, torque) / self._moment, self._axis)
         along = _carried(omega, growth, arm)
-        held = self._mass * (R @ along) - force
+        held = minus(scaled(self._mass, apply(R, along)), force)
         # about P: the tensor about the centre of mass, and the mass there
-        spun = self._momentum(growth) + _cross(omega, self._momentum(omega)) + self._mass * _cross(arm, along)
-        through = R @ self._fixed
-        return Balance(-(R @ _carried(omega, growth, self._fixed)), growth, held, R @ (spun - torque),
-                       vector[POSITION] + through)
+        spun = plus(plus(self._momentum(growth), cross(omega, self._momentum(omega))), scaled(self._mass, cross(arm, along)))
+        of_origin = scaled(-1.0, apply(R, _carried(omega, growth, self._fixed)))
+        return of_origin, growth, held, apply(R, minus(spun, torque)), plus(motion.position, apply(R, self._fixed))
 
-    def _table(self, vector, R, omega, force, couple, turning):
-        turn, down = R @ omega, -self._radius * UP
-        torque = R @ couple
+    def _table(self, motion, force, couple, turning):
+        turn, down, torque = apply(motion.R, motion.omega), (0.0, 0.0, -self._radius), apply(motion.R, couple)
         normal = self._mass * self._g - force[2]
-        flat = np.array([force[0], force[1], 0.0])
-        slip = vector[VELOCITY] + _cross(turn, down)
-        slip[2] = 0.0
-        speed = np.linalg.norm(slip)
-        if speed > STICKS * (np.linalg.norm(vector[VELOCITY]) + self._radius * np.linalg.norm(turn)):
-            friction = -self._mu * normal * slip / speed
+        flat = (force[0], force[1], 0.0)
+        slip_x, slip_y, _ = plus(motion.velocity, cross(turn, down))
+        speed = hypot(slip_x, slip_y)
+        if speed > STICKS * (hypot3(*motion.velocity) + self._radius * hypot3(*turn)):
+            friction = scaled(-self._mu * normal / speed, (slip_x, slip_y, 0.0))
         else:
             # what keeps the lowest point at rest, if friction is strong enough
-            driven = flat / self._mass + _cross(torque / self._moment, down)
-            friction = -driven / (1.0 / self._mass + self._radius * self._radius / self._moment)
-            friction[2] = 0.0
-            most, size = self._mu * normal, np.linalg.norm(friction)
-            friction *= most / size if size > most else 1.0
-        growth = (torque + _cross(down, friction)) / self._moment
-        return Balance((flat + friction) / self._mass, growth @ R, friction + normal * UP, np.zeros(3),
-                       vector[POSITION] + down)
-
-
-def _matrix(x, y, z, w):
-    """Return the matrix of a unit quaternion: it turns ten vectors here, for the price of one turned by the quaternion."""
-    return np.array(((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)),
-                     (2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)),
-                     (2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y))))
-
-
-def _cross(a, b):
-    """Return a x b; numpy's own takes ten times as long for a single pair."""
-    (a1, a2, a3), (b1, b2, b3) = a.tolist(), b.tolist()
-    return np.array((a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1))
+            driven_x, driven_y, _ = plus(scaled(1.0 / self._mass, flat), cross(scaled(1.0 / self._moment, torque), down))
+            gives = 1.0 / self._mass + self._radius * self._radius / self._moment
+            friction = (-driven_x / gives, -driven_y / gives, 0.0)
+            most, size = self._mu * normal, hypot3(*friction)
+            friction = scaled(most / size, friction) if size > most else friction
+        growth = scaled(1.0 / self._moment, plus(torque, cross(down, friction)))
+        return (scaled(1.0 / self._mass, plus(flat, friction)), apply(transposed(motion.R), growth),
+                plus(friction, (0.0, 0.0, normal)), NOTHING, plus(motion.position, down))
 
 
 def _carried(omega, growth, arm):
     """Return the acceleration of a point at the end of an arm: omega' x r + omega x (omega x r)."""
-    return _cross(growth, arm) + _cross(omega, _cross(omega, arm))
+    return plus(cross(growth, arm), cross(omega, cross(omega, arm)))
 
 
 @functools.cache

@@ -2,10 +2,9 @@
 
 import math
 
-import numpy as np
-
 from rigid_body_sim.mechanics.energy import KINETIC, MOMENTUM, MOMENTUM_SQUARED, POTENTIAL
 from rigid_body_sim.mechanics.exchange import ANGULAR_IMPULSE, DISSIPATED, WORK
+from rigid_body_sim.numerics.functions import hypot3
 
 
 def balance(start, now, given):
@@ -24,8 +23,8 @@ def balance(start, now, given):
     work, dissipated, impulse = given[WORK], given[DISSIPATED], given[ANGULAR_IMPULSE]
     left = math.fsum((now[KINETIC], now[POTENTIAL], dissipated, -start[KINETIC], -start[POTENTIAL], -work))
     scale = max(now[KINETIC], abs(now[POTENTIAL]), abs(work), start[KINETIC], abs(start[POTENTIAL]))
-    missing = np.linalg.norm(now[MOMENTUM:] - start[MOMENTUM:] - impulse)
-    size = max(np.linalg.norm(now[MOMENTUM:]), np.linalg.norm(start[MOMENTUM:]), np.linalg.norm(impulse))
+    missing = hypot3(*(now[MOMENTUM:] - start[MOMENTUM:] - impulse))
+    size = max(hypot3(*vector) for vector in (now[MOMENTUM:], start[MOMENTUM:], impulse))
     return {'kinetic': float(now[KINETIC]), 'potential': float(now[POTENTIAL]), 'dissipated': float(dissipated), 'work': float(work),
             'energy_residual': float(left / scale) if scale > 0.0 else 0.0,
             'angular_momentum_squared': float(now[MOMENTUM_SQUARED]),

@@ -8,6 +8,8 @@ reference (world axes), g acceleration of gravity (along -z of the world).
 
 import numpy as np
 
+from rigid_body_sim.numerics.vectors import apply, cross, dot, minus
+
 FREE, PIVOT, HINGE, TABLE = range(4)
 KINDS = {'free': FREE, 'pivot': PIVOT, 'hinge': HINGE, 'table': TABLE}
 
@@ -32,6 +34,6 @@ def parameters(scene):
 
 def moment_about_hinge(body, constraint):
     """Return the moment of inertia about the hinge's axis: n . I n + M |n x (c - through)|^2, kg m^2."""
-    n, arm = np.array(constraint.axis), np.subtract(body.center_of_mass, constraint.through)
-    across = np.cross(n, arm)
-    return float(n @ body.about_center.matrix @ n + body.mass * (across @ across))
+    n = constraint.axis
+    lever = cross(n, minus(body.center_of_mass, constraint.through))
+    return dot(n, apply(body.about_center.matrix.tolist(), n)) + body.mass * dot(lever, lever)

@@ -24,6 +24,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.mechanics.exchange import DISSIPATED, EXCHANGE_SIZE
+from rigid_body_sim.numerics.functions import cos, hypot, sin
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene.state import STATE_SIZE
@@ -73,10 +74,10 @@ def anchor(parameters, start, anchor):
     anchor[START + 1], anchor[START + 2], anchor[START + 3], anchor[START + 4] = qx, qy, qz, qw
     anchor[START + 5], anchor[START + 6], anchor[START + 7] = wx, wy, wz
     ux, uy = vx - a * wy, vy + a * wx
-    slip = math.hypot(ux, uy)
+    slip = hypot(ux, uy)
     for n in range(SLIP, ATTITUDES):
         anchor[n] = 0.0
-    if slip <= ROUNDING * (math.hypot(vx, vy) + a * math.hypot(math.hypot(wx, wy), wz)):
+    if slip <= ROUNDING * (hypot(vx, vy) + a * hypot(hypot(wx, wy), wz)):
         _roll(anchor, vx, vy, start[8], start[9], qx, qy, qz, qw)
         return
     ex, ey = ux / slip, uy / slip
@@ -104,7 +105,7 @@ def _split_spin(anchor, wx, wy, wz, ex, ey):
     """Fill the parts of omega0 along omega' = ramp (z x e) and across it; rounding of omega0 is no side spin."""
     forward = wx * ex + wy * ey
     anchor[ALONG] = wy * ex - wx * ey
-    across = math.hypot(forward, wz)
+    across = hypot(forward, wz)
     if across <= ROUNDING * abs(anchor[ALONG]):
         anchor[ACROSS_AXIS + 2] = 1.0
         return
@@ -117,7 +118,7 @@ def _roll(anchor, vx, vy, x, y, qx, qy, qz, qw):
     """Fill what holds from the onset of rolling on: omega = (-v_y, v_x)/a and the vertical spin."""
     a = anchor[RADIUS]
     wx, wy, wz = -vy / a, vx / a, anchor[START + 7]
-    rate = math.hypot(math.hypot(wx, wy), wz)
+    rate = hypot(hypot(wx, wy), wz)
     anchor[ROLLING_ORIENTATION], anchor[ROLLING_ORIENTATION + 1] = qx, qy
     anchor[ROLLING_ORIENTATION + 2], anchor[ROLLING_ORIENTATION + 3] = qz, qw
     anchor[ROLLING_VELOCITY], anchor[ROLLING_VELOCITY + 1] = vx, vy
@@ -132,7 +133,7 @@ def _lay_checkpoints(anchor, duration):
     """Fill the attitudes along the slide, one a Taylor step as far as there is room, and return the one at the onset."""
     along, across = anchor[ALONG], anchor[ACROSS]
     end, rim = along + anchor[RAMP] * duration, RIM * math.sqrt(anchor[RAMP])
-    steps = 0.25 * duration * max(math.hypot(along, across), math.hypot(end, across)) / HALF_STEP
+    steps = 0.25 * duration * max(hypot(along, across), hypot(end, across)) / HALF_STEP
     count = 1
     if across > 0.0 and steps < CHECKPOINTS:
         count = 1 + int(steps)
@@ -177,9 +178,9 @@ def state(anchor, time, out):
         x, y = anchor[ROLLING_POSITION] + rolled * vx, anchor[ROLLING_POSITION + 1] + rolled * vy
         wx, wy = -vy / anchor[RADIUS], vx / anchor[RADIUS]
         half = 0.5 * anchor[ROLLING_SPIN + 3] * rolled
-        sine = math.sin(half)
+        sine = sin(half)
         qx, qy, qz, qw = multiply(
-            sine * anchor[ROLLING_SPIN], sine * anchor[ROLLING_SPIN + 1], sine * anchor[ROLLING_SPIN + 2], math.cos(half),
+            sine * anchor[ROLLING_SPIN], sine * anchor[ROLLING_SPIN + 1], sine * anchor[ROLLING_SPIN + 2], cos(half),
             anchor[ROLLING_ORIENTATION], anchor[ROLLING_ORIENTATION + 1], anchor[ROLLING_ORIENTATION + 2], anchor[ROLLING_ORIENTATION + 3])
         # an ulp in the norm of (axis sin, cos) would be the same at every tick, and the spin would drift where each tick is an anchor
         qx, qy, qz, qw = normalised(qx, qy, qz, qw)

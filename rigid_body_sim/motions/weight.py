@@ -7,13 +7,16 @@ with 16 Gauss-Legendre nodes on panels of at most 8 rad of the fastest turning; 
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.gauss import rule
+from rigid_body_sim.numerics.rotations import matrix, rotate
+from rigid_body_sim.numerics.vectors import dot, minus, scaled
 from rigid_body_sim.scene.effects.views import Frame
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+NODES, WEIGHTS = (np.array(numbers) for numbers in rule(16))
 RADIANS_A_PANEL = 8.0
 PANELS_AT_ONCE = 1024
 MOST_PANELS = 2 ** 14
@@ -36,11 +39,11 @@ class WeightImpulse:
     def __init__(self, scene, states, start):
         frame, body = Frame.of(scene.body, scene.constraint), scene.body
         self._states, self._from, self._time = states, start[0], start[0]
-        self._arm = np.subtract(body.center_of_mass, frame.point)
+        self._arm = minus(body.center_of_mass, frame.point)
         self._weight = body.mass * scene.effect('gravity').g
-        self._axis = Rotation.from_quat(start[ORIENTATION]).apply(scene.constraint.axis) if scene.constraint.kind == 'hinge' else None
+        self._axis = rotate(*start[ORIENTATION].tolist(), *scene.constraint.axis) if scene.constraint.kind == 'hinge' else None
         self._impulse = np.zeros(3)
-        self._fastest = float(np.linalg.norm(start[ANGULAR_VELOCITY])) + swing_rate(scene)
+        self._fastest = hypot3(*start[ANGULAR_VELOCITY].tolist()) + swing_rate(scene)
 
     def until(self, time):
         """Return the angular impulse (N m s, world axes; for a hinge its part along the axis) from the start to a time (s)."""
@@ -50,12 +53,14 @@ class WeightImpulse:
         edges = self._time + (time - self._time) * (np.arange(panels + 1) / panels)
         for first in range(0, panels, PANELS_AT_ONCE):
             part = edges[first:first + PANELS_AT_ONCE + 1]
-            half = np.diff(part) / 2.0
-            times = ((part[:-1] + half)[:, None] + half[:, None] * NODES).ravel()
+            length = np.diff(part)[:, None]
+            times = (part[:-1, None] + length * NODES).ravel()
             out = np.empty((len(times), STATE_SIZE))
             self._states(times, out)
-            r = Rotation.from_quat(out[:, ORIENTATION]).apply(self._arm)
-            weights = (half[:, None] * WEIGHTS).ravel() * self._weight
-            self._impulse += [-(weights @ r[:, 1]), weights @ r[:, 0], 0.0]
+            along_x, along_y, _ = matrix(*out[:, ORIENTATION].T)
+            rx, ry = dot(along_x, self._arm), dot(along_y, self._arm)
+            weights = (length * WEIGHTS).ravel() * self._weight
+            # exact sums: the order in which numpy adds is its own affair
+            self._impulse += [-math.fsum((weights * ry).tolist()), math.fsum((weights * rx).tolist()), 0.0]
         self._time = time
-        return self._impulse if self._axis is None else self._axis * (self._axis @ self._impulse)
+        return self._impulse if self._axis is None else np.array(scaled(dot(self._axis, self._impulse), self._axis))

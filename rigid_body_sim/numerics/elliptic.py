@@ -9,6 +9,7 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.numerics.double_double import add, add_alike, multiply, root
+from rigid_body_sim.numerics.functions import cos, exp, log, sin
 
 
 @compiled_inline
@@ -170,7 +171,7 @@ def jacobi(u, k, kc):
 def _jacobi_circular(u, k, kc):
     q = nome(k, kc)
     v = 0.5 * math.pi * u / complete_k(kc)
-    s, c = math.sin(v), math.cos(v)
+    s, c = sin(v), cos(v)
     q2 = q * q
     q4 = q2 * q2
     q6, q9, q12, q16, q20 = q2 * q4, q4 * q4 * q, q4 * q4 * q4, q4 * q4 * q4 * q4, q4 * q4 * q4 * q4 * q4
@@ -209,11 +210,11 @@ def _jacobi_hyperbolic(u, k, kc):
     y = 0.5 * math.pi * u / quarter
     sign = 1.0
     if kc > 0.0:
-        period = -2.0 * math.log(root_q)                         # pi K / K'
+        period = -2.0 * log(root_q)                         # pi K / K'
         turns = math.floor(y / period + 0.5)
         y -= turns * period
         sign = 1.0 - 2.0 * (turns - 2.0 * math.floor(0.5 * turns))
-    x = math.exp(-abs(y))
+    x = exp(-abs(y))
     e = x * x
     f = root_q / x if x > 0.0 else 0.0                          # sqrt(q') e^|y| <= 1
     f *= f

@@ -1,7 +1,7 @@
 """exp(-x) from tables and a short polynomial, not from the C library: the same bits on every machine, and loops over it become vector code."""
 
 import math
-from decimal import Decimal
+from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 
 import numpy as np
 
@@ -11,7 +11,8 @@ from rigid_body_sim.numerics.phase import nearest
 PARTS = 46.16624130844683                                       # 32 / log 2
 PART, PART_LOW = 0.02166084937925916, 1.3239129268154012e-11     # log 2 / 32; the first has 22 trailing zeros, so that its multiples are exact
 BEYOND, LAST = 746.0, 34500.0                                   # where the result is 0, and a place in the tables that says so
-FRACTIONS = np.array([float(Decimal(2) ** (Decimal(-j) / 32)) for j in range(32)])
+with localcontext(Context(prec=50, rounding=ROUND_HALF_EVEN)):
+    FRACTIONS = np.array([float(Decimal(2) ** (Decimal(-j) / 32)) for j in range(32)])
 POWERS = np.array([math.ldexp(1.0, -k) for k in range(int(LAST) // 32 + 1)])
 
 

@@ -23,6 +23,7 @@ from fractions import Fraction
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.numerics.functions import asinh, cos, hypot, sin
 from rigid_body_sim.numerics.rotations import multiply
 
 RIM = 10.0              # T on the rim
@@ -101,14 +102,14 @@ def ramped_rotation(c, p, w, time):
     if p <= SMALLEST * math.sqrt(w):
         # about one axis: what p adds over all times is below 3 p/sqrt(w)
         half = 0.5 * time * (c + 0.5 * w * time)
-        return math.sin(half), 0.0, 0.0, math.cos(half)
+        return sin(half), 0.0, 0.0, cos(half)
     if w == 0.0:
-        rate = math.hypot(c, p)
+        rate = hypot(c, p)
         half = 0.5 * rate * time
-        sine = math.sin(half) / rate
-        return sine * c, sine * p, 0.0, math.cos(half)
+        sine = sin(half) / rate
+        return sine * c, sine * p, 0.0, cos(half)
     end = c + w * time
-    if 0.25 * abs(time) * max(math.hypot(c, p), math.hypot(end, p)) <= HALF_STEP:
+    if 0.25 * abs(time) * max(hypot(c, p), hypot(end, p)) <= HALF_STEP:
         return _step(c, p, w, time)
     if c >= 0.0 and end >= 0.0:
         return _on_one_side(c, p, w, time)
@@ -130,7 +131,7 @@ def _on_one_side(c, p, w, time):
     """Return the turn where omega_1 is positive or zero at both ends; cut where the path crosses the rim."""
     end = max(c + w * time, 0.0)
     rim, width = RIM * math.sqrt(w), math.sqrt(WIDER) * p
-    start_outside, end_outside = math.hypot(c, width) >= rim, math.hypot(end, width) >= rim
+    start_outside, end_outside = hypot(c, width) >= rim, hypot(end, width) >= rim
     if start_outside and end_outside:
         return _outside(c, p, w, time)
     if not start_outside and not end_outside:
@@ -153,7 +154,7 @@ def _inside(c, p, w, time):
     remaining = abs(time)
     while remaining > 0.0:
         # from (speed + w step / 2) step / 2 = 2 HALF_STEP, where c and w step have the same sign
-        speed = math.hypot(c, p)
+        speed = hypot(c, p)
         step = min(8.0 * HALF_STEP / (speed + math.sqrt(speed * speed + 8.0 * w * HALF_STEP)), remaining)
         remaining -= step
         step *= direction
@@ -176,7 +177,7 @@ def _taylor(a, b, ramp):
 
     The sums of even and of odd terms, E and O, give both halves: U = (E + O) (E - O)^-1.
     """
-    size, bound, bound_before = math.hypot(a, b), 1.0, 0.0
+    size, bound, bound_before = hypot(a, b), 1.0, 0.0
     x, y, z, s = 0.0, 0.0, 0.0, 1.0
     bx, by, bz, bs = 0.0, 0.0, 0.0, 0.0
     ex, ey, ez, es = 0.0, 0.0, 0.0, 1.0
@@ -205,14 +206,14 @@ def _taylor(a, b, ramp):
 def _outside(c, p, w, time):
     """Return the turn between two points outside the rim with omega_1 >= 0: dress the end, turn, undress the start."""
     end = max(c + w * time, 0.0)
-    speed, end_speed = math.hypot(c, p), math.hypot(end, p)
+    speed, end_speed = hypot(c, p), hypot(end, p)
     root = math.sqrt(w)
     x, y, z, s, turn = _slow_axis(c, p, root / speed, speed)
     ex, ey, ez, es, end_turn = _slow_axis(end, p, root / end_speed, end_speed)
     half = 0.5 * (_angle(c, end, p, speed, end_speed, w * time, time) + (end_turn - turn))
     if not abs(half) < math.inf:
         half = 0.0    # more than a double holds: an ulp of omega is any angle at all
-    x, y, z, s = multiply(math.sin(half), 0.0, 0.0, math.cos(half), -x, -y, -z, s)
+    x, y, z, s = multiply(sin(half), 0.0, 0.0, cos(half), -x, -y, -z, s)
     return multiply(ex, ey, ez, es, x, y, z, s)
 
 
@@ -226,7 +227,7 @@ def _angle(c, end, p, speed, end_speed, gain, time):
     straight = end_speed + c * (both / (speed + end_speed))
     mean = both / end_speed
     argument = (gain / speed) * mean / both_cosines
-    quotient = 1.0 if abs(argument) < 1e-8 else math.asinh(argument) / argument
+    quotient = 1.0 if abs(argument) < 1e-8 else asinh(argument) / argument
     return 0.5 * time * (straight + p * (p / speed) * (mean / both_cosines) * quotient)
 
 

@@ -6,7 +6,8 @@ for rigid body in inertial frame"): R = Rz(alpha) Ry(beta) Rz(gamma).
 
 import math
 
-from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.jit import compiled, inlined
+from rigid_body_sim.numerics.functions import atan2, cos, hypot, sin
 
 
 @compiled
@@ -55,29 +56,52 @@ def _excess(qx, qy, qz, qw):
     return ((qx * qx - 0.25) + (qy * qy - 0.25)) + ((qz * qz - 0.25) + (qw * qw - 0.25))
 
 
+@inlined
+def matrix(qx, qy, qz, qw):
+    """Return the rows of the rotation matrix of a unit quaternion, which turns body into world components."""
+    return ((1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - qz * qw), 2.0 * (qx * qz + qy * qw)),
+            (2.0 * (qx * qy + qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz - qx * qw)),
+            (2.0 * (qx * qz - qy * qw), 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)))
+
+
+def from_matrix(R):
+    """Return the quaternion of a rotation matrix, given by its rows, with w >= 0.
+
+    The largest component is found from the diagonal and divides the others (S. W. Shepperd, Journal of
+    Guidance and Control 1 (1978) 223).
+    """
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R
+    squares = (1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz, 1.0 + xx + yy + zz)    # of 2 x, 2 y, 2 z, 2 w
+    k = squares.index(max(squares))
+    products = ((squares[0], xy + yx, xz + zx, zy - yz), (xy + yx, squares[1], yz + zy, xz - zx),
+                (xz + zx, yz + zy, squares[2], yx - xy), (zy - yz, xz - zx, yx - xy, squares[3]))[k]
+    scale = math.copysign(0.5 / math.sqrt(squares[k]), products[3])
+    return normalised(*(scale * product for product in products))
+
+
 @compiled
 def from_rotation_vector(rx, ry, rz):
     """Return the quaternion of the rotation by the angle |r| (rad) about r."""
     angle = math.sqrt(rx * rx + ry * ry + rz * rz)
     half = 0.5 * angle
     # sin(half) / angle: its series has no term below half^2 / 6, which is under an ulp there
-    factor = 0.5 if angle < 1e-8 else math.sin(half) / angle
-    return rx * factor, ry * factor, rz * factor, math.cos(half)
+    factor = 0.5 if angle < 1e-8 else sin(half) / angle
+    return rx * factor, ry * factor, rz * factor, cos(half)
 
 
 @compiled
 def angle_between(px, py, pz, pw, qx, qy, qz, qw):
     """Return the angle (rad, 0 to pi) of the rotation that takes one attitude to the other, accurate for small angles too."""
     x, y, z, w = multiply(-px, -py, -pz, pw, qx, qy, qz, qw)
-    return 2.0 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
+    return 2.0 * atan2(math.sqrt(x * x + y * y + z * z), abs(w))
 
 
 @compiled
 def from_euler_zyz(alpha, beta, gamma):
     """Return the quaternion of R = Rz(alpha) Ry(beta) Rz(gamma)."""
-    sine, cosine = math.sin(0.5 * beta), math.cos(0.5 * beta)
+    sine, cosine = sin(0.5 * beta), cos(0.5 * beta)
     total, difference = 0.5 * (alpha + gamma), 0.5 * (alpha - gamma)
-    return -sine * math.sin(difference), sine * math.cos(difference), cosine * math.sin(total), cosine * math.cos(total)
+    return -sine * sin(difference), sine * cos(difference), cosine * sin(total), cosine * cos(total)
 
 
 @compiled
@@ -86,10 +110,10 @@ def to_euler_zyz(qx, qy, qz, qw):
 
     At beta = 0 and pi only the sum or the difference of alpha and gamma is defined; there gamma is 0.
     """
-    upright, inverted = math.hypot(qz, qw), math.hypot(qx, qy)
-    beta = 2.0 * math.atan2(inverted, upright)
-    total = math.atan2(qz, qw)
-    difference = math.atan2(-qx, qy)
+    upright, inverted = hypot(qz, qw), hypot(qx, qy)
+    beta = 2.0 * atan2(inverted, upright)
+    total = atan2(qz, qw)
+    difference = atan2(-qx, qy)
     if inverted == 0.0:
         return _wrapped(2.0 * total), 0.0, 0.0
     if upright == 0.0:

@@ -12,7 +12,7 @@ import xml.etree.ElementTree
 
 import numpy
 
-from rigid_body_sim.compilation import jit
+from rigid_body_sim.compilation import environment
 from rigid_body_sim.messages import cdr
 
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
@@ -34,9 +34,9 @@ def version():
 
 def machine():
     """Return all that the bits of a state depend on beside the scene, as a dict: equal dicts promise equal bits."""
-    numba = jit.numba if jit.HAVE_NUMBA else None
-    return {'processor': jit.processor(), 'system': platform.platform(), 'libc': ' '.join(platform.libc_ver()), 'python': sys.version,
-            'numpy': numpy.__version__, 'numba': numba.__version__ if numba else 'no', 'sources': jit.sources_key()}
+    numba = environment.numba if environment.HAVE_NUMBA else None
+    return {'processor': environment.processor(), 'system': platform.platform(), 'libc': ' '.join(platform.libc_ver()), 'python': sys.version,
+            'numpy': numpy.__version__, 'numba': numba.__version__ if numba else 'no', 'sources': environment.sources_key()}
 
 
 def about(made_by, simulation, parameters):

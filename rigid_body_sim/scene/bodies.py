@@ -7,17 +7,24 @@ Mechanics, section 32.
 
 import math
 from dataclasses import dataclass
+from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from functools import cached_property, reduce
 from itertools import permutations, product
 from operator import add
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot, hypot3
+from rigid_body_sim.numerics.rotations import from_matrix, rotate
+from rigid_body_sim.numerics.rotations import matrix as rotation_matrix
+from rigid_body_sim.numerics.vectors import cross, dot
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 LARGEST_MOMENT = 1e150    # kg m^2: squares of it are doubles
+PLANES = (0, 1), (0, 2), (1, 2)
+DIGITS, SWEEPS = 40, 20    # of the eigenvectors; four sweeps do for most tensors
+NEGLIGIBLE = Decimal('1e-70')    # square of an entry beside the product of the diagonal ones
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of what the user typed
 
 
@@ -103,22 +110,15 @@ class Inertia:
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
-        moments, vectors = _jacobi_eigenvectors(matrix)
-        order, signs = max(
-            ((order, signs) for order in permutations(range(3)) for signs in product((1.0, -1.0), repeat=3)),
-            key=lambda choice: sum(sign * vectors[row, column] for row, (column, sign) in enumerate(zip(*choice, strict=True)))
-            if np.linalg.det(vectors[:, choice[0]] * choice[1]) > 0.0 else -np.inf)
-        moments, vectors = moments[list(order)], vectors[:, order] * signs
-        moments, vectors = _nearest_where_equal(moments, vectors)
-        return cls(tuple(float(moment) for moment in moments), tuple(Rotation.from_matrix(vectors).as_quat(canonical=True).tolist()))
+        moments, axes = _nearest_where_equal(*_nearest_to_the_body(*_eigenvectors(matrix.tolist())))
+        return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))))
 
     @cached_property
     def matrix(self):
         """The tensor in body axes, shape (3, 3)."""
         if self.axes == IDENTITY:
             return np.diag(self.moments)
-        turn = Rotation.from_quat(self.axes).as_matrix()
-        return turn @ np.diag(self.moments) @ turn.T
+        return _turned(np.diag(self.moments), self.axes)
 
 
 @dataclass(frozen=True)
@@ -146,10 +146,22 @@ class Body:
 
 def moved(inertia, M, shift, sign):
     """Return the tensor moved by the parallel-axis theorem: I + sign M (shift^2 1 - shift shift^T), sign +1 away from the centre of mass."""
-    d = np.asarray(shift, dtype=float)
-    if not d.any():
+    if not any(shift):
         return inertia
-    return Inertia.of_matrix(inertia.matrix + sign * M * (d @ d * np.eye(3) - np.outer(d, d)))
+    return Inertia.of_matrix(inertia.matrix + sign * M * _of_point(shift))
+
+
+def _of_point(d):
+    """Return the inertia tensor of a unit mass at the place d: d^2 1 - d d^T."""
+    d = np.asarray(d, dtype=float)
+    return dot(d, d) * np.eye(3) - np.outer(d, d)
+
+
+def _turned(tensor, q):
+    """Return R tensor R^T for the rotation q, each sum over the indices in ascending order."""
+    R, T = rotation_matrix(*q), tensor.tolist()
+    half = [[dot(row, column) for column in zip(*T, strict=True)] for row in R]
+    return np.array([[dot(row, other) for other in R] for row in half])
 
 
 def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='center_of_mass', radius=None, where='body'):
@@ -191,7 +203,7 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
 
 def square_of(arm):
     """Return the squared length of an arm, inf where a double holds no more."""
-    length = math.hypot(*arm)
+    length = hypot3(*arm)
     return length * length
 
 
@@ -233,8 +245,8 @@ def composite(parts):
     """
     # sum() of floats rounds otherwise from Python 3.12 on: the same file would be another body
     M = reduce(add, (part.mass for part, _, _ in parts))
-    centers = [np.asarray(at) + Rotation.from_quat(orientation).apply(part.center_of_mass) for part, at, orientation in parts]
-    center = sum(part.mass * at for (part, _, _), at in zip(parts, centers, strict=True)) / M
+    centers = [np.add(at, rotate(*orientation, *part.center_of_mass)) for part, at, orientation in parts]
+    center = reduce(add, (part.mass * at for (part, _, _), at in zip(parts, centers, strict=True))) / M
     with np.errstate(over='ignore', invalid='ignore'):    # make_body refuses what is not finite
         tensor = _about(center, parts, centers)
     return make_body(M, (tensor + tensor.T) / 2.0, center)
@@ -246,50 +258,72 @@ def _about(center, parts, centers):
     for (part, _, orientation), at in zip(parts, centers, strict=True):
         own = part.about_center.matrix
         if tuple(orientation) != IDENTITY:
-            turn = Rotation.from_quat(orientation).as_matrix()
-            own = turn @ own @ turn.T
-        d = at - center
-        tensor += own + part.mass * (d @ d * np.eye(3) - np.outer(d, d))
+            own = _turned(own, orientation)
+        tensor += own + part.mass * _of_point(at - center)
     return tensor
 
 
-def _jacobi_eigenvectors(matrix):
-    """Return eigenvalues and eigenvectors (columns) of a symmetric 3 x 3 matrix by Jacobi rotations in extended precision.
+def _eigenvectors(matrix):
+    """Return the eigenvalues of a symmetric 3 x 3 matrix and its eigenvectors, by Jacobi rotations with 40 digits.
 
-    Jacobi's method keeps small moments of graded tensors relatively accurate, which the QR iteration behind LAPACK does not
-    (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
+    Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR
+    iteration behind LAPACK does not (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
+    Decimal numbers mean the same on every machine; an extended double of the processor does not.
     """
-    a = matrix.astype(np.longdouble)
-    vectors = np.eye(3, dtype=np.longdouble)
-    for _ in range(12):
-        for i, j in ((0, 1), (0, 2), (1, 2)):
-            if a[i, j] * a[i, j] == 0.0:    # nothing is left to turn away, and its ratio might overflow
-                a[i, j] = a[j, i] = 0.0
-                continue
-            ratio = (a[j, j] - a[i, i]) / (2.0 * a[i, j])
-            tangent = 1.0 / (abs(ratio) + np.hypot(np.longdouble(1.0), ratio))
-            tangent = tangent if ratio >= 0.0 else -tangent
-            cosine = 1.0 / np.sqrt(1.0 + tangent * tangent)
-            turn = np.eye(3, dtype=np.longdouble)
-            turn[i, i] = turn[j, j] = cosine
-            turn[i, j], turn[j, i] = tangent * cosine, -tangent * cosine
-            a = turn.T @ a @ turn
-            a[i, j] = a[j, i] = 0.0
-            vectors = vectors @ turn
-    return np.diagonal(a).astype(float), vectors.astype(float)
+    with localcontext(Context(prec=DIGITS, rounding=ROUND_HALF_EVEN)):
+        a = [[Decimal(entry) for entry in row] for row in matrix]
+        vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]    # in rows
+        for _ in range(SWEEPS):
+            turns = [_turn_away(a, vectors, i, j) for i, j in PLANES]
+            if not any(turns):
+                break
+        return [float(a[k][k]) for k in range(3)], [[float(x) for x in vector] for vector in vectors]
 
 
-def _nearest_where_equal(moments, vectors):
+def _turn_away(a, vectors, i, j):
+    """Make a[i][j] zero by a rotation in the plane of two axes; return whether there was anything to do.
+
+    Source: Golub and Van Loan, Matrix Computations, section 8.5.2 (symmetric Schur decomposition).
+    """
+    if a[i][j] * a[i][j] <= NEGLIGIBLE * abs(a[i][i] * a[j][j]):
+        a[i][j] = a[j][i] = Decimal(0)
+        return False
+    ratio = (a[j][j] - a[i][i]) / (2 * a[i][j])
+    tangent = (1 if ratio >= 0 else -1) / (abs(ratio) + (1 + ratio * ratio).sqrt())
+    cosine = 1 / (1 + tangent * tangent).sqrt()
+    sine, k = tangent * cosine, 3 - i - j
+    a[i][i], a[j][j] = a[i][i] - tangent * a[i][j], a[j][j] + tangent * a[i][j]
+    a[i][j] = a[j][i] = Decimal(0)
+    a[i][k], a[j][k] = cosine * a[i][k] - sine * a[j][k], sine * a[i][k] + cosine * a[j][k]
+    a[k][i], a[k][j] = a[i][k], a[j][k]
+    first, second = vectors[i], vectors[j]
+    vectors[i] = [cosine * x - sine * y for x, y in zip(first, second, strict=True)]
+    vectors[j] = [sine * x + cosine * y for x, y in zip(first, second, strict=True)]
+    return True
+
+
+def _nearest_to_the_body(moments, vectors):
+    """Return the moments and the axes (right-handed) in the order and with the signs that lie nearest to the body axes."""
+    def trace(choice):
+        order, signs = choice
+        x, y, z = ([sign * entry for entry in vectors[k]] for k, sign in zip(order, signs, strict=True))
+        return x[0] + y[1] + z[2] if dot(cross(x, y), z) > 0.0 else -math.inf
+    order, signs = max(((order, signs) for order in permutations(range(3)) for signs in product((1.0, -1.0), repeat=3)), key=trace)
+    return [moments[k] for k in order], [[sign * entry for entry in vectors[k]] for k, sign in zip(order, signs, strict=True)]
+
+
+def _nearest_where_equal(moments, axes):
     """Make moments that agree to rounding equal, and turn their axes within their plane to the body axes."""
     slack = ULPS * max(moments)
-    equal = [(i, j) for i, j in ((0, 1), (0, 2), (1, 2)) if abs(moments[i] - moments[j]) <= slack]
+    equal = [(i, j) for i, j in PLANES if abs(moments[i] - moments[j]) <= slack]
     if len(equal) > 1:
-        return np.full(3, moments.mean()), np.eye(3)
+        return [(moments[0] + moments[1] + moments[2]) / 3.0] * 3, np.eye(3).tolist()
     for i, j in equal:
-        moments, vectors = moments.copy(), vectors.copy()
         moments[i] = moments[j] = (moments[i] + moments[j]) / 2.0
-        angle = np.arctan2(vectors[i, j] - vectors[j, i], vectors[i, i] + vectors[j, j])
-        first, second = vectors[:, i].copy(), vectors[:, j].copy()
-        vectors[:, i] = np.cos(angle) * first + np.sin(angle) * second
-        vectors[:, j] = np.cos(angle) * second - np.sin(angle) * first
-    return moments, vectors
+        sine, cosine = axes[j][i] - axes[i][j], axes[i][i] + axes[j][j]
+        length = hypot(sine, cosine)
+        sine, cosine = sine / length, cosine / length
+        first, second = axes[i], axes[j]
+        axes[i] = [cosine * x + sine * y for x, y in zip(first, second, strict=True)]
+        axes[j] = [cosine * y - sine * x for x, y in zip(first, second, strict=True)]
+    return moments, axes

@@ -7,14 +7,16 @@ anything runs, and refused with the file, the key path, the value and what would
 import difflib
 import math
 import pathlib
+import sys
 from dataclasses import dataclass
 
 import jsonschema
-import numpy as np
 import yaml
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics import rotations
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
 from rigid_body_sim.scene import bodies, yaml_text
 from rigid_body_sim.scene.effects import EFFECTS
 from rigid_body_sim.scene.state import State
@@ -97,9 +99,9 @@ class Scene:
         held = {'pivot': 'pivot', 'hinge': 'hinge'}.get(self.constraint.kind)
         if not held or self.effect('gravity') is None:
             return []
-        n, arm = np.array(self.constraint.axis), np.subtract(self.body.center_of_mass, self.constraint.through)
-        arm = arm - n * (n @ arm) if held == 'hinge' else arm
-        return [] if arm.any() else [f'the {held} holds the body at its centre of mass: gravity does nothing there']
+        arm = minus(self.body.center_of_mass, self.constraint.through)
+        arm = across(self.constraint.axis, arm) if held == 'hinge' else arm
+        return [] if any(arm) else [f'the {held} holds the body at its centre of mass: gravity does nothing there']
 
     def effect(self, name):
         """Return the effect of that name, or None if the scene does not list it."""
@@ -270,12 +272,11 @@ def _constraint(value, body, where):
     if not isinstance(settings, dict):
         raise BadInput(where, f'got {yaml_text.brief(settings)}', 'hinge: {axis: [x, y, z], through: [x, y, z]}')
     _check(settings, HINGE, f'{where}.hinge')
-    axis = np.array(settings['axis'], dtype=float)
-    with np.errstate(over='ignore'):
-        length = np.linalg.norm(axis)
+    axis = tuple(float(x) for x in settings['axis'])
+    length = hypot3(*axis)
     if not length > 0.0 or not math.isfinite(length):
         raise BadInput(f'{where}.hinge.axis', f'got {settings["axis"]}', 'a direction: three numbers, not all zero')
-    axis = tuple((axis / length).tolist())
+    axis = tuple(x / length for x in axis)
     through = (_suspension(settings, axis, body, f'{where}.hinge') if 'distance' in settings
                else tuple(float(x) for x in settings.get('through', (0.0, 0.0, 0.0))))
     bodies.refuse_beyond(body.mass * bodies.square_of(through), f'{where}.hinge')
@@ -284,16 +285,16 @@ def _constraint(value, body, where):
 
 def _suspension(settings, axis, body, where):
     """Return the point (body axes, m) at a distance from the centre of mass along body axis z, made square to the hinge's axis."""
-    distance, upward = float(settings['distance']), np.array([0.0, 0.0, 1.0]) - axis[2] * np.array(axis)
+    distance, upward = float(settings['distance']), across(axis, (0.0, 0.0, 1.0))
     if 'through' in settings:
         raise BadInput(f'{where}.distance', 'stands beside through', 'give one of them')
     if distance == 0.0:
         raise BadInput(f'{where}.distance', f'got {settings["distance"]!r}', 'hung at its centre of mass a body does not swing: a distance '
                        'above 0, or below 0 on the other side, in m')
-    length = np.linalg.norm(upward)
+    length = hypot3(*upward)
     if not length > 1e-8:
         raise BadInput(f'{where}.distance', f'got an axis {list(axis)} along z', 'distance is measured along body axis z: give through')
-    return tuple((np.array(body.center_of_mass) + upward * (distance / length)).tolist())
+    return plus(body.center_of_mass, scaled(distance / length, upward))
 
 
 def _effects(entries, body, constraint, where):
@@ -317,14 +318,16 @@ def _effects(entries, body, constraint, where):
 
 
 def _unit_quaternion(values, where):
-    values = np.array(values, dtype=float)
-    size = np.abs(values).max()
+    values = [float(value) for value in values]
+    size = max(abs(value) for value in values)
     if not size > 0.0:
-        raise BadInput(where, f'got {values.tolist()}', 'a quaternion (x, y, z, w) of non-zero norm')
-    values = values / size if not 1e-100 < size < 1e100 else values
-    if abs(values @ values - 1.0) <= 2.0 * np.finfo(float).eps:
-        return tuple(values.tolist())
-    return tuple((values / np.linalg.norm(values)).tolist())
+        raise BadInput(where, f'got {values}', 'a quaternion (x, y, z, w) of non-zero norm')
+    x, y, z, w = (value / size for value in values) if not 1e-100 < size < 1e100 else values
+    square = x * x + y * y + z * z + w * w
+    if abs(square - 1.0) <= 2.0 * sys.float_info.epsilon:
+        return x, y, z, w
+    norm = math.sqrt(square)
+    return x / norm, y / norm, z / norm, w / norm
 
 
 def _initial(mapping, body, constraint, where):
@@ -373,8 +376,8 @@ def _hinged(mapping, constraint, orientation, position, where):
     orientation = rotations.multiply(*orientation, *turn)
     omega = tuple(rate * component for component in constraint.axis)
     arm = rotations.rotate(*orientation, *constraint.through)
-    velocity = np.cross(rotations.rotate(*orientation, *omega), [-x for x in arm])
-    return State.of(0.0, orientation, omega, tuple(p - a for p, a in zip(position, arm, strict=True)), tuple(velocity))
+    velocity = cross(arm, rotations.rotate(*orientation, *omega))
+    return State.of(0.0, orientation, omega, tuple(p - a for p, a in zip(position, arm, strict=True)), velocity)
 
 
 def _refuse_spin_without_moment(inertia, omega, where):

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from rigid_body_sim.compilation import jit, templates
+from rigid_body_sim.compilation import environment, jit, templates
 from rigid_body_sim.motions import loops
 
 PACKAGE = pathlib.Path(jit.__file__).parents[1]
@@ -63,14 +63,37 @@ def test_two_processes_on_a_cold_cache_agree(copy_of_package):
 
 @needs_numba
 def test_without_a_writable_home_the_cache_is_in_the_temporary_folder(copy_of_package):
-    code = 'from rigid_body_sim.compilation import jit\nprint(jit.CACHE_FOLDER)'
+    code = 'from rigid_body_sim.compilation import environment\nprint(environment.cache_folder())'
     where = run(code, copy_of_package, XDG_CACHE_HOME='/proc/none', TMPDIR=str(copy_of_package))
     assert where.startswith(str(copy_of_package))
 
 
 def test_no_kernel_lives_where_the_cache_does_not_look():
-    for path in set(PACKAGE.rglob('*.py')) - set(jit.kernel_sources()):
+    for path in set(PACKAGE.rglob('*.py')) - set(environment.kernel_sources()):
         assert not re.search(r'compilation\.(jit|templates) import (?!HAVE_NUMBA)|@compiled', path.read_text()), path
+
+
+@needs_numba
+def test_importing_writes_nothing_and_the_first_kernel_does(copy_of_package):
+    cache = {'XDG_CACHE_HOME': str(copy_of_package / 'cache'), 'TMPDIR': str(copy_of_package / 'cache')}
+    run('import rigid_body_sim.simulation.simulation, rigid_body_sim.study.check_scenes', copy_of_package, **cache)
+    assert not (copy_of_package / 'cache').exists()
+    (copy_of_package / 'cache').mkdir()
+    run(TURN, copy_of_package, **cache)
+    assert list((copy_of_package / 'cache').rglob('*.nbc'))
+
+
+@needs_numba
+def test_an_edit_to_the_shell_recompiles_nothing(copy_of_package):
+    key = 'from rigid_body_sim.compilation.environment import sources_key\nprint(sources_key())'
+    before = run(key, copy_of_package)
+    for place in ('cli/simulate.py', 'study/check_scenes.py', 'node/qos.py', 'simulation/simulation.py'):
+        path = copy_of_package / 'rigid_body_sim' / place
+        path.write_text(path.read_text() + '# edited\n')
+    assert run(key, copy_of_package) == before
+    path = copy_of_package / 'rigid_body_sim' / 'motions' / 'loops.py'
+    path.write_text(path.read_text() + '# edited\n')
+    assert run(key, copy_of_package) != before
 
 
 def test_without_numba_the_same_code_runs(copy_of_package):

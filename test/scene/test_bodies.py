@@ -135,12 +135,12 @@ def test_needle_keeps_its_small_moment_when_turned():
 
 
 @pytest.mark.filterwarnings('error')
-def test_graded_tensors_are_solved_without_overflow():
-    """A rotation leaves an off-diagonal element of 1e-4900 here and there; its quotient is beyond extended precision."""
+def test_graded_tensors_are_solved_to_round_off():
+    """The moments span up to sixteen decades; the smallest one is as accurate as the tensor that is given allows."""
     rng = np.random.default_rng(0)
-    for _ in range(400):
+    for _ in range(100):
         turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
         tensor = turn @ np.diag([1.0, 2.0, 2.5] * 10.0 ** rng.integers(-8, 8, 3)) @ turn.T
-        moments, vectors = bodies._jacobi_eigenvectors((tensor + tensor.T) / 2.0)
-        assert np.abs(vectors.T @ vectors - np.eye(3)).max() < 1e-15
-        assert np.trace(tensor) == near(moments.sum(), 1e-14)
+        moments, vectors = bodies._eigenvectors(((tensor + tensor.T) / 2.0).tolist())
+        assert np.abs(np.matmul(vectors, np.transpose(vectors)) - np.eye(3)).max() < 1e-15
+        assert np.trace(tensor) == near(sum(moments), 1e-14)

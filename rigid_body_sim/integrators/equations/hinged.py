@@ -5,7 +5,6 @@
 I is the moment about the axis, Gamma the torque about the hinge point; the rest of Gamma is the bearing's.
 """
 
-import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
@@ -16,6 +15,7 @@ from rigid_body_sim.integrators.equations.euler import (
     read_state,
     write_state,
 )
+from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate  # noqa: F401 (rotate: for the bound sums)
 
 torque = UNBOUND
@@ -37,7 +37,7 @@ def start(p, vector, node, at):
 @compiled
 def attitude(p, phi):
     """Return q at an angle."""
-    s, c = math.sin(0.5 * phi), math.cos(0.5 * phi)
+    s, c = sin(0.5 * phi), cos(0.5 * phi)
     return multiply(p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3], s * p[AXIS], s * p[AXIS + 1], s * p[AXIS + 2], c)
 
 

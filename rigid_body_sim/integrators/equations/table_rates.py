@@ -13,9 +13,9 @@ GLIDING: no friction. CREEPING: slip that has just begun. It is so small that it
 |omega|, with a lag of u |omega|/G at most: u' = (1 - c/G) G with c = (1 + 1/k) mu N/M. All but SLIDING have t for their independent variable.
 """
 
-import math
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, rotate
 
 RADIUS, RATIO, MASS, FRICTION, GRAVITY = range(5)    # as sliding_sphere.parameters
@@ -63,12 +63,12 @@ def rate(p, y):
     vx, vy, wx, wy, wz = motion(p, y)
     pace, ux, uy = 1.0, 0.0, 0.0
     if p[MODE] == SLIDING:
-        pace = math.hypot(y[4], y[5])
+        pace = hypot(y[4], y[5])
         ux, uy = pace * gx - c * y[4], pace * gy - c * y[5]
     elif p[MODE] == GLIDING:
         ux, uy = gx, gy
     elif p[MODE] == CREEPING:
-        G = math.hypot(gx, gy)
+        G = hypot(gx, gy)
         share_left = max(0.0, 1.0 - c / G) if G > 0.0 else 0.0
         ux, uy = share_left * gx, share_left * gy
     # pace times friction, from u' = G + (1 + 1/k) f/M

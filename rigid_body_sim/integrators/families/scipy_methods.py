@@ -42,7 +42,7 @@ class _Course:
         self._scales = np.ones(len(y))
         for first, last, absolute in equations.kind.GROUPS:
             if not absolute:
-                self._scales[first:last] = max(1.0, math.hypot(*y[first:last]))
+                self._scales[first:last] = max(1.0, float(np.linalg.norm(y[first:last])))
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
         self._reached, self._steps, self._parameters = [], [], []
         self._solver = None

@@ -9,6 +9,7 @@ import math
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import onward
+from rigid_body_sim.numerics.functions import power
 
 rate = UNBOUND
 settled = UNBOUND
@@ -32,7 +33,7 @@ def begin(p, control, node):
     """Choose the first step from a node whose time and unknowns are set."""
     y = load(node, VALUES)
     speed = fastest(y, rate(p, y))
-    node[STEP] = math.pow(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+    node[STEP] = power(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
 
 @compiled
@@ -65,7 +66,7 @@ def march(p, control, node, following, target, end, limit):
             allowed = tolerance * (t1 - t)
             good = error <= allowed and t1 > t
             if error > 1e-9 * allowed and error < math.inf:
-                h = (t1 - t) * min(GROWTH, max(SHRINK, SAFETY * math.pow(allowed / error, 1.0 / (ORDER - 1))))
+                h = (t1 - t) * min(GROWTH, max(SHRINK, SAFETY * power(allowed / error, 1.0 / (ORDER - 1))))
             else:    # nothing to be seen of the error, or not a number
                 h = (t1 - t) * (GROWTH if good else SHRINK)
             if good:

@@ -6,39 +6,48 @@ The states are those of the method to the accuracy asked, not to the bit: order 
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.families import power_series
 from rigid_body_sim.integrators.marching import batch_series
 from rigid_body_sim.integrators.marching.batch_march import NOBODY, march
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import from_matrix
+from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
 
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
 
 
+def unit(vector):
+    """Return the unit vector along a vector that is not zero."""
+    length = hypot3(*vector)
+    return tuple(x / length for x in vector)
+
+
 def directions(force, couple):
     """Return the unit vectors along a force and, in the plane of it and a couple, across it, and a third one, as rows of a rotation."""
-    first = force if np.any(force) else couple
-    first = first / np.linalg.norm(first) if np.any(first) else np.array((1.0, 0.0, 0.0))
-    for other in (couple, np.eye(3)[np.argmin(np.abs(first))]):
-        across = other - (other @ first) * first
-        if np.linalg.norm(across) > 1e-3 * np.linalg.norm(other):
+    first = force if any(force) else couple
+    first = unit(first) if any(first) else (1.0, 0.0, 0.0)
+    least = min(range(3), key=lambda k: abs(first[k]))
+    for other in (couple, tuple(float(k == least) for k in range(3))):
+        second = across(first, other)
+        if hypot3(*second) > 1e-3 * hypot3(*other):
             break
-    second = across / np.linalg.norm(across)
-    return np.array((first, second, np.cross(first, second)))
+    second = unit(second)
+    return first, second, cross(first, second)
 
 
 def rows_for(p):
     """Return the directions, and the rows of lanes with the numbers of the equations that parameters p (power_series.py) stand for."""
-    inverse, force, couple = (p[at:at + 3] for at in (euler.INVERSE, power_series.FORCE, power_series.COUPLE))
+    inverse, force, couple = (p[at:at + 3].tolist() for at in (euler.INVERSE, power_series.FORCE, power_series.COUPLE))
     rows, u, table = directions(force, couple), p[power_series.PULL:power_series.PULL + 6], np.zeros((batch_series.ROWS, LANES))
-    along, across, _ = rows @ couple
-    pull = np.linalg.norm(force) * np.array(((0.0, u[0], u[1]), (u[3], 0.0, u[2]), (u[4], u[5], 0.0)))
+    along, aside, _ = apply(rows, couple)
+    pull = hypot3(*force) * np.array(((0.0, u[0], u[1]), (u[3], 0.0, u[2]), (u[4], u[5], 0.0)))
     for at, values in ((batch_series.EULER, p[euler.EULER:euler.EULER + 3]),
                        (batch_series.CONSTANT, p[power_series.CONSTANT:power_series.CONSTANT + 3]),
-                       (batch_series.U, (pull + np.diag(along * inverse)).ravel()),
-                       (batch_series.V, across * inverse), (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0))):
+                       (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
+                       (batch_series.V, scaled(aside, inverse)), (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0))):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
     return rows, table
 
@@ -63,7 +72,7 @@ class Batch:
         for end in (*(time for time in equations.breakpoints if time <= rising[-1]), math.inf):
             p, (first, last) = equations.held(begin), np.searchsorted(rising, (begin, end)).tolist()
             rows, table = rows_for(p)
-            turn = tuple(Rotation.from_matrix(rows.T).as_quat().tolist())
+            turn = from_matrix(tuple(zip(*rows, strict=True)))
             self._stretches.append((table, np.tile(p, (LANES, 1)), turn, first, last, end))
             begin = end
 

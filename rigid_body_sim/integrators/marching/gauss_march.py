@@ -15,6 +15,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
 from rigid_body_sim.integrators.marching.points import onward
+from rigid_body_sim.numerics.functions import power
 
 rate = UNBOUND
 settled = UNBOUND
@@ -207,7 +208,7 @@ def march(p, control, node, following, target, end, limit):
                     error, x = _judged(S, h, mean, scales1)
                     good = error <= allowed and x <= LONGEST and t1 > t
                     if error < math.inf:
-                        factor = min(GROWTH, max(SHRINK, SAFETY * math.pow(allowed / max(error, 1e-9 * allowed), 1.0 / (2 * STAGES - 1))))
+                        factor = min(GROWTH, max(SHRINK, SAFETY * power(allowed / max(error, 1e-9 * allowed), 1.0 / (2 * STAGES - 1))))
                         factor = min(factor, SAFETY * LONGEST / max(x, 1e-3))
                 if good and used > COMFORTABLE:
                     factor = min(factor, 1.0 if used <= COMFORTABLE + 3 else SAFETY)

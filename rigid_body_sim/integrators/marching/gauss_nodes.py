@@ -5,30 +5,9 @@ from math import comb
 
 import numpy as np
 
+from rigid_body_sim.numerics.gauss import CONTEXT, legendre, roots, value
+
 STAGES = 8
-DIGITS = 60
-
-
-def _legendre(n):
-    """Return the coefficients (ascending) of P_n(2 x - 1), the Legendre polynomial on [0, 1]."""
-    return [Decimal((-1) ** (n + k) * comb(n, k) * comb(n + k, k)) for k in range(n + 1)]
-
-
-def _value(polynomial, x):
-    result = Decimal(0)
-    for coefficient in reversed(polynomial):
-        result = result * x + coefficient
-    return result
-
-
-def _nodes():
-    polynomial = _legendre(STAGES)
-    slope = [k * coefficient for k, coefficient in enumerate(polynomial)][1:]
-    for guess in np.polynomial.legendre.leggauss(STAGES)[0]:
-        x = (Decimal(float(guess)) + 1) / 2
-        for _ in range(3):
-            x -= _value(polynomial, x) / _value(slope, x)
-        yield x
 
 
 def _through(nodes):
@@ -68,20 +47,19 @@ def _floats(rows):
     return np.array([[float(x) for x in row] for row in rows])
 
 
-with localcontext() as _context:
-    _context.prec = DIGITS
-    _C = list(_nodes())
+with localcontext(CONTEXT):
+    _C = roots(STAGES)
     _BASIS = list(_through(_C))
     _INTEGRALS = [_integral(polynomial) for polynomial in _BASIS]
-    _B = [_value(integral, Decimal(1)) for integral in _INTEGRALS]
+    _B = [value(integral, Decimal(1)) for integral in _INTEGRALS]
     C, B = np.array([float(c) for c in _C]), np.array([float(b) for b in _B])
     # A[i, j]: integral of the j-th basis polynomial from 0 to c_i
-    A = _floats([[_value(integral, c) for integral in _INTEGRALS] for c in _C])
+    A = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _C])
     # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)
     AHEAD = _floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS])
     # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before (on [-1, 0]) and of this one (on [0, 1])
     # that is 1 at the j-th, as a sum over k of DENSE[j, k] P_k(x)
     DENSE = _floats([_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)])
     # TAILS: rows that give the last four Legendre coefficients, the last one first, of a function from its values at the nodes
-    TAILS = _floats([[(2 * n + 1) * b * _value(_legendre(n), c) for b, c in zip(_B, _C, strict=True)]
+    TAILS = _floats([[(2 * n + 1) * b * value(legendre(n), c) for b, c in zip(_B, _C, strict=True)]
                      for n in range(STAGES - 1, STAGES - 5, -1)])

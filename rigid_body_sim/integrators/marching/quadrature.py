@@ -1,10 +1,10 @@
 """Books of methods that are not Runge-Kutta: Gauss's quadrature of the rates at states inside a step.
 
 The states are steps of the same method from the same node, each shorter; so the books do not use the impulses of the method itself, and
-what they sum is an independent check. Nodes and weights: NIST DLMF 3.5(v), by numpy.polynomial.legendre.leggauss.
+what they sum is an independent check. Nodes and weights: NIST DLMF 3.5(v).
 """
 
-import numpy as np
+from rigid_body_sim.numerics.gauss import rule
 
 
 def step_source(order, n, extra):
@@ -15,11 +15,11 @@ def step_source(order, n, extra):
     head = ['', '', '@compiled', 'def step(p, y, c, k0, h):']
     if not extra:
         return '\n'.join([*head, '    return advance(p, y, c, k0, h)', ''])
-    roots, weights = np.polynomial.legendre.leggauss((order + 1) // 2)
+    nodes, weights = rule((order + 1) // 2)
     lines = [*head, f'    z, d = y[:{n}], c[:{n}]', '    after, lost = advance(p, z, d, k0, h)']
-    for k, root in enumerate(roots):
-        lines += [f'    inner, _ = advance(p, z, d, k0, {float(0.5 + 0.5 * root)!r} * h)', f'    r{k} = rate(p, inner)']
-    sums = [' + '.join(f'{float(0.5 * weight)!r} * r{k}[{u}]' for k, weight in enumerate(weights)) for u in range(n, n + extra)]
+    for k, place in enumerate(nodes):
+        lines += [f'    inner, _ = advance(p, z, d, k0, {place!r} * h)', f'    r{k} = rate(p, inner)']
+    sums = [' + '.join(f'{weight!r} * r{k}[{u}]' for k, weight in enumerate(weights)) for u in range(n, n + extra)]
     lines += [f'    i{u} = h * ({total}) + c[{n + u}]' for u, total in enumerate(sums)]
     lines += [f'    s{u} = y[{n + u}] + i{u}' for u in range(extra)]
     after = ''.join(f's{u}, ' for u in range(extra))

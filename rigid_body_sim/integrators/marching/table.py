@@ -28,6 +28,7 @@ from rigid_body_sim.integrators.marching import steps, unroll
 from rigid_body_sim.integrators.marching.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
 from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
 from rigid_body_sim.motions import sliding_sphere
+from rigid_body_sim.numerics.functions import hypot, hypot3, power
 from rigid_body_sim.numerics.rotations import normalised, rotate, rotate_back
 from rigid_body_sim.scene.state import (
     ANGULAR_VELOCITY,
@@ -79,10 +80,10 @@ class TableCourse:
         self._tolerance = stepped.accuracy / stepped.horizon
         p = bound.parameters
         q = normalised(*vector[ORIENTATION])
-        omega, v = np.array(rotate(*q, *vector[ANGULAR_VELOCITY])), vector[VELOCITY]
+        omega, v = rotate(*q, *vector[ANGULAR_VELOCITY]), vector[VELOCITY]
         e = p[table_rates.RADIUS] * np.array([omega[1], -omega[0]])
         u = v[:2] - e
-        if math.hypot(*u) <= sliding_sphere.ROUNDING * (math.hypot(*v[:2]) + p[table_rates.RADIUS] * np.linalg.norm(omega)):
+        if hypot(*u) <= sliding_sphere.ROUNDING * (hypot(*v[:2]) + p[table_rates.RADIUS] * hypot3(*omega)):
             u = np.zeros(2)
             e = v[:2]
         y = np.zeros(UNKNOWNS + EXCHANGE_SIZE)
@@ -98,7 +99,7 @@ class TableCourse:
             p[table_rates.MODE] = GLIDING
         elif y[U] != 0.0 or y[U + 1] != 0.0:
             p[table_rates.MODE] = SLIDING
-        elif math.hypot(gx, gy) <= c:
+        elif hypot(gx, gy) <= c:
             p[table_rates.MODE] = ROLLING
         else:
             p[table_rates.MODE] = CREEPING
@@ -160,11 +161,11 @@ class _Phase:
         self._kept, self._stride, self._count = [], 1, 0
         gx, gy, c = table_rates.drive(p, y)
         _, _, *omega = table_rates.motion(p, y)
-        pace = math.hypot(y[U], y[U + 1]) if self.mode == SLIDING else 1.0
-        swift = c + math.hypot(gx, gy) + pace * math.hypot(*omega)
-        h = tolerance ** (1.0 / bound.order) / (swift if swift > 0.0 else 1.0)
+        pace = hypot(y[U], y[U + 1]) if self.mode == SLIDING else 1.0
+        swift = c + hypot(gx, gy) + pace * hypot3(*omega)
+        h = power(tolerance, 1.0 / bound.order) / (swift if swift > 0.0 else 1.0)
         if self.mode == CREEPING:
-            h = CREEP / max(1.0, math.hypot(*omega))
+            h = CREEP / max(1.0, hypot3(*omega))
         self._front = (y, (0.0,) * len(y), (0.0,) * 4, (h, 0.0))
         self._keep()
 
@@ -198,7 +199,7 @@ class _Phase:
                 high = part
             else:
                 low = part
-            pace = math.hypot(y[U], y[U + 1])
+            pace = hypot(y[U], y[U + 1])
             better = part - late / pace if pace > 0.0 else low
             better = better if low <= better <= high else 0.5 * (low + high)
             if abs(better - part) <= 1e-16 * high:
@@ -227,7 +228,7 @@ class _Phase:
             allowed = self._tolerance * (after[CLOCK] - y[CLOCK]) + FLOOR
             factor = SHRINK
             if error < math.inf:
-                factor = SAFETY * (allowed / max(error, 1e-9 * allowed)) ** (1.0 / self._bound.order)
+                factor = SAFETY * power(allowed / max(error, 1e-9 * allowed), 1.0 / self._bound.order)
                 factor = min(GROWTH, max(SHRINK, factor))
             if error <= allowed:
                 q, lost_q = unit(*after[Q:U], *lost_after[Q:U])
@@ -240,9 +241,9 @@ class _Phase:
         before, after = node[0], following[0]
         if self.mode == SLIDING:
             vx, vy, *omega = table_rates.motion(self._p, after)
-            slip, c = math.hypot(after[U], after[U + 1]), table_rates.drive(self._p, after)[2]
-            speed = math.hypot(vx, vy) + self._p[table_rates.RADIUS] * math.hypot(*omega)
-            dead = slip < math.hypot(before[U], before[U + 1]) and slip <= DEAD * max(speed, c * (after[CLOCK] - self.begin))
+            slip, c = hypot(after[U], after[U + 1]), table_rates.drive(self._p, after)[2]
+            speed = hypot(vx, vy) + self._p[table_rates.RADIUS] * hypot3(*omega)
+            dead = slip < hypot(before[U], before[U + 1]) and slip <= DEAD * max(speed, c * (after[CLOCK] - self.begin))
             return (*after[:U], 0.0, 0.0, *after[P:]) if dead else None
         if self.mode == CREEPING:
             return after if after[U] != 0.0 or after[U + 1] != 0.0 else None
@@ -260,4 +261,4 @@ class _Phase:
     def _grips(self, y):
         """Return whether friction can hold the lowest point."""
         gx, gy, c = table_rates.drive(self._p, y)
-        return math.hypot(gx, gy) <= c
+        return hypot(gx, gy) <= c

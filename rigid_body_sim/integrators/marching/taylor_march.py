@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.equations.euler import lost_norm
 from rigid_body_sim.integrators.marching.points import onward
 from rigid_body_sim.integrators.marching.taylor_series import ORDER, along
 from rigid_body_sim.integrators.marching.taylor_series import UNKNOWNS as SIZE
+from rigid_body_sim.numerics.functions import power
 from rigid_body_sim.numerics.rotations import rotate_back  # noqa: F401 (for the bound source)
 
 expand = UNBOUND
@@ -76,7 +77,7 @@ def _step(S, tolerance, planned, scale):
     if planned == 0.0:    # the first step: by the last term alone
         if final == 0.0:
             return UNMOVED, UNMOVED
-        planned = math.pow(allowed / final, 0.5 / (ORDER - 1))
+        planned = power(allowed / final, 0.5 / (ORDER - 1))
     second = planned * planned
     fourth = second * second
     eighth = fourth * fourth
@@ -87,7 +88,7 @@ def _step(S, tolerance, planned, scale):
         return planned, planned * ((UPPER * a + MIDDLE * b + LOWER * c) / (LOWER * a + MIDDLE * b + UPPER * c))
     h = GROWTH * planned
     if square != 0.0:
-        h = min(h, math.pow(allowed / square, ROOT))
+        h = min(h, power(allowed / square, ROOT))
     return h, h
 
 

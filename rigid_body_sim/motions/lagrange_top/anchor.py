@@ -43,6 +43,7 @@ from rigid_body_sim.motions.lagrange_top.theta import (
 )
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.elliptic import carlson_rf_pair, complete_k, nome, root_nome
+from rigid_body_sim.numerics.functions import atan2, exp
 from rigid_body_sim.numerics.pairs import TURN, minus, plus, put, scaled, times
 from rigid_body_sim.numerics.phase import nearest, phase, sin_cos
 
@@ -185,7 +186,7 @@ def _angle(to_re, to_im, from_re, from_im):
     if to == 0.0 or back == 0.0:
         return 0.0
     to_re, to_im, from_re, from_im = to_re / to, to_im / to, from_re / back, from_im / back
-    return TURN[0] * math.atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
+    return TURN[0] * atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
 
 
 @compiled
@@ -238,9 +239,9 @@ def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w,
     per_argument = 2.0 * mean                               # 2v of an argument of Jacobi's functions
     set_nome(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)), anchor)
     A, B, C_, along = _arguments(roots, k, True)
-    set_circular(anchor, 0, math.exp(-per_argument * A), -1.0, side_a, unit_a * math.sqrt(0.5 * roots[X2]))
-    set_circular(anchor, 1, math.exp(-per_argument * B), 1.0, side_b, unit_b * math.sqrt(0.5 * roots[Y1]))
-    slope_w = set_circular(anchor, 2, math.exp(-per_argument * C_), 1.0, side_w, unit_w * math.sqrt(roots[W1]))
+    set_circular(anchor, 0, exp(-per_argument * A), -1.0, side_a, unit_a * math.sqrt(0.5 * roots[X2]))
+    set_circular(anchor, 1, exp(-per_argument * B), 1.0, side_b, unit_b * math.sqrt(0.5 * roots[Y1]))
+    slope_w = set_circular(anchor, 2, exp(-per_argument * C_), 1.0, side_w, unit_w * math.sqrt(roots[W1]))
     # mean rate of arg(omega_c), from its rate at u1, less that of conj(a) b: a whole multiple of the rate of 2v
     at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))
     rate = 0.5 * math.sqrt(wide) * per_argument

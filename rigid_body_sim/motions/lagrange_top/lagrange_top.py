@@ -43,6 +43,7 @@ from rigid_body_sim.motions.lagrange_top.anchor import (
 )
 from rigid_body_sim.motions.loops import BLOCK
 from rigid_body_sim.numerics.double_double import multiply_double, two_sum
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import pair_at, pair_of
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
@@ -72,7 +73,7 @@ def symmetry_axis(body):
     axes and body axes coincide up to order and sign, else to the rounding of the turn between them. e3 points towards the centre of mass.
     """
     moments, axes, center = body.about_origin.moments, body.about_origin.axes, body.center_of_mass
-    distance = math.hypot(*center)
+    distance = hypot3(*center)
     if moments[0] == moments[1] == moments[2]:
         return 2, _turn_to(*(component / distance for component in center)) if distance > 0.0 else bodies.IDENTITY
     local = rotate_back(*axes, *center)
@@ -97,7 +98,7 @@ def parameters(scene):
     body, gravity = scene.body, scene.effect('gravity')
     axis, frame = symmetry_axis(body)
     I1, I3 = Fraction(body.about_origin.moments[(axis + 1) % 3]), Fraction(body.about_origin.moments[axis])
-    g, arm = gravity.g if gravity else 0.0, math.hypot(*body.center_of_mass)
+    g, arm = gravity.g if gravity else 0.0, hypot3(*body.center_of_mass)
     pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
     return np.array([body.mass, g, arm, *pair_of(pull), *pair_of(I3 / I1), *pair_of((I1 - I3) / I1), *frame])
 

@@ -16,10 +16,10 @@ q <= X <= 1, so that with z = exp(-2 i v) and the phase factor of the leading te
 the lowest and the highest position in turn, so that no term outgrows the leading one and what vanishes at a pole has all its digits.
 """
 
-import math
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.numerics.exponential import decay
+from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.phase import sin_cos
 
 # layout of what a form takes beside its coefficients
@@ -93,7 +93,7 @@ def set_hyperbolic(form, place, angle, sign, orientation, modulus, root_nome):
         Square root of the nome, which may be far above an underflowing nome.
     """
     q = form[NOME]
-    s1, c1 = math.sin(angle), math.cos(angle)
+    s1, c1 = sin(angle), cos(angle)
     c2, s2 = (c1 - s1) * (c1 + s1), 2.0 * s1 * c1
     c4, s4 = (c2 - s2) * (c2 + s2), 2.0 * s2 * c2
     c3, s3, c5, s5 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2, c1 * c4 - s1 * s4, s1 * c4 + c1 * s4

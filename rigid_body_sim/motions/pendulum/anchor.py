@@ -28,6 +28,7 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf, complete_k
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import (
     TURN,
     minus,
@@ -69,7 +70,7 @@ def parameters(scene):
     mass, g = Fraction(body.mass), Fraction(gravity.g if gravity else 0.0)
     momentum = [a - mass * b for a, b in zip(_tensor_times(body.about_center, n), _cross(r, _cross(r, n)), strict=True)]
     d, moment = _root(_dot(side, side)), _dot(n, momentum)
-    size = math.hypot(*body.center_of_mass) + math.hypot(*scene.constraint.through)
+    size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
     if d <= bodies.ULPS * size:
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
     for k in range(3):

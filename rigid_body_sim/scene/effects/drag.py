@@ -7,6 +7,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.effects.views import Acting, Pull
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
@@ -50,7 +51,7 @@ class Drag:
         """View `series`: the couple and, at a pivot, the moment turn a body; the force slows down one that flies."""
         r = np.array(frame.arm)
         # of `couple` and `moment`
-        matrix = -self.angular * np.eye(3) - self.linear * (r @ r * np.eye(3) - np.outer(r, r))
+        matrix = -self.angular * np.eye(3) - self.linear * (dot(r, r) * np.eye(3) - np.outer(r, r))
         return Pull(drag=tuple(map(tuple, matrix.tolist())) if matrix.any() else None, slowing=self.linear if frame.kind == 'free' else 0.0)
 
 

@@ -7,7 +7,9 @@ from typing import ClassVar
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
 from rigid_body_sim.scene.effects.views import as_floats
 from rigid_body_sim.scene.state import ORIENTATION
 
@@ -65,14 +67,14 @@ class Strike:
         q = vector[ORIENTATION]
         force = np.array(rotate(*q, *self.impulse) if self.frame == 'body' else self.impulse)
         if self.height:
-            size = np.linalg.norm(force)
+            size = hypot3(*force.tolist())
             behind = math.sqrt(body.radius * body.radius - self.height * self.height) / size if size > 0.0 else 0.0
-            lever = np.array([-behind * force[0], -behind * force[1], self.height])
+            lever = -behind * force[0], -behind * force[1], self.height
         elif self.point is None:
             return force, np.zeros(3)
         else:
-            lever = np.array(rotate(*q, *np.subtract(self.point, body.center_of_mass)))
-        return force, np.cross(lever, force)
+            lever = rotate(*q, *minus(self.point, body.center_of_mass))
+        return force, np.array(cross(lever, force.tolist()))
 
 
 def _impulse(mapping, body, constraint, where):
@@ -91,9 +93,8 @@ def _at_distance(distance, body, constraint, where):
     """Return the point (body axes, m) at a distance from a hinge towards the centre of mass."""
     if constraint.kind != 'hinge':
         raise BadInput(where, f'has no meaning on constraint {constraint.kind!r}', 'distance is from a hinge; give the point')
-    n, arm = np.array(constraint.axis), np.subtract(body.center_of_mass, constraint.through)
-    across = arm - n * (n @ arm)
-    length = np.linalg.norm(across)
+    arm = across(constraint.axis, minus(body.center_of_mass, constraint.through))
+    length = hypot3(*arm)
     if not length > 0.0:
         raise BadInput(where, f'got {distance!r} on a hinge through the centre of mass', 'no direction to measure it in: give the point')
-    return tuple((np.array(constraint.through) + across * (float(distance) / length)).tolist())
+    return plus(constraint.through, scaled(float(distance) / length, arm))

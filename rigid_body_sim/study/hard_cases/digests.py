@@ -11,7 +11,7 @@ import platform
 
 import numpy as np
 
-from rigid_body_sim.compilation import jit
+from rigid_body_sim.compilation import environment
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import parse_scene, scene_names
 from rigid_body_sim.simulation.simulation import Simulation
@@ -69,7 +69,7 @@ def main():
     found |= {f'{name} by {method}': of_method(name, method, control) for name, method, control in METHODS}
     found |= {f'{name} under a held wrench': held(name) for name in ('tennis_racket', 'heavy_top')}
     found['composite'] = of_scene(parse_scene(COMPOSITE))
-    print(json.dumps({'python': platform.python_version(), 'numba': jit.HAVE_NUMBA and jit.numba.__version__, 'digests': found}))
+    print(json.dumps({'python': platform.python_version(), 'numba': environment.HAVE_NUMBA and environment.numba.__version__, 'digests': found}))
 
 
 if __name__ == '__main__':

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What kernels are compiled from and for: sources, numba, processor; and the folder of compiled code.
+
+numba looks at the time stamp of one file only, so a cached caller would go on with the old body of
+a callee in another file. Here the cache folder is named by a hash of the sources that kernels come
+from (KERNEL_SOURCES), of numba's version and of the processor: after an edit to one of them it is
+another folder, and copies of the same sources share one. An edit elsewhere recompiles nothing.
+
+Nothing is hashed, created or removed before a kernel is wanted.
+"""
+
+import functools
+import hashlib
+import os
+import pathlib
+import platform
+import shutil
+import sys
+import tempfile
+import time
+
+try:
+    import numba
+except ImportError:
+    numba = None
+
+HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
+PACKAGE = pathlib.Path(__file__).resolve().parents[1]
+KERNEL_SOURCES = ('compilation', 'numerics', 'scene', 'mechanics', 'motions', 'integrators',
+                  'simulation/admission.py', 'messages/state_topics.py', 'study/hard_cases/trends.py')
+KEEP_UNUSED = 30 * 86400.0    # s
+
+
+def processor():
+    """Return the name and the feature flags of the processor that kernels are compiled for."""
+    if HAVE_NUMBA:
+        from llvmlite import binding
+        # numba compiles for another processor where its settings say so
+        name = numba.config.CPU_NAME or binding.get_host_cpu_name()
+        features = numba.config.CPU_FEATURES
+        return f'{name} {binding.get_host_cpu_features().flatten() if features is None else features}'
+    return platform.processor() or platform.machine()
+
+
+def kernel_sources():
+    """Return the paths of the source files that kernels come from, in order."""
+    return sorted(path for source in KERNEL_SOURCES for path in (
+        [PACKAGE / source] if source.endswith('.py') else (PACKAGE / source).rglob('*.py')))
+
+
+@functools.cache
+def sources_key():
+    """Return a hash of all that compiled code depends on: sources, processor, versions."""
+    digest = hashlib.sha256()
+    for path in kernel_sources():
+        digest.update(path.relative_to(PACKAGE).as_posix().encode())
+        digest.update(path.read_bytes())
+    versions = (sys.version, numba.__version__ if numba else 'no numba', processor())
+    digest.update(repr(versions).encode())
+    return digest.hexdigest()[:16]
+
+
+@functools.cache
+def cache_folder():
+    """Return a writable folder for compiled code, or None.
+
+    It is in the user's cache folder, or below the temporary folder where that cannot be written.
+    """
+    if not HAVE_NUMBA:
+        return None
+    home = os.environ.get('XDG_CACHE_HOME') or os.path.join(os.path.expanduser('~'), '.cache')
+    temporary = os.path.join(tempfile.gettempdir(), f'rigid_body_sim-{os.getuid()}')
+    for base in (os.path.join(home, 'rigid_body_sim'), temporary):
+        folder = pathlib.Path(base) / sources_key()
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            if os.access(folder, os.W_OK) and folder.stat().st_uid == os.getuid():
+                os.utime(folder)
+                _remove_unused(folder.parent)
+                return folder
+        except OSError:
+            continue
+    return None
+
+
+def _remove_unused(base):
+    """Remove the caches of sources that no process has used for a month."""
+    for folder in base.iterdir():
+        if time.time() - folder.stat().st_mtime > KEEP_UNUSED:
+            shutil.rmtree(folder, ignore_errors=True)
