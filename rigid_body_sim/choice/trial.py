@@ -9,7 +9,6 @@ import math
 import numpy as np
 
 from rigid_body_sim.choice import measured
-from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
@@ -25,11 +24,11 @@ def settle(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene, else the most accurate one of the table.
 
     Parameters as of :func:`rigid_body_sim.choice.measured.pick`; of a long horizon the trial runs a part, and errors are taken to grow
-    with time. Without numba, where a run would take seconds, it is what the table says.
+    with time.
     """
     method, tolerance, promised = measured.pick(scene, able, accuracy, horizon)
     part, ends = min(1.0, _span(scene) / horizon), {}
-    if not (HAVE_NUMBA and part > 0.0):
+    if not part > 0.0:
         return method, tolerance, promised
 
     def end(tolerance):

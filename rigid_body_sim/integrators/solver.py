@@ -15,7 +15,6 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import on_all_cores
@@ -145,7 +144,7 @@ class Stepped:
                     raise _lost(self.method, self.scene, failed[1])
 
         plain = self._plain.equations if self.method.FAMILY is power_series else None
-        if not (HAVE_NUMBA and plain and self.step is None and len(times) and not plain.dragged):
+        if not (plain and self.step is None and len(times) and not plain.dragged):
             on_all_cores(one_by_one, len(starts))
             return
         begins, squares = starts[:, TIME], starts[:, ANGULAR_VELOCITY] ** 2
