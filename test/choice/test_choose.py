@@ -40,7 +40,7 @@ def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
 @pytest.mark.parametrize('name', choice_cases.CASES)
 def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
     # what the table says, untried: trials of all kinds take minutes to compile
-    monkeypatch.setattr(trial, 'HAVE_NUMBA', False)
+    monkeypatch.setattr(trial, 'settle', measured.pick)
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)
     assert [choice.expected_error for choice in choices] == sorted((choice.expected_error for choice in choices), reverse=True)
@@ -59,7 +59,6 @@ def test_the_cheapest_that_is_good_enough_is_taken(monkeypatch):
     assert measured.pick(scene, ['one', 'other'], 1e-9, 1e12)[2] > 1e-4
 
 
-@pytest.mark.skipif(not trial.HAVE_NUMBA, reason='without numba the table is taken at its word')
 def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_of_the_scene(monkeypatch):
     honest = measured.table()
     rows = {method: [entry | {'error': 1e-5 * entry['error']} for entry in found] for method, found in honest['kinds']['pivot'].items()}

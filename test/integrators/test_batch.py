@@ -18,7 +18,7 @@ from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.rotations import angle_between, rotate
 from rigid_body_sim.scene.scene import parse_scene
 
-pytestmark = pytest.mark.skipif(not HAVE_NUMBA, reason='without numba the bodies are taken one by one')
+pytestmark = pytest.mark.skipif(not HAVE_NUMBA, reason='thousands of bodies take minutes without numba')
 
 REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data' / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
