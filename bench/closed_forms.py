@@ -14,7 +14,8 @@ import time
 
 import numpy as np
 
-from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_allocating, processor
+from rigid_body_sim.compilation.environment import processor
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_allocating
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.scene.scene import load_scene

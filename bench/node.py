@@ -191,7 +191,7 @@ def main():
         return subscribe()
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
-    from rigid_body_sim.compilation.jit import processor
+    from rigid_body_sim.compilation.environment import processor
     from rigid_body_sim.node.engine import warm_up
     from rigid_body_sim.simulation.simulation import Simulation
     warm_up(Simulation('tennis_racket'))

@@ -18,7 +18,8 @@ import time
 import numpy as np
 
 from rigid_body_sim.choice.choose import choose
-from rigid_body_sim.compilation.jit import HAVE_NUMBA, processor
+from rigid_body_sim.compilation.environment import processor
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.effects.wrench import Wrench
