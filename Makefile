@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package unit test-noble soak figures bench bench-node bench-choice study study-check study-full pins pins-noble clean
+.PHONY: help run test lint package unit test-noble test-kilted soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -49,6 +49,9 @@ soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble .venv-noble/bin/$(PYTEST)
+
+test-kilted: .venv-kilted/stamp ## the tests of the node on ROS 2 Kilted
+	AMENT_PREFIX_PATH=$(CURDIR)/.venv-kilted .venv-kilted/bin/$(PYTEST) test/node test/cli/test_run.py test/test_ros.py
 
 figures: .venv/run.stamp ## figures and tables of README and docs anew
 	.venv/bin/python docs/make_figures.py
@@ -85,11 +88,14 @@ pins: .venv/test.stamp ## requirements/run.txt and test.txt anew from run.in and
 	.venv/bin/python requirements/pin.py run
 	.venv/bin/python requirements/pin.py test
 
+pins-kilted: .venv-kilted/stamp ## requirements/kilted.txt anew from kilted.in
+	.venv-kilted/bin/python requirements/pin.py kilted
+
 pins-noble: .venv-noble/stamp ## requirements/noble.txt anew from noble.in
 	.venv-noble/bin/python requirements/pin.py noble
 
 clean: ## remove the environments and what was built; recordings stay
-	rm -rf .venv .venv-noble .venv-noble-numba .venv-peers .cache
+	rm -rf .venv .venv-kilted .venv-noble .venv-noble-numba .venv-peers .cache
 
 .venv/run.stamp: requirements/run.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv requirements/run.txt $(PYTHON_VERSIONS)
@@ -108,6 +114,10 @@ clean: ## remove the environments and what was built; recordings stay
 	@mkdir -p .cache/mcap_core
 	@cp $^ .cache/mcap_core
 	@npm install --silent --no-fund --no-audit --prefix .cache/mcap_core && touch $@ || echo '@mcap/core cannot be installed here (npm): its tests are skipped'
+
+.venv-kilted/stamp: requirements/kilted.txt requirements/make_venv.sh
+	@requirements/make_venv.sh .venv-kilted requirements/kilted.txt $(PYTHON_VERSIONS)
+	@touch $@
 
 .venv-noble/stamp: requirements/noble.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv-noble requirements/noble.txt 3.12 || $(NO_NOBLE)

@@ -1,13 +1,45 @@
-"""Rigid-body motion, solved exactly where mathematics allows, on ROS 2."""
+# SPDX-License-Identifier: Apache-2.0
+"""Rigid-body motion on ROS 2: a closed form where one exists, otherwise stepped methods.
+
+::
+
+    from rigid_body_sim import Simulation
+    simulation = Simulation('tennis_racket', overrides={'body.mass': 2.0})
+    print(simulation.states([10.0, 20.0, 5.0]).orientation)
+"""
 
 import importlib
+import typing
 
-_OFFERED = {'Simulation': 'simulation.simulation', 'load_scene': 'scene.scene', 'parse_scene': 'scene.scene', 'scene_names': 'scene.scene',
-            'State': 'scene.state', 'States': 'scene.state', 'ensemble': 'simulation.ensemble', 'BadInput': 'errors', 'NotConverged': 'errors'}
-__all__ = sorted(_OFFERED)    # loaded when first asked for, so that the table of commands imports nothing
+if typing.TYPE_CHECKING:  # what type checkers and editors read
+    from rigid_body_sim.errors import BadInput, NotConverged
+    from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene, scene_names
+    from rigid_body_sim.scene.state import State, States
+    from rigid_body_sim.simulation.ensemble import Ensemble, ensemble
+    from rigid_body_sim.simulation.simulation import Simulation
+    from rigid_body_sim.simulation.spans import Event
+
+__all__ = ['BadInput', 'Ensemble', 'Event', 'NotConverged', 'Scene', 'Simulation', 'State',
+           'States', 'ensemble', 'load_scene', 'parse_scene', 'scene_names']
+
+# A name is imported when it is first used, so the table of commands shows without NumPy.
+_HOMES = {
+    'BadInput': 'errors', 'NotConverged': 'errors',
+    'Scene': 'scene.scene', 'load_scene': 'scene.scene', 'parse_scene': 'scene.scene',
+    'scene_names': 'scene.scene',
+    'State': 'scene.state', 'States': 'scene.state',
+    'Ensemble': 'simulation.ensemble', 'ensemble': 'simulation.ensemble',
+    'Simulation': 'simulation.simulation', 'Event': 'simulation.spans',
+}
 
 
 def __getattr__(name):
-    if name not in _OFFERED:
+    if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-    return getattr(importlib.import_module(f'{__name__}.{_OFFERED[name]}'), name)
+    value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

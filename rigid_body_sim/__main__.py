@@ -1,29 +1,56 @@
-"""`python -m rigid_body_sim NAME ...`: run a command of the table."""
+# SPDX-License-Identifier: Apache-2.0
+"""The shell command: ``rigid_body_sim NAME ...``, also ``python -m rigid_body_sim NAME ...``."""
 
 import difflib
 import importlib
+import os
 import sys
 
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import COMMANDS, MISSING
+from rigid_body_sim.command_line import BAD_INPUT, GOOD
+
+PROGRAM = 'rigid_body_sim'
 
 
 def main(arguments=None):
     """Run the command that the first argument names; return its exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
     if not arguments or arguments[0] in ('-h', '--help'):
-        print('usage: python -m rigid_body_sim NAME [options]      (NAME --help says more)\n')
-        for name, (_, about) in COMMANDS.items():
-            print(f'  {name:20} {about}')
-        return 0
+        _show_commands()
+        return GOOD
+    if arguments[0] == '--version':
+        from rigid_body_sim.recording.about import version
+        print(f'{PROGRAM} {version()}')
+        return GOOD
+    if arguments[0] == '--completion':
+        from rigid_body_sim.cli import completion
+        return completion.main(arguments[1:])
     name = arguments[0]
     if name not in COMMANDS:
         near = difflib.get_close_matches(name, COMMANDS, 1)
-        print(f'rigid_body_sim: no command {name!r}; {f"did you mean {near[0]}?" if near else "the commands are " + ", ".join(COMMANDS)}',
-              file=sys.stderr)
-        return 2
+        hint = f'did you mean {near[0]}?' if near else f'the commands are {", ".join(COMMANDS)}'
+        print(f'{PROGRAM}: no command {name!r}; {hint}', file=sys.stderr)
+        return BAD_INPUT
     module, _, function = COMMANDS[name][0].partition(':')
     sys.argv = [name, *arguments[1:]]
-    return getattr(importlib.import_module(module), function)()
+    try:
+        return getattr(importlib.import_module(module), function)()
+    except ModuleNotFoundError as error:
+        package = (error.name or '').partition('.')[0]
+        if package not in MISSING:
+            raise
+        print(f'{PROGRAM} {name}: the package {package} is not installed; {MISSING[package]}',
+              file=sys.stderr)
+        return BAD_INPUT
+
+
+def _show_commands():
+    program = PROGRAM if os.path.basename(sys.argv[0]) == PROGRAM else f'python -m {PROGRAM}'
+    print(f'usage: {program} NAME [options]      ({program} NAME --help says more)\n')
+    for name, (_, about) in COMMANDS.items():
+        print(f'  {name:20} {about}')
+    print('\n  --version            show the version'
+          '\n  --completion SHELL   print the completion script for bash or zsh')
 
 
 if __name__ == '__main__':

@@ -1,4 +1,5 @@
-"""What all commands share: a parser that shows an example, bad input as one line and exit status 2, JSON with 17 digits."""
+# SPDX-License-Identifier: Apache-2.0
+"""What all commands share: the parser, the exit status of bad input, JSON with 17 digits."""
 
 import argparse
 import json
@@ -17,9 +18,9 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser(name, about, example):
-    """Return an argument parser for a command."""
-    return _Parser(prog=name, description=about, epilog=f'example:\n  {example}', formatter_class=argparse.RawDescriptionHelpFormatter,
-                   allow_abbrev=False)
+    """Return an argument parser for a command, whose help ends with an example."""
+    return _Parser(prog=name, description=about, epilog=f'example:\n  {example}',
+                   formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
 
 
 def run(function, arguments):
@@ -42,5 +43,5 @@ def run(function, arguments):
 
 
 def print_json(value):
-    """Print a value as JSON; Python's repr of a double has the 17 digits that give it back exactly."""
+    """Print a value as JSON; Python's repr of a double has the 17 digits that restore it."""
     print(json.dumps(value, indent=2, allow_nan=False))

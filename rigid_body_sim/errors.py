@@ -1,4 +1,5 @@
-"""Errors that a person reads: one line that says what, where, the value, and what would be right."""
+# SPDX-License-Identifier: Apache-2.0
+"""Errors that a person reads: one line with the place, the fault and what would be right."""
 
 
 class BadInput(ValueError):
@@ -7,7 +8,8 @@ class BadInput(ValueError):
     Parameters
     ----------
     where : str
-        The place as the user knows it: ``scenes/racket.yaml: body.inertia``, ``--rate``, ``cmd_wrench``.
+        The place as the user knows it: ``racket.yaml, line 4: body.inertia``, ``--rate``,
+        ``cmd_wrench``.
     problem : str
         What is wrong there, with the value found.
     remedy : str

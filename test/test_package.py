@@ -79,15 +79,29 @@ def test_the_table_of_commands_needs_no_package():
     assert listed.split() == list(COMMANDS)
 
 
-def test_setup_makes_an_executable_of_every_command(tmp_path):
-    command = [sys.executable, 'setup.py', '-q', 'egg_info', '--egg-base', tmp_path]
-    subprocess.run(command, cwd=ROOT, check=True, timeout=60, capture_output=True)
-    [folder] = tmp_path.glob('*.egg-info')
-    lines = (folder / 'entry_points.txt').read_text().split('\n')
-    assert lines[0] == '[console_scripts]'
-    assert dict(line.split(' = ') for line in lines[1:] if line) == {name: target for name, (target, _) in COMMANDS.items()}
-    version = re.search(r'^Version: (.*)$', (folder / 'PKG-INFO').read_text(), re.MULTILINE).group(1)
-    assert version == xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot().findtext('version')
+def scripts_of(tmp_path, command):
+    """Return the console scripts and the metadata that `setup.py COMMAND` would install."""
+    code = (f"import sys; sys.argv = ['setup.py', {command!r}]\n"
+            'from distutils.core import run_setup\n'
+            "found = run_setup('setup.py', sys.argv[1:], stop_after='commandline')\n"
+            'print(found.get_version(), *found.entry_points["console_scripts"], sep="\\n")')
+    done = subprocess.run([sys.executable, '-c', f'import setuptools\n{code}'], cwd=ROOT,
+                          check=True, timeout=60, capture_output=True, text=True)
+    version, *scripts = done.stdout.splitlines()
+    return version, dict(script.split(' = ') for script in scripts)
+
+
+@pytest.mark.parametrize('command', ['install', 'develop'])
+def test_colcon_makes_an_executable_of_every_command(tmp_path, command):
+    _, scripts = scripts_of(tmp_path, command)
+    assert scripts == {name: target for name, (target, _) in COMMANDS.items()}
+
+
+def test_a_wheel_has_one_command_and_the_version_of_package_xml(tmp_path):
+    version, scripts = scripts_of(tmp_path, 'bdist_wheel')
+    assert scripts == {'rigid_body_sim': 'rigid_body_sim.__main__:main'}
+    manifest = xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot()
+    assert version == manifest.findtext('version')
 
 
 def test_every_command_has_a_function_and_a_line_of_help():
@@ -118,7 +132,7 @@ def test_the_launch_file_compiles_and_describes_where_launch_is_installed():
     assert arguments == ['scene', 'rate', 'params_file']
 
 
-@pytest.mark.parametrize('pins', ['run', 'test', 'noble', 'noble-numba'])
+@pytest.mark.parametrize('pins', ['run', 'test', 'kilted', 'noble', 'noble-numba'])
 def test_pins_are_exact_and_hold_what_is_asked_for(pins):
     folder = ROOT / 'requirements'
     lines = [line for line in (folder / f'{pins}.txt').read_text().splitlines() if not line.startswith('#')]

@@ -77,7 +77,8 @@ def lines(found):
         late = {name: value * 1e6 for name, value in timing['lateness'].items()}
         rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
         stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
-        text.append(f'  lateness p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us{rate}{stood}')
+        text.append(f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us'
+                    f'{rate}{stood}')
     text.append(f'  drops    {_drops(found)}')
     return text
 

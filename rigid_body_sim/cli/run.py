@@ -1,6 +1,8 @@
-"""The command `run`, which `make run` calls: the node for a while, then the report on what it recorded.
+# SPDX-License-Identifier: Apache-2.0
+"""The command `run`, which `make run` calls: the node for a while, then a report on its recording.
 
-The node is a process of its own, so that nothing here disturbs its ticks, and what takes long to import is imported when it has ended.
+The node is a process of its own, so nothing here disturbs its ticks; modules that take long to
+import are imported when it has ended.
 """
 
 import contextlib
@@ -19,12 +21,16 @@ FOLDER = 'recordings'
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('run', 'Run the node on a scene in real time, record it, and report on the recording.',
-                                 'python -m rigid_body_sim run --scene tennis_racket --rate 1000 --duration 20')
-    parser.add_argument('--scene', default='tennis_racket', help='name of a scene that ships, or a .yaml file (tennis_racket)')
+    parser = command_line.parser(
+        'run', 'Run the node on a scene in real time, record it, and report on the recording.',
+        'python -m rigid_body_sim run --scene tennis_racket --rate 1000 --duration 20')
+    parser.add_argument('--scene', default='tennis_racket',
+                        help='name of a scene that ships, or a .yaml file (tennis_racket)')
     parser.add_argument('--rate', type=float, default=1000.0, help='ticks per second (1000)')
-    parser.add_argument('--duration', type=float, default=20.0, help='seconds (20); 0: until Ctrl-C')
-    parser.add_argument('--json', action='store_true', help='print what report.json holds, as the last thing on stdout')
+    parser.add_argument('--duration', type=float, default=20.0,
+                        help='seconds (20); 0: until Ctrl-C')
+    parser.add_argument('--json', action='store_true',
+                        help='print what report.json holds, as the last thing on stdout')
     return command_line.run(_run, parser.parse_args(arguments))
 
 
@@ -41,32 +47,43 @@ def _run(options):
     from rigid_body_sim.analysis.analyze import analyze, report_folder, show
     found, written = analyze(path, report_folder(path), short=True)
     if options.json:
-        command_line.print_json({'recording': str(path), 'bodies': found, 'files': [str(one) for one in written]})
+        command_line.print_json({'recording': str(path), 'bodies': found,
+                                 'files': [str(one) for one in written]})
     else:
         show(found, written)
+        print(_next_steps(path))
     return command_line.GOOD
+
+
+def _next_steps(path):
+    """Return what to do with the recording next, as lines that can be pasted into the shell."""
+    python = os.path.relpath(sys.executable) if os.path.sep in sys.executable else sys.executable
+    return (f'next:\n  {python} -m rigid_body_sim analyze {path}      # all figures, as a page\n'
+            f'  {python} -m rigid_body_sim view {path}         # the body in a browser')
 
 
 def _node(options, name):
     """Run the node to its end; return its exit status, and the signal that ended it or None."""
-    parameters = {'scene': options.scene, 'rate': options.rate, 'duration': options.duration, 'recording.directory': FOLDER,
-                  'recording.name': name}
+    parameters = {'scene': options.scene, 'rate': options.rate, 'duration': options.duration,
+                  'recording.directory': FOLDER, 'recording.name': name}
     assignments = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
     command = [sys.executable, '-m', 'rigid_body_sim', 'sim_node', '--ros-args', *assignments]
     with forwarding() as forwarder:
-        # who only looks at a demonstration does not open a door to the network
+        # a demonstration does not open a door to the network
         environment = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', **os.environ}
-        process = subprocess.Popen(command, env=environment, stdout=sys.stderr if options.json else None)
+        process = subprocess.Popen(command, env=environment,
+                                   stdout=sys.stderr if options.json else None)
         forwarder.to(process)
         return process.wait(), forwarder.number
 
 
 @contextlib.contextmanager
 def forwarding():
-    """Yield a Forwarder; while it is there, signals that ask to end go to a child process and do not end this one."""
+    """Yield a Forwarder, which passes signals that end a process on to a child instead."""
     forwarder = Forwarder()
     numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = {number: signal.signal(number, forwarder.forward) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
+    before = {number: signal.signal(number, forwarder.forward) for number in numbers
+              if signal.getsignal(number) != signal.SIG_IGN}
     try:
         yield forwarder
     finally:
@@ -75,7 +92,15 @@ def forwarding():
 
 
 class Forwarder:
-    """Passes signals on to a child process, also one that came before it was there; `number` is the last one, or None."""
+    """Passes signals on to a child process.
+
+    A signal that came before the child was there is passed on when it is.
+
+    Attributes
+    ----------
+    number : int or None
+        The last signal.
+    """
 
     def __init__(self):
         self._process = self.number = None

@@ -1,4 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `scenes`: what ships, which effects each lists, which methods can run it."""
+
+import sys
 
 from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import methods_for
@@ -8,14 +11,16 @@ from rigid_body_sim.scene.scene import load_scene, scene_names
 def describe(scene):
     """Return name, text, constraint, effects and runnable methods of a scene as plain data."""
     return {'scene': scene.name, 'about': scene.about, 'constraint': scene.constraint.kind,
-            'effects': [effect.name for effect in scene.effects], 'methods': methods_for(scene), 'notes': scene.notes}
+            'effects': [effect.name for effect in scene.effects], 'methods': methods_for(scene),
+            'notes': scene.notes}
 
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('scenes', 'List the scenes that ship, or describe one.', 'python -m rigid_body_sim scenes tennis_racket')
+    parser = command_line.parser('scenes', 'List the scenes that ship, or describe one.',
+                                 'python -m rigid_body_sim scenes tennis_racket')
     parser.add_argument('scene', nargs='*', help='names or .yaml files; default: all that ship')
-    parser.add_argument('--json', action='store_true', help='machine-readable')
+    parser.add_argument('--json', action='store_true', help='print the list as JSON')
     return command_line.run(_list, parser.parse_args(arguments))
 
 
@@ -26,7 +31,12 @@ def _list(options):
         return command_line.GOOD
     for scene in described:
         print(f'{scene["scene"]}: {scene["about"]}')
-        print(f'    {scene["constraint"]}; effects: {", ".join(scene["effects"]) or "none"}; methods: {", ".join(scene["methods"])}')
+        effects, methods = (', '.join(scene[key]) for key in ('effects', 'methods'))
+        print(f'    {scene["constraint"]}; effects: {effects or "none"}; methods: {methods}')
         for line in scene['notes']:
             print(f'    note: {line}')
     return command_line.GOOD
+
+
+if __name__ == '__main__':
+    sys.exit(main())

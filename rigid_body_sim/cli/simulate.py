@@ -1,4 +1,8 @@
-"""The command `simulate`: a scene to a recording as fast as it goes, no ROS needed. The recording is the one that the node would write."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `simulate`: run a scene to a recording as fast as it goes, without ROS.
+
+The recording is the one that the node would write.
+"""
 
 import collections
 import contextlib
@@ -26,14 +30,16 @@ BLOCK = 4096
 LONGEST = 10**9
 """Most ticks of a run: more would fill any disk."""
 SOURCE = 'simulate'
-SCENE, EVENTS = Topic('/scene', about.STRING_TYPE, 1, durability='transient_local'), \
-    Topic('/events', about.STATUS_TYPE, 100, durability='transient_local')
+PARTS = ('orientation', 'angular_velocity', 'position', 'velocity')
+SCENE = Topic('/scene', about.STRING_TYPE, 1, durability='transient_local')
+EVENTS = Topic('/events', about.STATUS_TYPE, 100, durability='transient_local')
 
 
 class Recording:
-    """A recording being made of a simulation: the topics of every tick, events, the latched scene, the journal.
+    """A recording of a simulation: topics of every tick, events, the latched scene, the journal.
 
-    Stamps begin at the wall clock and count ticks. Nothing is published, so the publish times are the stamps.
+    Stamps begin at the wall clock and count ticks. Nothing is published, so the publish times are
+    the stamps.
 
     Parameters
     ----------
@@ -50,14 +56,17 @@ class Recording:
         self._simulation = simulation
         self._packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
         self._journal = journal_topic()
-        ticking = [(Topic(f'/{output.name}', output.type), packer.size) for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
-        self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal, about.about(SOURCE, simulation, parameters), **writing)
+        ticking = [(Topic(f'/{output.name}', output.type), packer.size)
+                   for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
+        self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal,
+                              about.about(SOURCE, simulation, parameters), **writing)
         self._timeline = Timeline(time.time_ns(), simulation.rate)
         self._message(SCENE, self._timeline.instant(0), about.scene_message(simulation.scene))
 
     def ticks(self, first, states, events):
-        """Record the States of the ticks from `first` up to now, and what the simulation noted meanwhile."""
-        stamps = np.array([self._timeline.instant(tick) for tick in range(first, first + len(states))])
+        """Record the States of the ticks from `first` up to now, and the events among them."""
+        stamps = np.array([self._timeline.instant(tick)
+                           for tick in range(first, first + len(states))])
         energies, momenta = self._simulation.diagnose(states)
         rows = [packer.pack_many(output.columns(stamps, states, energies, momenta))
                 for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
@@ -66,19 +75,22 @@ class Recording:
             self._record_ticks(first, begin, event.tick - first, stamps, rows)
             begin = event.tick - first
             message, values = about.event_text(event)
-            self._message(EVENTS, stamps[begin], about.event_message(SOURCE, about.OK, event.name, message, values))
+            self._message(EVENTS, stamps[begin],
+                          about.event_message(SOURCE, about.OK, event.name, message, values))
         self._record_ticks(first, begin, len(states), stamps, rows)
         self._record_state(int(stamps[-1]))
 
     def _record_ticks(self, first, begin, end, stamps, rows):
         if end > begin:
-            self._writer.ticks(first + begin, stamps[begin:end], stamps[begin:end], [part[begin:end] for part in rows])
+            self._writer.ticks(first + begin, stamps[begin:end], stamps[begin:end],
+                               [part[begin:end] for part in rows])
 
     def _record_state(self, stamp):
         """Put the full state into the journal of a new file."""
         if self._writer.state_wanted:
             self._writer.state_wanted = False
-            self._message(self._journal, stamp, journal_message('state', **about.state_entry(self._simulation.tick, self._simulation)))
+            entry = about.state_entry(self._simulation.tick, self._simulation)
+            self._message(self._journal, stamp, journal_message('state', **entry))
 
     def _message(self, topic, stamp, data):
         self._writer.message(topic.name, stamp, stamp, data)
@@ -95,11 +107,14 @@ class Recording:
 
 @contextlib.contextmanager
 def interruptible():
-    """Yield a list that gets the number of a signal that asks to end (SIGINT, SIGTERM, SIGHUP); what is in hand is finished first."""
+    """Yield a list that gets the number of each signal that asks to end (SIGINT, SIGTERM, SIGHUP).
+
+    The signals end nothing by themselves: the caller finishes what it is doing and looks.
+    """
     asked = []
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-    before = {number: signal.signal(number, lambda number, _: asked.append(number)) for number in numbers
-              if signal.getsignal(number) != signal.SIG_IGN}
+    before = {number: signal.signal(number, lambda number, _: asked.append(number))
+              for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
     try:
         yield asked
     finally:
@@ -108,7 +123,7 @@ def interruptible():
 
 
 def simulate(simulation, ticks, recording=None, stop=()):
-    """Run a simulation from tick 0 to `ticks`; return how often each event came, by name.
+    """Run a simulation from tick 0 to `ticks`; return how often each event occurred, by name.
 
     Parameters
     ----------
@@ -123,7 +138,8 @@ def simulate(simulation, ticks, recording=None, stop=()):
     counts = collections.Counter()
     if recording:
         recording.ticks(0, States(simulation.vector[np.newaxis].copy()), ())
-    with tqdm(total=ticks, unit=' ticks', unit_scale=True, disable=None, leave=False) as progress:
+    with tqdm(total=ticks, unit=' ticks', unit_scale=True, disable=None,
+              leave=False) as progress:
         while simulation.tick < ticks and not stop:
             first, count = simulation.tick + 1, min(BLOCK, ticks - simulation.tick)
             if recording:
@@ -140,19 +156,31 @@ def simulate(simulation, ticks, recording=None, stop=()):
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('simulate', 'Run a scene to a recording as fast as it goes; without --output, to its final state only.',
-                                 'python -m rigid_body_sim simulate --scene tennis_racket --duration 100 --output recordings/racket --json')
-    parser.add_argument('--scene', default='tennis_racket', help='name of a scene that ships, or a .yaml file (default: tennis_racket)')
-    parser.add_argument('--duration', type=float, default=20.0, help='simulated seconds (20)')
-    parser.add_argument('--rate', type=float, default=1000.0, help='ticks per simulated second (1000)')
-    parser.add_argument('--integrator', default='auto', help='method (auto: exact if there is one, else the cheapest that meets --accuracy)')
-    parser.add_argument('--accuracy', type=float, default=1e-12, help='error of the attitude that is asked for, rad (1e-12)')
-    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE', help='change of the scene, key.path=value; may be repeated')
-    parser.add_argument('--output', metavar='FOLDER', help='recording to make; it must not exist yet')
-    parser.add_argument('--compression', choices=compression.NAMES, default=compression.DEFAULT, help=f'of chunks ({compression.DEFAULT})')
-    parser.add_argument('--split-bytes', type=float, default=0.0, metavar='BYTES', help='a new file begins after so many bytes (4 GB)')
-    parser.add_argument('--split-seconds', type=float, default=0.0, metavar='SECONDS', help='a new file begins after so much simulated time')
-    parser.add_argument('--json', action='store_true', help='print final state, ledger, method and cost, with 17 digits')
+    parser = command_line.parser(
+        'simulate',
+        'Run a scene to a recording as fast as it goes; without --output, to its last state only.',
+        'python -m rigid_body_sim simulate --scene tennis_racket --duration 100 '
+        '--output recordings/racket --json')
+    add = parser.add_argument
+    add('--scene', default='tennis_racket',
+        help='name of a scene that ships, or a .yaml file (default: tennis_racket)')
+    add('--duration', type=float, default=20.0, help='simulated seconds (20)')
+    add('--rate', type=float, default=1000.0, help='ticks per simulated second (1000)')
+    add('--integrator', default='auto',
+        help='method (auto: exact if there is one, else the cheapest that meets --accuracy)')
+    add('--accuracy', type=float, default=1e-12,
+        help='error of the attitude that is asked for, rad (1e-12)')
+    add('--set', action='append', default=[], metavar='KEY=VALUE',
+        help='change of the scene, key.path=value; may be repeated')
+    add('--output', metavar='FOLDER', help='recording to make; it must not exist yet')
+    add('--compression', choices=compression.NAMES, default=compression.DEFAULT,
+        help=f'of chunks ({compression.DEFAULT})')
+    add('--split-bytes', type=float, default=0.0, metavar='BYTES',
+        help='a new file begins after so many bytes (4 GB)')
+    add('--split-seconds', type=float, default=0.0, metavar='SECONDS',
+        help='a new file begins after so much simulated time')
+    add('--json', action='store_true',
+        help='print final state, ledger, method and cost, with 17 digits')
     return command_line.run(_run, parser.parse_args(arguments))
 
 
@@ -160,26 +188,30 @@ def _run(options):
     began = time.perf_counter()
     scene = load_scene(options.scene, options.set)
     if not (options.duration >= 0.0 and not options.duration * options.rate > LONGEST):
-        raise BadInput('--duration', f'got {options.duration!r}', f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
-    simulation = Simulation(scene, options.integrator, options.accuracy, options.rate, horizon=options.duration or HORIZON)
+        raise BadInput('--duration', f'got {options.duration!r}',
+                       f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
+    simulation = Simulation(scene, options.integrator, options.accuracy, options.rate,
+                            horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
-        recording = Recording(options.output, simulation, _parameters(options), **_writing(options)) if options.output else None
+        recording = Recording(options.output, simulation, _parameters(options),
+                              **_writing(options)) if options.output else None
         prepared = time.perf_counter()
         try:
             with contextlib.closing(recording) if recording else contextlib.nullcontext():
                 events = simulate(simulation, ticks, recording, asked)
         except OSError as error:
-            print(f'{options.output}: the disk refuses ({error.strerror}) at t = {simulation.time:.9g} s; make room and run '
-                  f'"recover {options.output}": it keeps all up to there', file=sys.stderr)
+            print(f'{options.output}: the disk refuses ({error.strerror}) at t = '
+                  f'{simulation.time:.9g} s; make room and run "recover {options.output}": '
+                  'it keeps all up to there', file=sys.stderr)
             return command_line.CHECK_FAILED
     finished = time.perf_counter()
     cost = {'set_up': prepared - began, 'run': finished - prepared, 'ticks': simulation.tick,
             'messages': recording.messages if recording else 0}
     for line in simulation.scene.notes:
         print(f'{simulation.scene.name}: {line}', file=sys.stderr)
-    result = {'state': _plain(simulation.state), 'ledger': simulation.ledger(), 'method': about.run_of(simulation), 'events': dict(events),
-              'cost': cost}
+    result = {'state': _plain(simulation.state), 'ledger': simulation.ledger(),
+              'method': about.run_of(simulation), 'events': dict(events), 'cost': cost}
     if options.json:
         command_line.print_json(result)
     else:
@@ -193,32 +225,38 @@ def _run(options):
 
 def _parameters(options):
     """Return what was asked, by the names that the node's parameters have."""
-    return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate, 'integrator': options.integrator,
-            'accuracy': options.accuracy, 'duration': options.duration}
+    return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate,
+            'integrator': options.integrator, 'accuracy': options.accuracy,
+            'duration': options.duration}
 
 
 def _writing(options):
-    """Return how the files are to be written; BadInput where that makes no sense."""
+    """Return how the files are to be written; raise BadInput where that makes no sense."""
     for name in ('split_bytes', 'split_seconds'):
         if not 0.0 <= getattr(options, name) <= LONGEST * 4.0:
-            raise BadInput(f'--{name.replace("_", "-")}', f'got {getattr(options, name):g}', f'a number from 0 to {LONGEST * 4.0:g}')
-    return {'compression_name': options.compression, 'split_bytes': options.split_bytes, 'split_seconds': options.split_seconds}
+            raise BadInput(f'--{name.replace("_", "-")}', f'got {getattr(options, name):g}',
+                           f'a number from 0 to {LONGEST * 4.0:g}')
+    return {'compression_name': options.compression, 'split_bytes': options.split_bytes,
+            'split_seconds': options.split_seconds}
 
 
 def _plain(state):
-    return {'time': state.time, **{name: getattr(state, name).tolist() for name in ('orientation', 'angular_velocity', 'position', 'velocity')}}
+    return {'time': state.time, **{name: getattr(state, name).tolist() for name in PARTS}}
 
 
 def _tell(result, scene, output):
     """Print the outcome for people."""
     state, ledger, cost = result['state'], result['ledger'], result['cost']
-    print(f'{scene.name} by {result["method"]["method"]}: {cost["ticks"]} ticks, t = {state["time"]!r} s, in {cost["run"]:.3f} s')
-    for name in ('orientation', 'angular_velocity', 'position', 'velocity'):
+    print(f'{scene.name} by {result["method"]["method"]}: {cost["ticks"]} ticks, '
+          f't = {state["time"]!r} s, in {cost["run"]:.3f} s')
+    for name in PARTS:
         print(f'  {name:17}{", ".join(map(repr, state[name]))}')
     events = ''.join(f', {count} x {name}' for name, count in sorted(result['events'].items()))
-    print(f'  energy residual {ledger["energy_residual"]:.2e}, angular momentum residual {ledger["momentum_residual"]:.2e}{events}')
+    print(f'  energy residual {ledger["energy_residual"]:.2e}, '
+          f'angular momentum residual {ledger["momentum_residual"]:.2e}{events}')
     if output:
-        print(f'  {cost["messages"]} messages, {cost["messages"] / cost["run"]:.0f} a second: {output}')
+        per_second = cost['messages'] / cost['run']
+        print(f'  {cost["messages"]} messages, {per_second:.0f} a second: {output}')
 
 
 if __name__ == '__main__':

@@ -178,7 +178,7 @@ class Engine:
         for line in (
                 f'{self._node.get_fully_qualified_name()}: {session.simulation.scene.name}, {ticks} ticks in {running * 1e-9:.3f} s'
                 f' ({(ticks - 1) / running * 1e9 if running else 0.0:.3f} Hz)',
-                f'  lateness p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; '
+                f'  ticks began late by p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; '
                 f'{ticker.overruns} overruns, {ticker.skipped} ticks not published, {ticker.slipped * 1e-9:.3f} s slipped',
                 f'  energy residual {balance["energy_residual"]:.2e}, angular momentum residual {balance["momentum_residual"]:.2e}{events}',
                 f'  recorded {recording.recorded} messages, {recording.dropped} ticks left out: {self.journal.path}' if recording else

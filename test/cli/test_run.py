@@ -33,7 +33,11 @@ def test_it_records_and_reports(ros_domain, tmp_path):
     text = (report / 'report.txt').read_text()
     assert text in done.stdout and text.startswith('tennis_racket: exact, 500 Hz, by sim_node')
     files = [report.relative_to(tmp_path) / name for name in ('report.txt', 'report.json', 'overview.png')]
-    assert done.stdout.splitlines()[-3:] == [f'  {file}' for file in files]
+    *_, first, second, third, heading, analyze, view = done.stdout.splitlines()
+    assert [first, second, third] == [f'  {file}' for file in files]
+    assert heading == 'next:'
+    assert f' analyze {path.relative_to(tmp_path)} ' in analyze
+    assert f' view {path.relative_to(tmp_path)} ' in view
     [body] = json.loads((report / 'report.json').read_text())['bodies']
     assert body['timing']['ticks'] + body['left_out_by_recorder'] == 1001
     assert body['timing']['achieved_rate'] == pytest.approx(500.0, rel=0.02)
