@@ -229,7 +229,7 @@ def set_parameter(client, name, **value):
 
 @pytest.mark.parametrize(('name', 'value', 'reason'), [
     ('rate', {'double_value': -5.0}, 'Min: 0.001'),
-    ('rate', {'string_value': 'abc'}, 'Type.DOUBLE'),
+    ('rate', {'string_value': 'abc'}, 'Wrong parameter type'),
     ('scene', {'string_value': 'tenis_racket'}, 'did you mean tennis_racket?'),
     ('integrator', {'string_value': 'dop9'}, "did you mean 'dop8'?"),
     ('record', {'string_value': 'no'}, 'read-only'),
