@@ -5,6 +5,7 @@ import sys
 
 from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import methods_for
+from rigid_body_sim.scene.json_schema import json_schema
 from rigid_body_sim.scene.scene import load_scene, scene_names
 
 
@@ -21,10 +22,15 @@ def main(arguments=None):
                                  'python -m rigid_body_sim scenes tennis_racket')
     parser.add_argument('scene', nargs='*', help='names or .yaml files; default: all that ship')
     parser.add_argument('--json', action='store_true', help='print the list as JSON')
+    parser.add_argument('--schema', action='store_true',
+                        help='print the JSON Schema of scene files instead')
     return command_line.run(_list, parser.parse_args(arguments))
 
 
 def _list(options):
+    if options.schema:
+        command_line.print_json(json_schema())
+        return command_line.GOOD
     described = [describe(load_scene(name)) for name in options.scene or scene_names()]
     if options.json:
         command_line.print_json(described)

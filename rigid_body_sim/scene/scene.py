@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes: a YAML file -> a validated Scene (docs/scenes.md shows how to write one).
 
 A scene names a body, what holds it (constraint), what else acts (effects) and how it starts (initial). Everything is checked here, before
@@ -131,8 +132,8 @@ def load_scene(name_or_path, overrides=()):
     Parameters
     ----------
     name_or_path : str or path
-    overrides : sequence of str
-        ``key.path=value``, see :func:`yaml_text.override`.
+    overrides : mapping of str to value, or sequence of str
+        ``{'key.path': value}`` or ``key.path=value``, see :func:`yaml_text.override`.
 
     Raises
     ------
@@ -158,8 +159,26 @@ def load_scene(name_or_path, overrides=()):
 def parse_scene(text, overrides=(), where='scene'):
     """Return the validated scene of a YAML text; `where` names it in error lines."""
     mapping = yaml_text.parse(text, where)
+    overrides = yaml_text.assignments(overrides)
     for assignment in overrides:
         yaml_text.override(mapping, assignment, where)
+    try:
+        return _scene(mapping, where)
+    except BadInput as error:
+        # what an override set stands in no line, nor need a fault be where it shows
+        raise error if overrides else _with_line(error, text, where) from None
+
+
+def _with_line(error, text, where):
+    """Return an error of a key path with the line of the text in which the key stands."""
+    path = error.where.removeprefix(f'{where}: ')
+    line = yaml_text.line_of(text, path.split('.')) if path != error.where else None
+    return error if line is None else \
+        BadInput(f'{where}, line {line}: {path}', error.problem, error.remedy)
+
+
+def _scene(mapping, where):
+    """Return the validated scene of a mapping."""
     _check(mapping, SCENE, where)
     body = _body(mapping['body'], f'{where}: body')
     constraint = _constraint(mapping['constraint'], body, f'{where}: constraint')

@@ -1,5 +1,7 @@
 """Scene text -> plain mapping: YAML as data only, with bounded size and depth, and overrides of single values."""
 
+import collections.abc
+import json
 import re
 
 import yaml
@@ -68,6 +70,57 @@ def parse(text, where):
     if not isinstance(mapping, dict):
         raise BadInput(where, f'got {brief(mapping)}', 'a scene is a mapping with the keys scene, body, constraint, effects, initial')
     return mapping
+
+
+def line_of(text, keys):
+    """Return the line (from 1) of a scene text in which a key path stands, or None.
+
+    Parameters
+    ----------
+    text : str
+        YAML that parses.
+    keys : list of str
+        Keys from the top, places in lists as digits, effects also by name. Where the last keys
+        are absent it is the line of what should hold them.
+    """
+    node, line = _SceneLoader(text).get_single_node(), None
+    for key in keys:
+        found = _child(node, key)
+        if found is None:
+            break
+        line, node = found
+    return line
+
+
+def _child(node, key):
+    """Return (line, value node) of a key in a mapping, or of a place or an effect in a list."""
+    if isinstance(node, yaml.MappingNode):
+        return next(((at.start_mark.line + 1, value) for at, value in node.value
+                     if at.value == key), None)
+    if not isinstance(node, yaml.SequenceNode):
+        return None
+    if key.isdigit():
+        entry = node.value[int(key)] if int(key) < len(node.value) else None
+        return entry and (entry.start_mark.line + 1, entry)
+    named = [(entry.start_mark.line + 1, entry) if isinstance(entry, yaml.ScalarNode)
+             else _child(entry, key) for entry in node.value
+             if getattr(entry, 'value', None) == key or _child(entry, key)]
+    # several effects of one name: the message says no line rather than a wrong one
+    return named[0] if len(named) == 1 else None
+
+
+def assignments(overrides):
+    """Return overrides as lines ``key.path=value``; given are such lines, or a mapping.
+
+    Parameters
+    ----------
+    overrides : mapping of str to value, or sequence of str
+        Values are numbers, words, lists, mappings or NumPy arrays.
+    """
+    if not isinstance(overrides, collections.abc.Mapping):
+        return tuple(overrides)
+    return tuple(f'{key}={json.dumps(value, default=lambda array: array.tolist())}'
+                 for key, value in overrides.items())
 
 
 def override(mapping, assignment, where):

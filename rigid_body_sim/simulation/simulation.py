@@ -9,6 +9,8 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
+import copy
+import html
 import math
 import typing
 
@@ -21,7 +23,7 @@ from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.scene import Scene, load_scene
+from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, State, States
 from rigid_body_sim.simulation import admission
 from rigid_body_sim.simulation.admission import (
@@ -43,6 +45,10 @@ from rigid_body_sim.simulation.command_rows import (
 )
 from rigid_body_sim.simulation.spans import Event, Span
 
+LOOKS = 1024    # parts of the time ahead in which at_event looks first
+KEPT = ('tick', 'events', 'vector', '_origin', '_origin_time', '_initial', '_commands')
+"""What a copy or a pickle takes over as it is."""
+
 
 class Simulation:
     """A scene that runs.
@@ -63,6 +69,8 @@ class Simulation:
         Duration over which the accuracy is asked for, s.
     settled : tuple, optional
         What `auto` chose in an earlier run (choice.choose).
+    overrides : mapping of str to value, or sequence of str
+        Changes of the scene: ``{'body.mass': 2.0}``, or lines ``body.mass=2.0``.
 
     Attributes
     ----------
@@ -79,8 +87,14 @@ class Simulation:
         By name and value, before anything runs.
     """
 
-    def __init__(self, scene, integrator='auto', accuracy=1e-12, rate=1000.0, step=None, horizon=HORIZON, settled=None):
-        self.scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    def __init__(self, scene, integrator: str = 'auto', accuracy: float = 1e-12,
+                 rate: float = 1000.0, step: float | None = None, horizon: float = HORIZON,
+                 settled: tuple | None = None, overrides=()):
+        if not isinstance(scene, Scene):
+            scene = load_scene(scene, overrides)
+        elif overrides:
+            scene = parse_scene(scene.text, overrides, scene.name)
+        self.scene = scene
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
@@ -112,7 +126,7 @@ class Simulation:
         self._initial = previous._initial
         span, now = previous._spans[-1], previous.time
         given = span.given + span.solver.exchanged(now)
-        self._spans = [Span(now, self.choice.solver(previous.vector.copy(), span.wrench), span.wrench, span.strikes, given)]
+        self._spans = [self._span(now, previous.vector.copy(), span.wrench, span.strikes, given)]
         self._arrive()
 
     def _restart(self):
@@ -123,13 +137,36 @@ class Simulation:
             raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
                            'a smaller angular velocity, velocity or height')
         self._initial = self._diagnosis.copy()
-        self._spans = [Span(0.0, self.choice.solver(start, Wrench()), Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
+        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
         self._commands = None
         self._foreseen = _Foreseen(None, 0, ())
         self._arrive()
 
+    def _span(self, time, start, wrench, strikes, given):
+        """Return a Span from a state (14 doubles) on."""
+        return Span(time, self.choice.solver(start, wrench), wrench, strikes, given, start)
+
+    def copy(self) -> 'Simulation':
+        """Return a simulation of its own at the same tick, which goes on with the same bits.
+
+        What a stepped method has computed is not copied: the copy steps it again when it is
+        asked for.
+        """
+        return copy.deepcopy(self)
+
+    __copy__ = copy
+
+    def __reduce__(self):
+        choice = self.choice
+        settled = (choice.method, choice.tolerance, choice.expected_error)
+        made = (self.scene, self.integrator, self.accuracy, self.rate, choice.step,
+                choice.horizon, settled)
+        spans = [(span.time, span.start, span.wrench, span.strikes, span.given)
+                 for span in self._spans]
+        return _restored, (made, spans, {name: getattr(self, name) for name in KEPT})
+
     @property
-    def time(self):
+    def time(self) -> float:
         """Simulated time since the start or the last reset, s: ticks over rate, never a sum."""
         return self.time_at(self.tick)
 
@@ -138,11 +175,11 @@ class Simulation:
         return self._origin_time + (tick - self._origin) / self.rate
 
     @property
-    def state(self):
+    def state(self) -> State:
         """The present State."""
         return State(self.vector.copy())
 
-    def advance(self, ticks=1):
+    def advance(self, ticks: int = 1) -> None:
         """Go on by a number of ticks; events on the way are appended to `events`."""
         before = self.time
         self.tick += ticks
@@ -156,14 +193,14 @@ class Simulation:
             self._arrive()
             self.events.extend(self._events_between(self._spans, before, self.time))
 
-    def advance_through(self, ticks):
+    def advance_through(self, ticks: int) -> States:
         """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
         self._commands = None
         states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
         self.advance(ticks)
         return states
 
-    def foresee(self, ticks):
+    def foresee(self, ticks: int) -> States:
         """Return the States at the next ticks, to the bit what :meth:`advance` meets if no command comes, without going there.
 
         There are `ticks` of them, or as many as come before the tick of the next event. They are kept: to advance to one of them costs
@@ -182,7 +219,7 @@ class Simulation:
         energy.diagnose_many(self._mechanics, states.vector, out)
         return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[:, energy.MOMENTUM_SQUARED].copy()
 
-    def states(self, times):
+    def states(self, times) -> States:
         """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
 
         Raises
@@ -206,6 +243,35 @@ class Simulation:
             out[chosen] = part
         return States(out)
 
+    def at_event(self, name: str, within: float = HORIZON) -> State:
+        """Return the State at the next event of a name, without going there.
+
+        Parameters
+        ----------
+        name : str
+            ``flip``, ``rolling``, ...: the names that :attr:`events` shows.
+        within : float
+            How far to look ahead, s.
+
+        Raises
+        ------
+        BadInput
+            No such event comes within that time; those that come are named.
+        """
+        now, reach = self.time, within / LOOKS
+        while True:
+            spans = self._spans_until(now + reach)
+            found = list(self._events_between(spans, now, now + reach))
+            for event in found:
+                if event.name == name:
+                    return self.states([event.time])[0]
+            if reach >= within:
+                names = ', '.join(sorted({event.name for event in found}))
+                raise BadInput('at_event', f'no {name!r} within {within:g} s',
+                               f'in that time come: {names}' if names else
+                               'no event comes in that time: a later one needs a larger `within`')
+            reach = min(2.0 * reach, within)
+
     def impulse(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
         """Strike the body at the present tick: an impulse of force (N s, at the centre of mass) and of torque (N m s).
 
@@ -226,7 +292,7 @@ class Simulation:
         """
         self._command_one((HOLD, *well_formed(force, torque, frame, 'wrench')))
 
-    def release(self):
+    def release(self) -> None:
         """Let go of the held wrench at the present tick."""
         self.command(LET_GO)
 
@@ -264,16 +330,16 @@ class Simulation:
         return [(k, admission.refusal(verdicts[k], amounts.item(k), rows[k], attitude)) for k in np.flatnonzero(verdicts).tolist()]
 
     @property
-    def wrench(self):
+    def wrench(self) -> Wrench:
         """The Wrench that is held now; all zero if none is."""
         return self._spans[-1].wrench
 
-    def reset(self):
+    def reset(self) -> None:
         """Put the state back to the scene's initial one, without commands; the tick counter goes on."""
         self._restart()
         self.events.append(Event(self.tick, self.time, 'reset', {}))
 
-    def forget_past(self):
+    def forget_past(self) -> None:
         """Drop what is needed for :meth:`states` before the present; a simulation that takes commands for days calls it now and then."""
         if self._commands is None:
             self._spans = self._spans_until(self.time)[-1:]
@@ -307,16 +373,16 @@ class Simulation:
         return self._dynamics.reactions(states.vector, [spans[k].wrench for k in _places(spans, states.time)])
 
     @property
-    def energy(self):
+    def energy(self) -> float:
         """Kinetic plus potential energy of the present state, J."""
         return float(self._diagnose()[energy.KINETIC] + self._diagnosis[energy.POTENTIAL])
 
     @property
-    def angular_momentum_squared(self):
+    def angular_momentum_squared(self) -> float:
         """L . L about the point of reference (mechanics.py), (kg m^2/s)^2."""
         return float(self._diagnose()[energy.MOMENTUM_SQUARED])
 
-    def ledger(self):
+    def ledger(self) -> dict[str, float]:
         """Return the balance of energy (J) and angular momentum since the start or the last reset, a dict of floats (ledger.balance)."""
         span = self._spans[-1]
         given = span.given + span.solver.exchanged(self.time)
@@ -361,7 +427,7 @@ class Simulation:
             if not taken:
                 raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it has a torque about an axis of zero moment',
                                'a point and an impulse without: such an axis takes no angular momentum')
-            last = Span(at, self.choice.solver(struck, last.wrench), last.wrench, last.strikes + 1, given)
+            last = self._span(at, struck, last.wrench, last.strikes + 1, given)
             spans = [*spans, last]
         return spans
 
@@ -373,9 +439,32 @@ class Simulation:
         if any(commands.sums[:SUM_WORK].tolist()) or commands.wrench != last.wrench:
             start, given = commands.start.copy(), last.given + last.solver.exchanged(time)
             impulse.push(self._mechanics, start, commands.sums[SUM_FORCE], commands.sums[SUM_TORQUE], given)
-            kept = [*kept, Span(time, self.choice.solver(start, commands.wrench), commands.wrench, last.strikes, given)]
+            kept = [*kept, self._span(time, start, commands.wrench, last.strikes, given)]
         self._spans = kept
         self._arrive()
+
+
+    def __repr__(self):
+        return (f'<Simulation of {self.scene.name} by {self.choice.method}: tick {self.tick}, '
+                f't = {self.time!r} s>')
+
+    def _repr_html_(self):
+        ledger = self.ledger()
+        rows = {'scene': self.scene.name, 'about': self.scene.about, 'method': self.choice.method,
+                'tick': f'{self.tick}, t = {self.time!r} s', 'energy': f'{self.energy!r} J',
+                'energy residual': f'{ledger["energy_residual"]:.2e}',
+                'momentum residual': f'{ledger["momentum_residual"]:.2e}'}
+        body = ''.join(f'<tr><th>{name}</th><td>{html.escape(text)}</td></tr>'
+                       for name, text in rows.items())
+        return f'<table><tbody>{body}</tbody></table>{self.state._repr_html_()}'
+
+
+def _restored(made, spans, kept):
+    """Return the Simulation that :meth:`Simulation.__reduce__` took apart."""
+    simulation = Simulation(*made)
+    vars(simulation).update(kept)
+    simulation._spans = [simulation._span(time, start, *rest) for time, start, *rest in spans]
+    return simulation
 
 
 class _Commands(typing.NamedTuple):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spans: what a simulation is made of between two commands or strikes, and the events that they tell of."""
 
 from dataclasses import dataclass
@@ -17,11 +18,13 @@ class Span:
     """A stretch of the motion that one solver covers, from its start to the next impulse, hold or strike.
 
     `given` is what commands, strikes and effects have exchanged with the body up to the start: work (J), angular impulse about the point of
-    reference (world axes, N m s), dissipated energy (J).
+    reference (world axes, N m s), dissipated energy (J). `start` is the state (14 doubles) from
+    which the solver was started.
     """
 
-    def __init__(self, time, solver, wrench, strikes, given):
-        self.time, self.solver, self.wrench, self.strikes, self.given = time, solver, wrench, strikes, given
+    def __init__(self, time, solver, wrench, strikes, given, start):
+        self.time, self.solver, self.wrench, self.strikes = time, solver, wrench, strikes
+        self.given, self.start = given, start
         self._told, self._looked_until = [], time
 
     def events(self, after, until, tick):
