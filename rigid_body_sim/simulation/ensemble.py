@@ -1,66 +1,268 @@
-"""Ensembles: the same body from many starts, on all cores."""
+# SPDX-License-Identifier: Apache-2.0
+"""Ensembles: many bodies of one scene, from many starts or with other parameters, on all cores."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from tqdm import tqdm
 
 from rigid_body_sim.choice.choose import choose
-from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.scene import Scene, load_scene
-from rigid_body_sim.scene.state import STATE_SIZE, States
+from rigid_body_sim.compilation.threads import on_all_cores
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
+from rigid_body_sim.scene.state import PLACES, STATE_SIZE, States
+from rigid_body_sim.simulation.spans import Event
+
+BLOCK_BYTES = 2**25
+"""States of so many bytes are computed between two reports of progress, or before columns are
+taken from them."""
+SHARE = 0.8
+"""Part of the free memory that a result may take."""
+DOUBLE = 8    # bytes
 
 
 class Ensemble(Sequence):
-    """The States of many bodies: one array, `vector`, of shape (bodies, n, 14)."""
+    """The states of many bodies in one array.
 
-    __slots__ = ('vector',)
+    An integer gives the :class:`States` of one body (or, with columns left out, its rows of the
+    array); a slice gives an Ensemble. The columns have names: ``ensemble.angular_velocity`` has
+    the shape (bodies, n, 3).
 
-    def __init__(self, vector):
-        self.vector = vector
+    Attributes
+    ----------
+    vector : array (bodies, n, 14 or less)
+        The columns of a State, or those that were asked for, in the order of ``columns``.
+    columns : tuple of str
+        Names of the parts that it holds.
+    events : list of list of Event, or None
+        What happened to each body, where that was asked for; the ticks are None.
+    """
+
+    __slots__ = ('columns', 'events', 'vector')
+
+    def __init__(self, vector, columns=tuple(PLACES), events=None):
+        self.vector, self.columns, self.events = vector, tuple(columns), events
 
     def __len__(self):
         return len(self.vector)
 
     def __getitem__(self, body):
-        return Ensemble(self.vector[body]) if isinstance(body, slice) else States(self.vector[body])
+        if isinstance(body, slice):
+            return Ensemble(self.vector[body], self.columns, self.events and self.events[body])
+        whole = self.columns == tuple(PLACES)
+        return States(self.vector[body]) if whole else self.vector[body]
+
+    def __getattr__(self, name):
+        if name not in PLACES or name not in self.columns:
+            raise AttributeError(f'{name!r}: the columns are {", ".join(self.columns)}')
+        place = 0
+        for column in self.columns[:self.columns.index(name)]:
+            place += _width(column)
+        part = self.vector[..., place:place + _width(name)]
+        return part[..., 0] if name == 'time' else part
+
+    def __array__(self, dtype=None, copy=None):
+        return (np.array if copy else np.asarray)(self.vector, dtype=dtype)
 
 
-def ensemble(scene, starts, times, integrator='auto', accuracy=1e-12):
-    """Return the states of a scene's body from many starts at many times.
+def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accuracy: float = 1e-12,
+             *, overrides: Mapping | None = None, columns: Sequence[str] | None = None, out=None,
+             events: bool = False, memory: float | None = None,
+             progress: bool = False) -> Ensemble:
+    """Return the states of many bodies at many times.
 
     Parameters
     ----------
     scene : Scene, str or path
-        Body, constraint and effects; its strikes are left out, its initial state is not used.
-    starts : array (bodies, 14) or list of State
-        Each with its own time.
+        Body, constraint and effects; its strikes are left out.
+    starts : array (bodies, 14) or list of State, optional
+        Each with its own time; by default the initial state of the scene, with the overrides of
+        each body.
     times : array (n,)
         s, in any order.
     integrator, accuracy
-        As for Simulation. In closed form and by most methods each body gets the bits that it has alone; `taylor` takes eight bodies at once,
-        with other steps to the same accuracy.
+        As for Simulation. In closed form and by most methods each body gets the bits that it has
+        alone; `taylor` takes eight bodies at once, with other steps to the same accuracy.
+    overrides : mapping of str to a value for each body, optional
+        ``{'body.mass': masses, 'gravity.g': [9.81, 1.62]}``: parameters that differ from body to
+        body. Each combination is a scene of its own: it is checked, and a method is chosen for it
+        (some milliseconds, more where `auto` tries methods).
+    columns : sequence of str, optional
+        Parts to keep, of ``time, orientation, angular_velocity, position, velocity``; default all.
+    out : array (bodies, n, width), optional
+        Where the states go, for example a ``numpy.memmap``; the width is 14, or that of `columns`.
+    events : bool
+        Whether to look for events too, up to the last time.
+    memory : float, optional
+        Most bytes that the result may take; by default four fifths of the free memory. With `out`
+        nothing is allocated but a block.
+    progress : bool
+        Whether to show a bar on stderr.
 
     Returns
     -------
     Ensemble
-        States by body, in the order of the starts; its `vector` holds all, shape (bodies, n, 14).
+        States by body, in the order of the starts or of the overrides.
 
     Raises
     ------
     BadInput
-        Starts of another shape, numbers that are not finite, a time before a start where there is no closed form.
+        Arguments of another shape, numbers that are not finite, a result that memory cannot hold
+        (before anything is computed), a time before a start where there is no closed form.
     NotConverged
         With the number of the body and the time where a method gave up.
     """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    times = np.ascontiguousarray(times, dtype=float).reshape(-1)
+    scenes = _scenes(scene, overrides or {})
+    starts = _starts(starts, scene, scenes)
+    if not (np.isfinite(starts).all() and np.isfinite(times).all()):
+        raise BadInput('ensemble', 'got numbers that are not finite', 'finite starts and times')
+    names = _columns(columns)
+    shape = (len(starts), len(times), sum(map(_width, names)))
+    out = _result(shape, out, memory)
+    # one method for all bodies, or one for each body where their scenes differ
+    groups = [(choose(one, integrator, accuracy), bodies) for one, bodies in _alike(scenes, starts)]
+    with tqdm(total=len(starts), unit=' bodies', disable=not progress, leave=False) as bar:
+        if len(groups) == 1:
+            _fill(groups[0][0], starts, times, names, out, bar.update)
+        else:
+            def fill(part):
+                for choice, bodies in groups[part]:
+                    block = np.empty((len(bodies), len(times), shape[2]))
+                    try:
+                        _fill(choice, starts[bodies], times, names, block, bar.update)
+                    except NotConverged as error:
+                        raise _of_body(error, bodies) from None
+                    out[bodies] = block
+            on_all_cores(fill, len(groups))
+    found = None
+    if events:
+        found = [[]] * len(starts)
+        for choice, bodies in groups:
+            for body in bodies:
+                found[body] = _events(choice, starts[body], times)
+    return Ensemble(out, names, found)
+
+
+def _scenes(scene, overrides):
+    """Return the scene of each body, or the one scene of all in a list."""
+    if not overrides:
+        return [scene]
+    values = {key: list(given) for key, given in overrides.items()}
+    sizes = {key: len(given) for key, given in values.items()}
+    if len(set(sizes.values())) != 1:
+        raise BadInput('overrides', f'got {sizes}', 'as many values of each key: one for each body')
+    [count] = set(sizes.values())
+    made, scenes = {}, []
+    for body in range(count):
+        given = {key: one[body] for key, one in values.items()}
+        try:
+            key = repr([np.asarray(value).tolist() for value in given.values()])
+            if key not in made:
+                made[key] = parse_scene(scene.text, given, f'{scene.name} of body {body}')
+        except TypeError as error:
+            raise BadInput('overrides', str(error), 'numbers, words, lists or arrays') from None
+        scenes.append(made[key])
+    return scenes
+
+
+def _starts(starts, scene, scenes):
+    """Return the starts as an array (bodies, 14)."""
+    if starts is None:
+        starts = [one.initial for one in scenes]
+    elif len(scenes) > 1 and any(not np.array_equal(one.initial.vector, scene.initial.vector)
+                                 for one in scenes):
+        raise BadInput('starts', 'stand beside overrides of `initial`', 'give one of them')
     if not isinstance(starts, np.ndarray):
         starts = [getattr(start, 'vector', start) for start in starts]
     starts = np.ascontiguousarray(starts, dtype=float)
-    times = np.ascontiguousarray(times, dtype=float).reshape(-1)
     if starts.ndim != 2 or starts.shape[1] != STATE_SIZE:
         raise BadInput('ensemble', f'got starts of shape {starts.shape}', f'(bodies, {STATE_SIZE})')
-    if not (np.isfinite(starts).all() and np.isfinite(times).all()):
-        raise BadInput('ensemble', 'got numbers that are not finite', 'finite starts and times')
-    out = np.empty((len(starts), len(times), STATE_SIZE))
-    choose(scene, integrator, accuracy).many(starts, times, out)
-    return Ensemble(out)
+    if len(scenes) > 1 and len(scenes) != len(starts):
+        raise BadInput('ensemble', f'got {len(starts)} starts and overrides of {len(scenes)}',
+                       'one of each for a body')
+    return starts
+
+
+def _alike(scenes, starts):
+    """Return (scene, places of its bodies) for each scene that differs from the others."""
+    if len(scenes) == 1:
+        return [(scenes[0], np.arange(len(starts)))]
+    places = {}
+    for body, scene in enumerate(scenes):
+        places.setdefault(id(scene), (scene, []))[1].append(body)
+    return [(scene, np.array(bodies)) for scene, bodies in places.values()]
+
+
+def _columns(columns):
+    names = tuple(PLACES) if columns is None else tuple(columns)
+    for name in names:
+        if name not in PLACES:
+            raise BadInput('columns', f'got {name!r}', f'names of {", ".join(PLACES)}')
+    if len(set(names)) != len(names) or not names:
+        raise BadInput('columns', f'got {names}', 'each name once, at least one')
+    return names
+
+
+def _width(name):
+    """Return how many doubles a part has."""
+    return PLACES[name].stop - PLACES[name].start
+
+
+def _result(shape, out, memory):
+    """Return the array that takes the result, after a check that memory can hold it."""
+    if out is not None:
+        if getattr(out, 'shape', None) != shape or out.dtype != float:
+            raise BadInput('out', f'got shape {getattr(out, "shape", None)} of '
+                           f'{getattr(out, "dtype", type(out).__name__)}',
+                           f'an array of doubles of shape {shape}')
+        return out
+    needed = float(np.prod(shape, dtype=float)) * DOUBLE
+    limit = SHARE * free_memory() if memory is None else memory
+    if needed > limit:
+        raise BadInput('ensemble', f'{shape[0]} bodies at {shape[1]} times need '
+                       f'{needed / 1e9:.3g} GB, and {limit / 1e9:.3g} GB may be taken',
+                       'fewer bodies or times, `columns`, or `out=` with a numpy.memmap')
+    return np.empty(shape)
+
+
+def free_memory():
+    """Return how many bytes a program can still take without swapping."""
+    with open('/proc/meminfo') as lines:
+        for line in lines:
+            if line.startswith('MemAvailable:'):
+                return int(line.split()[1]) * 1024
+    raise OSError('/proc/meminfo has no line MemAvailable')
+
+
+def _fill(choice, starts, times, names, out, report):
+    """Fill out with the columns of the states of bodies, block by block."""
+    whole = names == tuple(PLACES) and out.flags.c_contiguous
+    block = max(64, BLOCK_BYTES // (max(1, len(times)) * STATE_SIZE * DOUBLE) // 64 * 64)
+    columns = [column for name in names for column in range(PLACES[name].start, PLACES[name].stop)]
+    for begin in range(0, len(starts), block):
+        part = slice(begin, min(begin + block, len(starts)))
+        target = out[part] if whole else np.empty((part.stop - begin, len(times), STATE_SIZE))
+        try:
+            choice.many(starts[part], times, target)
+        except NotConverged as error:
+            raise _of_body(error, range(part.start, part.stop)) from None
+        if not whole:
+            out[part] = target[:, :, columns]
+        report(part.stop - begin)
+
+
+def _of_body(error, bodies):
+    """Return an error about a body of a block, with the body's number in the ensemble."""
+    return NotConverged(re.sub(r'^body (\d+)', lambda found: f'body {bodies[int(found[1])]}',
+                               str(error)))
+
+
+def _events(choice, start, times):
+    """Return what happens to one body from its start to the last time."""
+    begin, end = float(start[0]), float(times.max(initial=start[0]))
+    return [Event(None, time, name, values)
+            for time, name, values in choice.solver(start, Wrench()).events(begin, end)]

@@ -1,10 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ensembles give each body the bits that it has alone."""
 
 import numpy as np
 import pytest
 
-from rigid_body_sim import BadInput, Simulation, State, ensemble, parse_scene, scene_names
+from rigid_body_sim import (
+    BadInput,
+    NotConverged,
+    Simulation,
+    State,
+    ensemble,
+    load_scene,
+    parse_scene,
+    scene_names,
+)
 from rigid_body_sim.compilation.threads import on_all_cores
+from rigid_body_sim.simulation import ensemble as module
 
 
 def test_racket_ensemble_has_the_bits_of_single_runs():
@@ -65,3 +76,94 @@ def test_package_offers_what_it_says():
         assert getattr(rigid_body_sim, name)
     with pytest.raises(AttributeError, match='no attribute'):
         rigid_body_sim.nothing  # noqa: B018
+
+
+def test_parameters_differ_from_body_to_body():
+    masses, speeds = [0.5, 1.0, 0.5, 2.0], [5.0, 5.0, 6.0, 5.0]
+    bodies = ensemble('heavy_top', times=[0.3, 1.0], overrides={
+        'body.mass': masses, 'initial.angular_velocity.1': np.array(speeds)})
+    for body, (mass, speed) in enumerate(zip(masses, speeds, strict=True)):
+        alone = Simulation('heavy_top', overrides={
+            'body.mass': mass, 'initial.angular_velocity.1': speed})
+        assert bodies[body].vector.tobytes() == alone.states([0.3, 1.0]).vector.tobytes()
+
+
+def test_parameters_and_starts_go_together():
+    starts = [State.of(angular_velocity=(0.01 * k, 5.0, 0.01)) for k in range(3)]
+    inertias = [[1.0, 2.0, 3.0], [1.0, 2.0, 2.9], [1.0, 2.0, 3.0]]
+    bodies = ensemble('tennis_racket', starts, [4.0], overrides={'body.inertia': inertias})
+    for start, inertia, found in zip(starts, inertias, bodies, strict=True):
+        scene = load_scene('tennis_racket', {'body.inertia': inertia})
+        [alone] = ensemble(scene, [start], [4.0])
+        assert found.vector.tobytes() == alone.vector.tobytes()
+    with pytest.raises(BadInput, match=r'stand beside overrides'):
+        ensemble('tennis_racket', starts, [4.0],
+                 overrides={'initial.angular_velocity.0': [1.0, 2.0, 3.0]})
+    with pytest.raises(BadInput, match='3 starts and overrides of 2'):
+        ensemble('tennis_racket', starts, [4.0], overrides={'body.mass': [1.0, 2.0]})
+    with pytest.raises(BadInput, match='as many values'):
+        ensemble('tennis_racket', times=[4.0],
+                 overrides={'body.mass': [1.0, 2.0], 'body.inertia': inertias})
+    with pytest.raises(BadInput, match=r'of body 1: body.mass: got -1'):
+        ensemble('tennis_racket', times=[4.0], overrides={'body.mass': [1.0, -1.0]})
+
+
+def test_columns_blocks_and_out_change_no_bit(tmp_path, monkeypatch):
+    starts = np.tile(State.of(angular_velocity=(0.01, 5.0, 0.01)).vector, (300, 1))
+    starts[:, 5] += 1e-3 * np.arange(300)
+    times = [1.0, 2.0, 3.0]
+    whole = ensemble('tennis_racket', starts, times)
+    assert whole.angular_velocity.tobytes() == whole.vector[..., 5:8].tobytes()
+    assert whole.time.shape == (300, 3)
+    monkeypatch.setattr(module, 'BLOCK_BYTES', 100 * 3 * 14 * 8)
+    out = np.memmap(tmp_path / 'out', dtype=float, mode='w+', shape=(300, 3, 7))
+    part = ensemble('tennis_racket', starts, times, columns=['orientation', 'angular_velocity'],
+                    out=out, progress=True)
+    assert part.vector is out
+    assert part.orientation.tobytes() == whole.vector[..., 1:5].tobytes()
+    assert part.angular_velocity.tobytes() == whole.vector[..., 5:8].tobytes()
+    assert part[3].shape == (3, 7) and part[:2].columns == ('orientation', 'angular_velocity')
+    with pytest.raises(AttributeError, match='the columns are orientation'):
+        part.position  # noqa: B018
+    assert np.asarray(ensemble('tennis_racket', starts, times)).tobytes() == whole.vector.tobytes()
+
+
+def test_wrong_columns_and_places_are_refused():
+    starts = np.zeros((2, 14))
+    starts[:, 4] = 1.0
+    with pytest.raises(BadInput, match="got 'omega'"):
+        ensemble('tennis_racket', starts, [1.0], columns=['omega'])
+    with pytest.raises(BadInput, match=r'shape \(2, 1, 14\)'):
+        ensemble('tennis_racket', starts, [1.0], out=np.empty((2, 14)))
+    with pytest.raises(BadInput, match=r'got shape None of list'):
+        ensemble('tennis_racket', starts, [1.0], out=[])
+
+
+def test_too_much_for_memory_is_said_before_anything_runs():
+    starts = np.zeros((1000, 14))
+    with pytest.raises(BadInput, match=r'1000 bodies at 1000 times need 0.112 GB, and 0.1 GB may'):
+        ensemble('tennis_racket', starts, np.zeros(1000), memory=1e8)
+    with pytest.raises(BadInput, match=r'`columns`, or `out=` with a numpy.memmap'):
+        ensemble('tennis_racket', np.zeros((10**6, 14)), np.zeros(10**7))
+    assert 0 < module.free_memory() < 2**60
+
+
+def test_events_of_each_body_are_those_that_it_has_alone():
+    speeds = [0.01, 0.2]
+    bodies = ensemble('tennis_racket', times=[20.0, 10.0], events=True,
+                      overrides={'initial.angular_velocity.0': speeds})
+    for speed, found in zip(speeds, bodies.events, strict=True):
+        alone = Simulation('tennis_racket', overrides={'initial.angular_velocity.0': speed})
+        alone.advance(20_000)
+        assert [(event.time, event.name) for event in found] == \
+            [(event.time, event.name) for event in alone.events]
+        assert found and found[0].tick is None
+    assert ensemble('tennis_racket', times=[1.0]).events is None
+
+
+def test_a_body_that_fails_is_named_by_its_place_among_all(monkeypatch):
+    starts = np.tile(State.of(angular_velocity=(0.01, 5.0, 0.01)).vector, (200, 1))
+    starts[150, 6] = 1e12
+    monkeypatch.setattr(module, 'BLOCK_BYTES', 0)
+    with pytest.raises(NotConverged, match=r'^body 150: dop8 on tennis_racket'):
+        ensemble('tennis_racket', starts, [1e6], integrator='dop8', accuracy=1e-3)
