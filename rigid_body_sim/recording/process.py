@@ -1,6 +1,6 @@
-"""The recorder process: takes frames from a pipe, writes the recording, outlives the node.
+"""The recorder process: takes packets from a pipe, writes the recording, outlives the node.
 
-``python -m rigid_body_sim.recording.process FRAMES REPORTS`` (two file descriptors) is started by the Recorder (recorder.py). It ends when
+``python -m rigid_body_sim.recording.process PACKETS REPORTS`` (two file descriptors) is started by the Recorder (recorder.py). It ends when
 the pipe is closed, by the node's last word or by its death, and leaves a complete recording either way. It sleeps between looks at the
 pipe, so that the node's writing never wakes it: 50 times a second, whatever the rate.
 """
@@ -14,9 +14,9 @@ import time
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording import frames
+from rigid_body_sim.recording import packets
 from rigid_body_sim.recording.command_messages import CommandMessages, CommandTopics
-from rigid_body_sim.recording.frames import Report
+from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.resume import resume
 from rigid_body_sim.recording.topics import Topic, journal_message
 from rigid_body_sim.recording.writer import Writer
@@ -29,7 +29,7 @@ _READ = 2**20
 
 
 class RecorderProcess:
-    """Frames in, recording out. `descriptor_in`: the pipe of frames, non-blocking; `send`: sends bytes, returns whether it could."""
+    """Packets in, recording out. `descriptor_in`: the pipe of packets, non-blocking; `send`: sends bytes, returns whether it could."""
 
     def __init__(self, descriptor_in, send):
         self._in, self._send = descriptor_in, send
@@ -50,7 +50,7 @@ class RecorderProcess:
                 data = self._read()
                 if data:
                     self._buffer += data
-                    self._take_frames()
+                    self._take_packets()
                 elif data == b'':
                     break
                 now = time.monotonic()
@@ -70,23 +70,23 @@ class RecorderProcess:
         except BlockingIOError:
             return None
 
-    def _take_frames(self):
-        """Take all whole frames from the buffer."""
+    def _take_packets(self):
+        """Take all whole packets from the buffer."""
         buffer, position = self._buffer, 0
-        while position + frames.HEAD.size <= len(buffer) and not self._ended:
-            tag, length = frames.HEAD.unpack_from(buffer, position)
-            end = position + frames.HEAD.size + length
+        while position + packets.HEAD.size <= len(buffer) and not self._ended:
+            tag, length = packets.HEAD.unpack_from(buffer, position)
+            end = position + packets.HEAD.size + length
             if end > len(buffer):
                 break
-            if tag == frames.TICK:
+            if tag == packets.TICK:
                 position = self._take_ticks(buffer, position)
                 continue
-            content = buffer[position + frames.HEAD.size:end]
-            if tag == frames.MESSAGE:
+            content = buffer[position + packets.HEAD.size:end]
+            if tag == packets.MESSAGE:
                 self._take_message(buffer, position, end)
-            elif tag == frames.COMMANDS:
+            elif tag == packets.COMMANDS:
                 self._take_commands(buffer, position, end)
-            elif tag == frames.SETUP:
+            elif tag == packets.SETUP:
                 self._open(json.loads(content))
             else:
                 self._end(json.loads(content)['ticks'])
@@ -99,7 +99,7 @@ class RecorderProcess:
         self._names = [topic.name for topic, _ in ticking] + [topic.name for topic in others] + [journal.name]
         self._journal = journal.name
         self._commands = CommandMessages(CommandTopics(**setup['commands']), journal.name) if setup['commands'] else None
-        self._tick = np.dtype(frames.tick_fields([size for _, size in ticking]))
+        self._tick = np.dtype(packets.tick_fields([size for _, size in ticking]))
         self.report = Report(**setup['report'])
         files = ()
         try:
@@ -117,9 +117,9 @@ class RecorderProcess:
         self._tell()
 
     def _take_ticks(self, buffer, position):
-        """Take a run of ticks; returns where the next other frame begins."""
+        """Take a run of ticks; returns where the next other packet begins."""
         size, end = self._tick.itemsize, position
-        while end + size <= len(buffer) and buffer[end] == frames.TICK:
+        while end + size <= len(buffer) and buffer[end] == packets.TICK:
             end += size
         if not self.report.error:
             rows = np.frombuffer(buffer, self._tick, (end - position) // size, position)
@@ -156,12 +156,12 @@ class RecorderProcess:
         self.report.state_wanted += 1
 
     def _take_message(self, buffer, position, end):
-        _, _, number, topic, log_time, publish_time = frames.MESSAGE_HEAD.unpack_from(buffer, position)
-        self._record(number, log_time, publish_time, [(self._names[topic], buffer[position + frames.MESSAGE_HEAD.size:end])])
+        _, _, number, topic, log_time, publish_time = packets.MESSAGE_HEAD.unpack_from(buffer, position)
+        self._record(number, log_time, publish_time, [(self._names[topic], buffer[position + packets.MESSAGE_HEAD.size:end])])
 
     def _take_commands(self, buffer, position, end):
-        _, _, number, tick, log_time, publish_time = frames.COMMANDS_HEAD.unpack_from(buffer, position)
-        rows = np.frombuffer(buffer[position + frames.COMMANDS_HEAD.size:end]).reshape(-1, WIDTH)
+        _, _, number, tick, log_time, publish_time = packets.COMMANDS_HEAD.unpack_from(buffer, position)
+        rows = np.frombuffer(buffer[position + packets.COMMANDS_HEAD.size:end]).reshape(-1, WIDTH)
         self._record(number, log_time, publish_time, self._commands.messages(tick, log_time, rows))
 
     def _record(self, number, log_time, publish_time, messages):

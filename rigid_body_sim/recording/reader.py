@@ -1,16 +1,24 @@
-"""Recordings read: our own and those of ``ros2 bag record``, as columns of numbers or message by message.
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings read: our own and those of ``ros2 bag record``.
 
 ::
 
-    recording = Recording('recordings/run')             # a folder, or an .mcap file
-    pose = recording.read('/pose', ['header.stamp', 'pose.orientation'])         # {'log_time': (n,), ..., 'pose.orientation': (n, 4)}
-    for topic, block in recording.blocks(['/energy']):  # streaming: some thousand messages at a time
-        block['data']
-    for message in recording.messages():                # in the order of time, for replay
-        message.topic, message.log_time, message.data
-    recording.journal()                                 # what happened: commands, resets, gaps, full states
+    from rigid_body_sim import Recording
+    recording = Recording('recordings/racket')      # a folder, or an .mcap file
+    recording.topics                                # name -> type, count, quality of service
+    recording.states().orientation                  # arrays (n, 4), ...; so .angular_velocity, ...
+    recording.events(), recording.commands()        # what happened, and what was sent to the body
+    recording.scene().body.mass
 
-Memory stays bounded by the largest chunk, also for files from strangers: what such a file claims is checked before it is believed.
+    recording.read('/pose', ['header.stamp', 'pose.orientation'])   # columns of any topic
+    for topic, block in recording.blocks(['/energy']):              # some thousand messages a time
+        block['data']
+    for message in recording.messages():                            # in the order of time
+        message.topic, message.log_time, message.data
+    recording.journal()                             # commands, resets, gaps, full states
+
+Memory stays bounded by the largest chunk (and by what a method returns), also for files from
+strangers: what such a file claims is checked before it is believed.
 """
 
 import json
@@ -22,9 +30,9 @@ import numpy as np
 import yaml
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording import metadata
-from rigid_body_sim.recording.columns import Decoder
-from rigid_body_sim.recording.file_reader import FileReader
+from rigid_body_sim.recording import metadata, tables
+from rigid_body_sim.recording.needed import need_mcap
+from rigid_body_sim.recording.topics import JOURNAL_TYPE
 
 
 class Message(typing.NamedTuple):
@@ -38,37 +46,75 @@ class Message(typing.NamedTuple):
 
 
 class RecordedTopic:
-    """A topic of a recording: `name`, `type`, `hash` of the type, `qos` (YAML text of the offered profiles), `count` of messages."""
+    """A topic of a recording.
+
+    Attributes
+    ----------
+    name, type : str
+    hash : str
+        Of the type.
+    qos : str
+        YAML text of the offered profiles.
+    count : int
+        Messages.
+    """
 
     def __init__(self, name, channel, schema):
         self.name, self.type, self.count = name, schema.name, 0
-        self.hash, self.qos = channel.metadata.get('topic_type_hash', ''), channel.metadata.get('offered_qos_profiles', '')
-        self._encodings = (channel.encoding, schema.encoding)
-        self._text = schema.text
+        self.hash = channel.metadata.get('topic_type_hash', '')
+        self.qos = channel.metadata.get('offered_qos_profiles', '')
+        self._message_encoding, self._schema = channel.message_encoding, schema
+
+    def __repr__(self):
+        return f'<{self.count} messages {self.type}>'
 
     def decoder(self):
-        """Return the Decoder of its messages; BadInput where they are not CDR of a ros2msg type."""
-        message_encoding, schema_encoding = self._encodings
-        if message_encoding != 'cdr':
-            raise BadInput(self.name, f'messages are encoded as {message_encoding!r}', 'a recording of ROS 2 messages (cdr)')
-        return Decoder(self.type, self._text if schema_encoding == 'ros2msg' else '')
+        """Return the Decoder of its messages; BadInput where they are not CDR."""
+        from rigid_body_sim.recording.columns import Decoder
+        if self._message_encoding != 'cdr':
+            raise BadInput(self.name, f'messages are encoded as {self._message_encoding!r}',
+                           'a recording of ROS 2 messages (cdr)')
+        text = self._schema.data.decode(errors='replace')
+        return Decoder(self.type, text if self._schema.encoding == 'ros2msg' else '')
 
 
 class Recording:
-    """A recording, opened. BadInput where there is none, it is cut (then recover makes it whole), or it makes no sense.
+    """A recording, opened for reading.
 
-    Attributes: `path`; `topics`, dict of name to RecordedTopic; `start_time` and `end_time` in ns, `message_count`; `about`, dict of texts
-    that the recorder left (of ours: scene, parameters, version, machine), empty if it left none.
+    Parameters
+    ----------
+    path : path-like
+        The folder of a recording, or an .mcap file.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+    topics : dict
+        Name -> RecordedTopic.
+    start_time, end_time : int
+        Log times of the first and the last message, ns.
+    message_count : int
+    about : dict of str to str
+        What the recorder left (of ours: scene, parameters, version, machine); empty if nothing.
+
+    Raises
+    ------
+    BadInput
+        Where there is none, it is cut (then recover makes it whole), or it makes no sense; also by
+        the methods, for topics and columns that were not recorded.
     """
 
     def __init__(self, path):
+        need_mcap()
+        from rigid_body_sim.recording.file_reader import FileReader
         self.path = pathlib.Path(path)
         names, custom = ([self.path], {}) if self.path.is_file() else _files_of(self.path)
         self._files = [FileReader(name) for name in names]
         self.topics = {}
         for file in self._files:
             for number, channel in file.channels.items():
-                topic = self.topics.setdefault(channel.topic, RecordedTopic(channel.topic, channel, file.schema(channel)))
+                topic = RecordedTopic(channel.topic, channel, file.schema(channel))
+                topic = self.topics.setdefault(channel.topic, topic)
                 topic.count += file.counts.get(number, 0)
         used = [file for file in self._files if file.counts]
         self.start_time = min((file.start_time for file in used), default=0)
@@ -83,23 +129,33 @@ class Recording:
     def __exit__(self, *_):
         self.close()
 
+    def __repr__(self):
+        seconds = (self.end_time - self.start_time) / 1e9
+        return f'Recording({str(self.path)!r}: {self.message_count} messages, {seconds:g} s)'
+
     def close(self):
         """Close the files."""
         for file in self._files:
             file.close()
 
     def _about(self, custom):
-        """Return what the recorder left: in the files, in metadata.yaml, or in the journal (which survives a conversion)."""
-        found = next(filter(None, (file.metadata('rigid_body_sim') for file in self._files)), custom)
+        """Return what the recorder left.
+
+        It is in the files, in metadata.yaml, or in the journal (which survives a conversion).
+        """
+        told = (file.metadata('rigid_body_sim') for file in self._files)
+        found = next(filter(None, told), custom)
         if not found:
             begin = next((entry for entry in self.journal() if entry['kind'] == 'begin'), {})
-            found = {key: value for key, value in begin.items() if isinstance(value, str) and key not in ('kind', 'topic')}
+            found = {key: value for key, value in begin.items()
+                     if isinstance(value, str) and key not in ('kind', 'topic')}
         return found
 
     def topic(self, name):
         """Return a RecordedTopic; BadInput for an unknown name."""
         if name not in self.topics:
-            raise BadInput(str(self.path), f'no topic {name!r} was recorded', f'one of {", ".join(sorted(self.topics))}')
+            raise BadInput(str(self.path), f'no topic {name!r} was recorded',
+                           f'one of {", ".join(sorted(self.topics))}')
         return self.topics[name]
 
     def decoder(self, name):
@@ -108,25 +164,83 @@ class Recording:
             self._decoders[name] = self.topic(name).decoder()
         return self._decoders[name]
 
+    # -- the simulated body -----------------------------------------------------------------------
+
+    def scene(self, namespace=None):
+        """Return the Scene that was simulated, as it was at the start.
+
+        Parameters
+        ----------
+        namespace : str, optional
+            Of the body, where the recording has several: ``/left``.
+        """
+        bodies = _bodies()
+        return bodies.scene(self, bodies.namespace_of(self, namespace))
+
+    def states(self, namespace=None, start=0, end=2**63, progress=None):
+        """Return the recorded States; `namespace` as for :meth:`scene`.
+
+        Times are seconds of stamps since the recording's first tick. The velocity was recorded only
+        if ``odom`` was; otherwise it is NaN. `start`, `end` and `progress` as for :meth:`blocks`.
+        """
+        bodies = _bodies()
+        return bodies.states(self, bodies.namespace_of(self, namespace), start, end, progress)
+
+    def events(self, namespace=None):
+        """Return what was published on ``events``, as a list of bodies.Event."""
+        bodies = _bodies()
+        return bodies.events(self, bodies.namespace_of(self, namespace))
+
+    def commands(self, namespace=None):
+        """Return the commands that were sent to the body, as columns.
+
+        Returns
+        -------
+        dict of str to array
+            ``log_time`` (n,) in ns, ``tick`` (n,) at which each took effect (-1 where no journal
+            tells), ``topic`` (``cmd_impulse``, ``cmd_wrench``, ``release``) and ``frame`` as texts,
+            ``force`` and ``torque`` (n, 3) in N and N m, or N s and N m s of an impulse.
+        """
+        bodies = _bodies()
+        return bodies.commands(self, bodies.namespace_of(self, namespace))
+
+    # -- any topic --------------------------------------------------------------------------------
+
     def _pieces(self, topics, start, end):
-        """Yield (file, topic names by channel, Piece) with messages of the topics in [start, end], in the order of the pieces' times."""
+        """Yield (topic names by channel, Piece, place) with messages of the topics.
+
+        They lie in [start, end] ns and come in the order of the pieces' times.
+        """
         for name in topics or ():
             self.topic(name)
         start, end = int(start), int(end)       # exact beside the file's unsigned times
         pieces = []
         for file in self._files:
-            channels = {number: channel.topic for number, channel in file.channels.items() if topics is None or channel.topic in topics}
-            pieces += [(place.start_time, len(pieces) + index, file, channels, place) for index, place in enumerate(file.places())
-                       if place.end_time >= start and place.start_time <= end and (not place.channels or place.channels & channels.keys())]
+            channels = {number: channel.topic for number, channel in file.channels.items()
+                        if topics is None or channel.topic in topics}
+            pieces += [(place.start_time, len(pieces) + index, file, channels, place)
+                       for index, place in enumerate(file.places())
+                       if place.end_time >= start and place.start_time <= end
+                       and (not place.channels or place.channels & channels.keys())]
         for _, _, file, channels, place in sorted(pieces, key=lambda piece: piece[:2]):
             yield channels, file.piece(place, channels, start, end), place
 
     def blocks(self, topics=None, names=None, start=0, end=2**63, progress=None):
         """Yield (topic, columns) for each topic in each chunk.
 
-        Columns are those of :mod:`rigid_body_sim.messages.layout` plus ``log_time`` and ``publish_time`` (int64, ns) and ``sequence``.
-        `names` chooses columns; `start` and `end` (ns of log time, inclusive) choose messages; `progress` is called with the number of
-        messages done.
+        Columns are those of :mod:`rigid_body_sim.messages.layout` plus ``log_time`` and
+        ``publish_time`` (int64, ns) and ``sequence``.
+
+        Parameters
+        ----------
+        topics : sequence of str, optional
+            All, without it.
+        names : sequence of str, optional
+            Chooses columns.
+        start, end : int
+            Log times in ns, inclusive, that choose messages.
+        progress : callable, optional
+            Called with the number of messages done.
         """
         for channels, piece, _ in self._pieces(topics, start, end):
             for number, topic in channels.items():
@@ -134,20 +248,28 @@ class Recording:
                 if not mine.any():
                     continue
                 heads = piece.heads[mine]
-                columns = {'log_time': heads['log_time'].astype(np.int64), 'publish_time': heads['publish_time'].astype(np.int64),
+                columns = {'log_time': heads['log_time'].astype(np.int64),
+                           'publish_time': heads['publish_time'].astype(np.int64),
                            'sequence': heads['sequence'].copy()}
-                columns.update(self.decoder(topic).columns(piece.records, piece.offsets[mine], heads['length'].astype(np.int64), names))
+                lengths = heads['length'].astype(np.int64)
+                columns.update(self.decoder(topic).columns(piece.records, piece.offsets[mine],
+                                                           lengths, names))
                 yield topic, columns
             if progress:
                 progress(len(piece.heads))
 
     def read(self, topic, names=None, start=0, end=2**63, progress=None):
-        """Return the columns of one topic (all that every message has, or those in `names`) in the order of log time."""
+        """Return the columns of one topic in the order of log time; see :meth:`blocks`.
+
+        Without `names` these are all columns that every message has.
+        """
         blocks = [columns for _, columns in self.blocks([topic], names, start, end, progress)]
         if not blocks:
-            return {'log_time': np.empty(0, np.int64), 'publish_time': np.empty(0, np.int64), 'sequence': np.empty(0, np.uint32)}
+            return {'log_time': np.empty(0, np.int64), 'publish_time': np.empty(0, np.int64),
+                    'sequence': np.empty(0, np.uint32)}
         common = [name for name, column in blocks[0].items()
-                  if all(name in block and block[name].shape[1:] == column.shape[1:] for block in blocks)]
+                  if all(name in block and block[name].shape[1:] == column.shape[1:]
+                         for block in blocks)]
         joined = {}
         for name in common:
             joined[name] = np.concatenate([block.pop(name) for block in blocks])
@@ -156,30 +278,57 @@ class Recording:
             joined = {name: column[order] for name, column in joined.items()}
         return joined
 
+    def to_pandas(self, topic, start=0, end=2**63):
+        """Return one topic as a pandas.DataFrame: a column a number, seconds as the index.
+
+        Seconds count from the start of the recording. BadInput where pandas is not installed.
+        """
+        pandas = tables.optional('pandas')
+        flat = tables.flat(self.read(topic, None, start, end), self.decoder(topic).components)
+        seconds = tables.seconds(flat['log_time'], self.start_time)
+        return pandas.DataFrame(flat, index=pandas.Index(seconds, name='seconds'))
+
+    def to_xarray(self, topic, start=0, end=2**63):
+        """Return one topic as an xarray.Dataset along ``time``, seconds since the start.
+
+        Its variables are the columns of :meth:`read`; those with several numbers have a dimension
+        more, with their names (x, y, z) as coordinates. BadInput where xarray is not installed.
+        """
+        return tables.dataset(tables.optional('xarray'), self.read(topic, None, start, end),
+                              self.decoder(topic).components, self.start_time)
+
     def messages(self, topics=None, start=0, end=2**63):
-        """Yield the Messages of all topics, or those named, in the order of log time (equal times: as recorded)."""
+        """Yield the Messages of all topics, or those named, in the order of log time.
+
+        Messages of equal times come as recorded.
+        """
         pending, pieces = [], self._pieces(topics, start, end)
         for channels, piece, place in pieces:
-            ready = next((index for index, entry in enumerate(pending) if entry[0] >= place.start_time), len(pending))
+            ready = next((index for index, entry in enumerate(pending)
+                          if entry[0] >= place.start_time), len(pending))
             yield from pending[:ready]
             pending = pending[ready:] + piece.messages(channels, Message)
             pending.sort(key=lambda message: message.log_time)
         yield from pending
 
     def decoded(self, topic, start=0, end=2**63):
-        """Yield (log_time, nested dict) for each message of a topic: for types whose sequences vary, like diagnostics."""
+        """Yield (log_time, nested dict) for each message of a topic.
+
+        This reads any type, also those whose sequences vary in length, like diagnostics.
+        """
         decoder = self.decoder(topic)
         for message in self.messages([topic], start, end):
             yield message.log_time, decoder.decode(message.data)
 
     def journal(self):
-        """Return the entries of the journals in order: dicts with ``kind``, what the recorder wrote, ``log_time`` and ``topic``.
+        """Return the entries of the journals in order.
 
-        [] in foreign recordings.
+        They are dicts with ``kind``, what the recorder wrote, ``log_time`` and ``topic``; [] in
+        recordings of others.
         """
         entries = []
         for name, topic in self.topics.items():
-            if name.rpartition('/')[2] == 'journal' and topic.type == 'std_msgs/msg/String':
+            if name.rpartition('/')[2] == 'journal' and topic.type == JOURNAL_TYPE:
                 for log_time, message in self.decoded(name):
                     try:
                         entry = json.loads(message['data'])
@@ -190,24 +339,60 @@ class Recording:
         return entries
 
 
+def _bodies():
+    """Return the module: who reads topics only need not wait for numba."""
+    from rigid_body_sim.recording import bodies
+    return bodies
+
+
 def _files_of(path):
-    """Return the paths of a recording folder's files and its custom_data, as metadata.yaml tells."""
+    """Return the paths of a recording folder's files and its custom_data."""
     where = path / metadata.FILE_NAME
     remedy = 'the folder of a recording; "recover" makes one whole whose recorder was killed'
     try:
         if os.path.getsize(where) > 2**26:
-            raise BadInput(str(where), 'is larger than 64 MB', 'a metadata.yaml as rosbag2 writes it')
+            raise BadInput(str(where), 'is larger than 64 MB',
+                           'a metadata.yaml as rosbag2 writes it')
         bag = metadata.load(where.read_text(encoding='utf-8'))[metadata.ROOT]
         storage, mode = bag['storage_identifier'], bag.get('compression_mode') or ''
         names = [pathlib.PurePath(name).name for name in bag['relative_file_paths']]
         custom = bag.get('custom_data') or {}
         custom = {str(key): str(value) for key, value in custom.items()}
     except OSError as error:
-        raise BadInput(str(path), f'holds no {metadata.FILE_NAME} that can be read ({error.strerror})', remedy) from error
-    except (UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise BadInput(str(path),
+                       f'holds no {metadata.FILE_NAME} that can be read ({error.strerror})',
+                       remedy) from error
+    except (UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError, AttributeError,
+            RecursionError) as error:
         raise BadInput(str(where), 'is not the metadata of a recording', remedy) from error
     if storage != 'mcap':
-        raise BadInput(str(path), f'is stored as {storage!r}', 'an mcap recording ("ros2 bag convert" makes one)')
+        raise BadInput(str(path), f'is stored as {storage!r}',
+                       'an mcap recording ("ros2 bag convert" makes one)')
     if mode.lower() in ('file', 'message'):
-        raise BadInput(str(path), f'whole {mode.lower()}s of it are compressed', 'compressed chunks ("ros2 bag convert" makes them)')
+        raise BadInput(str(path), f'whole {mode.lower()}s of it are compressed',
+                       'compressed chunks ("ros2 bag convert" makes them)')
     return [path / name for name in names], custom
+
+
+def newest_recording(path):
+    """Return the recording that a path names, and how many others lie beside it.
+
+    The path is a recording itself, or a folder of recordings: then it is the newest of them.
+    Raises BadInput where there is none.
+    """
+    path = pathlib.Path(path)
+    if path.is_file() or _is_recording(path):
+        return path, 0
+    try:
+        found = sorted((one for one in path.iterdir() if one.is_dir() and _is_recording(one)),
+                       key=lambda one: max(file.stat().st_mtime for file in one.glob('*.mcap')))
+    except OSError as error:
+        raise BadInput(str(path), f'cannot be read ({error.strerror})',
+                       'a recording, or a folder of recordings') from error
+    if not found:
+        raise BadInput(str(path), 'holds no recording', 'a recording, or a folder of recordings')
+    return found[-1], len(found) - 1
+
+
+def _is_recording(folder):
+    return (folder / metadata.FILE_NAME).is_file() or any(folder.glob('*.mcap'))

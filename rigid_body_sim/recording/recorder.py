@@ -31,14 +31,14 @@ import threading
 import time
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording import compression, frames
-from rigid_body_sim.recording.frames import Report
+from rigid_body_sim.recording import compression, packets
+from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.topics import journal_message
 
-BACKLOG = 16 * 2**20        # bytes of frames that wait for the pipe
+BACKLOG = 16 * 2**20        # bytes of packets that wait for the pipe
 UNCONFIRMED = 256 * 2**20   # bytes of important messages that are not in the file yet
 _PIPE = 2**20
-_PIECES = 64                # frames written at once to catch up
+_PIECES = 64                # packets written at once to catch up
 _RESTART = 1.0              # s between restarts
 
 
@@ -77,11 +77,11 @@ class Recorder:
         self._positions = {topic.name: position for position, topic in enumerate([*(topic for topic, _ in ticking), *others, journal])}
         self._journal = journal.name
         self._tick_size = sum(size for _, size in ticking)
-        self._tick_length = frames.TICK_HEAD.size - frames.HEAD.size + self._tick_size
+        self._tick_length = packets.TICK_HEAD.size - packets.HEAD.size + self._tick_size
         self._lock = threading.Lock()           # of all below, held for microseconds
-        self._waiting = collections.deque()     # (last number, frame); number 0 for what may be lost
-        self._waiting_size = self._begun = 0    # bytes; of the first frame, bytes already in the pipe
-        self._unconfirmed = collections.deque()     # (last number, frame)
+        self._waiting = collections.deque()     # (last number, packet); number 0 for what may be lost
+        self._waiting_size = self._begun = 0    # bytes; of the first packet, bytes already in the pipe
+        self._unconfirmed = collections.deque()     # (last number, packet)
         self._unconfirmed_size = self._number = self._lost = 0
         self._ticks = self._dropped_now = self._restarts = 0
         self._dropping = self._ready = self._left = self.state_wanted = False
@@ -100,27 +100,27 @@ class Recorder:
     def _start(self, resume):
         """Start a recorder and tell it what to do; the lock is not held meanwhile."""
         from_here, to_there = os.pipe(), os.pipe()
-        (frames_out, frames_in), (reports_out, reports_in) = from_here, to_there
+        (packets_out, packets_in), (reports_out, reports_in) = from_here, to_there
         with contextlib.suppress(OSError):      # an administrator may have set a lower limit
-            fcntl.fcntl(frames_in, fcntl.F_SETPIPE_SZ, _PIPE)
+            fcntl.fcntl(packets_in, fcntl.F_SETPIPE_SZ, _PIPE)
         root = str(pathlib.Path(__file__).resolve().parents[2])
         environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, (root, os.environ.get('PYTHONPATH')))),
                            OPENBLAS_NUM_THREADS='1', OMP_NUM_THREADS='1')
-        command = [sys.executable, '-m', 'rigid_body_sim.recording.process', str(frames_out), str(reports_in)]
+        command = [sys.executable, '-m', 'rigid_body_sim.recording.process', str(packets_out), str(reports_in)]
         # A session of its own: Ctrl-C and the end of a terminal are for the node.
-        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, pass_fds=(frames_out, reports_in),
+        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, pass_fds=(packets_out, reports_in),
                                          start_new_session=True, env=environment)
-        os.close(frames_out)
+        os.close(packets_out)
         os.close(reports_in)
         self._started_at = time.monotonic()
-        setup = frames.json_frame(frames.SETUP, {**self._setup, 'resume': resume, 'report': dataclasses.asdict(self._report)})
+        setup = packets.json_packet(packets.SETUP, {**self._setup, 'resume': resume, 'report': dataclasses.asdict(self._report)})
         with contextlib.suppress(BrokenPipeError):
             while setup:
-                setup = setup[os.write(frames_in, setup):]
-        os.set_blocking(frames_in, False)
+                setup = setup[os.write(packets_in, setup):]
+        os.set_blocking(packets_in, False)
         os.set_blocking(reports_out, False)
         with self._lock:
-            self._frames_in, self._reports_out, self._lines, self._begun = frames_in, reports_out, b'', 0
+            self._packets_in, self._reports_out, self._lines, self._begun = packets_in, reports_out, b'', 0
 
     @property
     def process_id(self):
@@ -136,71 +136,71 @@ class Recorder:
         if len(data) != self._tick_size:
             raise ValueError(f'messages of {len(data)} bytes where the ticking topics have {self._tick_size}')
         with self._lock:
-            frame = frames.TICK_HEAD.pack(frames.TICK, self._tick_length, self._ticks, log_time, publish_time) + data
+            packet = packets.TICK_HEAD.pack(packets.TICK, self._tick_length, self._ticks, log_time, publish_time) + data
             self._ticks += 1
             if self._waiting or not self._ready:
-                self._wait(frame)
+                self._wait(packet)
             else:
-                self._write(0, frame)
+                self._write(0, packet)
             if time.monotonic() >= self._look_at:
                 self._look()
         return self.state_wanted
 
     def message(self, topic_name, log_time, publish_time, data):
         """Record a message that may be lost under duress."""
-        frame = frames.message_frame(0, self._positions[topic_name], log_time, publish_time, data)
+        packet = packets.message_packet(0, self._positions[topic_name], log_time, publish_time, data)
         with self._lock:
-            self._wait(frame)
+            self._wait(packet)
 
     def important(self, topic_name, log_time, publish_time, data):
         """Record a message that must not be lost."""
         with self._lock:
-            self._keep(1, frames.message_frame(self._number + 1, self._positions[topic_name], log_time, publish_time, data))
+            self._keep(1, packets.message_packet(self._number + 1, self._positions[topic_name], log_time, publish_time, data))
 
     def commands(self, tick, log_time, publish_time, rows):
         """Record the commands that took effect at a tick (rows of command_rows.py) as CommandMessages has them; none is ever lost."""
         with self._lock:
-            self._keep(len(rows) + 1, frames.commands_frame(self._number + 1, tick, log_time, publish_time, rows))
+            self._keep(len(rows) + 1, packets.commands_packet(self._number + 1, tick, log_time, publish_time, rows))
 
-    def _keep(self, count, frame):
-        """Send a frame with the next `count` numbers, and keep it until the recorder has it in its file."""
-        if self._unconfirmed_size + len(frame) > UNCONFIRMED:
+    def _keep(self, count, packet):
+        """Send a packet with the next `count` numbers, and keep it until the recorder has it in its file."""
+        if self._unconfirmed_size + len(packet) > UNCONFIRMED:
             self._lost += count
             return
         self._number += count
-        self._unconfirmed.append((self._number, frame))
-        self._unconfirmed_size += len(frame)
-        self._append(self._number, frame)
+        self._unconfirmed.append((self._number, packet))
+        self._unconfirmed_size += len(packet)
+        self._append(self._number, packet)
         self._pump()
 
     def journal(self, kind, log_time, publish_time, **values):
         """Record an entry of the journal (see :func:`rigid_body_sim.recording.topics.journal_topic`); it is never lost."""
         self.important(self._journal, log_time, publish_time, journal_message(kind, **values))
 
-    def _append(self, number, frame):
-        self._waiting.append((number, frame))
-        self._waiting_size += len(frame)
+    def _append(self, number, packet):
+        self._waiting.append((number, packet))
+        self._waiting_size += len(packet)
 
-    def _wait(self, frame):
-        """Queue a frame that may be lost, or drop it where too much waits already (until half of that is gone)."""
+    def _wait(self, packet):
+        """Queue a packet that may be lost, or drop it where too much waits already (until half of that is gone)."""
         self._dropping = self._waiting_size > (BACKLOG // 2 if self._dropping else BACKLOG)
         if self._dropping:
-            self._dropped_now += frame[0] == frames.TICK
+            self._dropped_now += packet[0] == packets.TICK
         else:
             self._dropped_now = 0
-            self._append(0, frame)
+            self._append(0, packet)
         self._pump()
 
-    def _write(self, number, frame):
-        """Write a frame into the pipe, or queue it."""
-        written = self._try_to_write(frame)
-        if written < len(frame):
-            self._append(number, frame)
+    def _write(self, number, packet):
+        """Write a packet into the pipe, or queue it."""
+        written = self._try_to_write(packet)
+        if written < len(packet):
+            self._append(number, packet)
             self._begun = written
 
     def _try_to_write(self, data):
         try:
-            return os.write(self._frames_in, data)
+            return os.write(self._packets_in, data)
         except BlockingIOError:
             return 0
         except BrokenPipeError:
@@ -211,7 +211,7 @@ class Recorder:
         """Write what waits, as far as the pipe takes it; some of it at a call, so that no tick is late for it."""
         if not self._ready or not self._waiting:
             return
-        pieces = [frame for _, frame in itertools.islice(self._waiting, _PIECES)]
+        pieces = [packet for _, packet in itertools.islice(self._waiting, _PIECES)]
         pieces[0] = pieces[0][self._begun:]
         written = self._begun + self._try_to_write(b''.join(pieces))
         while self._waiting and written >= len(self._waiting[0][1]):
@@ -248,7 +248,7 @@ class Recorder:
         begun = [self._waiting.popleft()] if self._begun else []
         again = [entry for entry in self._unconfirmed if entry[0] < first]
         self._waiting.extendleft(reversed([*begun, *again]))
-        self._waiting_size += sum(len(frame) for _, frame in again)
+        self._waiting_size += sum(len(packet) for _, packet in again)
         self._pump()
 
     def status(self):
@@ -270,7 +270,7 @@ class Recorder:
     def _close_pipes(self):
         with self._lock:
             self._ready = False
-            os.close(self._frames_in)
+            os.close(self._packets_in)
             os.close(self._reports_out)
 
     def _status(self):
@@ -305,7 +305,7 @@ class Recorder:
     def _end(self, deadline):
         """Say the last word and wait for the recorder to end."""
         with self._lock:
-            self._append(0, frames.json_frame(frames.END, {'ticks': self._ticks}))
+            self._append(0, packets.json_packet(packets.END, {'ticks': self._ticks}))
         while self._process.poll() is None and time.monotonic() < deadline:
             with self._lock:
                 self._pump()

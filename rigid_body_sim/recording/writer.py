@@ -1,15 +1,19 @@
-"""Recordings as rosbag2 in Jazzy writes them: a folder of ``<bag>_0.mcap``, ... and metadata.yaml, written at the end: it tells the truth.
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings as rosbag2 in Jazzy writes them: a folder of ``<bag>_0.mcap``, ... and metadata.yaml.
 
 ::
 
-    pose = Packer('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}}, ('header.stamp', 'pose'))
-    with Writer('run', ticking=[(Topic('/pose', pose.type_name), pose.size)], others=[Topic('/scene', 'std_msgs/msg/String')],
-                journal=journal_topic(), about={'scene': text}) as writer:
+    pose = Packer('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}},
+                  ('header.stamp', 'pose'))
+    with Writer('run', ticking=[(Topic('/pose', pose.type_name), pose.size)],
+                others=[Topic('/scene', 'std_msgs/msg/String')], journal=journal_topic(),
+                about={'scene': text}) as writer:
         writer.message('/scene', stamp, wall_clock, cdr.encode(...))
         writer.ticks(0, stamps, wall_clocks, [pose.pack_many(columns)])
 
-log_time is the stamp (never falling: an older one is raised to the last), publish_time the wall clock, both in ns; ``sequence`` counts
-ticks.
+log_time is the stamp (it never falls: an older one is raised to the last), publish_time the wall
+clock, both in ns; ``sequence`` counts ticks. metadata.yaml is written last, so its counts match the
+files.
 """
 
 import errno
@@ -17,24 +21,25 @@ import fcntl
 import os
 import pathlib
 import re
-import struct
 
 import numpy as np
+from mcap.records import Channel, Schema
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import definition
-from rigid_body_sim.recording import compression, mcap_format, metadata
-from rigid_body_sim.recording.mcap_file import McapFile
+from rigid_body_sim.recording import compression, metadata
+from rigid_body_sim.recording.mcap import chunks
+from rigid_body_sim.recording.mcap.writing import McapFile
 from rigid_body_sim.recording.topics import journal_message
 
-# Larger chunks compress no better (64 KiB: 230 ticks of the four topics); smaller ones are made by flush().
+# Larger chunks compress no better (64 KiB: 230 ticks of the four topics); flush() makes smaller.
 CHUNK_SIZE = 64 * 1024
 # Keeps the index of a file, which stays in memory until it closes, below 40 MB.
 LARGEST_FILE = 4 * 10**9
 # fewer ticks are added faster one by one
 FEW = 8
-_INDEX = np.dtype([('channel', '<u2'), ('time', '<u8'), ('offset', '<u8')])
-_INDEX_ENTRY = struct.Struct('<HQQ').pack
+ABOUT = 'rigid_body_sim'
+"""Name of the metadata record that says what the run is about."""
 
 
 class Writer:
@@ -43,34 +48,46 @@ class Writer:
     Parameters
     ----------
     path : path-like
-        The folder to make; its name is the bag's. With `resume` it exists, and the recording goes on with the next file.
+        The folder to make; its name is the bag's. With `resume` it exists, and the recording goes
+        on with the next file.
     ticking : sequence of (Topic, int)
-        What is recorded at every tick, in this order: the topic and the size of its messages, which never changes.
+        What is recorded at every tick, in this order: the topic and the size of its messages, which
+        never changes.
     others : sequence of Topic
         All other topics.
     journal : Topic
         See :func:`rigid_body_sim.recording.topics.journal_topic`.
     about : dict of str to str
-        All about the run; kept in metadata.yaml, in a metadata record of each file, and in the journal.
+        All about the run; kept in metadata.yaml, in a metadata record of each file, and in the
+        journal.
     compression_name : str
         ``zstd``, ``lz4`` or ``none``.
     split_bytes, split_seconds : float
-        A new file begins after so many bytes or seconds of stamps; 0 means never (but a file never grows beyond 4 GB).
+        A new file begins after so many bytes or seconds of stamps; 0 means never (but a file never
+        grows beyond 4 GB).
     resume : list of FileRecord, optional
         The whole files that are there.
 
     Attributes
     ----------
     state_wanted : bool
-        True where the caller should write the full state into the journal (start, new file) and then set it False.
+        True where the caller should write the full state into the journal (start, new file) and
+        then set it False.
     bytes_written : int
 
-    Every method raises OSError when the disk refuses. Nothing recorded before is lost then, and the call may be repeated.
+    Raises
+    ------
+    BadInput
+        Where nothing can be recorded.
+    OSError
+        By every method when the disk refuses. Nothing recorded before is lost then, and the call
+        may be repeated.
     """
 
-    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
+    def __init__(self, path, ticking, others, journal, about,
+                 compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
                  resume=()):
-        compression.compressor(compression_name)
+        self._compression = compression.in_format(compression_name)
         self.path = pathlib.Path(path)
         self._topics = [topic for topic, _ in ticking] + [*others, journal]
         self._numbers = {topic.name: number for number, topic in enumerate(self._topics, 1)}
@@ -78,12 +95,11 @@ class Writer:
             raise BadInput('topics', 'two have the same name', 'names that differ')
         self._journal = journal.name
         self._about = {key: str(value) for key, value in about.items()}
-        self._compression = compression_name
         self._split_bytes = min(split_bytes or LARGEST_FILE, LARGEST_FILE)
         self._split_nanoseconds = round(split_seconds * 1e9)
-        self._tick = _tick_records([size for _, size in ticking])
+        self._tick = chunks.tick_records([size for _, size in ticking])
         self._files = list(resume)
-        self._records, self._index, self._pending = [], [], 0
+        self._records, self._entries, self._pending = [], [], 0
         self.last_time = max((file.end_time for file in self._files), default=0)
         self.bytes_written = self.messages_written = 0
         self.state_wanted = True
@@ -105,7 +121,9 @@ class Writer:
         descriptor = os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644, dir_fd=self._folder)
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)     # keeps recover away
-            self._file = McapFile(descriptor, self._compression, self._prologue)
+            # a file that is cut later than this is complete but for its messages
+            self._file = McapFile(descriptor, self._compression, self._descriptions(),
+                                  (ABOUT, self._about))
         except OSError:
             os.close(descriptor)
             os.unlink(name, dir_fd=self._folder)
@@ -114,19 +132,16 @@ class Writer:
         self.bytes_written += self._file.size
         self.state_wanted = True
 
-    def _prologue(self, contents, offset):
-        """Return schemas, channels and what the run is about; a file cut later than this is complete but for its messages."""
+    def _descriptions(self):
+        """Return the records of the message types and of the topics."""
         types = list(dict.fromkeys(topic.type for topic in self._topics))
-        for number, type_name in enumerate(types, 1):
-            contents.schemas[number] = mcap_format.schema(number, type_name, 'ros2msg', definition(type_name).text)
-        for topic in self._topics:
-            number = self._numbers[topic.name]
-            extra = {'offered_qos_profiles': topic.qos_text(), 'topic_type_hash': definition(topic.type).hash}
-            contents.channels[number] = mcap_format.channel(number, types.index(topic.type) + 1, topic.name, 'cdr', extra)
-        records = b''.join((*contents.schemas.values(), *contents.channels.values()))
-        about = mcap_format.metadata('rigid_body_sim', self._about)
-        contents.add_metadata(offset + len(records), len(about), 'rigid_body_sim')
-        return records + about
+        schemas = [Schema(number, definition(name).text.encode(), 'ros2msg', name)
+                   for number, name in enumerate(types, 1)]
+        channels = [Channel(self._numbers[topic.name], topic.name, 'cdr',
+                            {'offered_qos_profiles': topic.qos_text(),
+                             'topic_type_hash': definition(topic.type).hash},
+                            types.index(topic.type) + 1) for topic in self._topics]
+        return [*schemas, *channels]
 
     def message(self, topic_name, log_time, publish_time, data, sequence=0):
         """Record one message of any topic."""
@@ -134,32 +149,49 @@ class Writer:
         self._add_message(topic_name, log_time, publish_time, data, sequence)
 
     def _begin(self, log_time, publish_time):
-        """Make room, open the next file if there is none, and begin its journal. Raises OSError before anything is taken."""
+        """Make room, open the next file if there is none, and begin its journal.
+
+        Raises OSError before anything is taken.
+        """
         if self._pending >= CHUNK_SIZE:
             self.flush()
         if self._file is None:
             self._open_file()
         if self._first_time is None:
             self._first_time = max(self.last_time, log_time)
-            self._add_message(self._journal, log_time, publish_time, journal_message('begin', **self._about), 0)
+            self._add_message(self._journal, log_time, publish_time,
+                              journal_message('begin', **self._about), 0)
 
     def _add_message(self, topic_name, log_time, publish_time, data, sequence):
         self.last_time = max(self.last_time, log_time)
         number = self._numbers[topic_name]
-        record = mcap_format.message(number, sequence & 0xffffffff, self.last_time, publish_time, data)
-        self._add(record, _INDEX_ENTRY(number, self.last_time, self._pending))
+        record = chunks.message(number, sequence & 0xffffffff, self.last_time, publish_time, data)
+        self._add(record, chunks.ENTRY_BYTES(number, self.last_time, self._pending))
 
-    def _add(self, records, index):
+    def _add(self, records, entries):
         self._records.append(records)
-        self._index.append(index)
+        self._entries.append(entries)
         self._pending += len(records)
 
     def ticks(self, sequence, log_times, publish_times, messages):
-        """Record n ticks in a row, numbered from `sequence`: times (n,) in ns; for each ticking topic its messages, uint8 (n, size).
+        """Record n ticks in a row, numbered from `sequence`.
 
-        Returns how many were taken: all, or fewer where the disk refused after the first (then the next call raises OSError).
+        Parameters
+        ----------
+        sequence : int
+        log_times, publish_times : array (n,)
+            ns.
+        messages : sequence of uint8 arrays (n, size)
+            For each ticking topic its messages.
+
+        Returns
+        -------
+        int
+            How many were taken: all, or fewer where the disk refused after the first (then the
+            next call raises OSError).
         """
-        log_times = np.maximum.accumulate(np.maximum(np.asarray(log_times, np.int64), self.last_time)).astype(np.uint64)
+        log_times = np.maximum(np.asarray(log_times, np.int64), self.last_time)
+        log_times = np.maximum.accumulate(log_times).astype(np.uint64)
         count, done = len(log_times), 0
         while done < count:
             try:
@@ -168,50 +200,46 @@ class Writer:
                 if done == 0:
                     raise
                 break
-            end = min(count, done + max(1, -(-(CHUNK_SIZE - self._pending) // self._tick.itemsize)))
+            room = -(-(CHUNK_SIZE - self._pending) // self._tick.itemsize)
+            end = min(count, done + max(1, room))
             add = self._add_few_ticks if end - done < FEW else self._add_ticks
-            add(sequence + done, log_times[done:end], publish_times[done:end], [rows[done:end] for rows in messages])
+            add(sequence + done, log_times[done:end], publish_times[done:end],
+                [rows[done:end] for rows in messages])
             done = end
         return done
 
     def _add_few_ticks(self, sequence, log_times, publish_times, messages):
         for k, log_time in enumerate(log_times.tolist()):
             for topic, rows in zip(self._topics, messages):
-                self._add_message(topic.name, log_time, int(publish_times[k]), rows[k].tobytes(), sequence + k)
+                self._add_message(topic.name, log_time, int(publish_times[k]), rows[k].tobytes(),
+                                  sequence + k)
 
     def _add_ticks(self, sequence, log_times, publish_times, messages):
-        records = np.empty(len(log_times), self._tick)
-        sequences = (sequence + np.arange(len(log_times))) & 0xffffffff
-        index = np.empty((len(log_times), len(messages)), _INDEX)
-        begins = self._pending + self._tick.itemsize * np.arange(len(log_times), dtype=np.uint64)
-        for position, rows in enumerate(messages):
-            record = records[str(position)]
-            record['opcode'], record['length'], record['channel'] = mcap_format.MESSAGE, 22 + rows.shape[1], position + 1
-            record['sequence'], record['log_time'], record['publish_time'] = sequences, log_times, publish_times
-            record['data'] = rows
-            column = index[:, position]
-            column['channel'], column['time'], column['offset'] = position + 1, log_times, begins + self._tick.fields[str(position)][1]
+        self._add(*chunks.ticks(self._tick, sequence, log_times, publish_times, messages,
+                                self._pending))
         self.last_time = int(log_times[-1])
-        self._add(records.tobytes(), index.tobytes())
 
     def flush(self):
-        """Write what is pending as a chunk; after that a kill of this process loses nothing of it."""
+        """Write what is pending as a chunk; after that a kill of this process loses none of it."""
         if not self._pending:
             return
         if self._file.deleted:
             raise OSError(errno.ENOENT, 'the recording was deleted', str(self.path))
-        index = np.frombuffer(b''.join(self._index), _INDEX)
+        entries = np.frombuffer(b''.join(self._entries), chunks.ENTRY)
         before = self._file.size
-        self._file.chunk(b''.join(self._records), index['channel'], index['time'], index['offset'])
+        self._file.chunk(b''.join(self._records), entries['channel'], entries['time'],
+                         entries['offset'])
         self.bytes_written += self._file.size - before
-        self.messages_written += len(index)
-        self._records, self._index, self._pending = [], [], 0
-        seconds_up = self._split_nanoseconds and self.last_time - self._first_time >= self._split_nanoseconds
+        self.messages_written += len(entries)
+        self._records, self._entries, self._pending = [], [], 0
+        passed = self.last_time - self._first_time
+        seconds_up = self._split_nanoseconds and passed >= self._split_nanoseconds
         if self._file.size >= self._split_bytes or seconds_up:
             self._finish_file()
 
     def _bag(self, *files):
-        topics = [metadata.TopicRecord(topic.name, topic.type, [topic.qos()], definition(topic.type).hash) for topic in self._topics]
+        topics = [metadata.TopicRecord(topic.name, topic.type, [topic.qos()],
+                                       definition(topic.type).hash) for topic in self._topics]
         return metadata.bag_metadata(topics, files, self._about)
 
     def _finish_file(self):
@@ -219,16 +247,21 @@ class Writer:
         contents = self._file.contents
         names = {number: name for name, number in self._numbers.items()}
         counts = {names[number]: count for number, count in contents.counts.items()}
-        file = metadata.FileRecord(self._file_name(_next_number(self._files)), contents.start_time, contents.end_time, counts)
+        file = metadata.FileRecord(self._file_name(_next_number(self._files)),
+                                   contents.start_time, contents.end_time, counts)
         before = self._file.size
-        self._file.metadata('rosbag2', {'serialized_metadata': metadata.dump(self._bag(*self._files, file))})
+        told = {'serialized_metadata': metadata.dump(self._bag(*self._files, file))}
+        self._file.metadata('rosbag2', told)
         self._file.finish()
         self.bytes_written += self._file.size - before
         self._files.append(file)
         self._file = None
 
     def close(self):
-        """Write what is pending, close the file, write metadata.yaml. After an OSError the files are left cut but recoverable."""
+        """Write what is pending, close the file, write metadata.yaml.
+
+        After an OSError the files are left cut but recoverable.
+        """
         if self._folder is None:
             return
         try:
@@ -243,24 +276,24 @@ class Writer:
             self._folder = self._file = None
 
 
-def _tick_records(sizes):
-    """Return the dtype of one tick's message records end to end."""
-    return np.dtype([(str(position), np.dtype([*mcap_format.MESSAGE_FIELDS, ('data', 'u1', (size,))]))
-                     for position, size in enumerate(sizes)])
-
-
 def _next_number(files):
     """Return the number of the file after these FileRecords."""
-    numbers = [int(match[1]) for file in files if (match := re.search(r'_(\d+)\.mcap$', file.name))]
+    numbers = [int(match[1]) for file in files
+               if (match := re.search(r'_(\d+)\.mcap$', file.name))]
     return max(numbers, default=-1) + 1
 
 
 def _open_folder(path, exists):
-    """Make the folder of a recording and return a descriptor for it, which stays good when it is renamed."""
+    """Make the folder of a recording and return a descriptor for it.
+
+    It stays good when the folder is renamed.
+    """
     try:
         path.mkdir(parents=True, exist_ok=exists)
         return os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     except FileExistsError as error:
-        raise BadInput(str(path), 'exists already', 'the name of a recording that does not exist yet') from error
+        raise BadInput(str(path), 'exists already',
+                       'the name of a recording that does not exist yet') from error
     except OSError as error:
-        raise BadInput(str(path), f'no recording can be made here ({error.strerror})', 'a folder that can be written') from error
+        raise BadInput(str(path), f'no recording can be made here ({error.strerror})',
+                       'a folder that can be written') from error

@@ -18,7 +18,7 @@ from std_srvs.srv import SetBool
 from rigid_body_sim.node import replay
 from rigid_body_sim.node.offered_qos import offered_qos
 from rigid_body_sim.node.playing import Player, Reading
-from rigid_body_sim.recording import mcap_format
+from mcap.writer import MCAP0_MAGIC
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.topics import Topic
 
@@ -164,7 +164,7 @@ def test_bad_input_is_one_line(recording, tmp_path, monkeypatch, capfd):
     shutil.copy(recording / f'{recording.name}_0.mcap', cut)
     cut.write_bytes(cut.read_bytes()[:-500])
     strange = tmp_path / 'strange.mcap'
-    strange.write_bytes(recording.joinpath(f'{recording.name}_0.mcap').read_bytes()[:1] + mcap_format.MAGIC[1:])
+    strange.write_bytes(recording.joinpath(f'{recording.name}_0.mcap').read_bytes()[:1] + MCAP0_MAGIC[1:])
     for arguments, said in [
             ([tmp_path / 'missing'], 'recover'), ([cut], 'recover'), ([strange], 'recover'), ([recording, '--rate', '0'], '--rate: got 0'),
             ([recording, '--rate', 'nan'], '--rate: got nan'), ([recording, '--start', '3'], 'from 0 to 2,'),

@@ -1,4 +1,4 @@
-"""What the recorder does with what it is sent, frame by frame: nothing twice, nothing out of order, whatever the order of arrival."""
+"""What the recorder does with what it is sent, packet by packet: nothing twice, nothing out of order, whatever the order of arrival."""
 
 import dataclasses
 import errno
@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
-from rigid_body_sim.recording import frames
-from rigid_body_sim.recording.frames import Report
-from rigid_body_sim.recording.mcap_file import McapFile
+from rigid_body_sim.recording import packets
+from rigid_body_sim.recording.packets import Report
+from rigid_body_sim.recording.mcap.writing import McapFile
 from rigid_body_sim.recording.process import RecorderProcess
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
@@ -23,7 +23,7 @@ IMPULSES = Topic('/cmd_impulse', 'geometry_msgs/msg/WrenchStamped')
 
 
 def setup(path, resume=False, report=None):
-    return frames.json_frame(frames.SETUP, {
+    return packets.json_packet(packets.SETUP, {
         'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING],
         'others': [dataclasses.asdict(SCENE), dataclasses.asdict(IMPULSES)], 'journal': dataclasses.asdict(JOURNAL), 'about': ABOUT,
         'compression': 'zstd', 'split_bytes': 0, 'split_seconds': 0.0,
@@ -32,12 +32,12 @@ def setup(path, resume=False, report=None):
 
 
 def message(number):
-    return frames.message_frame(number, SCENE_POSITION, START, START, scene_text(str(number)))
+    return packets.message_packet(number, SCENE_POSITION, START, START, scene_text(str(number)))
 
 
 def ticks(first, count):
     made, size = Ticks(first, count), sum(size for _, size in TICKING)
-    return b''.join(frames.TICK_HEAD.pack(frames.TICK, 24 + size, first + index, int(made.stamps[index]), int(made.wall_clock[index]))
+    return b''.join(packets.TICK_HEAD.pack(packets.TICK, 24 + size, first + index, int(made.stamps[index]), int(made.wall_clock[index]))
                     + b''.join(made.messages(index)) for index in range(count))
 
 
@@ -45,26 +45,26 @@ def commands(number, count, tick=0):
     """Impulses of one tick, numbered from `number` on, with their numbers as force; the entry of the journal is the last one."""
     rows = np.zeros((count, WIDTH))
     rows[:, FORCE.start] = np.arange(number, number + count)
-    return frames.commands_frame(number, tick, START, START, rows)
+    return packets.commands_packet(number, tick, START, START, rows)
 
 
 def end(sent):
-    return frames.json_frame(frames.END, {'ticks': sent})
+    return packets.json_packet(packets.END, {'ticks': sent})
 
 
 def run(*sent):
-    """Run a process on frames; return (exit code, its reports)."""
-    frames_out, frames_in = os.pipe()
+    """Run a process on packets; return (exit code, its reports)."""
+    packets_out, packets_in = os.pipe()
     reports = []
 
     def send(line):
         reports.append(Report.of(line))
         return True
-    os.write(frames_in, b''.join(sent))
-    os.close(frames_in)
-    os.set_blocking(frames_out, False)
-    code = RecorderProcess(frames_out, send).run()
-    os.close(frames_out)
+    os.write(packets_in, b''.join(sent))
+    os.close(packets_in)
+    os.set_blocking(packets_out, False)
+    code = RecorderProcess(packets_out, send).run()
+    os.close(packets_out)
     return code, reports
 
 
@@ -78,12 +78,12 @@ def recorded(path):
     return numbers, poses, gaps
 
 
-def test_frames_split_anywhere_are_put_together(tmp_path):
+def test_packets_split_anywhere_are_put_together(tmp_path):
     sent = setup(tmp_path / 'bag') + message(1) + ticks(0, 3) + message(2) + ticks(3, 2) + end(5)
     process = RecorderProcess(-1, lambda line: True)
     for byte in sent:
         process._buffer += bytes([byte])
-        process._take_frames()
+        process._take_packets()
     assert process._close() == 0
     assert recorded(tmp_path / 'bag') == ([1, 2], list(range(5)), [])
 
@@ -121,10 +121,10 @@ def test_commands_of_a_tick_become_messages_and_one_entry_once_each_between_tick
 
 
 def test_commands_that_are_half_recorded_are_gone_on_with(tmp_path):
-    """The file was full after the second of three messages: the frame comes again."""
+    """The file was full after the second of three messages: the packet comes again."""
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = setup(tmp_path / 'bag')
-    process._take_frames()
+    process._take_packets()
     record, left = process._writer.message, [2]
 
     def fills(*arguments):
@@ -134,11 +134,11 @@ def test_commands_that_are_half_recorded_are_gone_on_with(tmp_path):
         record(*arguments)
     process._writer.message = fills
     process._buffer = commands(1, 3)
-    process._take_frames()
+    process._take_packets()
     assert process.report.error
     left[0], process.report.error = 10, ''
     process._buffer = commands(1, 3)
-    process._take_frames()
+    process._take_packets()
     assert process._close() == 0
     assert process.report.acknowledged == 4
     assert recorded_commands(tmp_path / 'bag') == ([1.0, 2.0, 3.0], [(0, [1.0, 2.0, 3.0])])
@@ -152,10 +152,10 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
 
 
 def _die_after(path, *sent):
-    """Record frames up to a flush and then die without a word: the sender knows nothing of what was flushed."""
+    """Record packets up to a flush and then die without a word: the sender knows nothing of what was flushed."""
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = b''.join(sent)
-    process._take_frames()
+    process._take_packets()
     process._flush(0.0)
     process._writer._file.close()
 
@@ -189,7 +189,7 @@ def test_deleted_recording_cannot_be_resumed(tmp_path):
 @pytest.mark.parametrize('let_through', [0, 1, 100])
 def test_refused_write_leaves_the_file_as_it_was(tmp_path, monkeypatch, let_through):
     path = tmp_path / 'x.mcap'
-    file = McapFile(os.open(path, os.O_RDWR | os.O_CREAT), 'zstd', lambda contents, offset: b'')
+    file = McapFile(os.open(path, os.O_RDWR | os.O_CREAT), 'zstd')
     before, really = path.read_bytes(), os.pwrite
 
     def refuse(descriptor, data, offset):

@@ -188,7 +188,7 @@ def test_files_of_other_writers_with_whatever_they_leave_out(tmp_path, options):
 
 
 def test_long_file_without_chunks_is_read_in_pieces(tmp_path, monkeypatch):
-    monkeypatch.setattr('rigid_body_sim.recording.file_reader._PIECE', 10)      # less than one record: pieces grow
+    monkeypatch.setattr('rigid_body_sim.recording.mcap.reading._PIECE', 10)      # less than one record: pieces grow
     _write_theirs(tmp_path / 'x.mcap', [(START + k, k) for k in range(300)], use_chunking=False)
     with Recording(tmp_path / 'x.mcap') as opened:
         np.testing.assert_array_equal(opened.read('/x')['data'], np.arange(300.0))

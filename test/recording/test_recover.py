@@ -7,14 +7,16 @@ import random
 
 import pytest
 import yaml
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.writer import CompressionType
+from mcap.records import Chunk, Header
+from mcap.writer import MCAP0_MAGIC, CompressionType
 from mcap.writer import Writer as TheirWriter
 from recording.conftest import ABOUT, SOAK, START, write
 from rosbags.rosbag2 import Reader
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording import mcap_format
+from rigid_body_sim.recording.mcap.records import HEAD, to_bytes
 from rigid_body_sim.recording.recover import main, recover
 
 OFFSETS = 1000 if SOAK else 25
@@ -186,9 +188,10 @@ def test_file_cut_in_its_very_head_becomes_an_empty_one(tmp_path, recording, siz
 
 def test_lengths_that_lie_are_cut_off(tmp_path):
     path = tmp_path / 'liar.mcap'
-    head = mcap_format.MAGIC + mcap_format.header('ros2', 'x')
-    for lie in (mcap_format.HEAD.pack(mcap_format.CHUNK, 2**63), mcap_format.HEAD.pack(mcap_format.ATTACHMENT, 2**62) + bytes(99),
-                mcap_format.chunk(1, 2, 2**60, 0, 'zstd', b'short'), mcap_format.record(mcap_format.SCHEMA, b'\1\0\xff\xff\xff\xff')):
+    head = MCAP0_MAGIC + to_bytes(Header('ros2', 'x'))
+    for lie in (HEAD.pack(Opcode.CHUNK, 2**63), HEAD.pack(Opcode.ATTACHMENT, 2**62) + bytes(99),
+                to_bytes(Chunk('zstd', b'short', 2, 1, 0, 2**60)),
+                HEAD.pack(Opcode.SCHEMA, 6) + b'\1\0\xff\xff\xff\xff'):
         path.write_bytes(head + lie)
         assert recover(path)[0].messages == 0
         assert messages_of(path) == []

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.records import Schema
 
-from rigid_body_sim.recording import mcap_format
-from rigid_body_sim.recording.walk import Cut, heads, walk
+from rigid_body_sim.recording.mcap import chunks
+from rigid_body_sim.recording.mcap.records import HEAD, to_bytes
+from rigid_body_sim.recording.mcap.walk import Cut, heads, walk
 
 
 def one_by_one(records):
@@ -32,7 +34,7 @@ KINDS = st.lists(st.tuples(st.integers(1, 3), st.integers(0, 3)), min_size=1, ma
 
 
 def message(channel, size, sequence):
-    return mcap_format.message(channel, sequence, 10**9 + sequence, 7, bytes(size))
+    return chunks.message(channel, sequence, 10**9 + sequence, 7, bytes(size))
 
 
 @given(runs=st.lists(st.tuples(KINDS, st.integers(1, 12), st.booleans()), max_size=6), cut=st.integers(0, 60))
@@ -45,7 +47,7 @@ def test_runs_of_ticks_broken_by_other_records(runs, cut):
                 records += message(channel, size, sequence)
                 sequence += 1
         if other:
-            records += mcap_format.schema(1, 'a/msg/B', 'ros2msg', '')
+            records += to_bytes(Schema(1, b'', 'ros2msg', 'a/msg/B'))
     records = records[:len(records) - cut]
     offsets, others, whole = one_by_one(records)
     if whole == len(records):
@@ -68,7 +70,7 @@ def test_any_order_of_topics_is_walked():
 
 
 def test_heads_are_what_was_written():
-    records = mcap_format.message(3, 4, 5, 6, b'seven') * 9
+    records = chunks.message(3, 4, 5, 6, b'seven') * 9
     found = heads(records, walk(records)[0])
     assert set(found.tolist()) == {(5, 27, 3, 4, 5, 6)}
 
@@ -78,7 +80,7 @@ def test_tick_of_more_messages_than_are_remembered():
     assert np.array_equal(walk(tick * 20)[0], np.arange(2000) * len(tick) // 100)
 
 
-@pytest.mark.parametrize('junk', [b'\x05', b'\0' * 40, b'\x05' + b'\xff' * 30, mcap_format.record(5, bytes(21))])
+@pytest.mark.parametrize('junk', [b'\x05', b'\0' * 40, b'\x05' + b'\xff' * 30, HEAD.pack(5, 21) + bytes(21)])
 def test_junk_after_messages_is_cut_off(junk):
     records = message(1, 8, 0) * 10
     with pytest.raises(Cut) as caught:

@@ -1,13 +1,13 @@
 """What the node and its recorder process say to each other over two pipes.
 
-To the recorder: frames. Each has a tag and the length of what follows, then
+To the recorder: packets. Each has a tag and the length of what follows, then
 
 ======== =========================================================================================================
-SETUP    JSON: all arguments of the Writer, and where to go on after a restart (first frame)
+SETUP    JSON: all arguments of the Writer, and where to go on after a restart (first packet)
 TICK     number of the tick, log time, publish time (ns), and the messages of all ticking topics end to end: always the same length
 MESSAGE  number (from 1 on; 0: may be lost), position of the topic among all, log time, publish time, the message
 COMMANDS number of the first message made of them, the tick, log time, publish time, n rows (command_rows.py): n + 1 messages
-END      JSON: ``ticks`` sent or dropped (last frame)
+END      JSON: ``ticks`` sent or dropped (last packet)
 ======== =========================================================================================================
 
 Back: lines of JSON, each a complete Report, so that one that is lost does not matter. A numbered message counts as recorded when a report's
@@ -27,25 +27,25 @@ COMMANDS_HEAD = struct.Struct('<BIQQqq')
 ATOMIC = 4096
 
 
-def json_frame(tag, values):
-    """Return a SETUP or END frame."""
+def json_packet(tag, values):
+    """Return a SETUP or END packet."""
     data = json.dumps(values).encode()
     return HEAD.pack(tag, len(data)) + data
 
 
-def message_frame(number, topic, log_time, publish_time, data):
-    """Return a MESSAGE frame."""
+def message_packet(number, topic, log_time, publish_time, data):
+    """Return a MESSAGE packet."""
     return MESSAGE_HEAD.pack(MESSAGE, MESSAGE_HEAD.size - HEAD.size + len(data), number, topic, log_time, publish_time) + data
 
 
-def commands_frame(number, tick, log_time, publish_time, rows):
-    """Return a COMMANDS frame."""
+def commands_packet(number, tick, log_time, publish_time, rows):
+    """Return a COMMANDS packet."""
     data = rows.tobytes()
     return COMMANDS_HEAD.pack(COMMANDS, COMMANDS_HEAD.size - HEAD.size + len(data), number, tick, log_time, publish_time) + data
 
 
 def tick_fields(sizes):
-    """Return the numpy fields of a TICK frame whose messages have the given sizes."""
+    """Return the numpy fields of a TICK packet whose messages have the given sizes."""
     return [('tag', 'u1'), ('length', '<u4'), ('number', '<u8'), ('log_time', '<i8'), ('publish_time', '<i8'),
             *((f'message{position}', 'u1', (size,)) for position, size in enumerate(sizes))]
 
