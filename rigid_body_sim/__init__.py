@@ -13,18 +13,20 @@ import typing
 
 if typing.TYPE_CHECKING:  # what type checkers and editors read
     from rigid_body_sim.errors import BadInput, NotConverged
+    from rigid_body_sim.recording.reader import Recording
     from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene, scene_names
     from rigid_body_sim.scene.state import State, States
     from rigid_body_sim.simulation.ensemble import Ensemble, ensemble
     from rigid_body_sim.simulation.simulation import Simulation
     from rigid_body_sim.simulation.spans import Event
 
-__all__ = ['BadInput', 'Ensemble', 'Event', 'NotConverged', 'Scene', 'Simulation', 'State',
-           'States', 'ensemble', 'load_scene', 'parse_scene', 'scene_names']
+__all__ = ['BadInput', 'Ensemble', 'Event', 'NotConverged', 'Recording', 'Scene', 'Simulation',
+           'State', 'States', 'ensemble', 'load_scene', 'parse_scene', 'scene_names']
 
 # A name is imported when it is first used, so the table of commands shows without NumPy.
 _HOMES = {
     'BadInput': 'errors', 'NotConverged': 'errors',
+    'Recording': 'recording.reader',
     'Scene': 'scene.scene', 'load_scene': 'scene.scene', 'parse_scene': 'scene.scene',
     'scene_names': 'scene.scene',
     'State': 'scene.state', 'States': 'scene.state',

@@ -1,7 +1,9 @@
-"""What every recording says about its run, whoever writes it, the node or `simulate`: enough to understand it and to run it again.
+# SPDX-License-Identifier: Apache-2.0
+"""What every recording says about its run, whether the node writes it or `simulate`.
 
-``about`` goes into metadata.yaml (custom_data), into a metadata record of each file and into the journal (entry ``begin``); the entry
-``state`` stands at the start of each file and after each gap. All texts are plain or JSON.
+It is enough to understand the recording and to run it again. ``about`` goes into metadata.yaml
+(custom_data), into a metadata record of each file and into the journal (entry ``begin``); the
+entry ``state`` stands at the start of each file and after each gap. All texts are plain or JSON.
 """
 
 import json
@@ -18,11 +20,14 @@ from rigid_body_sim.messages import cdr
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
 OK, WARN, ERROR = 0, 1, 2
 SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
-"""Parameters whose change makes a new Simulation, which follows the one before."""
+"""Parameters whose change makes a new Simulation, which continues the one before."""
 
 
 def version():
-    """Return the package's version as package.xml has it, of the source tree or of the installed share folder; '' without that file."""
+    """Return the package's version as package.xml has it; '' without that file.
+
+    It is in the source tree or in the installed share folder.
+    """
     for parent in pathlib.Path(__file__).resolve().parents:
         for path in (parent / 'package.xml', parent / 'share' / 'rigid_body_sim' / 'package.xml'):
             if path.is_file():
@@ -33,10 +38,15 @@ def version():
 
 
 def machine():
-    """Return all that the bits of a state depend on beside the scene, as a dict: equal dicts promise equal bits."""
+    """Return all that the bits of a state depend on beside the scene, as a dict.
+
+    Equal dicts promise equal bits.
+    """
     numba = environment.numba if environment.HAVE_NUMBA else None
-    return {'processor': environment.processor(), 'system': platform.platform(), 'libc': ' '.join(platform.libc_ver()), 'python': sys.version,
-            'numpy': numpy.__version__, 'numba': numba.__version__ if numba else 'no', 'sources': environment.sources_key()}
+    return {'processor': environment.processor(), 'system': platform.platform(),
+            'libc': ' '.join(platform.libc_ver()), 'python': sys.version,
+            'numpy': numpy.__version__, 'numba': numba.__version__ if numba else 'no',
+            'sources': environment.sources_key()}
 
 
 def about(made_by, simulation, parameters):
@@ -48,31 +58,40 @@ def about(made_by, simulation, parameters):
         The command: ``sim_node``, ``simulate``.
     simulation : Simulation
     parameters : dict
-        All that the command was told, defaults included.
+        All settings of the command, defaults included.
 
     Returns
     -------
     dict of str to str
-        ``made_by``, ``version``, ``scene`` (YAML as it runs), and JSON: ``simulation`` (what it was asked for, and the method it chose),
-        ``parameters``, ``machine``.
+        ``made_by``, ``version``, ``scene`` (YAML as it runs), and JSON: ``simulation`` (what it
+        was asked for, and the method it chose), ``parameters``, ``machine``.
     """
-    return {'made_by': made_by, 'version': version(), 'scene': simulation.scene.text, 'simulation': json.dumps(run_of(simulation)),
+    return {'made_by': made_by, 'version': version(), 'scene': simulation.scene.text,
+            'simulation': json.dumps(run_of(simulation)),
             'parameters': json.dumps(parameters), 'machine': json.dumps(machine())}
 
 
 def run_of(simulation):
-    """Return what a Simulation was asked for and what it chose, as a dict: with the scene, enough to make it again."""
-    return {'integrator': simulation.integrator, 'accuracy': simulation.accuracy, 'step': simulation.choice.step, 'rate': simulation.rate,
+    """Return what a Simulation was asked for and what it chose, as a dict.
+
+    With the scene it is enough to make the Simulation again.
+    """
+    return {'integrator': simulation.integrator, 'accuracy': simulation.accuracy,
+            'step': simulation.choice.step, 'rate': simulation.rate,
             **method_of(simulation.choice)}
 
 
 def method_of(choice):
-    """Return what a Choice fell upon, as a dict: `settled` of choice.choose can be made of it."""
-    return {'method': choice.method, 'horizon': choice.horizon, 'tolerance': choice.tolerance, 'expected_error': choice.expected_error}
+    """Return a Choice as a dict; `settled` of choice.choose takes it back."""
+    return {'method': choice.method, 'horizon': choice.horizon, 'tolerance': choice.tolerance,
+            'expected_error': choice.expected_error}
 
 
 def state_entry(tick, simulation):
-    """Return the values of the journal's entry ``state``: the full state at a tick, the wrench that is held, and the run as it is now."""
+    """Return the values of the journal's entry ``state``.
+
+    These are the full state at a tick, the wrench that is held, and the run as it is now.
+    """
     wrench = simulation.wrench
     return {'tick': tick, 'vector': simulation.vector.tolist(), 'energy': simulation.energy,
             'angular_momentum_squared': simulation.angular_momentum_squared,
@@ -86,12 +105,18 @@ def scene_message(scene):
 
 
 def event_message(source, level, name, message, values):
-    """Return the bytes of a message on ``events``; `values` maps names to texts or numbers, which keep all their digits."""
-    texts = [{'key': key, 'value': repr(value) if isinstance(value, float) else str(value)} for key, value in values.items()]
-    return cdr.encode(STATUS_TYPE, {'level': level, 'name': name, 'message': message, 'hardware_id': source, 'values': texts})
+    """Return the bytes of a message on ``events``.
+
+    `values` maps names to texts or numbers, which keep all their digits.
+    """
+    texts = [{'key': key, 'value': repr(value) if isinstance(value, float) else str(value)}
+             for key, value in values.items()]
+    return cdr.encode(STATUS_TYPE, {'level': level, 'name': name, 'message': message,
+                                    'hardware_id': source, 'values': texts})
 
 
 def event_text(event):
     """Return (message, values) of what a Simulation noted."""
-    return f'{event.name} at t = {event.time:.9g} s', {'tick': event.tick, 'time': event.time, **event.values}
+    values = {'tick': event.tick, 'time': event.time, **event.values}
+    return f'{event.name} at t = {event.time:.9g} s', values
 

@@ -58,7 +58,9 @@ def namespace_of(recording, namespace=None):
         problem = 'several bodies were recorded' if found else 'no body was recorded'
         if namespace is not None:
             problem = f'no body was recorded in the namespace {namespace!r}'
-        remedy = f'namespace= one of {", ".join(names)}' if found else 'a recording of a simulation'
+        remedy = 'a recording of a simulation'
+        if found:
+            remedy = f'namespace= one of {", ".join(names)}'
         raise BadInput(str(recording.path), problem, remedy)
     return namespace.rstrip('/')
 

@@ -57,8 +57,8 @@ class Decoder:
         Raises
         ------
         BadInput
-            Where a chosen column is not in every message, has no fixed length, or the messages have
-            too many different forms (sequences of many lengths: decode those one by one).
+            Where a chosen column is not in every message, has no fixed length, or the messages
+            have too many different forms (sequences of many lengths: decode those one by one).
         """
         data, parts, rows_of = np.frombuffer(records, np.uint8), [], []
         for length in np.unique(lengths).tolist():

@@ -1,13 +1,19 @@
-"""The command `export`: a recording to CSV, Parquet or NumPy, one file a topic; read a chunk at a time, so its length does not matter.
+# SPDX-License-Identifier: Apache-2.0
+"""The command `export`: a recording to CSV, Parquet or NumPy.
 
-Topics whose messages keep their form (numbers, times, frames) become tables: one column a number (``pose.orientation.x``), times in ns. All
-others (diagnostics, events, scene, journal) become ``.jsonl``: one decoded message a line.
+It is read a chunk at a time, so its length does not matter. Topics whose messages keep their form
+(numbers, times, frames) become tables, one a topic: a column a number (``pose.orientation.x``), a
+column ``seconds`` since the start of the recording, times in ns. What was recorded at every tick
+is also joined into one table, `ticks`. All other topics (diagnostics, events, scene, journal)
+become ``.jsonl``: one decoded message a line.
 """
 
 import csv
 import json
+import os
 import pathlib
 import re
+import shutil
 import sys
 
 import numpy as np
@@ -15,7 +21,8 @@ from tqdm import tqdm
 
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.reader import Recording, newest_recording
+from rigid_body_sim.recording.tables import Joined, flat, seconds
 
 try:
     import pyarrow
@@ -23,7 +30,10 @@ try:
 except ImportError:
     pyarrow = None
 
-_TEXTS = ('std_msgs/msg/String', 'diagnostic_msgs/msg/DiagnosticStatus', 'diagnostic_msgs/msg/DiagnosticArray')
+JOINED = 'ticks'
+"""Name of the table of all that was recorded at every tick."""
+_TEXTS = ('std_msgs/msg/String', 'diagnostic_msgs/msg/DiagnosticStatus',
+          'diagnostic_msgs/msg/DiagnosticArray')
 
 
 class CsvTable:
@@ -32,7 +42,8 @@ class CsvTable:
     SUFFIX = '.csv'
 
     def __init__(self, path):
-        self._stream = open(path, 'w', newline='', encoding='utf-8')    # noqa: SIM115, closed by close
+        # closed by close
+        self._stream = open(path, 'w', newline='', encoding='utf-8')    # noqa: SIM115
         self._writer = csv.writer(self._stream)
         self._names = None
 
@@ -66,7 +77,8 @@ class ParquetTable:
 
     def _write(self):
         table = pyarrow.concat_tables(self._waiting)
-        self._writer = self._writer or pyarrow.parquet.ParquetWriter(self._path, table.schema, compression='zstd')
+        self._writer = self._writer or pyarrow.parquet.ParquetWriter(self._path, table.schema,
+                                                                     compression='zstd')
         self._writer.write_table(table)
         self._waiting, self._rows = [], 0
 
@@ -79,7 +91,10 @@ class ParquetTable:
 
 
 class NumpyTable:
-    """A ``.npy`` file: one structured array, a field a column; ``numpy.load(..., mmap_mode='r')`` opens it without reading it all."""
+    """A ``.npy`` file: one structured array, a field a column.
+
+    ``numpy.load(..., mmap_mode='r')`` opens it without reading it all.
+    """
 
     SUFFIX = '.npy'
     _HEADER, _LONGEST_TEXT = 4096, 64
@@ -92,22 +107,27 @@ class NumpyTable:
     def add(self, columns):
         """Append rows: name -> (n,)."""
         if not self._rows:
-            self._dtype = np.dtype([(name, f'U{self._LONGEST_TEXT}' if column.dtype.kind == 'U' else column.dtype)
+            text = f'U{self._LONGEST_TEXT}'
+            self._dtype = np.dtype([(name, text if column.dtype.kind == 'U' else column.dtype)
                                     for name, column in columns.items()])
         rows = np.empty(len(next(iter(columns.values()))), self._dtype)
         for name, column in columns.items():
             if column.dtype.kind == 'U' and column.dtype.itemsize > rows.dtype[name].itemsize:
-                raise BadInput(f'--format numpy: {name}', f'a text of more than {self._LONGEST_TEXT} letters', 'another format')
+                raise BadInput(f'--format numpy: {name}',
+                               f'a text of more than {self._LONGEST_TEXT} letters',
+                               'another format')
             rows[name] = column
         self._stream.write(rows.tobytes())
         self._rows += len(rows)
 
     def close(self):
         """Write the header, whose place was kept, and finish the file."""
-        text = repr({'descr': np.lib.format.dtype_to_descr(self._dtype), 'fortran_order': False, 'shape': (self._rows,)})
+        text = repr({'descr': np.lib.format.dtype_to_descr(self._dtype), 'fortran_order': False,
+                     'shape': (self._rows,)})
         text = text.encode('latin1').ljust(self._HEADER - 11) + b'\n'
         if len(text) != self._HEADER - 10:
-            raise BadInput('--format numpy', f'{len(self._dtype.names)} columns', 'a topic with fewer, or another format')
+            raise BadInput('--format numpy', f'{len(self._dtype.names)} columns',
+                           'a topic with fewer, or another format')
         self._stream.seek(0)
         self._stream.write(b'\x93NUMPY\x01\x00' + (self._HEADER - 10).to_bytes(2, 'little') + text)
         self._stream.close()
@@ -116,79 +136,143 @@ class NumpyTable:
 TABLES = {'csv': CsvTable, 'parquet': ParquetTable, 'numpy': NumpyTable}
 
 
-def export(path, folder, form, topics=None, progress=None):
-    """Write the topics of a recording (all, or those named) into a new folder; return the paths written.
+def export(path, folder, form, topics=None, bar=None):
+    """Write the topics of a recording (all, or those named) into a new folder.
 
-    `form` is ``csv``, ``parquet`` or ``numpy``; `progress` is called with the number of messages done. BadInput where the recording or
-    the folder will not do, or the messages of a table change their form.
+    The folder appears once it is complete: an export that was interrupted can be repeated.
+
+    Parameters
+    ----------
+    path : path-like
+        A recording's folder or an .mcap file.
+    folder : path-like
+        To be made.
+    form : str
+        ``csv``, ``parquet`` or ``numpy``.
+    topics : sequence of str, optional
+    bar : tqdm, optional
+        Counts messages.
+
+    Returns
+    -------
+    list of pathlib.Path
+        What was written.
+
+    Raises
+    ------
+    BadInput
+        Where the recording or the folder will not do, or a table's messages change their form.
+    OSError
+        Where the disk refuses.
     """
     if form == 'parquet' and pyarrow is None:
-        raise BadInput('--format parquet', 'pyarrow is not installed', 'pip install pyarrow, or --format csv or numpy')
+        raise BadInput('--format parquet', 'pyarrow is not installed',
+                       'pip install pyarrow, or --format csv or numpy')
+    folder = pathlib.Path(folder)
+    if folder.exists():
+        raise BadInput(str(folder), 'cannot be made (File exists)',
+                       'a folder that does not exist yet')
     with Recording(path) as recording:
-        chosen = [recording.topic(name) for name in topics] if topics else list(recording.topics.values())
-        folder = pathlib.Path(folder)
+        chosen = ([recording.topic(name) for name in topics] if topics
+                  else list(recording.topics.values()))
+        if bar is not None:
+            bar.reset(sum(topic.count for topic in chosen))
+        part = folder.with_name(f'.{folder.name}.part')
         try:
-            folder.mkdir(parents=True)
+            shutil.rmtree(part, ignore_errors=True)     # of an export that was killed
+            part.mkdir(parents=True)
         except OSError as error:
-            raise BadInput(str(folder), f'cannot be made ({error.strerror})', 'a folder that does not exist yet') from error
-        written = [_export_texts(recording, topic, folder) for topic in chosen if topic.type in _TEXTS]
-        tables = {topic.name: TABLES[form](folder / f'{_file_name(topic.name)}{TABLES[form].SUFFIX}')
-                  for topic in chosen if topic.type not in _TEXTS and topic.count}
+            raise BadInput(str(folder), f'cannot be made ({error.strerror})',
+                           'a folder that can be written') from error
         try:
-            for name, columns in recording.blocks(list(tables), progress=progress) if tables else ():
-                tables[name].add(_flat(columns, recording.decoder(name).components))
-        except KeyError as error:
-            raise BadInput(str(path), f'messages lack {error} that others before them have', 'other topics') from error
-        finally:
-            for table in tables.values():
-                table.close()
-        return written + [folder / f'{_file_name(name)}{TABLES[form].SUFFIX}' for name in tables]
+            names = _write(recording, chosen, part, TABLES[form], bar)
+            os.rename(part, folder)
+        except BaseException:
+            shutil.rmtree(part, ignore_errors=True)
+            raise
+    return [folder / name for name in names]
+
+
+def _write(recording, chosen, folder, kind, bar):
+    """Write all files; return their names."""
+    done = bar.update if bar is not None else None
+    written = [_export_texts(recording, topic, folder, done) for topic in chosen
+               if topic.type in _TEXTS]
+    topics = [topic for topic in chosen if topic.type not in _TEXTS and topic.count]
+    tables = {topic.name: _file_name(topic.name) for topic in topics}
+    most = max((topic.count for topic in topics), default=0)
+    ticking = {topic.name: tables[topic.name] for topic in topics if topic.count == most}
+    joined = None
+    if len(ticking) > 1 and JOINED not in tables.values():
+        joined, tables[None] = Joined(ticking), JOINED
+    files = {name: kind(folder / f'{file}{kind.SUFFIX}') for name, file in tables.items()}
+    try:
+        for name, columns in _flat_blocks(recording, [topic.name for topic in topics], done):
+            files[name].add(columns)
+            rows = joined.add(name, columns) if joined and name in ticking else None
+            if rows:
+                rows = {'seconds': seconds(rows['log_time'], recording.start_time), **rows}
+                files[None].add(rows)
+    except KeyError as error:
+        raise BadInput(str(recording.path),
+                       f'messages lack {error} that others before them have',
+                       'other topics') from error
+    finally:
+        for file in files.values():
+            file.close()
+    return written + [f'{file}{kind.SUFFIX}' for file in tables.values()]
+
+
+def _flat_blocks(recording, topics, done):
+    """Yield (topic, columns) of numbers and texts, each block with its seconds."""
+    for name, columns in recording.blocks(topics, progress=done) if topics else ():
+        columns = flat(columns, recording.decoder(name).components)
+        yield name, {'seconds': seconds(columns['log_time'], recording.start_time), **columns}
 
 
 def _file_name(topic):
     return re.sub(r'[^\w.-]', '.', topic.strip('/'))
 
 
-def _export_texts(recording, topic, folder):
-    path = folder / f'{_file_name(topic.name)}.jsonl'
-    with open(path, 'w', encoding='utf-8') as stream:
+def _export_texts(recording, topic, folder, done):
+    """Write one decoded message a line; return the file's name."""
+    name = f'{_file_name(topic.name)}.jsonl'
+    with open(folder / name, 'w', encoding='utf-8') as stream:
         for log_time, message in recording.decoded(topic.name):
-            stream.write(json.dumps({'log_time': log_time, **message}, ensure_ascii=False) + '\n')
-    return path
-
-
-def _flat(columns, components):
-    """Return one array a number: ``x.0``, ``x.1`` or, for a struct, ``pose.position.x``; texts as such."""
-    flat = {}
-    for name, column in columns.items():
-        if column.dtype.kind == 'S':
-            flat[name] = np.char.decode(column, errors='replace')
-        elif column.ndim == 1:
-            flat[name] = column
-        else:
-            parts = components.get(name, range(column.shape[1]))
-            flat.update({f'{name}.{part}': np.ascontiguousarray(column[:, index]) for index, part in enumerate(parts)})
-    return flat
+            text = json.dumps({'log_time': log_time, **message}, ensure_ascii=False)
+            stream.write(text + '\n')
+            if done:
+                done(1)
+    return name
 
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('export', 'Write a recording to CSV, Parquet or NumPy, one file a topic.',
-                                 'python -m rigid_body_sim export recordings/racket --output racket_csv --format csv')
-    parser.add_argument('recording', help='folder of a recording, or an .mcap file')
+    parser = command_line.parser(
+        'export', 'Write a recording to CSV, Parquet or NumPy: one file a topic, and one table '
+        'of all that was recorded at every tick.',
+        'python -m rigid_body_sim export recordings/racket --output racket_csv --format csv')
+    parser.add_argument('recording', help='folder of a recording, or an .mcap file; a folder of '
+                        'recordings: the newest in it')
     parser.add_argument('--output', required=True, metavar='FOLDER', help='folder to make')
-    parser.add_argument('--format', choices=sorted(TABLES), default='csv', help='csv (default), numpy or parquet')
+    parser.add_argument('--format', choices=sorted(TABLES), default='csv',
+                        help='csv (default), numpy or parquet')
     parser.add_argument('--topics', nargs='+', metavar='TOPIC', help='only these topics')
     parser.add_argument('--json', action='store_true', help='print the paths as JSON')
     return command_line.run(_run, parser.parse_args(arguments))
 
 
 def _run(options):
+    path, others = newest_recording(options.recording)
+    if others:
+        print(f'{path}: the newest of {others + 1} recordings', file=sys.stderr)
     try:
-        with tqdm(unit=' messages', unit_scale=True, disable=None, leave=False) as bar:
-            paths = export(options.recording, options.output, options.format, options.topics, bar.update)
+        with tqdm(desc=str(path), unit=' messages', unit_scale=True, disable=None,
+                  leave=False) as bar:
+            paths = export(path, options.output, options.format, options.topics, bar)
     except OSError as error:
-        print(f'{options.output}: the disk refuses ({error.strerror}); make room and run it again into a new folder', file=sys.stderr)
+        print(f'{options.output}: the disk refuses ({error.strerror}); make room and run it again',
+              file=sys.stderr)
         return command_line.CHECK_FAILED
     if options.json:
         command_line.print_json([str(path) for path in paths])

@@ -1,4 +1,5 @@
-"""metadata.yaml, version 9: what rosbag2 in Jazzy wants to know of a recording before it opens it."""
+# SPDX-License-Identifier: Apache-2.0
+"""metadata.yaml, version 9: what rosbag2 in Jazzy reads about a recording before it opens it."""
 
 import os
 import typing
@@ -22,7 +23,7 @@ class TopicRecord(typing.NamedTuple):
 
 
 class FileRecord(typing.NamedTuple):
-    """A file in metadata.yaml: times in ns (0 without messages), `counts` topic name -> messages."""
+    """A file in metadata.yaml: times in ns (0 without messages), `counts` by topic name."""
 
     name: str
     start_time: int
@@ -31,11 +32,15 @@ class FileRecord(typing.NamedTuple):
 
 
 def bag_metadata(topics, files, about):
-    """Return the map under the root key: `topics` are TopicRecords, `files` FileRecords, `about` a dict of texts (custom_data) or None."""
+    """Return the map under the root key.
+
+    `topics` are TopicRecords, `files` FileRecords, `about` a dict of texts (custom_data) or None.
+    """
     used = [file for file in files if file.counts]
     start = min((file.start_time for file in used), default=0)
     end = max((file.end_time for file in used), default=0)
-    counts = {topic.name: sum(file.counts.get(topic.name, 0) for file in files) for topic in topics}
+    counts = {topic.name: sum(file.counts.get(topic.name, 0) for file in files)
+              for topic in topics}
     return {
         'version': 9,
         'storage_identifier': 'mcap',
@@ -43,14 +48,17 @@ def bag_metadata(topics, files, about):
         'starting_time': {'nanoseconds_since_epoch': start},
         'message_count': sum(counts.values()),
         'topics_with_message_count': [
-            {'topic_metadata': {'name': topic.name, 'type': topic.type, 'serialization_format': 'cdr', 'offered_qos_profiles': topic.qos,
-                                'type_description_hash': topic.hash}, 'message_count': counts[topic.name]} for topic in topics],
+            {'topic_metadata': {
+                'name': topic.name, 'type': topic.type, 'serialization_format': 'cdr',
+                'offered_qos_profiles': topic.qos, 'type_description_hash': topic.hash},
+             'message_count': counts[topic.name]} for topic in topics],
         'compression_format': '',
         'compression_mode': '',
         'relative_file_paths': [file.name for file in files],
         'files': [
             {'path': file.name, 'starting_time': {'nanoseconds_since_epoch': file.start_time},
-             'duration': {'nanoseconds': file.end_time - file.start_time}, 'message_count': sum(file.counts.values())} for file in files],
+             'duration': {'nanoseconds': file.end_time - file.start_time},
+             'message_count': sum(file.counts.values())} for file in files],
         'custom_data': about,
         'ros_distro': 'jazzy',
     }
@@ -62,7 +70,7 @@ def dump(value):
 
 
 def load(text):
-    """Return what a YAML text says; yaml.YAMLError where it is none."""
+    """Return the value of a YAML text; yaml.YAMLError where it is none."""
     return yaml.load(text, Loader=_Loader)      # a safe one
 
 

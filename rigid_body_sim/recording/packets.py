@@ -1,17 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the node and its recorder process say to each other over two pipes.
 
 To the recorder: packets. Each has a tag and the length of what follows, then
 
-======== =========================================================================================================
+======== ======================================================================================
 SETUP    JSON: all arguments of the Writer, and where to go on after a restart (first packet)
-TICK     number of the tick, log time, publish time (ns), and the messages of all ticking topics end to end: always the same length
-MESSAGE  number (from 1 on; 0: may be lost), position of the topic among all, log time, publish time, the message
-COMMANDS number of the first message made of them, the tick, log time, publish time, n rows (command_rows.py): n + 1 messages
+TICK     number of the tick, log time, publish time (ns), and the messages of all ticking topics
+         end to end: always the same length
+MESSAGE  number (from 1 on; 0: may be lost), position of the topic among all, log time, publish
+         time, the message
+COMMANDS number of the first message made of them, the tick, log time, publish time, n rows
+         (command_rows.py): n + 1 messages
 END      JSON: ``ticks`` sent or dropped (last packet)
-======== =========================================================================================================
+======== ======================================================================================
 
-Back: lines of JSON, each a complete Report, so that one that is lost does not matter. A numbered message counts as recorded when a report's
-`acknowledged` has reached its number; the recorder takes them in order only, and asks for the missing ones by counting `resend` up.
+Back: lines of JSON, each a complete Report, so that one that is lost does not matter. A numbered
+message counts as recorded when a report's `acknowledged` has reached its number; the recorder
+takes them in order only, and asks for the missing ones by counting `resend` up.
 """
 
 import dataclasses
@@ -35,18 +40,21 @@ def json_packet(tag, values):
 
 def message_packet(number, topic, log_time, publish_time, data):
     """Return a MESSAGE packet."""
-    return MESSAGE_HEAD.pack(MESSAGE, MESSAGE_HEAD.size - HEAD.size + len(data), number, topic, log_time, publish_time) + data
+    length = MESSAGE_HEAD.size - HEAD.size + len(data)
+    return MESSAGE_HEAD.pack(MESSAGE, length, number, topic, log_time, publish_time) + data
 
 
 def commands_packet(number, tick, log_time, publish_time, rows):
     """Return a COMMANDS packet."""
     data = rows.tobytes()
-    return COMMANDS_HEAD.pack(COMMANDS, COMMANDS_HEAD.size - HEAD.size + len(data), number, tick, log_time, publish_time) + data
+    length = COMMANDS_HEAD.size - HEAD.size + len(data)
+    return COMMANDS_HEAD.pack(COMMANDS, length, number, tick, log_time, publish_time) + data
 
 
 def tick_fields(sizes):
     """Return the numpy fields of a TICK packet whose messages have the given sizes."""
-    return [('tag', 'u1'), ('length', '<u4'), ('number', '<u8'), ('log_time', '<i8'), ('publish_time', '<i8'),
+    return [('tag', 'u1'), ('length', '<u4'), ('number', '<u8'), ('log_time', '<i8'),
+            ('publish_time', '<i8'),
             *((f'message{position}', 'u1', (size,)) for position, size in enumerate(sizes))]
 
 
@@ -54,10 +62,26 @@ def tick_fields(sizes):
 class Report:
     """How the recorder stands.
 
-    `recorded` messages and `written` bytes are safe from a kill of the recorder; `dropped` ticks are missing between recorded ones;
-    `ticks` is the number of the tick that follows the last one in the file, `last_tick` the stamp of that (ns); `acknowledged` the number
-    of the last numbered message in the file; `error` the problem right now, or ''; `resend` and `state_wanted` count requests; `refused`:
-    why nothing can be recorded at all (where, problem, remedy); `closed` is True once the recording is complete.
+    Attributes
+    ----------
+    recorded, written : int
+        Messages and bytes that are safe from a kill of the recorder.
+    dropped : int
+        Ticks that are missing between recorded ones.
+    ticks : int
+        Number of the tick that follows the last one in the file.
+    last_tick : int
+        Stamp of the last tick in the file, ns.
+    acknowledged : int
+        Number of the last numbered message in the file.
+    resend, state_wanted : int
+        Count requests.
+    error : str
+        The problem right now, or ''.
+    refused : tuple of str
+        Why nothing can be recorded at all (where, problem, remedy).
+    closed : bool
+        True once the recording is complete.
     """
 
     recorded: int = 0

@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """The recorder process: takes packets from a pipe, writes the recording, outlives the node.
 
-``python -m rigid_body_sim.recording.process PACKETS REPORTS`` (two file descriptors) is started by the Recorder (recorder.py). It ends when
-the pipe is closed, by the node's last word or by its death, and leaves a complete recording either way. It sleeps between looks at the
-pipe, so that the node's writing never wakes it: 50 times a second, whatever the rate.
+The Recorder (recorder.py) starts ``python -m rigid_body_sim.recording.process PACKETS REPORTS``
+(two file descriptors). The process ends when the pipe is closed, by the node's last word or by its
+death, and leaves a complete recording either way. It sleeps between looks at the pipe, so that the
+node's writing never wakes it: 50 times a second, whatever the rate.
 """
 
 import json
@@ -29,7 +31,15 @@ _READ = 2**20
 
 
 class RecorderProcess:
-    """Packets in, recording out. `descriptor_in`: the pipe of packets, non-blocking; `send`: sends bytes, returns whether it could."""
+    """Packets in, recording out.
+
+    Parameters
+    ----------
+    descriptor_in : int
+        The pipe of packets, non-blocking.
+    send : callable
+        Sends bytes; returns whether it could.
+    """
 
     def __init__(self, descriptor_in, send):
         self._in, self._send = descriptor_in, send
@@ -44,7 +54,10 @@ class RecorderProcess:
         self._ended, self._told = False, b''
 
     def run(self):
-        """Record until the pipe is closed. Returns the exit code: 0 if all that came is recorded, 1 if not, 2 if nothing could be."""
+        """Record until the pipe is closed.
+
+        Returns the exit code: 0 if all that came is recorded, 1 if not, 2 if nothing could be.
+        """
         try:
             while not self._ended:
                 data = self._read()
@@ -54,7 +67,8 @@ class RecorderProcess:
                 elif data == b'':
                     break
                 now = time.monotonic()
-                if self._writer is not None and now >= (self._retry_at if self.report.error else self._flush_at):
+                due = self._retry_at if self.report.error else self._flush_at
+                if self._writer is not None and now >= due:
                     self._flush(now)
                 if data is None or len(data) < _READ // 4:
                     time.sleep(LOOK)
@@ -96,20 +110,25 @@ class RecorderProcess:
     def _open(self, setup):
         ticking = [(Topic(**topic), size) for topic, size in setup['ticking']]
         others, journal = [Topic(**topic) for topic in setup['others']], Topic(**setup['journal'])
-        self._names = [topic.name for topic, _ in ticking] + [topic.name for topic in others] + [journal.name]
-        self._journal = journal.name
-        self._commands = CommandMessages(CommandTopics(**setup['commands']), journal.name) if setup['commands'] else None
+        topics = [*(topic for topic, _ in ticking), *others, journal]
+        self._names = [topic.name for topic in topics]
+        self._journal, self._commands = journal.name, None
+        if setup['commands']:
+            self._commands = CommandMessages(CommandTopics(**setup['commands']), journal.name)
         self._tick = np.dtype(packets.tick_fields([size for _, size in ticking]))
         self.report = Report(**setup['report'])
         files = ()
         try:
             if setup['resume']:
-                files = resume(setup['path'], [topic.name for topic, _ in ticking], self.report)
+                names = [topic.name for topic, _ in ticking]
+                files = resume(setup['path'], names, self.report)
             self._before = (self.report.recorded, self.report.written)
-            self._writer = Writer(setup['path'], ticking, others, journal, setup['about'], setup['compression'], setup['split_bytes'],
+            self._writer = Writer(setup['path'], ticking, others, journal, setup['about'],
+                                  setup['compression'], setup['split_bytes'],
                                   setup['split_seconds'], files)
         except OSError as error:
-            raise BadInput(setup['path'], f'nothing can be recorded here ({error.strerror})', 'a folder on a disk with room') from error
+            raise BadInput(setup['path'], f'nothing can be recorded here ({error.strerror})',
+                           'a folder on a disk with room') from error
         self._expected, self._next_tick = self.report.acknowledged + 1, self.report.ticks
         self._last_tick, self._dropped = self.report.last_tick, self.report.dropped
         self.report.error = ''
@@ -117,7 +136,7 @@ class RecorderProcess:
         self._tell()
 
     def _take_ticks(self, buffer, position):
-        """Take a run of ticks; returns where the next other packet begins."""
+        """Take a run of ticks; return where the next other packet begins."""
         size, end = self._tick.itemsize, position
         while end + size <= len(buffer) and buffer[end] == packets.TICK:
             end += size
@@ -139,16 +158,20 @@ class RecorderProcess:
         first = int(rows['number'][0])
         try:
             if first > self._next_tick:
-                self._gap(first - self._next_tick, int(rows['log_time'][0]), int(rows['publish_time'][0]))
-            done = self._writer.ticks(first, rows['log_time'], rows['publish_time'],
-                                      [rows[name] for name in self._tick.names if name.startswith('message')])
+                self._gap(first - self._next_tick, int(rows['log_time'][0]),
+                          int(rows['publish_time'][0]))
+            messages = [rows[name] for name in self._tick.names if name.startswith('message')]
+            done = self._writer.ticks(first, rows['log_time'], rows['publish_time'], messages)
         except OSError as error:
             self._fail(error)
             return
         self._next_tick, self._last_tick = first + done, int(rows['log_time'][done - 1])
 
     def _gap(self, ticks, until, publish_time):
-        """Mark in the journal that ticks are missing; `until` (ns) is the stamp of the next one, None if there is none."""
+        """Mark in the journal that ticks are missing.
+
+        `until` (ns) is the stamp of the next one, None if there is none.
+        """
         data = journal_message('gap', ticks=ticks, after=self._last_tick, until=until)
         self._writer.message(self._journal, self._writer.last_time, publish_time, data)
         self._dropped += ticks
@@ -156,16 +179,22 @@ class RecorderProcess:
         self.report.state_wanted += 1
 
     def _take_message(self, buffer, position, end):
-        _, _, number, topic, log_time, publish_time = packets.MESSAGE_HEAD.unpack_from(buffer, position)
-        self._record(number, log_time, publish_time, [(self._names[topic], buffer[position + packets.MESSAGE_HEAD.size:end])])
+        head = packets.MESSAGE_HEAD
+        _, _, number, topic, log_time, publish_time = head.unpack_from(buffer, position)
+        message = (self._names[topic], buffer[position + head.size:end])
+        self._record(number, log_time, publish_time, [message])
 
     def _take_commands(self, buffer, position, end):
-        _, _, number, tick, log_time, publish_time = packets.COMMANDS_HEAD.unpack_from(buffer, position)
-        rows = np.frombuffer(buffer[position + packets.COMMANDS_HEAD.size:end]).reshape(-1, WIDTH)
+        head = packets.COMMANDS_HEAD
+        _, _, number, tick, log_time, publish_time = head.unpack_from(buffer, position)
+        rows = np.frombuffer(buffer[position + head.size:end]).reshape(-1, WIDTH)
         self._record(number, log_time, publish_time, self._commands.messages(tick, log_time, rows))
 
     def _record(self, number, log_time, publish_time, messages):
-        """Record messages, (topic name, bytes) or None, of which the first has this number: those that are not recorded yet."""
+        """Record those of some messages, (topic name, bytes) or None, that are not recorded yet.
+
+        The first of them has this number.
+        """
         if self.report.error:
             return
         if number > self._expected:
@@ -175,14 +204,18 @@ class RecorderProcess:
         for message in messages[begin:]:
             try:
                 if message:
-                    self._writer.message(message[0], log_time, publish_time, message[1], self._expected if number else 0)
+                    self._writer.message(message[0], log_time, publish_time, message[1],
+                                         self._expected if number else 0)
             except OSError as error:
                 self._fail(error)
                 return
             self._expected += number > 0
 
     def _ask_for_missing(self):
-        """Ask for the numbered messages from the expected one on, once until it comes or RETRY has passed."""
+        """Ask for the numbered messages from the expected one on.
+
+        This is done once until that one comes or RETRY has passed.
+        """
         now = time.monotonic()
         if self._asked_for != self._expected or now >= self._ask_at:
             self._asked_for, self._ask_at = self._expected, now + RETRY
@@ -220,7 +253,10 @@ class RecorderProcess:
             self._told = line
 
     def _fail(self, error):
-        """Go on without recording: what comes is dropped (numbered messages are sent again later), until a flush succeeds."""
+        """Go on without recording until a flush succeeds.
+
+        What comes meanwhile is dropped; numbered messages are sent again later.
+        """
         self._retry_at = time.monotonic() + RETRY
         problem = f'{self._writer.path}: {error.strerror or error}'
         if self.report.error != problem:
@@ -243,7 +279,8 @@ class RecorderProcess:
         try:
             self._writer.close()
         except OSError as error:
-            self.report.error = f'{self._writer.path}: {error.strerror or error}; not closed, "recover" makes it whole once there is room'
+            self.report.error = (f'{self._writer.path}: {error.strerror or error}; not closed, '
+                                 f'"recover" makes it whole once there is room')
         else:
             self.report.error, self.report.closed = '', True
             self._confirm()
@@ -254,7 +291,8 @@ class RecorderProcess:
 def main(descriptor_in, descriptor_out):
     """Run the process on its two pipes."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)       # they are for the node; this process ends when the pipe does
+        # they are for the node; this process ends when the pipe does
+        signal.signal(number, signal.SIG_IGN)
     if os.sched_getscheduler(0) != os.SCHED_OTHER:
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     os.set_blocking(descriptor_in, False)

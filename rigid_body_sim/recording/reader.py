@@ -180,8 +180,9 @@ class Recording:
     def states(self, namespace=None, start=0, end=2**63, progress=None):
         """Return the recorded States; `namespace` as for :meth:`scene`.
 
-        Times are seconds of stamps since the recording's first tick. The velocity was recorded only
-        if ``odom`` was; otherwise it is NaN. `start`, `end` and `progress` as for :meth:`blocks`.
+        Times are seconds of stamps since the recording's first tick. The velocity was recorded
+        only if ``odom`` was; otherwise it is NaN. `start`, `end` and `progress` as for
+        :meth:`blocks`.
         """
         bodies = _bodies()
         return bodies.states(self, bodies.namespace_of(self, namespace), start, end, progress)
@@ -198,8 +199,8 @@ class Recording:
         -------
         dict of str to array
             ``log_time`` (n,) in ns, ``tick`` (n,) at which each took effect (-1 where no journal
-            tells), ``topic`` (``cmd_impulse``, ``cmd_wrench``, ``release``) and ``frame`` as texts,
-            ``force`` and ``torque`` (n, 3) in N and N m, or N s and N m s of an impulse.
+            tells), ``topic`` (``cmd_impulse``, ``cmd_wrench``, ``release``) and ``frame`` as
+            texts, ``force`` and ``torque`` (n, 3) in N and N m, or N s and N m s of an impulse.
         """
         bodies = _bodies()
         return bodies.commands(self, bodies.namespace_of(self, namespace))

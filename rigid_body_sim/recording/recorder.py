@@ -1,21 +1,24 @@
-"""The recorder as the node sees it: cheap calls from the tick thread, a process of its own that writes and outlives the node.
+# SPDX-License-Identifier: Apache-2.0
+"""The recorder as the node sees it: cheap calls from the tick thread, a process that writes.
 
-::
+That process is the recorder's own and outlives the node. ::
 
-    recorder = Recorder('recordings/run', ticking=[(Topic('/pose', pose.type_name), pose.size), ...], others=[Topic('/events', ...)],
-                        journal=journal_topic('/racket'), about={'scene': text, ...})           # BadInput where nothing can be recorded
+    recorder = Recorder('recordings/run', ticking=[(Topic('/pose', pose.type_name), pose.size)],
+                        others=[Topic('/events', ...)], journal=journal_topic('/racket'),
+                        about={'scene': text, ...})     # BadInput where nothing can be recorded
     recorder.important('/scene', stamp, wall_clock, data)       # never lost
     # at each tick, ~2 us, before or after publishing:
     recorder.tick(stamp, wall_clock, (pose_bytes, omega_bytes, ...))
-    if recorder.state_wanted:                                   # at the start, after each gap, in each file
+    if recorder.state_wanted:                   # at the start, after each gap, in each file
         recorder.state_wanted = False
         recorder.journal('state', stamp, wall_clock, tick=k, state=[...])
-    recorder.status()                                           # 2 to 10 times a second, from another thread
+    recorder.status()                           # 2 to 10 times a second, from another thread
     status = recorder.close()
 
-What is published but refused by the pipe waits in memory; when that is full (`BACKLOG` bytes), ticks are dropped, counted, and the gap is
-marked in the journal. Important messages are kept until the recorder has them in its file, and sent again to its successor if it dies.
-All methods may be called from any thread.
+What is published but refused by the pipe waits in memory; when that is full (`BACKLOG` bytes),
+ticks are dropped, counted, and the gap is marked in the journal. Important messages are kept until
+the recorder has them in its file, and sent again to its successor if it dies. All methods may be
+called from any thread.
 """
 
 import collections
@@ -32,6 +35,7 @@ import time
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import compression, packets
+from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.topics import journal_message
 
@@ -46,8 +50,22 @@ _RESTART = 1.0              # s between restarts
 class Status:
     """How the recording stands.
 
-    `recorded` messages and `written` bytes are in the file; `dropped` ticks; `lost` important messages (only if more than `UNCONFIRMED`
-    bytes of them wait); `waiting` bytes; `restarts` of the recorder; `error`: the problem right now, or ''; `closed`: complete.
+    Attributes
+    ----------
+    recorded, written : int
+        Messages and bytes in the file.
+    dropped : int
+        Ticks.
+    lost : int
+        Important messages; only if more than `UNCONFIRMED` bytes of them wait.
+    waiting : int
+        Bytes.
+    restarts : int
+        Of the recorder.
+    error : str
+        The problem right now, or ''.
+    closed : bool
+        Whether the recording is complete.
     """
 
     recorded: int
@@ -61,26 +79,43 @@ class Status:
 
 
 class Recorder:
-    """Starts a recorder and feeds it. Parameters as of the Writer (writer.py); BadInput where nothing can be recorded.
+    """Starts a recorder and feeds it.
 
-    `commands`: CommandTopics, for who calls :meth:`commands`.
+    Parameters are those of the Writer (writer.py), and `commands`: CommandTopics, for those who
+    call :meth:`commands`.
 
-    `state_wanted` is True when the full state should be written into the journal; who does so sets it False.
+    Attributes
+    ----------
+    state_wanted : bool
+        True when the full state should be written into the journal; who does so sets it False.
+
+    Raises
+    ------
+    BadInput
+        Where nothing can be recorded.
     """
 
-    def __init__(self, path, ticking, others, journal, about, compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
+    def __init__(self, path, ticking, others, journal, about,
+                 compression_name=compression.DEFAULT, split_bytes=0, split_seconds=0.0,
                  commands=None):
-        self._setup = {'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in ticking],
-                       'others': [dataclasses.asdict(topic) for topic in others], 'journal': dataclasses.asdict(journal),
-                       'about': about, 'compression': compression_name, 'split_bytes': split_bytes, 'split_seconds': split_seconds,
-                       'commands': commands and dataclasses.asdict(commands)}
-        self._positions = {topic.name: position for position, topic in enumerate([*(topic for topic, _ in ticking), *others, journal])}
+        need_mcap()
+        self._setup = {
+            'path': str(path),
+            'ticking': [(dataclasses.asdict(topic), size) for topic, size in ticking],
+            'others': [dataclasses.asdict(topic) for topic in others],
+            'journal': dataclasses.asdict(journal), 'about': about,
+            'compression': compression_name, 'split_bytes': split_bytes,
+            'split_seconds': split_seconds, 'commands': commands and dataclasses.asdict(commands)}
+        topics = [*(topic for topic, _ in ticking), *others, journal]
+        self._positions = {topic.name: position for position, topic in enumerate(topics)}
         self._journal = journal.name
         self._tick_size = sum(size for _, size in ticking)
         self._tick_length = packets.TICK_HEAD.size - packets.HEAD.size + self._tick_size
         self._lock = threading.Lock()           # of all below, held for microseconds
-        self._waiting = collections.deque()     # (last number, packet); number 0 for what may be lost
-        self._waiting_size = self._begun = 0    # bytes; of the first packet, bytes already in the pipe
+        # (last number, packet); number 0 for what may be lost
+        self._waiting = collections.deque()
+        # bytes; of the first packet, bytes already in the pipe
+        self._waiting_size = self._begun = 0
         self._unconfirmed = collections.deque()     # (last number, packet)
         self._unconfirmed_size = self._number = self._lost = 0
         self._ticks = self._dropped_now = self._restarts = 0
@@ -95,7 +130,8 @@ class Recorder:
         self._look_now()
         if not self._ready:
             self._process.kill()
-            raise BadInput(*(self._report.refused or ('recording', 'the recorder did not start', 'see its message above, if any')))
+            raise BadInput(*(self._report.refused or (
+                'recording', 'the recorder did not start', 'see its message above, if any')))
 
     def _start(self, resume):
         """Start a recorder and tell it what to do; the lock is not held meanwhile."""
@@ -104,23 +140,28 @@ class Recorder:
         with contextlib.suppress(OSError):      # an administrator may have set a lower limit
             fcntl.fcntl(packets_in, fcntl.F_SETPIPE_SZ, _PIPE)
         root = str(pathlib.Path(__file__).resolve().parents[2])
-        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, (root, os.environ.get('PYTHONPATH')))),
-                           OPENBLAS_NUM_THREADS='1', OMP_NUM_THREADS='1')
-        command = [sys.executable, '-m', 'rigid_body_sim.recording.process', str(packets_out), str(reports_in)]
+        python_path = os.pathsep.join(filter(None, (root, os.environ.get('PYTHONPATH'))))
+        environment = dict(os.environ, PYTHONPATH=python_path, OPENBLAS_NUM_THREADS='1',
+                           OMP_NUM_THREADS='1')
+        command = [sys.executable, '-m', 'rigid_body_sim.recording.process', str(packets_out),
+                   str(reports_in)]
         # A session of its own: Ctrl-C and the end of a terminal are for the node.
-        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, pass_fds=(packets_out, reports_in),
-                                         start_new_session=True, env=environment)
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            pass_fds=(packets_out, reports_in), start_new_session=True, env=environment)
         os.close(packets_out)
         os.close(reports_in)
         self._started_at = time.monotonic()
-        setup = packets.json_packet(packets.SETUP, {**self._setup, 'resume': resume, 'report': dataclasses.asdict(self._report)})
+        setup = packets.json_packet(packets.SETUP, {
+            **self._setup, 'resume': resume, 'report': dataclasses.asdict(self._report)})
         with contextlib.suppress(BrokenPipeError):
             while setup:
                 setup = setup[os.write(packets_in, setup):]
         os.set_blocking(packets_in, False)
         os.set_blocking(reports_out, False)
         with self._lock:
-            self._packets_in, self._reports_out, self._lines, self._begun = packets_in, reports_out, b'', 0
+            self._packets_in, self._reports_out = packets_in, reports_out
+            self._lines, self._begun = b'', 0
 
     @property
     def process_id(self):
@@ -128,15 +169,22 @@ class Recorder:
         return self._process.pid
 
     def tick(self, log_time, publish_time, messages):
-        """Record a tick: its stamp and the wall clock in ns, and the messages (bytes) of the ticking topics in their order.
+        """Record a tick; return `state_wanted`.
 
-        Returns `state_wanted`.
+        Parameters
+        ----------
+        log_time, publish_time : int
+            Its stamp and the wall clock, ns.
+        messages : sequence of bytes
+            Of the ticking topics in their order.
         """
         data = b''.join(messages)
         if len(data) != self._tick_size:
-            raise ValueError(f'messages of {len(data)} bytes where the ticking topics have {self._tick_size}')
+            raise ValueError(f'messages of {len(data)} bytes where the ticking topics have '
+                             f'{self._tick_size}')
         with self._lock:
-            packet = packets.TICK_HEAD.pack(packets.TICK, self._tick_length, self._ticks, log_time, publish_time) + data
+            packet = packets.TICK_HEAD.pack(packets.TICK, self._tick_length, self._ticks, log_time,
+                                            publish_time) + data
             self._ticks += 1
             if self._waiting or not self._ready:
                 self._wait(packet)
@@ -148,22 +196,31 @@ class Recorder:
 
     def message(self, topic_name, log_time, publish_time, data):
         """Record a message that may be lost under duress."""
-        packet = packets.message_packet(0, self._positions[topic_name], log_time, publish_time, data)
+        packet = packets.message_packet(0, self._positions[topic_name], log_time, publish_time,
+                                        data)
         with self._lock:
             self._wait(packet)
 
     def important(self, topic_name, log_time, publish_time, data):
         """Record a message that must not be lost."""
         with self._lock:
-            self._keep(1, packets.message_packet(self._number + 1, self._positions[topic_name], log_time, publish_time, data))
+            self._keep(1, packets.message_packet(self._number + 1, self._positions[topic_name],
+                                                 log_time, publish_time, data))
 
     def commands(self, tick, log_time, publish_time, rows):
-        """Record the commands that took effect at a tick (rows of command_rows.py) as CommandMessages has them; none is ever lost."""
+        """Record the commands that took effect at a tick (rows of command_rows.py).
+
+        CommandMessages says as what; none is ever lost.
+        """
         with self._lock:
-            self._keep(len(rows) + 1, packets.commands_packet(self._number + 1, tick, log_time, publish_time, rows))
+            packet = packets.commands_packet(self._number + 1, tick, log_time, publish_time, rows)
+            self._keep(len(rows) + 1, packet)
 
     def _keep(self, count, packet):
-        """Send a packet with the next `count` numbers, and keep it until the recorder has it in its file."""
+        """Send a packet with the next `count` numbers.
+
+        It is kept until the recorder has it in its file.
+        """
         if self._unconfirmed_size + len(packet) > UNCONFIRMED:
             self._lost += count
             return
@@ -174,7 +231,10 @@ class Recorder:
         self._pump()
 
     def journal(self, kind, log_time, publish_time, **values):
-        """Record an entry of the journal (see :func:`rigid_body_sim.recording.topics.journal_topic`); it is never lost."""
+        """Record an entry of the journal; it is never lost.
+
+        See :func:`rigid_body_sim.recording.topics.journal_topic`.
+        """
         self.important(self._journal, log_time, publish_time, journal_message(kind, **values))
 
     def _append(self, number, packet):
@@ -182,7 +242,10 @@ class Recorder:
         self._waiting_size += len(packet)
 
     def _wait(self, packet):
-        """Queue a packet that may be lost, or drop it where too much waits already (until half of that is gone)."""
+        """Queue a packet that may be lost, or drop it where too much waits already.
+
+        Once something was dropped, half of what waits has to go before anything is queued again.
+        """
         self._dropping = self._waiting_size > (BACKLOG // 2 if self._dropping else BACKLOG)
         if self._dropping:
             self._dropped_now += packet[0] == packets.TICK
@@ -208,7 +271,10 @@ class Recorder:
             return 0
 
     def _pump(self):
-        """Write what waits, as far as the pipe takes it; some of it at a call, so that no tick is late for it."""
+        """Write what waits, as far as the pipe takes it.
+
+        A call writes some of it only, so that no tick is late for it.
+        """
         if not self._ready or not self._waiting:
             return
         pieces = [packet for _, packet in itertools.islice(self._waiting, _PIECES)]
@@ -243,7 +309,10 @@ class Recorder:
             self._send_again()
 
     def _send_again(self):
-        """Queue the important messages that the recorder lacks and that do not wait already, before everything that waits."""
+        """Queue the important messages that the recorder lacks before everything that waits.
+
+        Those that wait already stay where they are.
+        """
         first = next((number for number, _ in self._waiting if number), self._number + 1)
         begun = [self._waiting.popleft()] if self._begun else []
         again = [entry for entry in self._unconfirmed if entry[0] < first]
@@ -252,7 +321,11 @@ class Recorder:
         self._pump()
 
     def status(self):
-        """Return the Status. Call it a few times a second, not from the tick thread: it also starts a new recorder where one died."""
+        """Return the Status.
+
+        Call it a few times a second, but not from the tick thread: it also starts a new recorder
+        where one died.
+        """
         with self._keeping:
             self._look_after()
         return self._status()
@@ -262,7 +335,8 @@ class Recorder:
         with self._lock:
             self._look()
             self._pump()
-        if self._process.poll() is not None and not self._report.closed and time.monotonic() >= self._started_at + _RESTART:
+        died = self._process.poll() is not None and not self._report.closed
+        if died and time.monotonic() >= self._started_at + _RESTART:
             self._close_pipes()
             self._restarts += 1
             self._start(resume=True)
@@ -281,11 +355,14 @@ class Recorder:
                 error = f'the recorder was too slow to take the last {self._waiting_size} bytes'
             elif not error and not self._left and not self._ready and not report.closed:
                 error = 'the recorder died; a new one is starting'
-            dropped = report.dropped + (max(0, self._ticks - report.ticks) if report.error else self._dropped_now)
-            return Status(report.recorded, report.written, dropped, self._lost, self._waiting_size, self._restarts, error, report.closed)
+            now = max(0, self._ticks - report.ticks) if report.error else self._dropped_now
+            return Status(report.recorded, report.written, report.dropped + now, self._lost,
+                          self._waiting_size, self._restarts, error, report.closed)
 
     def close(self, timeout=30.0):
-        """End the recording: send all that waits, let the recorder finish; one that takes longer than `timeout` (s) finishes on its own.
+        """End the recording: send all that waits, let the recorder finish.
+
+        A recorder that takes longer than `timeout` (s) finishes on its own.
 
         Returns the last Status, whose `closed` says whether the recording is complete.
         """

@@ -4,9 +4,9 @@
 What a kill -9, a full disk or a power cut left gets the tail and metadata.yaml that every reader
 asks for. Everything that was completely written is kept. Of the chunk in which a file is cut (at
 most 0.1 s of a node's recording) the messages are kept if it is not compressed; half a compressed
-chunk cannot be decompressed. Nothing is ever invented: a chunk with a wrong checksum is hidden, not
-guessed at. The file is repaired in place, so that a full disk needs room for the index only, and a
-second run changes nothing.
+chunk cannot be decompressed. Nothing is ever invented: a chunk with a wrong checksum is hidden,
+not guessed at. The file is repaired in place, so that a full disk needs room for the index only,
+and a second run changes nothing.
 """
 
 import dataclasses
@@ -53,7 +53,7 @@ def recover(path):
 
 
 def recording_files(path):
-    """Return the names of the .mcap files of a recording's folder in the order of their numbers."""
+    """Return the names of a folder's .mcap files in the order of their numbers."""
     def number(name):
         match = re.search(r'_(\d+)\.mcap$', name)
         return (int(match[1]) if match else -1, name)

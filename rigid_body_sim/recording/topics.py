@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of a recording: name, type, offered quality of service, as rosbag2 describes them."""
 
 import dataclasses
@@ -9,7 +10,7 @@ from rigid_body_sim.messages import cdr
 
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 JOURNAL_TYPE = 'std_msgs/msg/String'
-# entries are made of plain values: to look for circles among them would take twice as long
+# entries are made of plain values; looking for circular references would take twice as long
 _to_json = json.JSONEncoder(allow_nan=False, check_circular=False).encode
 
 
@@ -17,8 +18,9 @@ _to_json = json.JSONEncoder(allow_nan=False, check_circular=False).encode
 class Topic:
     """A topic to be recorded.
 
-    `name` is complete (``/racket/pose``), `type` a message type we ship; `depth`, `reliability` (``reliable``, ``best_effort``) and
-    `durability` (``volatile``, ``transient_local``) as offered by its publisher.
+    `name` is complete (``/racket/pose``), `type` a message type we know; `depth`, `reliability`
+    (``reliable``, ``best_effort``) and `durability` (``volatile``, ``transient_local``) are those
+    that its publisher offers.
     """
 
     name: str
@@ -29,9 +31,11 @@ class Topic:
 
     def qos(self):
         """Return the offered profile with the nine keys and words of rosbag2."""
-        return {'history': 'keep_last', 'depth': self.depth, 'reliability': self.reliability, 'durability': self.durability,
-                'deadline': dict(_FOREVER), 'lifespan': dict(_FOREVER), 'liveliness': 'automatic',
-                'liveliness_lease_duration': dict(_FOREVER), 'avoid_ros_namespace_conventions': False}
+        return {'history': 'keep_last', 'depth': self.depth, 'reliability': self.reliability,
+                'durability': self.durability, 'deadline': dict(_FOREVER),
+                'lifespan': dict(_FOREVER), 'liveliness': 'automatic',
+                'liveliness_lease_duration': dict(_FOREVER),
+                'avoid_ros_namespace_conventions': False}
 
     def qos_text(self):
         """Return the offered profiles as rosbag2 writes them into channel metadata."""
@@ -39,13 +43,16 @@ class Topic:
 
 
 def journal_topic(namespace=''):
-    """Return the topic on which a recording tells what happened to it and to the simulation, one JSON object a message.
+    """Return the topic of the journal: what happened to the recording and to the simulation.
 
-    Recorded only, never published. Each object has a ``kind``: ``begin`` (first of each file: all about the run), ``state`` (a full state),
-    ``gap`` (ticks that were not recorded: ``ticks``, and the stamps ``after`` and ``until`` in ns), and whatever the simulation adds
-    (commands, resets, parameter changes: with the ``tick`` at which they took effect). Floats keep every bit.
+    It is recorded only, never published; each message is one JSON object. Each object has a
+    ``kind``: ``begin`` (first of each file: all about the run), ``state`` (a full state), ``gap``
+    (ticks that were not recorded: ``ticks``, and the stamps ``after`` and ``until`` in ns), and
+    whatever the simulation adds (commands, resets, parameter changes, with the ``tick`` at which
+    they took effect). Floats keep every bit.
     """
-    return Topic(f'{namespace.rstrip("/")}/journal', JOURNAL_TYPE, depth=1000, durability='transient_local')
+    name = f'{namespace.rstrip("/")}/journal'
+    return Topic(name, JOURNAL_TYPE, depth=1000, durability='transient_local')
 
 
 def journal_message(kind, **values):

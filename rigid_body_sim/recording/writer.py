@@ -12,8 +12,8 @@
         writer.ticks(0, stamps, wall_clocks, [pose.pack_many(columns)])
 
 log_time is the stamp (it never falls: an older one is raised to the last), publish_time the wall
-clock, both in ns; ``sequence`` counts ticks. metadata.yaml is written last, so its counts match the
-files.
+clock, both in ns; ``sequence`` counts ticks. metadata.yaml is written last, so its counts match
+the files.
 """
 
 import errno
@@ -51,8 +51,8 @@ class Writer:
         The folder to make; its name is the bag's. With `resume` it exists, and the recording goes
         on with the next file.
     ticking : sequence of (Topic, int)
-        What is recorded at every tick, in this order: the topic and the size of its messages, which
-        never changes.
+        What is recorded at every tick, in this order: the topic and the size of its messages,
+        which never changes.
     others : sequence of Topic
         All other topics.
     journal : Topic

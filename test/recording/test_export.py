@@ -1,32 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exports read back by the tools they are for: csv, numpy, pyarrow."""
 
 import csv
+import io
 import json
+import os
 import pathlib
+import shutil
 
 import numpy as np
 import pytest
 from recording.conftest import START, Ticks, write
+from tqdm import tqdm
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import export as module
 from rigid_body_sim.recording.export import export, main
+from rigid_body_sim.recording.reader import newest_recording
+from rigid_body_sim.recording.tables import Joined
 
-NAMES = ['log_time', 'publish_time', 'sequence', 'header.stamp', 'header.frame_id', 'pose.position.x', 'pose.position.y', 'pose.position.z',
-         'pose.orientation.x', 'pose.orientation.y', 'pose.orientation.z', 'pose.orientation.w']
+NAMES = ['seconds', 'log_time', 'publish_time', 'sequence', 'header.stamp', 'header.frame_id',
+         'pose.position.x', 'pose.position.y', 'pose.position.z', 'pose.orientation.x',
+         'pose.orientation.y', 'pose.orientation.z', 'pose.orientation.w']
 
 
 def test_csv_keeps_every_digit(tmp_path, recording):
     paths = export(recording, tmp_path / 'out', 'csv')
-    assert sorted(path.name for path in paths) == ['angular_momentum_squared.csv', 'angular_velocity.csv', 'energy.csv', 'journal.jsonl',
-                                                   'pose.csv', 'scene.jsonl']
+    assert sorted(path.name for path in paths) == [
+        'angular_momentum_squared.csv', 'angular_velocity.csv', 'energy.csv', 'journal.jsonl',
+        'pose.csv', 'scene.jsonl', 'ticks.csv']
+    assert sorted(path.name for path in (tmp_path / 'out').iterdir()) == sorted(
+        path.name for path in paths)
     with open(tmp_path / 'out' / 'pose.csv', newline='') as stream:
         names, *rows = csv.reader(stream)
     assert names == NAMES
     ticks = Ticks(0, 1000)
-    assert [[float(number) for number in row[8:]] for row in rows] == ticks.orientation.tolist()
-    assert [int(row[0]) for row in rows] == ticks.stamps.tolist()
-    assert {row[4] for row in rows} == {'world'}
+    assert [[float(number) for number in row[9:]] for row in rows] == ticks.orientation.tolist()
+    assert [int(row[1]) for row in rows] == ticks.stamps.tolist()
+    assert {row[5] for row in rows} == {'world'}
+    assert [float(row[0]) for row in rows] == [k / 1000 for k in range(1000)]
+
+
+def test_one_table_joins_all_that_was_recorded_at_every_tick(tmp_path, recording):
+    export(recording, tmp_path / 'out', 'numpy')
+    table = np.load(tmp_path / 'out' / 'ticks.npy')
+    ticks = Ticks(0, 1000)
+    np.testing.assert_array_equal(table['seconds'], np.arange(1000) / 1000)
+    np.testing.assert_array_equal(table['pose.pose.orientation.w'], ticks.orientation[:, 3])
+    np.testing.assert_array_equal(table['angular_velocity.vector.y'], ticks.angular_velocity[:, 1])
+    np.testing.assert_array_equal(table['energy.data'], ticks.energy)
+    np.testing.assert_array_equal(table['angular_momentum_squared.data'], ticks.momentum)
+
+
+def test_topics_whose_blocks_end_at_different_times_are_joined():
+    """As in recordings of others, whose chunks cut a tick in two; one message of b is missing."""
+    def block(*times):
+        return {'log_time': np.array(times), 'data': np.array(times) * 10.0}
+    joined, rows = Joined({'/a': 'a', '/b': 'b'}), []
+    for topic, times in (('/a', (1, 2, 3)), ('/b', (1,)), ('/a', (4,)), ('/b', (3, 4)),
+                         ('/b', (5,)), ('/a', (5,))):
+        made = joined.add(topic, block(*times))
+        rows += list(zip(*made.values(), strict=True)) if made else []
+    assert rows == [(k, 10.0 * k, 10.0 * k) for k in (1, 3, 4, 5)]
+
+
+@pytest.mark.parametrize('how', [KeyboardInterrupt, OSError])
+def test_an_interrupted_export_leaves_nothing_and_can_be_repeated(tmp_path, recording, monkeypatch,
+                                                                 how):
+    add, left = module.CsvTable.add, [3]
+
+    def interrupted(table, columns):
+        left[0] -= 1
+        if not left[0]:
+            raise how
+        add(table, columns)
+    monkeypatch.setattr(module.CsvTable, 'add', interrupted)
+    with pytest.raises(how):
+        export(recording, tmp_path / 'out', 'csv')
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / '.out.part').mkdir()        # as a kill -9 leaves it
+    (tmp_path / '.out.part' / 'pose.csv').write_text('half')
+    export(recording, tmp_path / 'out', 'csv')
+    assert [path.name for path in tmp_path.iterdir()] == ['out']
+
+
+def test_the_bar_has_a_total_and_reaches_it(tmp_path, recording):
+    with tqdm(disable=False, file=io.StringIO()) as bar:
+        export(recording, tmp_path / 'out', 'numpy', bar=bar)
+        assert (bar.n, bar.total) == (4002, 4002)
+
+
+def test_a_folder_of_recordings_stands_for_the_newest(tmp_path, recording, capsys):
+    for number, name in enumerate(('b', 'c', 'a')):
+        shutil.copytree(recording, tmp_path / 'recordings' / name)
+        for file in (tmp_path / 'recordings' / name).iterdir():
+            os.utime(file, (number, number))
+    (tmp_path / 'recordings' / 'a_report').mkdir()
+    assert main([str(tmp_path / 'recordings'), '--output', str(tmp_path / 'out'), '--topics',
+                 '/scene']) == 0
+    newest = tmp_path / 'recordings' / 'a'
+    assert capsys.readouterr().err == f'{newest}: the newest of 3 recordings\n'
+    with pytest.raises(BadInput, match='holds no recording; a recording, or a folder of'):
+        newest_recording(tmp_path / 'out')
 
 
 def test_numpy_opens_mapped_with_named_columns(tmp_path, recording):

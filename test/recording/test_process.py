@@ -10,8 +10,8 @@ import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
 from rigid_body_sim.recording import packets
-from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.mcap.writing import McapFile
+from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.process import RecorderProcess
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover

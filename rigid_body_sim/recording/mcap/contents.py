@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one file holds, and the tail that closes it: end of data, summary, footer.
 
-Why not `mcap.writer.Writer.finish`: it knows only what went through that Writer, so it cannot close
-a file that was composed of arrays, nor one that is mended. It also keeps every ChunkIndex as an
-object: 0.8 kB instead of 0.1 kB, 200 MB for a recording of 4 GB.
+Why not `mcap.writer.Writer.finish`: it knows only what went through that Writer, so it cannot
+close a file that was composed of arrays, nor one that is mended. It also keeps every ChunkIndex as
+an object: 0.8 kB instead of 0.1 kB, 200 MB for a recording of 4 GB.
 """
 
 import typing

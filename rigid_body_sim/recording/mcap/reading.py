@@ -132,17 +132,19 @@ class FileReader:
         offsets, _ = walk(data)
         message_heads = heads(data, offsets)
         times = message_heads['log_time']
-        wanted = (np.isin(message_heads['channel'], list(channels))
-                  & (times >= start) & (times <= end))
-        return Piece(data, offsets[wanted], message_heads[wanted])
+        chosen = np.zeros(2**16, bool)      # by channel number: faster than isin
+        chosen[list(channels)] = True
+        wanted = chosen[message_heads['channel']] & (times >= start) & (times <= end)
+        if not wanted.all():
+            offsets, message_heads = offsets[wanted], message_heads[wanted]
+        return Piece(data, offsets, message_heads)
 
 
 def _uncompressed(data):
     """Return the records of a chunk's record."""
-    head, content = data[:HEAD.size], data[HEAD.size:]
-    if head != HEAD.pack(Opcode.CHUNK, len(content)):
+    if data[:HEAD.size] != HEAD.pack(Opcode.CHUNK, len(data) - HEAD.size):
         raise Damaged('an index that points at no chunk')
-    return records_of(of_bytes(Chunk, content))
+    return records_of(of_bytes(Chunk, data[HEAD.size:]))
 
 
 def _whole_records(data):

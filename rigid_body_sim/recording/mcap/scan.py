@@ -85,8 +85,8 @@ class Scan:
     places : list of ChunkPlace
         Of the chunks among the contents.
     end : int
-        Where the data section ends: at its end record, or at the first byte that belongs to nothing
-        whole. 0 if not even the head is whole.
+        Where the data section ends: at its end record, or at the first byte that belongs to
+        nothing whole. 0 if not even the head is whole.
     cut : bool
         True if no end record was found.
     last : FoundChunk or None

@@ -2,8 +2,8 @@
 """The tail of an MCAP file: whether it is whole, and what its summary says is in the file.
 
 The records of the summary are read by `mcap.stream_reader`. Why not
-`mcap.reader.SeekingReader.get_summary`: it does not check the summary's checksum nor any length, so
-a damaged tail makes it read whatever follows, or allocate what a record claims; and it keeps an
+`mcap.reader.SeekingReader.get_summary`: it does not check the summary's checksum nor any length,
+so a damaged tail makes it read whatever follows, or allocate what a record claims; and it keeps an
 object of 0.8 kB a chunk.
 """
 

@@ -41,8 +41,9 @@ class Cut(Damaged):
 def walk(records):
     """Return (offsets, others) of records end to end.
 
-    `offsets`, int64, says where messages begin; `others` lists (opcode, begin, end) of the contents
-    of all other records. Raises Cut where a record makes no sense or does not end within them.
+    `offsets`, int64, says where messages begin; `others` lists (opcode, begin, end) of the
+    contents of all other records. Raises Cut where a record makes no sense or does not end within
+    them.
     """
     data, size = np.frombuffer(records, np.uint8), len(records)
     unpack, head_size = HEAD.unpack_from, HEAD.size

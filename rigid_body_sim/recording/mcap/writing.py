@@ -2,8 +2,8 @@
 """One MCAP file being written: each call appends whole records, or it appends nothing.
 
 A chunk is written by one call with its message indexes, so that a killed writer leaves a file that
-is whole but for its tail. Why not `mcap.writer.Writer`: a disk that refuses leaves it in the middle
-of a record, and it cannot take that back; for speed see chunks.py.
+is whole but for its tail. Why not `mcap.writer.Writer`: a disk that refuses leaves it in the
+middle of a record, and it cannot take that back; for speed see chunks.py.
 """
 
 import os
