@@ -11,7 +11,7 @@ from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.analysis.summary import lines, summary, title
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.reader import Recording, newest_recording
 
 
 def analyze(path, folder, short=False, shared_page=None):
@@ -33,11 +33,18 @@ def analyze(path, folder, short=False, shared_page=None):
     BadInput
         Where there is no recording of a simulation, or the folder cannot be written.
     """
-    folder = pathlib.Path(folder)
+    # a terminal shows what is being done from the first moment to the last
+    with tqdm(desc=f'{path}: opening', unit=' messages', unit_scale=True, disable=None, leave=False) as bar:
+        return _analyze(path, pathlib.Path(folder), short, shared_page, bar)
+
+
+def _analyze(path, folder, short, shared_page, bar):
     with Recording(path) as recording:
         bodies = sources(recording)
-        with tqdm(total=recording.message_count, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
-            measured = measure(recording, bodies, progress.update)
+        bar.set_description(f'{path}: reading')
+        bar.reset(recording.message_count)
+        measured = measure(recording, bodies, bar.update)
+    bar.set_description(f'{path}: spectrum, ledger, figures')
     more = [(None, None) if short else (_spectrum(one), _ledger(one.source)) for one in measured]
     found = [summary(one, *extra) for one, extra in zip(measured, more, strict=True)]
     written = [folder / 'report.txt', folder / 'report.json']
@@ -108,7 +115,8 @@ def main(arguments=None):
     """Run the command; return the exit status."""
     parser = command_line.parser('analyze', 'Recordings to reports: drift, flips, lateness, drops, figures.',
                                  'python -m rigid_body_sim analyze recordings/racket')
-    parser.add_argument('recording', nargs='+', help='folder of a recording, or .mcap file; also of `ros2 bag record`')
+    parser.add_argument('recording', nargs='+', help='folder of a recording, or .mcap file; also of `ros2 bag record`; '
+                        'a folder of recordings: the newest in it')
     parser.add_argument('--output', metavar='FOLDER', help='where the reports go (default: beside each recording); '
                         'of several recordings it gets one page on all, and a folder each')
     parser.add_argument('--json', action='store_true', help='print what report.json holds')
@@ -117,12 +125,15 @@ def main(arguments=None):
 
 def _run(options):
     results, shared = [], [] if options.output and len(options.recording) > 1 else None
-    for path in options.recording:
+    for given in options.recording:
+        path, others = newest_recording(given)
+        if others:
+            print(f'{path}: the newest of {others + 1} recordings', file=sys.stderr)
         folder = report_folder(path)
         if options.output:
             folder = pathlib.Path(options.output) / (folder.name if shared is not None else '')
         found, written = analyze(path, folder, shared_page=shared)
-        results.append({'recording': path, 'bodies': found, 'files': [str(name) for name in written]})
+        results.append({'recording': str(path), 'bodies': found, 'files': [str(name) for name in written]})
         if not options.json:
             show(found, written)
     if shared is not None:

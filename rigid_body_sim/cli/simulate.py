@@ -19,8 +19,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
 from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about, compression
+from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
-from rigid_body_sim.recording.writer import Writer
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import States
 from rigid_body_sim.simulation.simulation import Simulation
@@ -53,6 +53,8 @@ class Recording:
     """
 
     def __init__(self, path, simulation, parameters, **writing):
+        need_mcap()
+        from rigid_body_sim.recording.writer import Writer
         self._simulation = simulation
         self._packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
         self._journal = journal_topic()
@@ -122,7 +124,7 @@ def interruptible():
             signal.signal(number, handler)
 
 
-def simulate(simulation, ticks, recording=None, stop=()):
+def simulate(simulation, ticks, recording=None, stop=(), progress=None):
     """Run a simulation from tick 0 to `ticks`; return how often each event occurred, by name.
 
     Parameters
@@ -134,23 +136,24 @@ def simulate(simulation, ticks, recording=None, stop=()):
         Gets the states at all ticks, the first one included.
     stop : sequence
         The run ends early when it is not empty any more.
+    progress : callable, optional
+        Called with the number of ticks done.
     """
     counts = collections.Counter()
     if recording:
         recording.ticks(0, States(simulation.vector[np.newaxis].copy()), ())
-    with tqdm(total=ticks, unit=' ticks', unit_scale=True, disable=None,
-              leave=False) as progress:
-        while simulation.tick < ticks and not stop:
-            first, count = simulation.tick + 1, min(BLOCK, ticks - simulation.tick)
-            if recording:
-                states = simulation.advance_through(count)
-                recording.ticks(first, states, simulation.events)
-            else:
-                simulation.advance(count)
-            counts.update(event.name for event in simulation.events)
-            simulation.events.clear()
-            simulation.forget_past()
-            progress.update(count)
+    while simulation.tick < ticks and not stop:
+        first, count = simulation.tick + 1, min(BLOCK, ticks - simulation.tick)
+        if recording:
+            states = simulation.advance_through(count)
+            recording.ticks(first, states, simulation.events)
+        else:
+            simulation.advance(count)
+        counts.update(event.name for event in simulation.events)
+        simulation.events.clear()
+        simulation.forget_past()
+        if progress:
+            progress(count)
     return counts
 
 
@@ -185,6 +188,13 @@ def main(arguments=None):
 
 
 def _run(options):
+    # from the first moment on: to choose a method and to compile it may take seconds
+    with tqdm(desc='setting up', unit=' ticks', unit_scale=True, disable=None,
+              leave=False) as bar:
+        return _simulate(options, bar)
+
+
+def _simulate(options, bar):
     began = time.perf_counter()
     scene = load_scene(options.scene, options.set)
     if not (options.duration >= 0.0 and not options.duration * options.rate > LONGEST):
@@ -197,15 +207,19 @@ def _run(options):
         recording = Recording(options.output, simulation, _parameters(options),
                               **_writing(options)) if options.output else None
         prepared = time.perf_counter()
+        bar.set_description(simulation.scene.name)
+        bar.reset(ticks)
         try:
             with contextlib.closing(recording) if recording else contextlib.nullcontext():
-                events = simulate(simulation, ticks, recording, asked)
+                events = simulate(simulation, ticks, recording, asked, bar.update)
+                bar.set_description('finishing')
         except OSError as error:
             print(f'{options.output}: the disk refuses ({error.strerror}) at t = '
                   f'{simulation.time:.9g} s; make room and run "recover {options.output}": '
                   'it keeps all up to there', file=sys.stderr)
             return command_line.CHECK_FAILED
     finished = time.perf_counter()
+    bar.close()
     cost = {'set_up': prepared - began, 'run': finished - prepared, 'ticks': simulation.tick,
             'messages': recording.messages if recording else 0}
     for line in simulation.scene.notes:
