@@ -136,7 +136,7 @@ TABLE = (
     Entry('record', True, 'record to MCAP'),
     Entry('recording.directory', 'recordings', 'folder in which each run makes a recording of its own'),
     Entry('recording.name', '', 'name of the recording; empty: node, scene, date and time'),
-    Entry('recording.compression', 'auto', 'of chunks; auto: zstd if it is installed, else lz4, else none',
+    Entry('recording.compression', 'auto', 'of chunks; auto: zstd',
           choices=('auto', *compression.NAMES)),
     Entry('recording.split_bytes', 0.0, 'a new file begins after so many bytes; 0: after 4 GB', 0.0, 4e9),
     Entry('recording.split_seconds', 0.0, 'a new file begins after so much time of stamps (s); 0: never', 0.0, 1e9),
