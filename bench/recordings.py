@@ -1,24 +1,37 @@
-"""Figures of recordings: writing, size, reading, analysing, cost of a tick to the node, what a kill loses.
+# SPDX-License-Identifier: Apache-2.0
+"""Figures of recordings: writing, size, reading, analysing, cost to the node, losses by a kill.
 
     PYTHONPATH=. .venv/bin/python bench/recordings.py [--seconds 60] [--hour]
 
-The messages are those of a node's four topics on the racket scene. Prints JSON; single times depend on the machine and on what else it does.
+The messages are those of a node's four topics on the racket scene. Prints JSON; single times depend
+on the machine and on what else it does.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import pathlib
 import signal
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 
+import mcap.exceptions
+import mcap.reader
+import mcap.records
+import mcap.stream_reader
+import mcap.writer
 import numpy as np
 
+from rigid_body_sim.messages.definitions import definition
 from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.recording.mcap.compression import records_of
+from rigid_body_sim.recording.mcap.reading import FileReader
+from rigid_body_sim.recording.mcap.walk import heads, walk
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recorder import Recorder
 from rigid_body_sim.recording.recover import recover
@@ -70,6 +83,110 @@ def reading(folder):
         for _, columns in recording.blocks():
             count += len(columns['log_time'])
     return count / (time.perf_counter() - began)
+
+
+def beside_the_library(folder):
+    """Time what recording/mcap does itself and the package mcap for the same; return seconds.
+
+    Each entry is (ours, the library's), on a recording of `folder` as the node writes it.
+    """
+    racket = Racket(10_000, 1000.0)
+    path = next(folder.glob('*.mcap'))
+    chunks, cut = list(_chunks(path)), folder / 'cut'
+    return {
+        'write 40,000 messages': (_timed(_write_ours, folder / 'ours', racket),
+                                  _timed(_write_theirs, folder / 'theirs', racket)),
+        'walk the records of all chunks': (_timed(_walk_ours, chunks),
+                                           _timed(_walk_theirs, chunks)),
+        'read all messages': (_timed(_read_ours, path), _timed(_read_theirs, path)),
+        'mend a file without its end': (_timed(_mend_ours, _cut(path, cut)),
+                                        _timed(_mend_theirs, _cut(path, cut))),
+    }
+
+
+def _timed(function, *arguments):
+    began = time.process_time()
+    function(*arguments)
+    return time.process_time() - began
+
+
+def _write_ours(folder, racket):
+    with Writer(folder, racket.ticking, [], journal_topic(), {}) as writer:
+        writer.ticks(0, racket.stamps, racket.stamps, racket.rows)
+
+
+def _write_theirs(path, racket):
+    with open(path, 'wb') as stream:
+        writer = mcap.writer.Writer(stream, chunk_size=2**16)
+        writer.start('ros2')
+        channels = []
+        for topic, _ in racket.ticking:
+            text = definition(topic.type).text.encode()
+            schema = writer.register_schema(topic.type, 'ros2msg', text)
+            channels.append(writer.register_channel(topic.name, 'cdr', schema))
+        for k, stamp in enumerate(racket.stamps.tolist()):
+            for channel, rows in zip(channels, racket.rows, strict=True):
+                writer.add_message(channel, stamp, rows[k].tobytes(), stamp, k)
+        writer.finish()
+
+
+def _chunks(path):
+    with open(path, 'rb') as stream:
+        reader = mcap.stream_reader.StreamReader(stream, emit_chunks=True)
+        yield from (record for record in reader.records if isinstance(record, mcap.records.Chunk))
+
+
+def _walk_ours(chunks):
+    for chunk in chunks:
+        records = records_of(chunk)
+        heads(records, walk(records)[0])
+
+
+def _walk_theirs(chunks):
+    for chunk in chunks:
+        mcap.stream_reader.breakup_chunk(chunk, validate_crc=True)
+
+
+def _read_ours(path):
+    reader = FileReader(path)
+    for place in reader.places():
+        reader.piece(place, reader.channels, 0, 2**63)
+    reader.close()
+
+
+def _read_theirs(path):
+    with open(path, 'rb') as stream:
+        for _ in mcap.reader.make_reader(stream, validate_crcs=True).iter_messages():
+            pass
+
+
+def _cut(path, cut):
+    """Make a copy without the tail of a file."""
+    content = path.read_bytes()
+    cut.write_bytes(content[:-2000])
+    return cut
+
+
+def _mend_ours(path):
+    recover(path)
+
+
+def _mend_theirs(path):
+    """Read up to the cut, and write what was found into another file."""
+    with open(path, 'rb') as stream, open(path.with_suffix('.new'), 'wb') as new:
+        writer, numbers = mcap.writer.Writer(new, chunk_size=2**16), {}
+        writer.start('ros2')
+        with contextlib.suppress(mcap.exceptions.McapError, struct.error):
+            for record in mcap.stream_reader.StreamReader(stream).records:
+                if isinstance(record, mcap.records.Schema):
+                    writer.register_schema(record.name, record.encoding, record.data)
+                elif isinstance(record, mcap.records.Channel):
+                    numbers[record.id] = writer.register_channel(
+                        record.topic, record.message_encoding, record.schema_id, record.metadata)
+                elif isinstance(record, mcap.records.Message):
+                    writer.add_message(numbers[record.channel_id], record.log_time, record.data,
+                                       record.publish_time, record.sequence)
+        writer.finish()
 
 
 def analysing(folder, seconds):
@@ -154,6 +271,7 @@ def main():
             figures[f'writer as {title}'] = {'messages_per_second': speed, 'size_by_payload': ratio}
         figures['size by payload'] = {scene: writing(folder / f'size{number}', 20.0, 100, load_scene(scene.split()[0], scene.split()[1:]))[1]
                                       for number, scene in enumerate(SCENES)}
+        figures['ours and the library: CPU seconds'] = beside_the_library(folder / 'node')
         figures['reader'] = {'messages_per_second': reading(folder / 'node')}
         figures['4 topics at 1 kHz'] = ticking(folder / 'slow', 1000.0, 10.0)
         figures['4 topics at 4 kHz'] = ticking(folder / 'fast', 4000.0, options.seconds)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """All messages of a chunk at once: where they are and what their heads say, as NumPy arrays.
 
-Why not `mcap.stream_reader.breakup_chunk`: it makes a Python object of every message, RATIO times
-as slow.
+Why not `mcap.stream_reader.breakup_chunk`: it makes a Python object of every message, which takes
+nine times as long (bench/recordings.py).
 
 A recording of a simulation repeats the same few messages tick after tick. So records are walked
 one by one only until a tick (the messages between one and the next of the same form) repeats
