@@ -1,9 +1,12 @@
-"""Message definitions: the types we publish, as data (definitions.json), and a parser of ``ros2msg`` text for those of strangers.
+# SPDX-License-Identifier: Apache-2.0
+"""Message definitions: those of the installed ROS 2 or of rosbags, and a parser of their text.
 
-A schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.
+The text is ``ros2msg``, as recordings carry it, so the parser reads those of strangers as well. A
+schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.
 """
 
 import functools
+import importlib.util
 import json
 import pathlib
 import re
@@ -11,17 +14,23 @@ import typing
 
 from rigid_body_sim.errors import BadInput
 
-SIZES = {'bool': 1, 'byte': 1, 'char': 1, 'int8': 1, 'uint8': 1, 'int16': 2, 'uint16': 2, 'int32': 4, 'uint32': 4, 'int64': 8, 'uint64': 8,
-         'float32': 4, 'float64': 8}
+SIZES = {'bool': 1, 'byte': 1, 'char': 1, 'int8': 1, 'uint8': 1, 'int16': 2, 'uint16': 2,
+         'int32': 4, 'uint32': 4, 'int64': 8, 'uint64': 8, 'float32': 4, 'float64': 8}
 SEQUENCE = -1
 _SEPARATOR = re.compile(r'^={80}\s*$', re.MULTILINE)
-_FIELD = re.compile(r'(?P<base>[A-Za-z]\w*(?:/\w+){0,2})(?P<bound><=\d+)?(?P<array>\[(?:<=)?\d*\])?\s+(?P<name>[A-Za-z]\w*)'
+_FIELD = re.compile(r'(?P<base>[A-Za-z]\w*(?:/\w+){0,2})(?P<bound><=\d+)?'
+                    r'(?P<array>\[(?:<=)?\d*\])?\s+(?P<name>[A-Za-z]\w*)'
                     r'\s*(?P<constant>=(?!=))?')
+_FIELD_TYPE = re.compile(r'(?:^|\n)\s*([a-zA-Z0-9_/]+)(?:\[[^\]]*\])?\s+')
 _MAX_FIXED_ARRAY = 1_000_000
 
 
 class Field(typing.NamedTuple):
-    """One field: `base` is a primitive's name, ``string`` or a type name; `array` is None, the fixed length, or SEQUENCE."""
+    """One field of a message.
+
+    `base` is a primitive's name, ``string`` or a type name; `array` is None, the fixed length, or
+    SEQUENCE.
+    """
 
     name: str
     base: str
@@ -29,7 +38,7 @@ class Field(typing.NamedTuple):
 
 
 class Definition(typing.NamedTuple):
-    """A message type: its complete ``ros2msg`` text and its RIHS01 hash, both as rosbag2 records them."""
+    """A message type: its complete ``ros2msg`` text and its RIHS01 hash, as rosbag2 has them."""
 
     type_name: str
     text: str
@@ -37,20 +46,77 @@ class Definition(typing.NamedTuple):
 
 
 @functools.cache
-def _shipped():
-    return json.loads((pathlib.Path(__file__).parent / 'definitions.json').read_text())
-
-
 def definition(type_name):
-    """Return the Definition of a type we ship; BadInput for another."""
-    if type_name not in _shipped():
-        raise BadInput(type_name, 'is not among the message types this package knows', f'one of {", ".join(sorted(_shipped()))}')
-    return Definition(type_name, **_shipped()[type_name])
+    """Return the Definition of a type, from the installed ROS 2 or else from rosbags.
+
+    Raises BadInput where neither knows the type.
+    """
+    found = _of_ros(type_name) or _of_rosbags(type_name)
+    if found is None:
+        raise BadInput(type_name, 'is a message type that is not installed here',
+                       'a ROS 2 package that defines it, or "pip install rosbags" for common ones')
+    return found
+
+
+def _of_ros(type_name):
+    """Return the Definition in the share folder of the installed ROS 2, or None."""
+    path = _message_file(type_name)
+    if path is None:
+        return None
+    described = json.loads(path.with_suffix('.json').read_text(encoding='utf-8'))
+    hashes = {entry['type_name']: entry['hash_string'] for entry in described['type_hashes']}
+    return Definition(type_name, _complete_text(type_name, set()), hashes[type_name])
+
+
+def _message_file(type_name):
+    """Return the path of the .msg file of a type, or None.
+
+    ROS keeps it in the share folder of the prefix in which the package's Python modules are; this
+    holds for ROS from apt, for wheels and for a colcon workspace, sourced or not.
+    """
+    match = re.fullmatch(r'(\w+)/msg/(\w+)', type_name)
+    spec = importlib.util.find_spec(match[1]) if match else None
+    # prefix/lib/python3.12/site-packages/package/__init__.py
+    for prefix in pathlib.Path(spec.origin).parents[4:5] if spec and spec.origin else ():
+        path = prefix / 'share' / match[1] / 'msg' / f'{match[2]}.msg'
+        if path.is_file() and path.with_suffix('.json').is_file():
+            return path
+    return None
+
+
+def _complete_text(type_name, seen):
+    """Return the text of a .msg file followed by those it depends on, as rosbag2 writes it.
+
+    They come sorted, depth first, each once (`seen` collects the names), each after a line of 80
+    ``=`` and a line ``MSG: package/Name``.
+    """
+    text = _message_file(type_name).read_text(encoding='utf-8')
+    package = type_name.split('/')[0]
+    needed = {name for name in _FIELD_TYPE.findall(text) if name not in {*SIZES, 'string'}}
+    for name in sorted(_full_name(name, package) for name in needed):
+        if name not in seen:
+            seen.add(name)
+            short = name.replace('/msg/', '/')
+            text += f'\n{"=" * 80}\nMSG: {short}\n' + _complete_text(name, seen)
+    return text
+
+
+def _of_rosbags(type_name):
+    """Return the Definition that rosbags has of a type (without comments), or None."""
+    try:
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError:
+        return None
+    store = get_typestore(Stores.ROS2_JAZZY)
+    if type_name not in store.fielddefs:
+        return None
+    text, _ = store.generate_msgdef(type_name, ros_version=2)
+    return Definition(type_name, text, store.hash_rihs01(type_name))
 
 
 @functools.cache
 def schema(type_name):
-    """Return the schema of a type we ship."""
+    """Return the schema of a type, see :func:`definition`."""
     return parse(type_name, definition(type_name).text)
 
 
@@ -65,7 +131,8 @@ def parse(type_name, text):
         if schemas:
             head, _, part = part.lstrip('\r\n').partition('\n')
             if not head.startswith('MSG:'):
-                raise BadInput(f'definition of {type_name}', f'{head[:60]!r} after a separator', 'a line "MSG: package/Name"')
+                raise BadInput(f'definition of {type_name}', f'{head[:60]!r} after a separator',
+                               'a line "MSG: package/Name"')
             current = _full_name(head[4:].strip(), '')
         schemas[current] = _fields(current, part)
     _check(schemas, type_name, ())
@@ -86,7 +153,8 @@ def _fields(type_name, text):
             continue
         match = _FIELD.match(line)
         if not match:
-            raise BadInput(f'definition of {type_name}', f'the line {line[:80]!r}', 'a field like "float64 x"')
+            raise BadInput(f'definition of {type_name}', f'the line {line[:80]!r}',
+                           'a field like "float64 x"')
         if match['constant']:
             continue
         base, array = match['base'], None
@@ -94,7 +162,8 @@ def _fields(type_name, text):
             length = match['array'][1:-1]
             array = int(length) if length.isdigit() else SEQUENCE
             if array > _MAX_FIXED_ARRAY:
-                raise BadInput(f'definition of {type_name}', f'an array of {array} elements', f'at most {_MAX_FIXED_ARRAY}')
+                raise BadInput(f'definition of {type_name}', f'an array of {array} elements',
+                               f'at most {_MAX_FIXED_ARRAY}')
         if base not in SIZES and base != 'string':
             base = _full_name(base, type_name.split('/')[0])
         fields.append(Field(match['name'], base, array))
@@ -103,9 +172,11 @@ def _fields(type_name, text):
 
 def _check(schemas, type_name, above):
     if type_name not in schemas:
-        raise BadInput(f'definition of {(above or (type_name,))[0]}', f'{type_name} is missing', 'a text with all the types it depends on')
+        raise BadInput(f'definition of {(above or (type_name,))[0]}', f'{type_name} is missing',
+                       'a text with all the types it depends on')
     if type_name in above or len(above) > 32:
-        raise BadInput(f'definition of {above[0]}', f'{type_name} contains itself or lies too deep', 'a finite type')
+        raise BadInput(f'definition of {above[0]}',
+                       f'{type_name} contains itself or lies too deep', 'a finite type')
     for field in schemas[type_name]:
         if field.base not in SIZES and field.base != 'string':
             _check(schemas, field.base, (*above, type_name))

@@ -1,24 +1,58 @@
-"""Definitions as data: the same texts and hashes as an installed Jazzy, and a parser that strangers' texts cannot hurt."""
+# SPDX-License-Identifier: Apache-2.0
+"""Definitions: those of the installed ROS 2 and of rosbags agree; no text of a stranger hurts."""
 
-import json
-import pathlib
 import sys
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages import make_definitions
+from rigid_body_sim.messages import definitions
 from rigid_body_sim.messages.definitions import SEQUENCE, Field, definition, parse, schema
+from rigid_body_sim.messages.state_topics import OUTPUTS
+from rigid_body_sim.recording.about import STATUS_TYPE, STRING_TYPE
+from rigid_body_sim.recording.command_messages import WRENCH_TYPE
 
-SHIPPED = json.loads((pathlib.Path(make_definitions.__file__).parent / 'definitions.json').read_text())
-SHARE = pathlib.Path(sys.prefix) / 'share'
+SHIPPED = {STATUS_TYPE, STRING_TYPE, WRENCH_TYPE, 'diagnostic_msgs/msg/DiagnosticArray',
+           *(output.type for output in OUTPUTS.values())}
+"""All types that a node publishes or records."""
 
 
-@pytest.mark.skipif(not (SHARE / 'geometry_msgs').exists(), reason='the ROS wheels are not installed in this environment')
-def test_shipped_definitions_are_what_the_generator_makes_of_the_installed_ros(capsys):
-    make_definitions.main(SHARE)
-    assert json.loads(capsys.readouterr().out) == SHIPPED
+@pytest.fixture
+def fresh():
+    """Forget definitions before and after a test."""
+    for function in (definition, schema):
+        function.cache_clear()
+    yield
+    for function in (definition, schema):
+        function.cache_clear()
+
+
+def test_the_text_is_the_message_file_and_what_it_depends_on_as_rosbag2_writes_it():
+    pytest.importorskip('geometry_msgs')
+    text = definition('geometry_msgs/msg/PoseStamped').text
+    assert text.startswith('# A Pose with reference coordinate frame and timestamp\n')
+    names = [line[5:] for line in text.splitlines() if line.startswith('MSG: ')]
+    assert names == ['geometry_msgs/Pose', 'geometry_msgs/Point', 'geometry_msgs/Quaternion',
+                     'std_msgs/Header', 'builtin_interfaces/Time']
+    assert text.count('=' * 80 + '\nMSG: ') == 5
+
+
+@pytest.mark.parametrize('type_name', sorted(SHIPPED))
+def test_without_ros_the_definitions_of_rosbags_say_the_same(type_name, fresh, monkeypatch):
+    there = definition(type_name), schema(type_name)
+    monkeypatch.setattr(definitions, '_message_file', lambda type_name: None)
+    definition.cache_clear()
+    schema.cache_clear()
+    assert definition(type_name).hash == there[0].hash
+    assert schema(type_name) == there[1]
+
+
+def test_without_ros_and_rosbags_it_says_what_to_install(fresh, monkeypatch):
+    monkeypatch.setattr(definitions, '_message_file', lambda type_name: None)
+    monkeypatch.setitem(sys.modules, 'rosbags.typesys', None)
+    with pytest.raises(BadInput, match=r'std_msgs/msg/String: .*"pip install rosbags"'):
+        definition('std_msgs/msg/String')
 
 
 @pytest.mark.parametrize('type_name', sorted(SHIPPED))
@@ -36,9 +70,11 @@ def test_texts_are_understood_by_rosbags_and_name_the_same_fields(type_name):
         assert [field.name for field in fields] == [field[0] for field in theirs[name][1]]
 
 
-def test_unknown_type_is_refused_with_those_there_are():
-    with pytest.raises(BadInput, match=r'std_msgs/msg/Floaty.*std_msgs/msg/Float64'):
-        definition('std_msgs/msg/Floaty')
+@pytest.mark.parametrize('type_name', ['std_msgs/msg/Floaty', 'x', 'os/msg/C', '../msg/X',
+                                       'a b/msg/C', 'sys/msg/path', ''])
+def test_unknown_types_are_refused(type_name):
+    with pytest.raises(BadInput, match='is a message type that is not installed here'):
+        definition(type_name)
 
 
 def test_parser_reads_constants_defaults_bounds_and_arrays():

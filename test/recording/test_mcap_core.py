@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ import pytest
 from recording.conftest import ABOUT, Ticks, write
 
 from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.recording.recover import recover
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / '.cache' / 'mcap_core'
 NODE = shutil.which('node')
@@ -17,9 +19,14 @@ NODE = shutil.which('node')
 pytestmark = pytest.mark.skipif(not (NODE and (FOLDER / 'node_modules' / '@mcap' / 'core').is_dir()), reason='needs @mcap/core (make soak)')
 
 
+@pytest.mark.parametrize('mended', [False, True], ids=['whole', 'mended'])
 @pytest.mark.parametrize('compression_name', ['zstd', 'lz4', 'none'])
-def test_it_reads_every_byte_and_decodes_by_the_recorded_definitions(tmp_path, compression_name):
+def test_it_reads_every_byte_and_decodes_by_the_recorded_definitions(tmp_path, compression_name,
+                                                                     mended):
     path = write(tmp_path / 'bag', compression_name=compression_name)
+    if mended:      # cut in its tail
+        os.truncate(path / 'bag_0.mcap', (path / 'bag_0.mcap').stat().st_size - 1000)
+        assert recover(path)[0].changed
     done = subprocess.run([NODE, FOLDER / 'read.mjs', path / 'bag_0.mcap'], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)

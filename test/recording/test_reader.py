@@ -274,7 +274,7 @@ def test_topic_of_a_shipped_type_without_its_text_is_decoded_all_the_same(tmp_pa
         writer.finish()
     with Recording(tmp_path / 'x.mcap') as opened:
         assert opened.read('/x')['data'].tolist() == [2.5]
-        with pytest.raises(BadInput, match='their/msg/Thing: is not among the message types'):
+        with pytest.raises(BadInput, match='their/msg/Thing: is a message type that is not installed here'):
             opened.read('/y')
         with pytest.raises(BadInput, match="encoded as 'json'; a recording of ROS 2 messages"):
             opened.read('/z')

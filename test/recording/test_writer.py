@@ -29,6 +29,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import definition
+from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic
 from rigid_body_sim.recording.writer import CHUNK_SIZE, Writer
 
@@ -220,8 +221,13 @@ def test_real_racket_takes_at_most_095_of_its_payload(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which('rerun') is None, reason='no program "rerun" on the path (pip install rerun-sdk, 800 MB)')
-def test_rerun_finds_no_fault(recording):
-    checked = subprocess.run(['rerun', 'mcap', 'check', str(recording / 'racket_0.mcap')], capture_output=True, text=True, check=False)
+@pytest.mark.parametrize('mended', [False, True], ids=['whole', 'mended'])
+def test_rerun_finds_no_fault(tmp_path, recording, mended):
+    path = tmp_path / 'racket_0.mcap'
+    path.write_bytes((recording / 'racket_0.mcap').read_bytes()[:-1000 if mended else None])
+    assert recover(path)[0].changed == mended
+    checked = subprocess.run(['rerun', 'mcap', 'check', str(path)], capture_output=True, text=True,
+                             check=False)
     assert checked.returncode == 0
     assert checked.stdout.count('ok ') == 6
 
