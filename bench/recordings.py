@@ -3,8 +3,8 @@
 
     PYTHONPATH=. .venv/bin/python bench/recordings.py [--seconds 60] [--hour]
 
-The messages are those of a node's four topics on the racket scene. Prints JSON; single times depend
-on the machine and on what else it does.
+The messages are those of a node's four topics on the racket scene. Prints JSON; single times
+depend on the machine and on what else it does.
 """
 
 import argparse
@@ -42,33 +42,54 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 MILLISECOND = 1_000_000
 HERE = pathlib.Path(__file__).resolve().parent
-SCENES = ('tennis_racket', 'heavy_top', 'billiard_low', 'tennis_racket initial.velocity=[0.1,0.2,0.3]')
+SCENES = (
+    'tennis_racket',
+    'heavy_top',
+    'billiard_low',
+    'tennis_racket initial.velocity=[0.1,0.2,0.3]',
+)
 ENVIRONMENT = dict(os.environ, PYTHONPATH=f'{HERE}{os.pathsep}{HERE.parent}')
 
 
 class Racket:
-    """Ticks of the racket (or of another scene) at a rate (1/s): stamps, and packed messages of the four topics."""
+    """Ticks of the racket (or of another scene) at a rate (1/s).
+
+    They have stamps, and packed messages of the four topics.
+    """
 
     def __init__(self, count, rate, scene='tennis_racket'):
         simulation = Simulation(scene, rate=rate)
         states = simulation.states(np.arange(count) / rate)
         self.stamps = time.time_ns() + np.arange(count) * round(1e9 / rate)
         packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
-        columns = [output.columns(self.stamps, states, *simulation.diagnose(states)) for output in EVERY_TICK]
-        self.rows = [packer.pack_many(column) for packer, column in zip(packers, columns, strict=True)]
-        self.ticking = [(Topic(f'/{output.name}', output.type), packer.size) for output, packer in zip(EVERY_TICK, packers, strict=True)]
+        columns = [
+            output.columns(self.stamps, states, *simulation.diagnose(states))
+            for output in EVERY_TICK
+        ]
+        self.rows = [
+            packer.pack_many(column) for packer, column in zip(packers, columns, strict=True)
+        ]
+        self.ticking = [
+            (Topic(f'/{output.name}', output.type), packer.size)
+            for output, packer in zip(EVERY_TICK, packers, strict=True)
+        ]
         self.payload = sum(rows.size for rows in self.rows)
 
 
 def writing(folder, seconds, block=None, scene='tennis_racket'):
-    """Write a scene at 1 kHz, a chunk every `block` ticks as the node does, or as fast as it goes; return messages/s and size/payload."""
+    """Write a scene at 1 kHz; return messages/s and size/payload.
+
+    A chunk ends every `block` ticks as the node does it, or it is written as fast as it goes.
+    """
     racket = Racket(round(seconds * 1000), 1000.0, scene)
     late = racket.stamps + np.random.default_rng(1).integers(30_000, 200_000, len(racket.stamps))
     began = time.perf_counter()
     with Writer(folder, racket.ticking, [], journal_topic(), {'scene': 'tennis_racket'}) as writer:
         for first in range(0, len(late), block or 4096):
             part = slice(first, first + (block or 4096))
-            writer.ticks(first, racket.stamps[part], late[part], [rows[part] for rows in racket.rows])
+            writer.ticks(
+                first, racket.stamps[part], late[part], [rows[part] for rows in racket.rows]
+            )
             if block:
                 writer.flush()
     spent = time.perf_counter() - began
@@ -190,24 +211,45 @@ def _mend_theirs(path):
 
 
 def analysing(folder, seconds):
-    """Run `simulate` for so long and `analyze` on its recording; return messages/s of the one, seconds and peak memory (MB) of the other."""
+    """Run `simulate` for so many seconds and `analyze` on its recording.
+
+    Return messages/s of the one, seconds and peak memory (MB) of the other.
+    """
     command = [sys.executable, '-m', 'rigid_body_sim']
-    simulated = subprocess.run([*command, 'simulate', '--duration', str(seconds), '--output', folder, '--json'], capture_output=True,
-                               check=True, env=ENVIRONMENT)
+    simulated = subprocess.run(
+        [*command, 'simulate', '--duration', str(seconds), '--output', folder, '--json'],
+        capture_output=True,
+        check=True,
+        env=ENVIRONMENT,
+    )
     cost = json.loads(simulated.stdout)['cost']
     began = time.perf_counter()
-    _, status, usage = os.wait4(subprocess.Popen([*command, 'analyze', folder, '--json'], stdout=subprocess.DEVNULL, env=ENVIRONMENT).pid, 0)
+    _, status, usage = os.wait4(
+        subprocess.Popen(
+            [*command, 'analyze', folder, '--json'], stdout=subprocess.DEVNULL, env=ENVIRONMENT
+        ).pid,
+        0,
+    )
     if status:
         raise RuntimeError('analyze failed')
-    return {'messages': cost['messages'], 'simulate_messages_per_second': cost['messages'] / cost['run'],
-            'analyze_seconds': time.perf_counter() - began, 'analyze_cpu_seconds': usage.ru_utime + usage.ru_stime,
-            'analyze_peak_mb': usage.ru_maxrss / 1024}
+    return {
+        'messages': cost['messages'],
+        'simulate_messages_per_second': cost['messages'] / cost['run'],
+        'analyze_seconds': time.perf_counter() - began,
+        'analyze_cpu_seconds': usage.ru_utime + usage.ru_stime,
+        'analyze_peak_mb': usage.ru_maxrss / 1024,
+    }
 
 
 def ticking(folder, rate, seconds):
-    """Record at a rate in real time; return cost of a tick in us (median, 99 %), dropped ticks, and CPU share of the recorder."""
+    """Record at a rate in real time.
+
+    Return the cost of a tick in us (median, 99 %), dropped ticks, and the recorder's CPU share.
+    """
     racket = Racket(min(round(rate * seconds), 40_000), rate)
-    messages = [[rows[index].tobytes() for rows in racket.rows] for index in range(len(racket.stamps))]
+    messages = [
+        [rows[index].tobytes() for rows in racket.rows] for index in range(len(racket.stamps))
+    ]
     recorder = Recorder(folder, racket.ticking, [], journal_topic(), {})
     costs, start, period = [], time.perf_counter(), round(1e9 / rate)
     for k in range(round(rate * seconds)):
@@ -216,10 +258,23 @@ def ticking(folder, rate, seconds):
         stamp, begun = int(racket.stamps[0]) + k * period, time.perf_counter()
         recorder.tick(stamp, time.time_ns(), messages[k % len(messages)])
         costs.append(time.perf_counter() - begun)
-    cpu = sum(map(int, pathlib.Path(f'/proc/{recorder.process_id}/stat').read_text().rpartition(')')[2].split()[11:13]))
+    cpu = sum(
+        map(
+            int,
+            pathlib.Path(f'/proc/{recorder.process_id}/stat')
+            .read_text()
+            .rpartition(')')[2]
+            .split()[11:13],
+        )
+    )
     status = recorder.close()
-    return {'median_us': statistics.median(costs) * 1e6, 'p99_us': float(np.quantile(costs, 0.99)) * 1e6, 'dropped': status.dropped,
-            'recorder_cpu': cpu / os.sysconf('SC_CLK_TCK') / seconds, 'complete': status.closed}
+    return {
+        'median_us': statistics.median(costs) * 1e6,
+        'p99_us': float(np.quantile(costs, 0.99)) * 1e6,
+        'dropped': status.dropped,
+        'recorder_cpu': cpu / os.sysconf('SC_CLK_TCK') / seconds,
+        'complete': status.closed,
+    }
 
 
 _NODE = """
@@ -231,18 +286,24 @@ print(recorder.process_id, flush=True)
 start = time.monotonic()
 for k in range(10**9):
     time.sleep(max(0.0, start + k / 1000 - time.monotonic()))
-    recorder.tick((1 + k) * 1_000_000, time.time_ns(), [rows[k % 2000].tobytes() for rows in racket.rows])
+    messages = [rows[k % 2000].tobytes() for rows in racket.rows]
+    recorder.tick((1 + k) * 1_000_000, time.time_ns(), messages)
     sys.stdout.write('.')
     sys.stdout.flush()
 """
 
 
 def killing(folder, runs=10):
-    """Kill a 1 kHz recording with its recorder, `runs` times; return what was lost each time, in ms of stamps, in ascending order."""
+    """Kill a 1 kHz recording with its recorder, `runs` times.
+
+    Return what was lost each time, in ms of stamps, in ascending order.
+    """
     lost = []
     for number in range(runs):
         path = folder / f'killed{number}'
-        with subprocess.Popen([sys.executable, '-c', _NODE, str(path)], stdout=subprocess.PIPE, env=ENVIRONMENT) as node:
+        with subprocess.Popen(
+            [sys.executable, '-c', _NODE, str(path)], stdout=subprocess.PIPE, env=ENVIRONMENT
+        ) as node:
             recorder = int(node.stdout.readline())
             said = 0
             while said < 500 + 37 * number:
@@ -261,22 +322,40 @@ def killing(folder, runs=10):
 def main():
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description='Figures of recordings.')
-    parser.add_argument('--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)')
-    parser.add_argument('--hour', action='store_true', help='simulate and analyse an hour, not a minute: 14.4 million messages, 0.5 GB')
+    parser.add_argument(
+        '--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)'
+    )
+    parser.add_argument(
+        '--hour',
+        action='store_true',
+        help='simulate and analyse an hour, not a minute: 14.4 million messages, 0.5 GB',
+    )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder, figures = pathlib.Path(name), {}
         for title, block in (('simulate', None), ('node', 100)):
             speed, ratio = writing(folder / title, 60.0, block)
-            figures[f'writer as {title}'] = {'messages_per_second': speed, 'size_by_payload': ratio}
-        figures['size by payload'] = {scene: writing(folder / f'size{number}', 20.0, 100, load_scene(scene.split()[0], scene.split()[1:]))[1]
-                                      for number, scene in enumerate(SCENES)}
+            figures[f'writer as {title}'] = {
+                'messages_per_second': speed,
+                'size_by_payload': ratio,
+            }
+        figures['size by payload'] = {
+            scene: writing(
+                folder / f'size{number}',
+                20.0,
+                100,
+                load_scene(scene.split()[0], scene.split()[1:]),
+            )[1]
+            for number, scene in enumerate(SCENES)
+        }
         figures['ours and the library: CPU seconds'] = beside_the_library(folder / 'node')
         figures['reader'] = {'messages_per_second': reading(folder / 'node')}
         figures['4 topics at 1 kHz'] = ticking(folder / 'slow', 1000.0, 10.0)
         figures['4 topics at 4 kHz'] = ticking(folder / 'fast', 4000.0, options.seconds)
         figures['node and recorder killed: ms lost'] = killing(folder)
-        figures['simulate and analyze'] = analysing(folder / 'run', 3600.0 if options.hour else 60.0)
+        figures['simulate and analyze'] = analysing(
+            folder / 'run', 3600.0 if options.hour else 60.0
+        )
     print(json.dumps(figures, indent=2))
 
 

@@ -1,4 +1,5 @@
-"""The command `analyze`: recordings to reports; each is read once, in a stream, however long it is."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `analyze`: recordings to reports; each is read once, however long it is."""
 
 import json
 import pathlib
@@ -15,7 +16,9 @@ from rigid_body_sim.recording.reader import Recording, newest_recording
 
 
 def analyze(path, folder, short=False, shared_page=None):
-    """Analyse a recording; return (list of summaries, one a body; paths of what was written, the text first).
+    """Analyse a recording.
+
+    Return (list of summaries, one a body; paths of what was written, the text first).
 
     Parameters
     ----------
@@ -34,7 +37,9 @@ def analyze(path, folder, short=False, shared_page=None):
         Where there is no recording of a simulation, or the folder cannot be written.
     """
     # a terminal shows what is being done from the first moment to the last
-    with tqdm(desc=f'{path}: opening', unit=' messages', unit_scale=True, disable=None, leave=False) as bar:
+    with tqdm(
+        desc=f'{path}: opening', unit=' messages', unit_scale=True, disable=None, leave=False
+    ) as bar:
         return _analyze(path, pathlib.Path(folder), short, shared_page, bar)
 
 
@@ -50,17 +55,27 @@ def _analyze(path, folder, short, shared_page, bar):
     written = [folder / 'report.txt', folder / 'report.json']
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        written[0].write_text('\n'.join(line for one in found for line in lines(one)) + '\n', encoding='utf-8')
-        written[1].write_text(json.dumps({'recording': str(path), 'bodies': found}, indent=2, allow_nan=False) + '\n', encoding='utf-8')
+        written[0].write_text(
+            '\n'.join(line for one in found for line in lines(one)) + '\n', encoding='utf-8'
+        )
+        written[1].write_text(
+            json.dumps({'recording': str(path), 'bodies': found}, indent=2, allow_nan=False)
+            + '\n',
+            encoding='utf-8',
+        )
         written += _figures(folder, measured, found, more, short)
         name = pathlib.Path(path).resolve().name
-        sections = [(name, one, numbers, *extra) for one, numbers, extra in zip(measured, found, more, strict=True)]
+        sections = [
+            (name, one, numbers, *extra)
+            for one, numbers, extra in zip(measured, found, more, strict=True)
+        ]
         if shared_page is not None:
             shared_page += sections
         elif not short:
             written += write_page(folder, sections)
     except OSError as error:
-        raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
+        raise BadInput(str(folder), f'the report cannot be written ({error.strerror})',
+                       'another folder: --output FOLDER') from error
     return found, written
 
 
@@ -70,7 +85,10 @@ def _spectrum(measured):
 
 
 def _ledger(source):
-    """Return the ledger of a Source, or None: a recording of others tells no commands, and without them there is no balance."""
+    """Return the ledger of a Source, or None.
+
+    A recording of others tells no commands, and without them there is no balance.
+    """
     from rigid_body_sim.analysis.ledger import ledger
     return ledger(source) if source.run else None
 
@@ -80,7 +98,10 @@ def _figures(folder, measured, found, more, short):
     # matplotlib takes a second to import
     from rigid_body_sim.analysis import figures
     if short:
-        return [figures.draw_overview(folder, one, title(numbers)) for one, numbers in zip(measured, found, strict=True)]
+        return [
+            figures.draw_overview(folder, one, title(numbers))
+            for one, numbers in zip(measured, found, strict=True)
+        ]
     written = []
     for one, numbers, extra in zip(measured, found, more, strict=True):
         written += figures.draw_all(folder, one, *extra, title(numbers))
@@ -113,12 +134,23 @@ def show(found, written):
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('analyze', 'Recordings to reports: drift, flips, lateness, drops, figures.',
-                                 'python -m rigid_body_sim analyze recordings/racket')
-    parser.add_argument('recording', nargs='+', help='folder of a recording, or .mcap file; also of `ros2 bag record`; '
-                        'a folder of recordings: the newest in it')
-    parser.add_argument('--output', metavar='FOLDER', help='where the reports go (default: beside each recording); '
-                        'of several recordings it gets one page on all, and a folder each')
+    parser = command_line.parser(
+        'analyze',
+        'Recordings to reports: drift, flips, lateness, drops, figures.',
+        'python -m rigid_body_sim analyze recordings/racket',
+    )
+    parser.add_argument(
+        'recording',
+        nargs='+',
+        help='folder of a recording, or .mcap file; also of `ros2 bag record`; '
+        'a folder of recordings: the newest in it',
+    )
+    parser.add_argument(
+        '--output',
+        metavar='FOLDER',
+        help='where the reports go (default: beside each recording); '
+        'of several recordings it gets one page on all, and a folder each',
+    )
     parser.add_argument('--json', action='store_true', help='print what report.json holds')
     return command_line.run(_run, parser.parse_args(arguments))
 
@@ -133,7 +165,9 @@ def _run(options):
         if options.output:
             folder = pathlib.Path(options.output) / (folder.name if shared is not None else '')
         found, written = analyze(path, folder, shared_page=shared)
-        results.append({'recording': str(path), 'bodies': found, 'files': [str(name) for name in written]})
+        results.append(
+            {'recording': str(path), 'bodies': found, 'files': [str(name) for name in written]}
+        )
         if not options.json:
             show(found, written)
     if shared is not None:
@@ -149,10 +183,16 @@ def _run(options):
 def _write_shared(folder, shared, results, quiet):
     """Write the page on all recordings and all numbers."""
     try:
-        (folder / 'report.json').write_text(json.dumps(results, indent=2, allow_nan=False) + '\n', encoding='utf-8')
+        (folder / 'report.json').write_text(
+            json.dumps(results, indent=2, allow_nan=False) + '\n', encoding='utf-8'
+        )
         written = [folder / 'report.json', *write_page(folder, shared)]
     except OSError as error:
-        raise BadInput(str(folder), f'the report cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
+        raise BadInput(
+            str(folder),
+            f'the report cannot be written ({error.strerror})',
+            'another folder: --output FOLDER',
+        ) from error
     if not quiet:
         show([], written)
 

@@ -1,16 +1,19 @@
-"""Fixed layouts: where in a message each number lies, so that one message is packed in under a microsecond and thousands by numpy at once.
+# SPDX-License-Identifier: Apache-2.0
+"""Fixed layouts: where in a message each number lies.
 
-A message whose strings and sequences keep their lengths has the same layout each time. Its numbers are then *columns*, named by their path:
+So one message is packed in under a microsecond, and thousands by NumPy at once. A message whose
+strings and sequences keep their lengths has the same layout each time. Its numbers are then
+*columns*, named by their path:
 
-=================== ============================================ ==========================================
-field               column                                       array
-=================== ============================================ ==========================================
-Time, Duration      ``header.stamp``                             (n,) int64, nanoseconds
-struct of doubles   ``pose.position``, ``pose.orientation``      (n, 3), (n, 4) float64, in wire order
-array of numbers    ``pose.covariance``, ``velocity``            (n, length)
-number              ``data``                                     (n,)
-string              ``header.frame_id``                          (n,) bytes
-=================== ============================================ ==========================================
+=================== ======================================== ====================================
+field               column                                   array
+=================== ======================================== ====================================
+Time, Duration      ``header.stamp``                         (n,) int64, nanoseconds
+struct of doubles   ``pose.position``, ``pose.orientation``  (n, 3), (n, 4) float64, in wire order
+array of numbers    ``pose.covariance``, ``velocity``        (n, length)
+number              ``data``                                 (n,)
+string              ``header.frame_id``                      (n,) bytes
+=================== ======================================== ====================================
 """
 
 import struct
@@ -21,13 +24,30 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr, definitions
 
 NANOSECONDS = 1_000_000_000
+_TIME = [('sec', 'i', 1), ('nanosec', 'I', 1)]
 
 
 class Layout:
-    """The layout of all messages of a type that have the string and sequence lengths of `sample` (its bytes).
+    """The layout of all messages of a type with the same string and sequence lengths.
 
-    Attributes: `size` in bytes; `leaves`, see :func:`rigid_body_sim.messages.cdr.decode`; `dtype`, a numpy view of one message;
-    `components` maps a column that is a struct of doubles to the names of its numbers.
+    Parameters
+    ----------
+    schemas : dict
+        See :mod:`rigid_body_sim.messages.definitions`.
+    type_name : str
+    sample : bytes
+        One such message.
+
+    Attributes
+    ----------
+    size : int
+        Bytes.
+    leaves : list
+        See :func:`rigid_body_sim.messages.cdr.decode`.
+    dtype : numpy.dtype
+        View of one message.
+    components : dict
+        A column that is a struct of doubles -> the names of its numbers.
     """
 
     def __init__(self, schemas, type_name, sample):
@@ -37,33 +57,52 @@ class Layout:
         self.size = len(sample)
         self._times, self.components = [], {}
         fields = self._fields()
-        self.dtype = np.dtype({'names': [name for name, _, _ in fields], 'formats': [form for _, form, _ in fields],
-                               'offsets': [offset for _, _, offset in fields], 'itemsize': self.size})
-        lengths = [np.arange(offset, offset + 4) for _, code, offset, _ in self.leaves if code == '#']
+        self.dtype = np.dtype(
+            {
+                'names': [name for name, _, _ in fields],
+                'formats': [form for _, form, _ in fields],
+                'offsets': [offset for _, _, offset in fields],
+                'itemsize': self.size,
+            }
+        )
+        lengths = [
+            np.arange(offset, offset + 4) for _, code, offset, _ in self.leaves if code == '#'
+        ]
         self._shape_bytes = np.concatenate([np.arange(2), *lengths]).astype(int)
         self._shape = np.frombuffer(bytes(sample), np.uint8)[self._shape_bytes]
 
     def _fields(self):
-        """Return (column, numpy format, offset) for each column, whole structs of doubles as one."""
+        """Return (column, NumPy format, offset) for each column; structs of doubles are one."""
         siblings, sequences = {}, {path for path, code, _, _ in self.leaves if code == '#'}
         for path, code, _, count in self.leaves:
-            siblings.setdefault(path.rpartition('.')[0], []).append((code, count))
+            parent, _, last = path.rpartition('.')
+            siblings.setdefault(parent, []).append((last, code, count))
         fields = []
         for path, code, offset, count in self.leaves:
             parent, _, last = path.rpartition('.')
             if code == '#' or count == 0:
                 continue
-            if parent and len(siblings[parent]) > 1 and all(leaf == ('d', 1) for leaf in siblings[parent]):
+            if (
+                parent
+                and len(siblings[parent]) > 1
+                and all(leaf[1:] == ('d', 1) for leaf in siblings[parent])
+            ):
                 if parent not in self.components:
                     self.components[parent] = []
                     fields.append((parent, ('<f8', (len(siblings[parent]),)), offset))
                 self.components[parent].append(last)
-            elif siblings[parent] == [('i', 1), ('I', 1)] and last == 'sec' and parent:
+            elif parent and siblings[parent] == _TIME and last == 'sec':
                 self._times.append(parent)
                 fields.append((path, '<i4', offset))
             else:
                 shape = (count,) if count > 1 or path in sequences else ()
-                fields.append((path, f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, shape), offset))
+                fields.append(
+                    (
+                        path,
+                        f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, shape),
+                        offset,
+                    )
+                )
         return fields
 
     @property
@@ -79,16 +118,18 @@ class Layout:
         return names
 
     def fits(self, rows):
-        """Return which of the messages, uint8 of shape (n, size), have this layout, as (n,) bool."""
+        """Return which of the messages, uint8 (n, size), have this layout, as (n,) bool."""
         return (rows[:, self._shape_bytes] == self._shape).all(axis=1)
 
     def unpack(self, rows, names=None):
-        """Return the columns, all or those in `names`, of messages of this layout: uint8 of shape (n, size)."""
+        """Return the columns, all or those in `names`, of messages, uint8 (n, size)."""
         view = np.ascontiguousarray(rows).view(self.dtype)[:, 0]
         columns = {}
         for name in self.columns if names is None else names:
             if name in self._times:
-                columns[name] = view[f'{name}.sec'].astype(np.int64) * NANOSECONDS + view[f'{name}.nanosec']
+                columns[name] = (
+                    view[f'{name}.sec'].astype(np.int64) * NANOSECONDS + view[f'{name}.nanosec']
+                )
             else:
                 columns[name] = view[name].copy()
         return columns
@@ -109,7 +150,8 @@ class Packer:
     type_name : str
         ``package/msg/Name``, one of the types we ship.
     constants : dict
-        Nested values of the constant fields, and the lengths of all strings and sequences (a sequence that changes is given as zeros).
+        Nested values of the constant fields, and the lengths of all strings and sequences (a
+        sequence that changes is given as zeros).
     variable : sequence of str
         Paths of what changes, with all numbers below them: ``('header.stamp', 'pose')``.
     """
@@ -122,12 +164,21 @@ class Packer:
         self._runs = []
         self.count = 0
         for path, code, offset, count in self.layout.leaves:
-            if code in '#s' or not any(path == name or path.startswith((f'{name}.', f'{name}[')) for name in variable):
+            if code in '#s' or not any(
+                path == name or path.startswith((f'{name}.', f'{name}[')) for name in variable
+            ):
                 continue
             self._append_run(code, offset, count)
         if not self._runs:
-            raise BadInput(type_name, f'none of {", ".join(variable)} is a number in it', f'some of {", ".join(self.layout.columns)}')
-        self._runs = [(struct.Struct('<' + codes).pack_into, offset, first, last) for codes, offset, first, last in self._runs]
+            raise BadInput(
+                type_name,
+                f'none of {", ".join(variable)} is a number in it',
+                f'some of {", ".join(self.layout.columns)}',
+            )
+        self._runs = [
+            (struct.Struct('<' + codes).pack_into, offset, first, last)
+            for codes, offset, first, last in self._runs
+        ]
 
     def _append_run(self, code, offset, count):
         """Add numbers to the last run of neighbours, or begin another."""
@@ -141,19 +192,26 @@ class Packer:
         self._runs.append((codes, offset, first, self.count))
 
     def pack(self, *values):
-        """Return one message: all variable numbers in wire order, a time as seconds and nanoseconds (integers).
+        """Return one message of all variable numbers in wire order.
+
+        A time is two integers, seconds and nanoseconds.
 
         About 0.6 us. struct.error where a number has the wrong type or their count is not `count`.
         """
         if len(values) != self.count:
-            raise struct.error(f'{self.type_name} takes {self.count} numbers here, got {len(values)}')
+            raise struct.error(
+                f'{self.type_name} takes {self.count} numbers here, got {len(values)}'
+            )
         message = bytearray(self._blank)
         for pack_into, offset, first, last in self._runs:
             pack_into(message, offset, *values[first:last])
         return bytes(message)
 
     def pack_many(self, columns):
-        """Return n messages as uint8 of shape (n, size); `columns` maps column names (see the module) to arrays of n rows."""
+        """Return n messages as uint8 of shape (n, size).
+
+        `columns` maps column names (see the module) to arrays of n rows.
+        """
         count = len(next(iter(columns.values())))
         rows = np.empty((count, self.size), np.uint8)
         rows[:] = np.frombuffer(self._blank, np.uint8)

@@ -78,12 +78,21 @@ def test_unknown_types_are_refused(type_name):
 
 
 def test_parser_reads_constants_defaults_bounds_and_arrays():
-    text = 'uint8 A=1\nstring NAME="x # y"\n# comment\nfloat64 x 1.5\nstring<=10 s\nint8[3] three  # why\nInner[<=4] many\n' \
-        + '=' * 80 + '\nMSG: pkg/Inner\nbool b\n'
+    text = (
+        'uint8 A=1\nstring NAME="x # y"\n# comment\nfloat64 x 1.5\nstring<=10 s\n'
+        'int8[3] three  # why\nInner[<=4] many\n'
+        + '=' * 80
+        + '\nMSG: pkg/Inner\nbool b\n'
+    )
     assert parse('pkg/msg/Outer', text) == {
-        'pkg/msg/Outer': [Field('x', 'float64', None), Field('s', 'string', None), Field('three', 'int8', 3),
-                          Field('many', 'pkg/msg/Inner', SEQUENCE)],
-        'pkg/msg/Inner': [Field('b', 'bool', None)]}
+        'pkg/msg/Outer': [
+            Field('x', 'float64', None),
+            Field('s', 'string', None),
+            Field('three', 'int8', 3),
+            Field('many', 'pkg/msg/Inner', SEQUENCE),
+        ],
+        'pkg/msg/Inner': [Field('b', 'bool', None)],
+    }
 
 
 def test_empty_message_has_the_byte_that_ros_puts_there():

@@ -11,6 +11,7 @@ import types
 
 import pytest
 from analysis import made
+from mcap.writer import MCAP0_MAGIC
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
@@ -18,7 +19,6 @@ from std_srvs.srv import SetBool
 from rigid_body_sim.node import replay
 from rigid_body_sim.node.offered_qos import offered_qos
 from rigid_body_sim.node.playing import Player, Reading
-from mcap.writer import MCAP0_MAGIC
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.topics import Topic
 

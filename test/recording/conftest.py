@@ -1,4 +1,5 @@
-"""A small recording that every test knows to the bit: 4 topics at 1 kHz, with numbers that do not repeat."""
+# SPDX-License-Identifier: Apache-2.0
+"""A small recording that every test knows to the bit: 4 topics at 1 kHz, varying numbers."""
 
 import dataclasses
 import os
@@ -15,21 +16,37 @@ START = 1_700_000_000_000_000_000
 LATE = 41_234
 """By how many ns, times the number of the tick modulo 7, the wall clock is behind the stamp."""
 PACKERS = {
-    '/pose': Packer('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}}, ('header.stamp', 'pose')),
-    '/angular_velocity': Packer('geometry_msgs/msg/Vector3Stamped', {'header': {'frame_id': 'body'}}, ('header.stamp', 'vector')),
+    '/pose': Packer(
+        'geometry_msgs/msg/PoseStamped',
+        {'header': {'frame_id': 'world'}},
+        ('header.stamp', 'pose'),
+    ),
+    '/angular_velocity': Packer(
+        'geometry_msgs/msg/Vector3Stamped',
+        {'header': {'frame_id': 'body'}},
+        ('header.stamp', 'vector'),
+    ),
     '/energy': Packer('std_msgs/msg/Float64', {}, ('data',)),
     '/angular_momentum_squared': Packer('std_msgs/msg/Float64', {}, ('data',)),
 }
 TICKING = [(Topic(name, packer.type_name), packer.size) for name, packer in PACKERS.items()]
 SCENE = Topic('/scene', 'std_msgs/msg/String', depth=1, durability='transient_local')
 JOURNAL = journal_topic()
-ABOUT = {'scene': 'scene: tennis_racket\nbody: {mass: 1.0}\n', 'version': '0.1.0', 'machine': 'x86 ⟳'}
+ABOUT = {
+    'scene': 'scene: tennis_racket\nbody: {mass: 1.0}\n',
+    'version': '0.1.0',
+    'machine': 'x86 ⟳',
+}
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 
 
 @dataclasses.dataclass
 class Ticks:
-    """Ticks `first` to `first + count - 1`: stamps and wall clock (count,) in ns, columns of numbers, and packed messages by topic."""
+    """Ticks `first` to `first + count - 1`.
+
+    They have stamps and wall clock (count,) in ns, columns of numbers, and packed messages by
+    topic.
+    """
 
     first: int
     count: int
@@ -41,10 +58,16 @@ class Ticks:
         self.angular_velocity = np.stack([np.cos(k * a) for a in (1.1, 1.2, 1.3)], axis=1)
         self.energy, self.momentum = 25.0 + 1e-15 * np.sin(k), 100.0 / (k + 1.0)
         self.rows = {
-            '/pose': PACKERS['/pose'].pack_many({'header.stamp': self.stamps, 'pose.orientation': self.orientation}),
-            '/angular_velocity': PACKERS['/angular_velocity'].pack_many({'header.stamp': self.stamps, 'vector': self.angular_velocity}),
+            '/pose': PACKERS['/pose'].pack_many(
+                {'header.stamp': self.stamps, 'pose.orientation': self.orientation}
+            ),
+            '/angular_velocity': PACKERS['/angular_velocity'].pack_many(
+                {'header.stamp': self.stamps, 'vector': self.angular_velocity}
+            ),
             '/energy': PACKERS['/energy'].pack_many({'data': self.energy}),
-            '/angular_momentum_squared': PACKERS['/angular_momentum_squared'].pack_many({'data': self.momentum}),
+            '/angular_momentum_squared': PACKERS['/angular_momentum_squared'].pack_many(
+                {'data': self.momentum}
+            ),
         }
 
     def messages(self, index):
@@ -58,12 +81,18 @@ def scene_text(text):
 
 
 def write(path, count=1000, block=100, **options):
-    """Make a recording of `count` ticks, a chunk every `block` ticks, the scene first; return its path."""
+    """Make a recording of `count` ticks, the scene first; return its path.
+
+    A chunk ends every `block` ticks.
+    """
     with Writer(path, TICKING, [SCENE], JOURNAL, ABOUT, **options) as writer:
         writer.message('/scene', START, START + 5, scene_text(ABOUT['scene']))
         for first in range(0, count, block):
             ticks = Ticks(first, min(block, count - first))
-            assert writer.ticks(first, ticks.stamps, ticks.wall_clock, list(ticks.rows.values())) == ticks.count
+            assert (
+                writer.ticks(first, ticks.stamps, ticks.wall_clock, list(ticks.rows.values()))
+                == ticks.count
+            )
             writer.flush()
     return path
 

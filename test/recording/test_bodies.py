@@ -20,7 +20,12 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 WRENCH = 'geometry_msgs/msg/WrenchStamped'
-FLIGHT = ['--set', 'initial.velocity=[0.1,0.2,0.3]', '--set', 'initial.angular_velocity=[0.3,5,0.2]']
+FLIGHT = [
+    '--set',
+    'initial.velocity=[0.1,0.2,0.3]',
+    '--set',
+    'initial.angular_velocity=[0.3,5,0.2]',
+]
 
 
 @pytest.fixture(scope='module')

@@ -118,26 +118,40 @@ def test_parquet_is_read_by_pyarrow(tmp_path, recording, monkeypatch):
     export(recording, tmp_path / 'out', 'parquet', ['/pose', '/energy'])
     table = parquet.read_table(tmp_path / 'out' / 'pose.parquet')
     assert table.column_names == NAMES
-    np.testing.assert_array_equal(table['pose.orientation.x'].to_numpy(), Ticks(0, 1000).orientation[:, 0])
+    np.testing.assert_array_equal(
+        table['pose.orientation.x'].to_numpy(), Ticks(0, 1000).orientation[:, 0]
+    )
 
 
 def test_parquet_without_pyarrow_says_what_to_do(tmp_path, recording, monkeypatch, capsys):
     monkeypatch.setattr(module, 'pyarrow', None)
     assert main([str(recording), '--output', str(tmp_path / 'out'), '--format', 'parquet']) == 2
-    assert capsys.readouterr().err == '--format parquet: pyarrow is not installed; pip install pyarrow, or --format csv or numpy\n'
+    assert (
+        capsys.readouterr().err
+        == '--format parquet: pyarrow is not installed; pip install pyarrow, '
+        'or --format csv or numpy\n'
+    )
     assert not (tmp_path / 'out').exists()
 
 
 def test_texts_become_json_lines(tmp_path, recording, capsys):
-    assert main([str(recording), '--output', str(tmp_path / 'out'), '--topics', '/scene', '--json']) == 0
+    assert (
+        main([str(recording), '--output', str(tmp_path / 'out'), '--topics', '/scene', '--json'])
+        == 0
+    )
     path, = json.loads(capsys.readouterr().out)
     line, = pathlib.Path(path).read_text(encoding='utf-8').splitlines()
-    assert json.loads(line) == {'log_time': START, 'data': 'scene: tennis_racket\nbody: {mass: 1.0}\n'}
+    assert json.loads(line) == {
+        'log_time': START,
+        'data': 'scene: tennis_racket\nbody: {mass: 1.0}\n',
+    }
 
 
 def test_recording_of_several_files_becomes_one_table(tmp_path):
     export(write(tmp_path / 'bag', split_seconds=0.2), tmp_path / 'out', 'numpy', ['/energy'])
-    np.testing.assert_array_equal(np.load(tmp_path / 'out' / 'energy.npy')['data'], Ticks(0, 1000).energy)
+    np.testing.assert_array_equal(
+        np.load(tmp_path / 'out' / 'energy.npy')['data'], Ticks(0, 1000).energy
+    )
 
 
 def test_folder_that_exists_and_unknown_topics_are_refused(tmp_path, recording):

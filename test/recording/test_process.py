@@ -1,4 +1,8 @@
-"""What the recorder does with what it is sent, packet by packet: nothing twice, nothing out of order, whatever the order of arrival."""
+# SPDX-License-Identifier: Apache-2.0
+"""What the recorder does with each packet: nothing twice, nothing out of order.
+
+This holds whatever the order of arrival.
+"""
 
 import dataclasses
 import errno
@@ -23,12 +27,22 @@ IMPULSES = Topic('/cmd_impulse', 'geometry_msgs/msg/WrenchStamped')
 
 
 def setup(path, resume=False, report=None):
-    return packets.json_packet(packets.SETUP, {
-        'path': str(path), 'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING],
-        'others': [dataclasses.asdict(SCENE), dataclasses.asdict(IMPULSES)], 'journal': dataclasses.asdict(JOURNAL), 'about': ABOUT,
-        'compression': 'zstd', 'split_bytes': 0, 'split_seconds': 0.0,
-        'commands': {'topics': [IMPULSES.name, '/none'], 'frames': ['world', 'body']},
-        'resume': resume, 'report': dataclasses.asdict(report or Report())})
+    return packets.json_packet(
+        packets.SETUP,
+        {
+            'path': str(path),
+            'ticking': [(dataclasses.asdict(topic), size) for topic, size in TICKING],
+            'others': [dataclasses.asdict(SCENE), dataclasses.asdict(IMPULSES)],
+            'journal': dataclasses.asdict(JOURNAL),
+            'about': ABOUT,
+            'compression': 'zstd',
+            'split_bytes': 0,
+            'split_seconds': 0.0,
+            'commands': {'topics': [IMPULSES.name, '/none'], 'frames': ['world', 'body']},
+            'resume': resume,
+            'report': dataclasses.asdict(report or Report()),
+        },
+    )
 
 
 def message(number):
@@ -37,12 +51,24 @@ def message(number):
 
 def ticks(first, count):
     made, size = Ticks(first, count), sum(size for _, size in TICKING)
-    return b''.join(packets.TICK_HEAD.pack(packets.TICK, 24 + size, first + index, int(made.stamps[index]), int(made.wall_clock[index]))
-                    + b''.join(made.messages(index)) for index in range(count))
+    return b''.join(
+        packets.TICK_HEAD.pack(
+            packets.TICK,
+            24 + size,
+            first + index,
+            int(made.stamps[index]),
+            int(made.wall_clock[index]),
+        )
+        + b''.join(made.messages(index))
+        for index in range(count)
+    )
 
 
 def commands(number, count, tick=0):
-    """Impulses of one tick, numbered from `number` on, with their numbers as force; the entry of the journal is the last one."""
+    """Return impulses of one tick, numbered from `number` on, with their numbers as force.
+
+    The entry of the journal is the last one.
+    """
     rows = np.zeros((count, WIDTH))
     rows[:, FORCE.start] = np.arange(number, number + count)
     return packets.commands_packet(number, tick, START, START, rows)
@@ -69,12 +95,26 @@ def run(*sent):
 
 
 def recorded(path):
-    """Return (numbers of messages, numbers of ticks, (ticks, after, until) of gaps in ticks since the start)."""
+    """Return (numbers of messages, numbers of ticks, gaps).
+
+    A gap is (ticks, after, until), in ticks since the start.
+    """
     with Recording(path) as recording:
         numbers = [message.sequence for message in recording.messages(['/scene'])]
-        poses = recording.read('/pose')['sequence'].tolist() if recording.topics['/pose'].count else []
-        gaps = [(entry['ticks'], *((time - START) // 10**6 if time else time for time in (entry['after'], entry['until'])))
-                for entry in recording.journal() if entry['kind'] == 'gap']
+        poses = (
+            recording.read('/pose')['sequence'].tolist() if recording.topics['/pose'].count else []
+        )
+        gaps = [
+            (
+                entry['ticks'],
+                *(
+                    (time - START) // 10**6 if time else time
+                    for time in (entry['after'], entry['until'])
+                ),
+            )
+            for entry in recording.journal()
+            if entry['kind'] == 'gap'
+        ]
     return numbers, poses, gaps
 
 
@@ -106,17 +146,30 @@ def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
 
 
 def recorded_commands(path):
-    """Return the forces of recorded impulses by the topic, and those that the journal has, tick by tick."""
+    """Return the forces of recorded impulses, and those in the journal, tick by tick."""
     with Recording(path) as recording:
         entries = [entry for entry in recording.journal() if entry['kind'] == 'commands']
         forces = recording.read(IMPULSES.name, ['wrench.force'])['wrench.force'][:, 0].tolist()
-    return forces, [(entry['tick'], [one['force'][0] for one in entry['commands']]) for entry in entries]
+    return forces, [
+        (entry['tick'], [one['force'][0] for one in entry['commands']]) for entry in entries
+    ]
 
 
 def test_commands_of_a_tick_become_messages_and_one_entry_once_each_between_ticks(tmp_path):
-    code, reports = run(setup(tmp_path / 'bag'), message(1), commands(2, 3, 5), ticks(5, 1), commands(2, 3, 5), commands(6, 2, 6), ticks(6, 1))
+    code, reports = run(
+        setup(tmp_path / 'bag'),
+        message(1),
+        commands(2, 3, 5),
+        ticks(5, 1),
+        commands(2, 3, 5),
+        commands(6, 2, 6),
+        ticks(6, 1),
+    )
     assert (code, reports[-1].acknowledged) == (0, 8)
-    assert recorded_commands(tmp_path / 'bag') == ([2.0, 3.0, 4.0, 6.0, 7.0], [(5, [2.0, 3.0, 4.0]), (6, [6.0, 7.0])])
+    assert recorded_commands(tmp_path / 'bag') == (
+        [2.0, 3.0, 4.0, 6.0, 7.0],
+        [(5, [2.0, 3.0, 4.0]), (6, [6.0, 7.0])],
+    )
     assert recorded(tmp_path / 'bag')[1] == [5, 6]
 
 
@@ -145,14 +198,29 @@ def test_commands_that_are_half_recorded_are_gone_on_with(tmp_path):
 
 
 def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
-    code, reports = run(setup(tmp_path / 'bag'), ticks(2, 3), ticks(7, 2), message(1), ticks(9, 1), ticks(20, 1), end(25))
+    code, reports = run(
+        setup(tmp_path / 'bag'),
+        ticks(2, 3),
+        ticks(7, 2),
+        message(1),
+        ticks(9, 1),
+        ticks(20, 1),
+        end(25),
+    )
     assert code == 0
     assert (reports[-1].dropped, reports[-1].closed) == (2 + 2 + 10 + 4, True)
-    assert recorded(tmp_path / 'bag') == ([1], [2, 3, 4, 7, 8, 9, 20], [(2, 0, 2), (2, 4, 7), (10, 9, 20), (4, 20, None)])
+    assert recorded(tmp_path / 'bag') == (
+        [1],
+        [2, 3, 4, 7, 8, 9, 20],
+        [(2, 0, 2), (2, 4, 7), (10, 9, 20), (4, 20, None)],
+    )
 
 
 def _die_after(path, *sent):
-    """Record packets up to a flush and then die without a word: the sender knows nothing of what was flushed."""
+    """Record packets up to a flush and then die without a word.
+
+    The sender knows nothing of what was flushed.
+    """
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = b''.join(sent)
     process._take_packets()
@@ -161,8 +229,12 @@ def _die_after(path, *sent):
 
 
 def test_successor_does_not_record_again_what_its_predecessor_did_not_report(tmp_path):
-    _die_after(tmp_path / 'bag', setup(tmp_path / 'bag'), message(1), ticks(0, 10), message(2), message(3))
-    code, reports = run(setup(tmp_path / 'bag', resume=True), *map(message, (1, 2, 3, 4)), ticks(12, 3), end(15))
+    _die_after(
+        tmp_path / 'bag', setup(tmp_path / 'bag'), message(1), ticks(0, 10), message(2), message(3)
+    )
+    code, reports = run(
+        setup(tmp_path / 'bag', resume=True), *map(message, (1, 2, 3, 4)), ticks(12, 3), end(15)
+    )
     assert code == 0
     assert (reports[0].acknowledged, reports[0].ticks) == (3, 10)
     assert recorded(tmp_path / 'bag') == ([1, 2, 3, 4], [*range(10), 12, 13, 14], [(2, 9, 12)])
@@ -172,7 +244,12 @@ def test_successor_does_not_record_again_what_its_predecessor_did_not_report(tmp
 def test_successor_believes_the_sender_where_the_last_file_says_nothing(tmp_path):
     _die_after(tmp_path / 'bag', setup(tmp_path / 'bag'), message(0))
     known = Report(acknowledged=2**32 + 5, ticks=2**32 + 7, last_tick=START, dropped=3)
-    code, reports = run(setup(tmp_path / 'bag', resume=True, report=known), message(2**32 + 6), message(2**32 + 5), ticks(2**32 + 8, 1))
+    code, reports = run(
+        setup(tmp_path / 'bag', resume=True, report=known),
+        message(2**32 + 6),
+        message(2**32 + 5),
+        ticks(2**32 + 8, 1),
+    )
     assert code == 0
     assert reports[-1].acknowledged == 2**32 + 6
     assert reports[-1].dropped == 4

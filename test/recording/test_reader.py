@@ -1,10 +1,12 @@
-"""Reading: our own recordings and those of other writers, against mcap_ros2; and files that lie."""
+# SPDX-License-Identifier: Apache-2.0
+"""Reading: our recordings and those of other writers, against mcap_ros2; files that lie."""
 
 import contextlib
 import os
 import random
 import resource
 import shutil
+import struct
 
 import numpy as np
 import pytest
@@ -48,9 +50,25 @@ def test_columns_are_the_numbers_that_were_written(recording):
     with Recording(recording) as opened:
         pose, energy = opened.read('/pose'), opened.read('/energy', ['data'])
         assert opened.about == ABOUT
-        assert (opened.start_time, opened.end_time, opened.message_count) == (START, START + 999 * 10**6, 4002)
-        assert {name: topic.count for name, topic in opened.topics.items()} == {**dict.fromkeys(PACKERS, 1000), '/scene': 1, '/journal': 1}
-    assert list(pose) == ['log_time', 'publish_time', 'sequence', 'header.stamp', 'header.frame_id', 'pose.position', 'pose.orientation']
+        assert (opened.start_time, opened.end_time, opened.message_count) == (
+            START,
+            START + 999 * 10**6,
+            4002,
+        )
+        assert {name: topic.count for name, topic in opened.topics.items()} == {
+            **dict.fromkeys(PACKERS, 1000),
+            '/scene': 1,
+            '/journal': 1,
+        }
+    assert list(pose) == [
+        'log_time',
+        'publish_time',
+        'sequence',
+        'header.stamp',
+        'header.frame_id',
+        'pose.position',
+        'pose.orientation',
+    ]
     np.testing.assert_array_equal(pose['pose.orientation'], ticks.orientation)
     np.testing.assert_array_equal(pose['header.stamp'], ticks.stamps)
     np.testing.assert_array_equal(pose['log_time'], ticks.stamps)
@@ -62,12 +80,21 @@ def test_columns_are_the_numbers_that_were_written(recording):
 
 def test_columns_are_those_of_mcap_ros2(recording):
     with open(recording / 'racket_0.mcap', 'rb') as stream:
-        decoded = [message for *_, message in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages(
-            topics=['/angular_velocity'])]
+        decoded = [
+            message
+            for *_, message in make_reader(
+                stream, decoder_factories=[DecoderFactory()]
+            ).iter_decoded_messages(topics=['/angular_velocity'])
+        ]
     with Recording(recording) as opened:
         mine = opened.read('/angular_velocity')
-    np.testing.assert_array_equal(mine['vector'], [(one.vector.x, one.vector.y, one.vector.z) for one in decoded])
-    np.testing.assert_array_equal(mine['header.stamp'], [one.header.stamp.sec * 10**9 + one.header.stamp.nanosec for one in decoded])
+    np.testing.assert_array_equal(
+        mine['vector'], [(one.vector.x, one.vector.y, one.vector.z) for one in decoded]
+    )
+    np.testing.assert_array_equal(
+        mine['header.stamp'],
+        [one.header.stamp.sec * 10**9 + one.header.stamp.nanosec for one in decoded],
+    )
 
 
 def test_blocks_stream_and_choose_time_topics_and_columns(recording):
@@ -75,7 +102,16 @@ def test_blocks_stream_and_choose_time_topics_and_columns(recording):
     with Recording(recording) as opened:
         blocks = list(opened.blocks(['/pose', '/energy'], None, first, last, done.append))
     assert [topic for topic, _ in blocks] == ['/pose', '/energy'] * 4
-    assert [len(columns['log_time']) for _, columns in blocks] == [50, 50, 100, 100, 100, 100, 50, 50]
+    assert [len(columns['log_time']) for _, columns in blocks] == [
+        50,
+        50,
+        100,
+        100,
+        100,
+        100,
+        50,
+        50,
+    ]
     assert sum(done) == 600
     assert (blocks[0][1]['log_time'][0], blocks[-1][1]['log_time'][-1]) == (first, last)
 
@@ -83,7 +119,11 @@ def test_blocks_stream_and_choose_time_topics_and_columns(recording):
 def test_messages_come_in_the_order_of_time_also_from_overlapping_chunks(tmp_path):
     path, times = tmp_path / 'theirs.mcap', random.Random(1).sample(range(1, 3000), 2000)
     path.write_bytes(b'')
-    _write_theirs(path, [(START + 50 * (index // 50) + time % 97, index) for index, time in enumerate(times)], chunk_size=1000)
+    _write_theirs(
+        path,
+        [(START + 50 * (index // 50) + time % 97, index) for index, time in enumerate(times)],
+        chunk_size=1000,
+    )
     with Recording(path) as opened:
         found = [(message.log_time, message.sequence) for message in opened.messages()]
         columns = opened.read('/x')
@@ -98,14 +138,20 @@ def test_messages_are_the_bytes_that_went_over_the_wire(recording):
     with Recording(recording) as opened:
         found = list(opened.messages(['/pose', '/scene']))
     assert found[0] == (START, '/scene', START + 5, 0, scene_text(ABOUT['scene']))
-    assert [message.data for message in found[1:]] == [row.tobytes() for row in ticks.rows['/pose']]
+    assert [message.data for message in found[1:]] == [
+        row.tobytes() for row in ticks.rows['/pose']
+    ]
 
 
 def test_chunks_without_a_topic_are_not_read_for_it(recording, monkeypatch):
     with Recording(recording) as opened:
         read = []
         piece = FileReader.piece
-        monkeypatch.setattr(FileReader, 'piece', lambda file, place, *rest: read.append(place) or piece(file, place, *rest))
+        monkeypatch.setattr(
+            FileReader,
+            'piece',
+            lambda file, place, *rest: read.append(place) or piece(file, place, *rest),
+        )
         assert len(list(opened.decoded('/scene'))) == 1
         assert len(read) == 1
         read.clear()
@@ -116,11 +162,24 @@ def test_chunks_without_a_topic_are_not_read_for_it(recording, monkeypatch):
 def test_journal_tells_in_order_what_happened(tmp_path):
     exact = 0.1 + 0.2
     with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, {'scene': 's'}) as writer:
-        writer.message(JOURNAL.name, START, START, journal_message('impulse', tick=3, torque=[exact, 5e-324, -1e308], frame='world'))
+        writer.message(
+            JOURNAL.name,
+            START,
+            START,
+            journal_message('impulse', tick=3, torque=[exact, 5e-324, -1e308], frame='world'),
+        )
     with Recording(tmp_path / 'bag') as opened:
         assert opened.journal() == [
             {'kind': 'begin', 'scene': 's', 'log_time': START, 'topic': '/journal'},
-            {'kind': 'impulse', 'tick': 3, 'torque': [exact, 5e-324, -1e308], 'frame': 'world', 'log_time': START, 'topic': '/journal'}]
+            {
+                'kind': 'impulse',
+                'tick': 3,
+                'torque': [exact, 5e-324, -1e308],
+                'frame': 'world',
+                'log_time': START,
+                'topic': '/journal',
+            },
+        ]
 
 
 def test_what_the_recorder_left_is_found_in_the_journal_alone(tmp_path):
@@ -148,11 +207,29 @@ def test_recording_of_rosbags_with_sequences_of_many_lengths(tmp_path):
         status = writer.add_connection('/events', STATUS, typestore=store)
         joints = writer.add_connection('/joints', 'sensor_msgs/msg/JointState', typestore=store)
         for k in range(40):
-            writer.write(status, START + k, cdr.encode(STATUS, {'name': 'n' * k, 'values': [{'key': 'k', 'value': str(k)}] * (k % 3)}))
-            writer.write(joints, START + k, cdr.encode('sensor_msgs/msg/JointState', {'name': ['a'], 'position': [float(k)] * (1 + k % 2),
-                                                                                     'header': {'frame_id': 'f' * (k % 2)}}))
+            writer.write(
+                status,
+                START + k,
+                cdr.encode(
+                    STATUS, {'name': 'n' * k, 'values': [{'key': 'k', 'value': str(k)}] * (k % 3)}
+                ),
+            )
+            writer.write(
+                joints,
+                START + k,
+                cdr.encode(
+                    'sensor_msgs/msg/JointState',
+                    {
+                        'name': ['a'],
+                        'position': [float(k)] * (1 + k % 2),
+                        'header': {'frame_id': 'f' * (k % 2)},
+                    },
+                ),
+            )
     with Recording(tmp_path / 'bag') as opened:
-        assert [message['name'] for _, message in opened.decoded('/events')] == ['n' * k for k in range(40)]
+        assert [message['name'] for _, message in opened.decoded('/events')] == [
+            'n' * k for k in range(40)
+        ]
         with pytest.raises(BadInput, match='many different forms; decode them one by one'):
             opened.read('/events')
         joined = opened.read('/joints')
@@ -166,29 +243,61 @@ def _write_theirs(path, entries, **options):
     with open(path, 'wb') as stream:
         writer = TheirWriter(stream, **options)
         writer.start('ros2', 'theirs')
-        schema = writer.register_schema('std_msgs/msg/Float64', 'ros2msg', definition('std_msgs/msg/Float64').text.encode())
+        schema = writer.register_schema(
+            'std_msgs/msg/Float64', 'ros2msg', definition('std_msgs/msg/Float64').text.encode()
+        )
         channel = writer.register_channel('/x', 'cdr', schema)
         for log_time, index in entries:
-            writer.add_message(channel, log_time, cdr.encode('std_msgs/msg/Float64', {'data': float(index)}), log_time, index)
+            writer.add_message(
+                channel,
+                log_time,
+                cdr.encode('std_msgs/msg/Float64', {'data': float(index)}),
+                log_time,
+                index,
+            )
         writer.finish()
 
 
-@pytest.mark.parametrize('options', [
-    {}, {'compression': CompressionType.LZ4}, {'compression': CompressionType.NONE}, {'use_chunking': False}, {'use_statistics': False},
-    {'index_types': IndexType.NONE}, {'repeat_channels': False, 'repeat_schemas': False}, {'enable_crcs': False},
-    {'use_chunking': False, 'use_statistics': False, 'repeat_channels': False, 'repeat_schemas': False, 'use_summary_offsets': False},
-], ids=str)
+@pytest.mark.parametrize(
+    'options',
+    [
+        {},
+        {'compression': CompressionType.LZ4},
+        {'compression': CompressionType.NONE},
+        {'use_chunking': False},
+        {'use_statistics': False},
+        {'index_types': IndexType.NONE},
+        {'repeat_channels': False, 'repeat_schemas': False},
+        {'enable_crcs': False},
+        {
+            'use_chunking': False,
+            'use_statistics': False,
+            'repeat_channels': False,
+            'repeat_schemas': False,
+            'use_summary_offsets': False,
+        },
+    ],
+    ids=str,
+)
 def test_files_of_other_writers_with_whatever_they_leave_out(tmp_path, options):
-    _write_theirs(tmp_path / 'x.mcap', [(START + k, k) for k in range(3000)], **{'chunk_size': 8000, **options})
+    _write_theirs(
+        tmp_path / 'x.mcap',
+        [(START + k, k) for k in range(3000)],
+        **{'chunk_size': 8000, **options},
+    )
     with Recording(tmp_path / 'x.mcap') as opened:
         assert opened.topics['/x'].count == 3000
         columns = opened.read('/x')
-        assert [message.sequence for message in opened.messages(start=START + 10, end=START + 12)] == [10, 11, 12]
+        assert [
+            message.sequence for message in opened.messages(start=START + 10, end=START + 12)
+        ] == [10, 11, 12]
     np.testing.assert_array_equal(columns['data'], np.arange(3000.0))
 
 
 def test_long_file_without_chunks_is_read_in_pieces(tmp_path, monkeypatch):
-    monkeypatch.setattr('rigid_body_sim.recording.mcap.reading._PIECE', 10)      # less than one record: pieces grow
+    monkeypatch.setattr(
+        'rigid_body_sim.recording.mcap.reading._PIECE', 10
+    )  # less than one record: pieces grow
     _write_theirs(tmp_path / 'x.mcap', [(START + k, k) for k in range(300)], use_chunking=False)
     with Recording(tmp_path / 'x.mcap') as opened:
         np.testing.assert_array_equal(opened.read('/x')['data'], np.arange(300.0))
@@ -206,7 +315,10 @@ def test_cut_file_is_refused_with_what_helps(tmp_path, recording):
 
 def test_unknown_topic_and_column_are_refused_with_those_there_are(recording):
     with Recording(recording) as opened:
-        with pytest.raises(BadInput, match="no topic '/poze' was recorded; one of /angular_momentum_squared, /angular_velocity"):
+        with pytest.raises(
+            BadInput,
+            match="no topic '/poze' was recorded; one of /angular_momentum_squared, /angular_",
+        ):
             opened.read('/poze')
         with pytest.raises(BadInput, match=r"without a column 'pose\.x'; some of header\.stamp"):
             opened.read('/pose', ['pose.x'])
@@ -238,7 +350,12 @@ def test_metadata_that_is_none_is_refused(tmp_path, recording, text):
 
 @pytest.mark.parametrize('checksums', [True, False])
 def test_damaged_files_never_do_worse_than_bad_input(tmp_path, checksums):
-    source = write(tmp_path / 'bag', count=200, block=50, compression_name='zstd' if checksums else 'none') / 'bag_0.mcap'
+    source = (
+        write(
+            tmp_path / 'bag', count=200, block=50, compression_name='zstd' if checksums else 'none'
+        )
+        / 'bag_0.mcap'
+    )
     if not checksums:
         without_checksums(source)
     content, rng = source.read_bytes(), random.Random(5)
@@ -259,7 +376,9 @@ def test_damaged_files_never_do_worse_than_bad_input(tmp_path, checksums):
             assert recover(path)[0].changed is False
             Recording(path).close()
     assert refused > DAMAGED // 5
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 600_000     # KB: a chunk may claim 256 MB
+    assert (
+        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 600_000
+    )  # KB: a chunk may claim 256 MB
 
 
 def test_topic_of_a_shipped_type_without_its_text_is_decoded_all_the_same(tmp_path):
@@ -268,13 +387,21 @@ def test_topic_of_a_shipped_type_without_its_text_is_decoded_all_the_same(tmp_pa
         writer.start('ros2', 'theirs')
         idl = writer.register_schema('std_msgs/msg/Float64', 'ros2idl', b'module std_msgs {};')
         other = writer.register_schema('their/msg/Thing', 'ros2idl', b'module their {};')
-        for topic, schema, encoding in (('/x', idl, 'cdr'), ('/y', other, 'cdr'), ('/z', idl, 'json')):
+        for topic, schema, encoding in (
+            ('/x', idl, 'cdr'),
+            ('/y', other, 'cdr'),
+            ('/z', idl, 'json'),
+        ):
             channel = writer.register_channel(topic, encoding, schema)
-            writer.add_message(channel, START, cdr.encode('std_msgs/msg/Float64', {'data': 2.5}), START)
+            writer.add_message(
+                channel, START, cdr.encode('std_msgs/msg/Float64', {'data': 2.5}), START
+            )
         writer.finish()
     with Recording(tmp_path / 'x.mcap') as opened:
         assert opened.read('/x')['data'].tolist() == [2.5]
-        with pytest.raises(BadInput, match='their/msg/Thing: is a message type that is not installed here'):
+        with pytest.raises(
+            BadInput, match='their/msg/Thing: is a message type that is not installed here'
+        ):
             opened.read('/y')
         with pytest.raises(BadInput, match="encoded as 'json'; a recording of ROS 2 messages"):
             opened.read('/z')
@@ -286,3 +413,18 @@ def test_namespaced_journal_is_found(tmp_path):
         writer.message('/scene', START, START, scene_text('x'))
     with Recording(tmp_path / 'bag') as opened:
         assert [entry['kind'] for entry in opened.journal()] == ['begin']
+
+
+def test_an_index_that_points_at_the_end_of_the_file_is_refused(tmp_path, recording):
+    content = bytearray((recording / 'racket_0.mcap').read_bytes())
+    with open(recording / 'racket_0.mcap', 'rb') as stream:
+        index = make_reader(stream).get_summary().chunk_indexes[0]
+    told = struct.pack('<QQ', index.chunk_start_offset, index.chunk_length)
+    for lie in (struct.pack('<QQ', len(content), 0), struct.pack('<QQ', len(content) - 5, 5),
+                struct.pack('<QQ', 0, 8)):
+        damaged = content.replace(told, lie)
+        damaged[-12:-8] = bytes(4)      # no checksum of the summary
+        (tmp_path / 'x.mcap').write_bytes(damaged)
+        refused = pytest.raises(BadInput, match='an index that points at no chunk; an undamaged')
+        with Recording(tmp_path / 'x.mcap') as opened, refused:
+            list(opened.messages())

@@ -1,4 +1,8 @@
-"""The recorder in its own process: complete after a kill of the node, nothing important lost whatever happens, all gaps marked."""
+# SPDX-License-Identifier: Apache-2.0
+"""The recorder in its own process: complete after a kill of the node, all gaps marked.
+
+Nothing important is lost whatever happens.
+"""
 
 import contextlib
 import itertools
@@ -49,9 +53,16 @@ def tick(recorder, first, count, each=None):
     """Record ticks as a node does, with an entry of the journal at every tenth."""
     ticks = Ticks(first, count)
     for index in range(count):
-        recorder.tick(int(ticks.stamps[index]), int(ticks.wall_clock[index]), ticks.messages(index))
+        recorder.tick(
+            int(ticks.stamps[index]), int(ticks.wall_clock[index]), ticks.messages(index)
+        )
         if (first + index) % 10 == 0:
-            recorder.journal('impulse', int(ticks.stamps[index]), int(ticks.wall_clock[index]), tick=first + index)
+            recorder.journal(
+                'impulse',
+                int(ticks.stamps[index]),
+                int(ticks.wall_clock[index]),
+                tick=first + index,
+            )
         if each:
             each()
 
@@ -64,7 +75,10 @@ def wait_for(condition, what):
 
 
 def check(path, sent):
-    """Check a closed recording of `sent` ticks made by tick(): right but for marked gaps, nothing important lost. Return the gaps."""
+    """Check a closed recording of `sent` ticks made by tick(); return the gaps.
+
+    It is right but for marked gaps, and nothing important is lost.
+    """
     with Recording(path) as recording:
         pose, journal = recording.read('/pose'), recording.journal()
     numbers = pose['sequence'].astype(int)
@@ -72,14 +86,22 @@ def check(path, sent):
     if len(numbers):
         np.testing.assert_array_equal(pose['header.stamp'], ticks.stamps[numbers])
         np.testing.assert_array_equal(pose['pose.orientation'], ticks.orientation[numbers])
-    assert [entry['tick'] for entry in journal if entry['kind'] == 'impulse'] == list(range(0, sent, 10))
+    assert [entry['tick'] for entry in journal if entry['kind'] == 'impulse'] == list(
+        range(0, sent, 10)
+    )
     gaps = [entry for entry in journal if entry['kind'] == 'gap']
     missing = sorted(set(range(sent)) - set(numbers.tolist()))
     assert np.all(np.diff(numbers) > 0)
     assert sum(gap['ticks'] for gap in gaps) == len(missing) == sent - len(numbers)
-    begins, ends = ([number for number in missing if number + step not in missing] for step in (-1, 1))
-    assert [gap['after'] for gap in gaps] == [int(ticks.stamps[begin - 1]) if begin else 0 for begin in begins]
-    assert [gap['until'] for gap in gaps] == [int(ticks.stamps[end + 1]) if end + 1 < sent else None for end in ends]
+    begins, ends = (
+        [number for number in missing if number + step not in missing] for step in (-1, 1)
+    )
+    assert [gap['after'] for gap in gaps] == [
+        int(ticks.stamps[begin - 1]) if begin else 0 for begin in begins
+    ]
+    assert [gap['until'] for gap in gaps] == [
+        int(ticks.stamps[end + 1]) if end + 1 < sent else None for end in ends
+    ]
     return gaps
 
 
@@ -90,8 +112,15 @@ def test_everything_is_recorded_in_order(tmp_path):
     recorder.message('/scene', START, START, scene_text('y'))
     tick(recorder, 0, 3000)
     status = recorder.close()
-    assert (status.recorded, status.dropped, status.lost, status.waiting, status.restarts, status.error, status.closed) == (
-        12_303, 0, 0, 0, 0, '', True)      # 4 topics, 300 entries, begin, 2 scenes
+    assert (
+        status.recorded,
+        status.dropped,
+        status.lost,
+        status.waiting,
+        status.restarts,
+        status.error,
+        status.closed,
+    ) == (12_303, 0, 0, 0, 0, '', True)      # 4 topics, 300 entries, begin, 2 scenes
     assert check(tmp_path / 'bag', 3000) == []
     assert status.written == (tmp_path / 'bag' / 'bag_0.mcap').stat().st_size
     with Reader(tmp_path / 'bag') as reader:
@@ -132,10 +161,17 @@ def stopped(recorder):
 
 @pytest.fixture
 def node(tmp_path):
-    """Yield (process, pid of its recorder) of a process that records 1000 ticks a second until it is killed, and says '.' after each."""
+    """Yield (process, pid of its recorder): it records 1000 ticks a second until it is killed.
+
+    It says '.' after each.
+    """
     environment = dict(os.environ, PYTHONPATH=f'{ROOT}{os.pathsep}{ROOT / "test"}')
-    with subprocess.Popen([sys.executable, '-c', NODE, str(tmp_path / 'bag')], stdout=subprocess.PIPE, env=environment,
-                          start_new_session=True) as process:
+    with subprocess.Popen(
+        [sys.executable, '-c', NODE, str(tmp_path / 'bag')],
+        stdout=subprocess.PIPE,
+        env=environment,
+        start_new_session=True,
+    ) as process:
         yield process, int(process.stdout.readline())
         process.kill()
 
@@ -197,12 +233,15 @@ def test_killed_recorder_is_followed_by_another_and_nothing_important_is_lost(tm
     tick(recorder, 300, 200)
     os.kill(recorder.process_id, signal.SIGKILL)
     tick(recorder, 500, 200)
-    wait_for(lambda: recorder.status().restarts == 1 and not recorder.status().error, 'the next recorder')
+    wait_for(
+        lambda: recorder.status().restarts == 1 and not recorder.status().error,
+        'the next recorder',
+    )
     tick(recorder, 700, 300)
     status = recorder.close()
     assert (status.closed, status.restarts) == (True, 1)
     gaps = check(tmp_path / 'bag', 1000)
-    assert len(gaps) <= 1       # what was in its memory; if it just had written that, the pipe at most
+    assert len(gaps) <= 1  # what was in its memory; if it just had written that, the pipe at most
     assert status.dropped == sum(gap['ticks'] for gap in gaps)
     with Reader(tmp_path / 'bag') as reader:
         assert len(list((tmp_path / 'bag').glob('*.mcap'))) == 2
@@ -227,7 +266,9 @@ def test_stopped_recorder_costs_bounded_memory_and_only_ticks(tmp_path, monkeypa
         tick(recorder, 100, 9900)       # 2 MB: the pipe takes 1
         status = recorder.status()
         assert status.dropped > 2000
-        assert status.waiting < 100_000 + 990 * 100        # ticks up to the limit, journal entries beyond
+        assert (
+            status.waiting < 100_000 + 990 * 100
+        )  # ticks up to the limit, journal entries beyond
     for first in itertools.count(10_000, 100):
         tick(recorder, first, 100)
         if recorder.status().waiting == 0 and recorder.state_wanted:
@@ -247,7 +288,9 @@ def test_what_a_stopped_recorder_has_not_taken_at_the_end_is_said(tmp_path):
             recorder.important(SCENE.name, k, k, bytes(2**20))
         status = recorder.close(timeout=0.1)
         assert not status.closed
-        assert re.fullmatch(r'the recorder was too slow to take the last \d{7} bytes', status.error)
+        assert re.fullmatch(
+            r'the recorder was too slow to take the last \d{7} bytes', status.error
+        )
         assert int(re.search(r'\d+', status.error)[0]) == status.waiting > 2**20
     os.waitpid(recorder.process_id, 0)
 
@@ -268,11 +311,18 @@ def test_full_disk_is_reported_and_recording_resumes_when_there_is_room(tmp_path
     sent += 500
     time.sleep(0.2)
     assert recorder.status().dropped >= 400
-    resource.prlimit(recorder.process_id, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    resource.prlimit(
+        recorder.process_id,
+        resource.RLIMIT_FSIZE,
+        (resource.RLIM_INFINITY, resource.RLIM_INFINITY),
+    )
     recorder.state_wanted = False
     wait_for(lambda: not recorder.status().error, 'the end of the error')
     tick(recorder, sent, 300)
-    wait_for(lambda: recorder.status() and recorder.state_wanted, 'the wish for a full state after the gap')
+    wait_for(
+        lambda: recorder.status() and recorder.state_wanted,
+        'the wish for a full state after the gap',
+    )
     status = recorder.close()
     assert status.closed
     assert len(check(tmp_path / 'bag', sent + 300)) == 1
@@ -286,7 +336,11 @@ def test_disk_that_stays_full_leaves_what_recover_makes_whole(tmp_path):
         time.sleep(0.02)
     status = recorder.close()
     assert not status.closed
-    assert status.error == f'{tmp_path / "bag"}: File too large; not closed, "recover" makes it whole once there is room'
+    assert (
+        status.error
+        == f'{tmp_path / "bag"}: File too large; not closed, '
+        '"recover" makes it whole once there is room'
+    )
     result, = recover(tmp_path / 'bag')
     assert result.changed
     with Recording(tmp_path / 'bag') as recording:
@@ -319,7 +373,9 @@ def test_renamed_recording_goes_on_in_its_folder(tmp_path):
 def test_places_that_will_not_do_are_refused_before_anything_runs(tmp_path):
     (tmp_path / 'there').mkdir()
     (tmp_path / 'file').write_text('')
-    with pytest.raises(BadInput, match='there: exists already; the name of a recording that does not exist yet'):
+    with pytest.raises(
+        BadInput, match='there: exists already; the name of a recording that does not exist yet'
+    ):
         start(tmp_path / 'there')
     with pytest.raises(BadInput, match='no recording can be made here'):
         start(tmp_path / 'file' / 'bag')
@@ -336,5 +392,7 @@ def test_important_messages_beyond_the_limit_are_counted_not_hoarded(tmp_path, m
         lost = recorder.status().lost
     assert recorder.close().closed
     with Recording(tmp_path / 'bag') as recording:
-        assert [entry['tick'] for entry in recording.journal() if entry['kind'] == 'impulse'] == list(range(200 - lost))
+        assert [
+            entry['tick'] for entry in recording.journal() if entry['kind'] == 'impulse'
+        ] == list(range(200 - lost))
     assert 100 < lost < 200

@@ -1,4 +1,8 @@
-"""Cut files made whole: nothing invented, nothing lost before the cut chunk, the second time nothing changes."""
+# SPDX-License-Identifier: Apache-2.0
+"""Cut files made whole: nothing invented, nothing lost before the cut chunk.
+
+The second time nothing changes.
+"""
 
 import fcntl
 import json
@@ -25,8 +29,12 @@ OFFSETS = 1000 if SOAK else 25
 def messages_of(path):
     """Return all messages of a file in its order, read by indexes and with checksums validated."""
     with open(path, 'rb') as stream:
-        return [(channel.topic, message.log_time, message.publish_time, message.sequence, message.data)
-                for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)]
+        return [
+            (channel.topic, message.log_time, message.publish_time, message.sequence, message.data)
+            for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages(
+                log_time_order=False
+            )
+        ]
 
 
 def chunks_of(path):
@@ -54,10 +62,16 @@ def test_files_cut_at_random_offsets(tmp_path, compression_name):
         kept = messages_of(file)
         assert result.changed
         assert kept == messages[:len(kept)]
-        assert len(kept) == result.messages >= max((count for end, count in chunks if end <= offset), default=0)
-        if compression_name == 'none':      # then all that was complete is kept, also in the cut chunk
+        assert (
+            len(kept)
+            == result.messages
+            >= max((count for end, count in chunks if end <= offset), default=0)
+        )
+        if compression_name == 'none':  # then all that was complete is kept, also in the cut chunk
             assert len(kept) + result.lost_messages <= len(messages)
-            assert result.messages >= max((count for end, count in chunks if end <= offset), default=0)
+            assert result.messages >= max(
+                (count for end, count in chunks if end <= offset), default=0
+            )
         with Reader(folder) as reader:
             assert reader.message_count == len(kept)
         bag = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
@@ -76,7 +90,9 @@ def test_uncompressed_chunk_is_kept_up_to_the_cut_message(tmp_path):
     (tmp_path / 'cut.mcap').write_bytes(content[:at + len(marker) - 1])
     result, = recover(tmp_path / 'cut.mcap')
     assert messages_of(tmp_path / 'cut.mcap') == messages[:601]
-    assert result.lost_messages == pytest.approx(802 - 601, abs=2)      # the first chunk has some longer ones
+    assert result.lost_messages == pytest.approx(
+        802 - 601, abs=2
+    )  # the first chunk has some longer ones
     assert result.lost_seconds == pytest.approx(0.05, abs=0.002)
 
 
@@ -86,16 +102,32 @@ def test_what_is_lost_is_said(tmp_path, capsys):
     os.truncate(whole, end - 10)    # in the fifth chunk
     (whole.parent / 'metadata.yaml').unlink()
     assert main([str(whole.parent)]) == 0
-    assert 'made whole, 1602 messages kept, lost about 400 messages, 0.100 s' in capsys.readouterr().out
+    assert (
+        'made whole, 1602 messages kept, lost about 400 messages, 0.100 s'
+        in capsys.readouterr().out
+    )
     assert main([str(whole.parent), '--json']) == 0
-    assert json.loads(capsys.readouterr().out) == [{'path': str(whole), 'messages': 1602, 'lost_messages': 0, 'lost_seconds': 0.0,
-                                                    'lost_bytes': 0, 'changed': False}]
+    assert json.loads(capsys.readouterr().out) == [
+        {
+            'path': str(whole),
+            'messages': 1602,
+            'lost_messages': 0,
+            'lost_seconds': 0.0,
+            'lost_bytes': 0,
+            'changed': False,
+        }
+    ]
 
 
 def test_cut_in_the_message_indexes_or_the_tail_loses_nothing(tmp_path):
     whole = write(tmp_path / 'bag') / 'bag_0.mcap'
     messages, content = messages_of(whole), whole.read_bytes()
-    for offset in (chunks_of(whole)[-1][0], chunks_of(whole)[-1][0] + 100, len(content) - 1, len(content) - 300):
+    for offset in (
+        chunks_of(whole)[-1][0],
+        chunks_of(whole)[-1][0] + 100,
+        len(content) - 1,
+        len(content) - 300,
+    ):
         (tmp_path / 'cut.mcap').write_bytes(content[:offset])
         result, = recover(tmp_path / 'cut.mcap')
         assert messages_of(tmp_path / 'cut.mcap') == messages
@@ -112,12 +144,25 @@ def test_whole_recording_is_left_alone(recording):
 def test_metadata_yaml_comes_back_as_it_was(tmp_path):
     path = write(tmp_path / 'bag', split_seconds=0.2)
     before = (path / 'metadata.yaml').read_text()
-    for text in (None, '', before.replace('message_count: 1000', 'message_count: 999'), 'x: [', 'rosbag2_bagfile_information: 1'):
-        (path / 'metadata.yaml').write_text(text) if text is not None else (path / 'metadata.yaml').unlink()
+    for text in (
+        None,
+        '',
+        before.replace('message_count: 1000', 'message_count: 999'),
+        'x: [',
+        'rosbag2_bagfile_information: 1',
+    ):
+        (path / 'metadata.yaml').write_text(text) if text is not None else (
+            path / 'metadata.yaml'
+        ).unlink()
         recover(path)
-        told, there = (yaml.safe_load(one) for one in (before, (path / 'metadata.yaml').read_text()))
+        told, there = (
+            yaml.safe_load(one) for one in (before, (path / 'metadata.yaml').read_text())
+        )
         if text and 'count: 999' in text:
-            assert there['rosbag2_bagfile_information']['message_count'] == told['rosbag2_bagfile_information']['message_count']
+            assert (
+                there['rosbag2_bagfile_information']['message_count']
+                == told['rosbag2_bagfile_information']['message_count']
+            )
         else:
             assert there == told
 
@@ -131,7 +176,12 @@ def test_split_recording_cut_in_its_last_file(tmp_path):
     assert [result.changed for result in results] == [False, False, True]
     with Reader(path) as reader:
         assert reader.message_count == sum(result.messages for result in results)
-    assert yaml.safe_load((path / 'metadata.yaml').read_text())['rosbag2_bagfile_information']['custom_data'] == ABOUT
+    assert (
+        yaml.safe_load((path / 'metadata.yaml').read_text())['rosbag2_bagfile_information'][
+            'custom_data'
+        ]
+        == ABOUT
+    )
 
 
 def test_damaged_chunk_is_hidden_and_the_others_are_kept(tmp_path):
@@ -200,8 +250,11 @@ def test_lengths_that_lie_are_cut_off(tmp_path):
 def test_what_cannot_be_recovered_is_refused(tmp_path, recording, capsys):
     (tmp_path / 'text.mcap').write_text('not a recording')
     (tmp_path / 'empty').mkdir()
-    for path, problem in ((tmp_path / 'text.mcap', 'is not an MCAP file'), (tmp_path / 'empty', 'holds no .mcap file'),
-                          (tmp_path / 'nowhere', 'cannot be read')):
+    for path, problem in (
+        (tmp_path / 'text.mcap', 'is not an MCAP file'),
+        (tmp_path / 'empty', 'holds no .mcap file'),
+        (tmp_path / 'nowhere', 'cannot be read'),
+    ):
         with pytest.raises(BadInput, match=problem):
             recover(path)
     assert main([str(tmp_path / 'nowhere')]) == 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A machine with ROS from apt only: what needs no recording runs; the rest says what to install."""
+"""A machine without mcap: what needs no recording runs; the rest says what to install."""
 
 import os
 import pathlib

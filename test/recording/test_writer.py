@@ -1,4 +1,5 @@
-"""What the writer writes, seen by readers that nobody here wrote: rosbags, mcap with mcap_ros2, PyYAML."""
+# SPDX-License-Identifier: Apache-2.0
+"""What the writer writes, seen by readers of others: rosbags, mcap with mcap_ros2, PyYAML."""
 
 import itertools
 import shutil
@@ -39,24 +40,43 @@ COUNTS = {**{topic.name: 1000 for topic, _ in TICKING}, '/scene': 1, '/journal':
 def test_rosbags_reads_every_message_as_written(recording):
     ticks = Ticks(0, 1000)
     with Reader(recording) as reader:
-        assert {connection.topic: connection.msgcount for connection in reader.connections} == COUNTS
+        assert {
+            connection.topic: connection.msgcount for connection in reader.connections
+        } == COUNTS
         assert reader.message_count == 4002
         assert reader.start_time == START
         found = {}
         for connection, timestamp, data in reader.messages():
             found.setdefault(connection.topic, []).append((timestamp, bytes(data)))
     for topic, rows in ticks.rows.items():
-        assert found[topic] == list(zip(ticks.stamps.tolist(), (row.tobytes() for row in rows), strict=True))
+        assert found[topic] == list(
+            zip(ticks.stamps.tolist(), (row.tobytes() for row in rows), strict=True)
+        )
     assert found['/scene'] == [(START, scene_text(ABOUT['scene']))]
 
 
 def test_any_reader_decodes_by_the_recorded_definitions(recording):
     ticks = Ticks(0, 1000)
     with AnyReader([recording], default_typestore=get_typestore(Stores.EMPTY)) as reader:
-        connections = [connection for connection in reader.connections if connection.topic == '/pose']
-        poses = [reader.deserialize(data, connection.msgtype) for connection, _, data in reader.messages(connections)]
-    assert [pose.header.stamp.sec * 10**9 + pose.header.stamp.nanosec for pose in poses] == ticks.stamps.tolist()
-    turned = [(pose.pose.orientation.x, pose.pose.orientation.y, pose.pose.orientation.z, pose.pose.orientation.w) for pose in poses]
+        connections = [
+            connection for connection in reader.connections if connection.topic == '/pose'
+        ]
+        poses = [
+            reader.deserialize(data, connection.msgtype)
+            for connection, _, data in reader.messages(connections)
+        ]
+    assert [
+        pose.header.stamp.sec * 10**9 + pose.header.stamp.nanosec for pose in poses
+    ] == ticks.stamps.tolist()
+    turned = [
+        (
+            pose.pose.orientation.x,
+            pose.pose.orientation.y,
+            pose.pose.orientation.z,
+            pose.pose.orientation.w,
+        )
+        for pose in poses
+    ]
     assert turned == [tuple(row) for row in ticks.orientation.tolist()]
 
 
@@ -69,16 +89,30 @@ def test_mcap_ros2_decodes_with_checksums_validated(tmp_path, compression_name):
         energies = [(message.log_time, message.publish_time, message.sequence, decoded.data)
                     for _, _, message, decoded in reader.iter_decoded_messages(topics=['/energy'])]
         assert reader.get_header().profile == 'ros2'
-        assert {chunk.compression for chunk in reader.get_summary().chunk_indexes} == {compression_name.replace('none', '')}
-    assert energies == list(zip(ticks.stamps.tolist(), ticks.wall_clock.tolist(), range(300), ticks.energy.tolist(), strict=True))
+        assert {chunk.compression for chunk in reader.get_summary().chunk_indexes} == {
+            compression_name.replace('none', '')
+        }
+    assert energies == list(
+        zip(
+            ticks.stamps.tolist(),
+            ticks.wall_clock.tolist(),
+            range(300),
+            ticks.energy.tolist(),
+            strict=True,
+        )
+    )
 
 
 def test_indexes_lead_to_the_messages_they_name(recording):
     first, last = START + 123 * 10**6, START + 456 * 10**6
     with open(recording / 'racket_0.mcap', 'rb') as stream:
         # a seeking reader goes by chunk and message indexes alone
-        window = [message.log_time for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages(
-            topics=['/pose'], starting_at=first, ending_before=last)]
+        window = [
+            message.log_time
+            for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages(
+                topics=['/pose'], starting_at=first, ending_before=last
+            )
+        ]
     assert window == list(range(first, last, 10**6))
     with open(recording / 'racket_0.mcap', 'rb') as stream:
         summary = make_reader(stream).get_summary()
@@ -90,36 +124,83 @@ def test_indexes_lead_to_the_messages_they_name(recording):
 
 def test_file_order_is_the_order_of_time_tick_by_tick(recording):
     with open(recording / 'racket_0.mcap', 'rb') as stream:
-        records = [record for record in StreamReader(stream, validate_crcs=True).records if type(record).__name__ == 'Message']
+        records = [
+            record
+            for record in StreamReader(stream, validate_crcs=True).records
+            if type(record).__name__ == 'Message'
+        ]
     assert all(a.log_time <= b.log_time for a, b in itertools.pairwise(records))
 
 
 def test_metadata_yaml_is_that_of_rosbag2_version_9(recording):
     bag = yaml.safe_load((recording / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
-    assert list(bag) == ['version', 'storage_identifier', 'duration', 'starting_time', 'message_count', 'topics_with_message_count',
-                         'compression_format', 'compression_mode', 'relative_file_paths', 'files', 'custom_data', 'ros_distro']
+    assert list(bag) == [
+        'version',
+        'storage_identifier',
+        'duration',
+        'starting_time',
+        'message_count',
+        'topics_with_message_count',
+        'compression_format',
+        'compression_mode',
+        'relative_file_paths',
+        'files',
+        'custom_data',
+        'ros_distro',
+    ]
     topics = bag.pop('topics_with_message_count')
     assert bag == {
-        'version': 9, 'storage_identifier': 'mcap', 'duration': {'nanoseconds': 999 * 10**6},
-        'starting_time': {'nanoseconds_since_epoch': START}, 'message_count': 4002, 'compression_format': '', 'compression_mode': '',
+        'version': 9,
+        'storage_identifier': 'mcap',
+        'duration': {'nanoseconds': 999 * 10**6},
+        'starting_time': {'nanoseconds_since_epoch': START},
+        'message_count': 4002,
+        'compression_format': '',
+        'compression_mode': '',
         'relative_file_paths': ['racket_0.mcap'],
-        'files': [{'path': 'racket_0.mcap', 'starting_time': {'nanoseconds_since_epoch': START}, 'duration': {'nanoseconds': 999 * 10**6},
-                   'message_count': 4002}],
-        'custom_data': ABOUT, 'ros_distro': 'jazzy'}
+        'files': [
+            {
+                'path': 'racket_0.mcap',
+                'starting_time': {'nanoseconds_since_epoch': START},
+                'duration': {'nanoseconds': 999 * 10**6},
+                'message_count': 4002,
+            }
+        ],
+        'custom_data': ABOUT,
+        'ros_distro': 'jazzy',
+    }
     assert {topic['topic_metadata']['name']: topic['message_count'] for topic in topics} == COUNTS
     forever = {'sec': 9223372036, 'nsec': 854775807}
-    assert next(topic for topic in topics if topic['topic_metadata']['name'] == '/scene')['topic_metadata'] == {
-        'name': '/scene', 'type': 'std_msgs/msg/String', 'serialization_format': 'cdr',
-        'offered_qos_profiles': [{'history': 'keep_last', 'depth': 1, 'reliability': 'reliable', 'durability': 'transient_local',
-                                  'deadline': forever, 'lifespan': forever, 'liveliness': 'automatic', 'liveliness_lease_duration': forever,
-                                  'avoid_ros_namespace_conventions': False}],
-        'type_description_hash': definition('std_msgs/msg/String').hash}
+    assert next(topic for topic in topics if topic['topic_metadata']['name'] == '/scene')[
+        'topic_metadata'
+    ] == {
+        'name': '/scene',
+        'type': 'std_msgs/msg/String',
+        'serialization_format': 'cdr',
+        'offered_qos_profiles': [
+            {
+                'history': 'keep_last',
+                'depth': 1,
+                'reliability': 'reliable',
+                'durability': 'transient_local',
+                'deadline': forever,
+                'lifespan': forever,
+                'liveliness': 'automatic',
+                'liveliness_lease_duration': forever,
+                'avoid_ros_namespace_conventions': False,
+            }
+        ],
+        'type_description_hash': definition('std_msgs/msg/String').hash,
+    }
 
 
 def test_channels_and_metadata_records_are_those_of_rosbag2(recording):
     with open(recording / 'racket_0.mcap', 'rb') as stream:
         reader = make_reader(stream)
-        summary, records = reader.get_summary(), {record.name: record.metadata for record in reader.iter_metadata()}
+        summary, records = (
+            reader.get_summary(),
+            {record.name: record.metadata for record in reader.iter_metadata()},
+        )
     for channel in summary.channels.values():
         assert list(channel.metadata) == ['offered_qos_profiles', 'topic_type_hash']
         assert channel.message_encoding == 'cdr'
@@ -130,16 +211,27 @@ def test_channels_and_metadata_records_are_those_of_rosbag2(recording):
         assert len(yaml.safe_load(channel.metadata['offered_qos_profiles'])[0]) == 9
     assert records['rigid_body_sim'] == ABOUT
     told = yaml.safe_load(records['rosbag2']['serialized_metadata'])
-    assert told == yaml.safe_load((recording / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    assert (
+        told
+        == yaml.safe_load((recording / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    )
 
 
 def test_qos_is_understood_by_rosbags(recording):
     with Reader(recording) as reader:
-        profile = next(connection for connection in reader.connections if connection.topic == '/scene').ext.offered_qos_profiles[0]
-    assert (profile.depth, profile.reliability, profile.durability) == (1, QosReliability.RELIABLE, QosDurability.TRANSIENT_LOCAL)
+        profile = next(
+            connection for connection in reader.connections if connection.topic == '/scene'
+        ).ext.offered_qos_profiles[0]
+    assert (profile.depth, profile.reliability, profile.durability) == (
+        1,
+        QosReliability.RELIABLE,
+        QosDurability.TRANSIENT_LOCAL,
+    )
 
 
-@pytest.mark.parametrize(('options', 'least'), [({'split_bytes': 30_000}, 5), ({'split_seconds': 0.3}, 3)])
+@pytest.mark.parametrize(
+    ('options', 'least'), [({'split_bytes': 30_000}, 5), ({'split_seconds': 0.3}, 3)]
+)
 def test_split_recordings_read_as_one(tmp_path, options, least):
     path = write(tmp_path / 'bag', **options)
     names = [f'bag_{number}.mcap' for number in range(len(list(path.glob('*.mcap'))))]
@@ -147,13 +239,26 @@ def test_split_recordings_read_as_one(tmp_path, options, least):
     bag = yaml.safe_load((path / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
     assert bag['relative_file_paths'] == names
     # the journal begins anew in each file
-    assert bag['message_count'] == sum(file['message_count'] for file in bag['files']) == 4001 + len(names)
+    assert (
+        bag['message_count']
+        == sum(file['message_count'] for file in bag['files'])
+        == 4001 + len(names)
+    )
     with Reader(path) as reader:
-        stamps = [timestamp for connection, timestamp, _ in reader.messages() if connection.topic == '/pose']
+        stamps = [
+            timestamp
+            for connection, timestamp, _ in reader.messages()
+            if connection.topic == '/pose'
+        ]
     assert stamps == Ticks(0, 1000).stamps.tolist()
     for name in names:
         with open(path / name, 'rb') as stream:
-            topics = [channel.topic for _, channel, _ in make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)]
+            topics = [
+                channel.topic
+                for _, channel, _ in make_reader(stream, validate_crcs=True).iter_messages(
+                    log_time_order=False
+                )
+            ]
         assert topics[0] == '/journal'
 
 
@@ -161,8 +266,11 @@ def test_a_full_state_is_asked_for_in_each_file(tmp_path):
     ticks, asked = Ticks(0, 400), []
     with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, {}, split_seconds=0.1) as writer:
         for index in range(400):
-            writer.ticks(index, *(array[index:index + 1] for array in (ticks.stamps, ticks.wall_clock)),
-                         [rows[index:index + 1] for rows in ticks.rows.values()])
+            writer.ticks(
+                index,
+                *(array[index : index + 1] for array in (ticks.stamps, ticks.wall_clock)),
+                [rows[index : index + 1] for rows in ticks.rows.values()],
+            )
             writer.flush()
             if writer.state_wanted:
                 writer.state_wanted = False
@@ -178,10 +286,14 @@ def test_log_time_never_falls_and_publish_time_is_kept(tmp_path):
         writer.ticks(0, ticks.stamps, ticks.wall_clock, list(ticks.rows.values()))
         writer.message('/scene', START - 10**9, START + 7, scene_text('early'))
     with open(tmp_path / 'bag' / 'bag_0.mcap', 'rb') as stream:
-        messages = [(channel.topic, message.log_time, message.publish_time)
-                    for _, channel, message in make_reader(stream).iter_messages(log_time_order=False)]
+        messages = [
+            (channel.topic, message.log_time, message.publish_time)
+            for _, channel, message in make_reader(stream).iter_messages(log_time_order=False)
+        ]
     assert {log_time for _, log_time, _ in messages} == {START + 10**9}
-    assert [time for topic, _, time in messages if topic == '/pose'] == [START + k * 10**6 + (1 + k) * LATE for k in range(4)]
+    assert [time for topic, _, time in messages if topic == '/pose'] == [
+        START + k * 10**6 + (1 + k) * LATE for k in range(4)
+    ]
     assert messages[-1] == ('/scene', START + 10**9, START + 7)
 
 
@@ -190,7 +302,9 @@ def test_nothing_is_larger_than_a_chunk_though_much_comes_at_once(tmp_path):
     with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, {}) as writer:
         writer.ticks(0, ticks.stamps, ticks.wall_clock, list(ticks.rows.values()))
     with open(tmp_path / 'bag' / 'bag_0.mcap', 'rb') as stream:
-        sizes = [chunk.uncompressed_size for chunk in make_reader(stream).get_summary().chunk_indexes]
+        sizes = [
+            chunk.uncompressed_size for chunk in make_reader(stream).get_summary().chunk_indexes
+        ]
     assert len(sizes) > 10
     assert max(sizes) < CHUNK_SIZE + 500
 
@@ -207,20 +321,40 @@ def test_real_racket_takes_at_most_095_of_its_payload(tmp_path):
     simulation, ticks = Simulation('tennis_racket'), Ticks(0, 20_000)
     states = simulation.states(np.arange(20_000) / 1000)
     energy, momentum = simulation.diagnose(states)
-    rows = [packer.pack_many(columns) for packer, columns in zip(
-        PACKERS.values(), ({'header.stamp': ticks.stamps, 'pose.position': states.position, 'pose.orientation': states.orientation},
-                           {'header.stamp': ticks.stamps, 'vector': states.angular_velocity}, {'data': energy}, {'data': momentum}),
-        strict=True)]
+    rows = [
+        packer.pack_many(columns)
+        for packer, columns in zip(
+            PACKERS.values(),
+            (
+                {
+                    'header.stamp': ticks.stamps,
+                    'pose.position': states.position,
+                    'pose.orientation': states.orientation,
+                },
+                {'header.stamp': ticks.stamps, 'vector': states.angular_velocity},
+                {'data': energy},
+                {'data': momentum},
+            ),
+            strict=True,
+        )
+    ]
     with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, ABOUT) as writer:
         for first in range(0, 20_000, 100):     # as the node does: a chunk every 0.1 s
             part = slice(first, first + 100)
-            writer.ticks(first, ticks.stamps[part], ticks.wall_clock[part], [one[part] for one in rows])
+            writer.ticks(
+                first, ticks.stamps[part], ticks.wall_clock[part], [one[part] for one in rows]
+            )
             writer.flush()
     size = sum(file.stat().st_size for file in (tmp_path / 'bag').iterdir())
-    assert size <= 0.95 * sum(one.size for one in rows)     # measured: 0.922 (payload 3.2 MB; of that 0.40 are indexes)
+    assert size <= 0.95 * sum(
+        one.size for one in rows
+    )  # measured: 0.922 (payload 3.2 MB; of that 0.40 are indexes)
 
 
-@pytest.mark.skipif(shutil.which('rerun') is None, reason='no program "rerun" on the path (pip install rerun-sdk, 800 MB)')
+@pytest.mark.skipif(
+    shutil.which('rerun') is None,
+    reason='no program "rerun" on the path (pip install rerun-sdk, 800 MB)',
+)
 @pytest.mark.parametrize('mended', [False, True], ids=['whole', 'mended'])
 def test_rerun_finds_no_fault(tmp_path, recording, mended):
     path = tmp_path / 'racket_0.mcap'
@@ -232,7 +366,10 @@ def test_rerun_finds_no_fault(tmp_path, recording, mended):
     assert checked.stdout.count('ok ') == 6
 
 
-@pytest.mark.parametrize(('place', 'problem'), [('there', 'exists already'), ('file/bag', 'no recording can be made here')])
+@pytest.mark.parametrize(
+    ('place', 'problem'),
+    [('there', 'exists already'), ('file/bag', 'no recording can be made here')],
+)
 def test_places_that_will_not_do_are_refused(tmp_path, place, problem):
     (tmp_path / 'there').mkdir()
     (tmp_path / 'file').write_text('')

@@ -143,7 +143,8 @@ class FileReader:
 
 def _uncompressed(data):
     """Return the records of a chunk's record."""
-    if data[:HEAD.size] != HEAD.pack(Opcode.CHUNK, len(data) - HEAD.size):
+    length = len(data) - HEAD.size
+    if length < 0 or data[:HEAD.size] != HEAD.pack(Opcode.CHUNK, length):
         raise Damaged('an index that points at no chunk')
     return records_of(of_bytes(Chunk, data[HEAD.size:]))
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fast walk over records against one that takes them one by one."""
 
 import random
@@ -37,7 +38,10 @@ def message(channel, size, sequence):
     return chunks.message(channel, sequence, 10**9 + sequence, 7, bytes(size))
 
 
-@given(runs=st.lists(st.tuples(KINDS, st.integers(1, 12), st.booleans()), max_size=6), cut=st.integers(0, 60))
+@given(
+    runs=st.lists(st.tuples(KINDS, st.integers(1, 12), st.booleans()), max_size=6),
+    cut=st.integers(0, 60),
+)
 @settings(deadline=None, max_examples=300)
 def test_runs_of_ticks_broken_by_other_records(runs, cut):
     records, sequence = b'', 0
@@ -63,7 +67,10 @@ def test_runs_of_ticks_broken_by_other_records(runs, cut):
 
 def test_any_order_of_topics_is_walked():
     random.seed(3)
-    records = b''.join(message(random.randrange(4), random.choice((8, 8, 8, 9)), sequence) for sequence in range(3000))
+    records = b''.join(
+        message(random.randrange(4), random.choice((8, 8, 8, 9)), sequence)
+        for sequence in range(3000)
+    )
     offsets, _ = walk(records)
     assert offsets.tolist() == one_by_one(records)[0]
     assert heads(records, offsets)['sequence'].tolist() == list(range(3000))
@@ -80,7 +87,9 @@ def test_tick_of_more_messages_than_are_remembered():
     assert np.array_equal(walk(tick * 20)[0], np.arange(2000) * len(tick) // 100)
 
 
-@pytest.mark.parametrize('junk', [b'\x05', b'\0' * 40, b'\x05' + b'\xff' * 30, HEAD.pack(5, 21) + bytes(21)])
+@pytest.mark.parametrize(
+    'junk', [b'\x05', b'\0' * 40, b'\x05' + b'\xff' * 30, HEAD.pack(5, 21) + bytes(21)]
+)
 def test_junk_after_messages_is_cut_off(junk):
     records = message(1, 8, 0) * 10
     with pytest.raises(Cut) as caught:
