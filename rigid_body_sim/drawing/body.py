@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What to draw for the body of a scene: its true shape where the scene file gives one."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import yaml
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.drawing import surfaces
+from rigid_body_sim.scene.bodies import IDENTITY
+
+THINNEST = 0.02
+"""Thinnest edge of a box of equal inertia, relative to its longest."""
+UNKNOWN = (1.0, 0.6, 0.2)
+"""Edges of the box that stands for a body of unknown shape, m."""
+
+
+class Drawing(NamedTuple):
+    """A body as surfaces in body axes.
+
+    Attributes
+    ----------
+    surfaces : list of Surface
+        In metres, about the body's origin.
+    about : str
+        What the picture shows, in words: the shape, or what stands for it.
+    """
+
+    surfaces: list
+    about: str
+
+    @property
+    def vertices(self):
+        """All vertices, array (n, 3)."""
+        return np.concatenate([one.vertices for one in self.surfaces])
+
+
+def drawing_of(scene):
+    """Return the Drawing of a Scene, or of None: a plain box."""
+    if scene is None:
+        return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown')
+    mapping = yaml.safe_load(scene.text)['body']
+    if 'parts' in mapping:
+        count = len(mapping['parts'])
+        return Drawing([_part(part) for part in mapping['parts']],
+                       f'the true shape, {count} part{"s" if count > 1 else ""}')
+    if 'shape' in mapping:
+        return Drawing([_shape(mapping['shape'], scene.body.center_of_mass)],
+                       f'the true shape, a {next(iter(mapping["shape"])).replace("_", " ")}')
+    if scene.body.radius is not None:
+        return Drawing([surfaces.sphere(scene.body.radius).placed(
+            Rotation.identity(), scene.body.center_of_mass)], 'the true shape, a sphere')
+    return Drawing([_equal_box(scene.body)],
+                   'a box with the same mass and moments of inertia: the scene gives no shape')
+
+
+def box_of(body):
+    """Return the edges (m) of the box that has the body's mass and moments of inertia."""
+    a, b, c = body.about_center.moments
+    return tuple(math.sqrt(max(6.0 * square / body.mass, 0.0))
+                 for square in (b + c - a, a + c - b, a + b - c))
+
+
+def _shape(mapping, at, orientation=IDENTITY):
+    (name, dimensions), = mapping.items()
+    surface = surfaces.SURFACES[name](**dimensions)
+    return surface.placed(Rotation.from_quat(orientation), at)
+
+
+def _part(mapping):
+    return _shape(mapping['shape'], mapping.get('at', (0.0, 0.0, 0.0)),
+                  mapping.get('orientation', IDENTITY))
+
+
+def _equal_box(body):
+    edges = np.array(box_of(body))
+    edges = np.maximum(edges, THINNEST * edges.max()) if edges.any() else np.full(3, 0.1)
+    turn = Rotation.from_quat(body.about_center.axes)
+    return surfaces.box(edges).placed(turn, body.center_of_mass)

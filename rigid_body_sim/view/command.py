@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `view`: the body in a browser, moving, and pushed with the mouse."""
+
+import sys
+
+from rigid_body_sim import command_line
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.view.access import LOCAL, Access
+
+
+def main(arguments=None):
+    """Run the command; return the exit status."""
+    parser = command_line.parser(
+        'view', 'Open a page in which a body moves: a scene, a running node, or a recording. '
+        'Drag the body to pull it, click it to strike it.',
+        'python -m rigid_body_sim view heavy_top')
+    parser.add_argument('what', nargs='*', metavar='SCENE or RECORDING',
+                        help='a scene (tennis_racket), or one or two recordings, drawn together')
+    parser.add_argument('--node', metavar='NAME', help='show and push a running node: /sim_node')
+    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE',
+                        help='change of the scene, key.path=value; may be repeated')
+    parser.add_argument('--rate', type=float, default=1000.0,
+                        help='ticks per simulated second: commands act at ticks (1000)')
+    parser.add_argument('--integrator', default='auto', help='method (auto)')
+    parser.add_argument('--accuracy', type=float, default=1e-12,
+                        help='error of the attitude that is asked for, rad (1e-12)')
+    parser.add_argument('--host', default=LOCAL,
+                        help=f'address to listen on ({LOCAL}: this machine only); another one '
+                        'puts a token into the address')
+    parser.add_argument('--port', type=int, default=8080,
+                        help='first port to try (8080); 0 is any free one')
+    parser.add_argument('--dark', action='store_true', help='begin with a dark page')
+    return command_line.run(_run, parser.parse_args(arguments))
+
+
+def _run(options):
+    source = _source(options)
+    try:
+        # viser is needed from here on; it takes a second to import
+        from rigid_body_sim.view.page import Page
+        page = Page(source, Access(options.host), options.port, options.dark)
+    except BaseException:
+        source.close()
+        raise
+    print(f'{page.address}   (Ctrl-C ends it)', flush=True)
+    try:
+        page.run()
+    except KeyboardInterrupt:
+        return command_line.GOOD
+    finally:
+        page.close()
+
+
+def _source(options):
+    if options.node:
+        raise BadInput('--node', 'not yet', '')
+    from rigid_body_sim.view.live import Live
+    if len(options.what) > 1:
+        raise BadInput('view', f'got {len(options.what)} scenes', 'one scene, or recordings')
+    scene = load_scene(options.what[0] if options.what else 'tennis_racket', options.set)
+    settings = {'rate': options.rate, 'integrator': options.integrator,
+                'accuracy': options.accuracy}
+    return Live(scene.text, settings)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The live curves: the residuals of energy and angular momentum, with the band of round-off."""
+
+import collections
+import math
+
+import numpy as np
+
+from rigid_body_sim.analysis.drift import FLOOR
+
+POINTS = 600
+SCALE = 1e-16
+"""What the numbers of the chart count: it would not show smaller ones."""
+COLORS = {'energy': '#d55e00', 'momentum': '#0072b2', 'band': 'rgba(128,128,128,0.9)'}
+
+
+class Curves:
+    """A chart of the last residuals; the zero line is exact conservation.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+    """
+
+    def __init__(self, gui):
+        self._rows = collections.deque(maxlen=POINTS)
+        axis = {'stroke': '#888', 'grid': {'stroke': 'rgba(128,128,128,0.25)', 'width': 1},
+                'ticks': {'stroke': 'rgba(128,128,128,0.25)', 'width': 1}}
+        self._chart = gui.add_uplot(
+            self._data(),
+            ({'label': 't (s)'},
+             {'label': 'energy', 'stroke': COLORS['energy'], 'width': 2},
+             {'label': 'L²', 'stroke': COLORS['momentum'], 'width': 2},
+             {'label': '+ round-off', 'stroke': COLORS['band'], 'width': 1, 'dash': (4, 4)},
+             {'label': '- round-off', 'stroke': COLORS['band'], 'width': 1, 'dash': (4, 4)}),
+            bands=({'series': (3, 4), 'fill': 'rgba(128,128,128,0.15)'},),
+            scales={'x': {'time': False, 'auto': True}, 'y': {'auto': True}},
+            axes=({**axis}, {**axis, 'size': 74}),
+            title='relative residuals, in units of 1e-16', height=230, legend={'show': True})
+
+    def take(self, frame):
+        """Remember the residuals of a Frame."""
+        if frame.restarted:
+            self._rows.clear()
+        if math.isfinite(frame.energy_residual) and not (
+                self._rows and frame.time <= self._rows[-1][0]):
+            self._rows.append((frame.time, frame.energy_residual, frame.momentum_residual))
+
+    def draw(self):
+        """Draw what is remembered; a few times a second is enough."""
+        self._chart.data = self._data()
+
+    def _data(self):
+        rows = np.array(self._rows or [(0.0, 0.0, 0.0)], float)
+        floor = np.full(len(rows), FLOOR / SCALE)
+        return (rows[:, 0], rows[:, 1] / SCALE, rows[:, 2] / SCALE, floor, -floor)

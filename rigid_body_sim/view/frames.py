@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames: what a page shows of one moment, whoever it comes from.
+
+A *source* gives frames: a simulation (live.py), a node (node_source.py), a recording (player.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.mechanics import energy, parameters
+from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
+
+
+class Frame(NamedTuple):
+    """One moment of a motion.
+
+    Attributes
+    ----------
+    time : float
+        Simulated time since the start or the last reset, s.
+    vector : array (14,)
+        The state (scene.state).
+    trail : array (n, 14)
+        States since the last frame, the present one last: what a trace passes through.
+    wrench : Wrench
+        The held command.
+    energy, energy_residual, momentum_residual : float
+        Energy (J) and the relative residuals of the ledger; NaN where unknown.
+    events : tuple of (float, str)
+        Time (s) and text of what happened since the last frame.
+    restarted : bool
+        Whether traces and curves begin anew with this frame.
+    """
+
+    time: float
+    vector: np.ndarray
+    trail: np.ndarray
+    wrench: Wrench
+    energy: float
+    energy_residual: float
+    momentum_residual: float
+    events: tuple = ()
+    restarted: bool = False
+
+
+class Arrows(NamedTuple):
+    """Vectors in world axes: what turns the body and what acts on it.
+
+    Attributes
+    ----------
+    omega, momentum : array (3,)
+        Angular velocity (rad/s), angular momentum about the point of reference (kg m^2/s).
+    force, torque : array (3,)
+        Net force on the body (N), and dL/dt (N m), reactions of the constraint included.
+    """
+
+    omega: np.ndarray
+    momentum: np.ndarray
+    force: np.ndarray
+    torque: np.ndarray
+
+
+class Mechanics:
+    """What is computed of a scene's states to draw them.
+
+    The point of reference of L is the centre of mass of a free body and of a body on a table, and
+    the body's fixed point or hinge otherwise.
+    """
+
+    def __init__(self, scene):
+        self.scene = scene
+        self.packed = parameters.parameters(scene)
+        self._dynamics = Dynamics(scene)
+
+    def arrows(self, vector, wrench):
+        """Return the Arrows of a state (14,) under a held Wrench."""
+        body, constraint = self.scene.body, self.scene.constraint
+        diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
+        energy.diagnose(self.packed, vector, diagnosis)
+        balance = self._dynamics.balance(vector, wrench)
+        turn = Rotation.from_quat(vector[ORIENTATION])
+        omega, growth = vector[ANGULAR_VELOCITY], np.asarray(balance.angular_acceleration)
+        center = np.array(body.center_of_mass)
+        carried = np.cross(growth, center) + np.cross(omega, np.cross(omega, center))
+        force = body.mass * (np.asarray(balance.acceleration) + turn.apply(carried))
+        inertia = (body.about_origin if constraint.kind == 'pivot' else body.about_center).matrix
+        torque = turn.apply(inertia @ growth + np.cross(omega, inertia @ omega))
+        if constraint.kind == 'hinge':
+            axis = turn.apply(constraint.axis)
+            arm = turn.apply(center - np.array(constraint.through))
+            torque = axis * (axis @ (torque + np.cross(arm, force)))
+        return Arrows(turn.apply(omega), diagnosis[energy.MOMENTUM:].copy(), force, torque)
+
+    def center(self, vector):
+        """Return the centre of mass of a state in the world, m."""
+        turn = Rotation.from_quat(vector[ORIENTATION])
+        return vector[POSITION] + turn.apply(self.scene.body.center_of_mass)
+
+    def velocity_at(self, vector, point):
+        """Return the velocity (m/s, world) of the body's point that is now at `point` (world)."""
+        omega = Rotation.from_quat(vector[ORIENTATION]).apply(vector[ANGULAR_VELOCITY])
+        return vector[VELOCITY] + np.cross(omega, point - vector[POSITION])

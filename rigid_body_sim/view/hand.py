@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hand: what a mouse does to a body, as commands.
+
+A drag is a damped spring from the grabbed point of the body to the cursor. Its force F acts at the
+grabbed point g; the command is that force at the centre of mass c and the couple (g - c) x F. A
+click is a strike: an impulse J along the line of sight, at the point that was clicked.
+
+The spring is as stiff as the body is heavy at that point: a unit impulse along n changes the
+point's velocity by n . A n, and 1/(n . A n) is the mass that the hand feels (the constraint
+included). So every body, from a needle to a planet, follows the cursor at the same pace.
+"""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.mechanics.impulse import EXCHANGE_SIZE, apply_impulse
+from rigid_body_sim.scene.state import ORIENTATION
+from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, WIDTH, WORLD
+
+PULL = 2.0 * math.pi * 0.8
+"""Angular frequency at which the grabbed point follows the cursor, rad per second of the clock."""
+DAMPING = 0.7
+"""Damping of the spring, relative to critical."""
+
+
+class Hand:
+    """Turns what a mouse does into rows of commands (simulation.command_rows).
+
+    Parameters
+    ----------
+    mechanics : frames.Mechanics
+    """
+
+    def __init__(self, mechanics):
+        self._mechanics = mechanics
+        self._slack = _slack_axes(mechanics.scene)
+
+    def pull(self, vector, grabbed, cursor, pace):
+        """Return the row that holds the spring's wrench.
+
+        Parameters
+        ----------
+        vector : array (14,)
+            State of the body.
+        grabbed, cursor : array (3,)
+            The grabbed point of the body and the point under the mouse, world, m.
+        pace : float
+            Angular frequency of the spring, rad per simulated second; PULL in real time.
+
+        Returns
+        -------
+        array (1, 8) or None
+            None where no force can move that point.
+        """
+        velocity = self._mechanics.velocity_at(vector, grabbed)
+        wanted = pace * (pace * (np.subtract(cursor, grabbed)) - 2.0 * DAMPING * velocity)
+        size = float(np.linalg.norm(wanted))
+        if size == 0.0 or not math.isfinite(size):
+            return None
+        mass = self.felt_mass(vector, grabbed, wanted / size)
+        return None if mass is None else self._row(HOLD, vector, grabbed, mass * wanted)
+
+    def strike(self, vector, point, impulse):
+        """Return the row of an impulse (array (3,), N s, world) at a point of the body (world)."""
+        return self._row(IMPULSE, vector, point, np.asarray(impulse, float))
+
+    def felt_mass(self, vector, point, direction):
+        """Return the mass (kg) that a push along a unit vector at a point feels, or None."""
+        force, couple = self._at_center(vector, point, np.asarray(direction, float))
+        after = vector.copy()
+        apply_impulse(self._mechanics.packed, after, force, couple, np.empty(EXCHANGE_SIZE))
+        change = (self._mechanics.velocity_at(after, point)
+                  - self._mechanics.velocity_at(vector, point)) @ direction
+        return 1.0 / float(change) if change > 1e-300 and math.isfinite(change) else None
+
+    def _row(self, kind, vector, point, force):
+        force, couple = self._at_center(vector, point, force)
+        return np.array([kind, WORLD, *force, *couple]).reshape(1, WIDTH)
+
+    def _at_center(self, vector, point, force):
+        """Return force and couple at the centre of mass, without torque about massless axes."""
+        couple = np.cross(point - self._mechanics.center(vector), force)
+        turn = Rotation.from_quat(vector[ORIENTATION])
+        for axis in turn.apply(self._slack) if len(self._slack) else ():
+            couple = couple - axis * (axis @ couple)
+        return force, couple
+
+
+def release():
+    """Return the row that lets go."""
+    return LET_GO.copy()
+
+
+def _slack_axes(scene):
+    """Return the principal axes of zero moment in body axes, array (n, 3): none can be turned."""
+    inertia = (scene.body.about_origin if scene.constraint.kind == 'pivot'
+               else scene.body.about_center)
+    axes = Rotation.from_quat(inertia.axes).as_matrix().T
+    if scene.constraint.kind == 'hinge':
+        return np.empty((0, 3))
+    return axes[np.array(inertia.moments) == 0.0]

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source that is a simulation of its own: the page's end of the pipe to runner.py."""
+
+import math
+import multiprocessing
+
+import numpy as np
+
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.view import runner
+
+SLOWEST = 1e-3
+"""A body that turns more slowly than this (rad/s) is not shown in real time."""
+
+
+class Live:
+    """A scene that runs in another process.
+
+    Parameters
+    ----------
+    text : str
+        YAML of the scene.
+    settings : dict
+        Keywords of the Simulation: ``rate``, ``integrator``, ``accuracy``.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene of the frames; it changes when a new one has begun.
+    generation : int
+        Number of scenes that have begun.
+    method : str
+        The method that runs the scene.
+    messages : list of str
+        What went wrong since the page last looked; the page empties it.
+    speed : float
+        Simulated seconds per second of the clock.
+    expected : dict
+        What theory predicts beside what was measured.
+    """
+
+    pushes, edits, plays, paces = True, True, False, True
+
+    def __init__(self, text, settings):
+        self.scene, self.generation, self.method = parse_scene(text), 0, ''
+        self.speed = pace_for(self.scene)
+        self.messages, self.expected = list(self.scene.notes), {}
+        context = multiprocessing.get_context('spawn')
+        self._pipe, other = context.Pipe()
+        self._process = context.Process(target=runner.serve, args=(other, settings), daemon=True)
+        self._process.start()
+        other.close()
+        self.begin(text)
+
+    def begin(self, text):
+        """Begin a scene from its YAML text."""
+        self.tell('scene', text)
+        self.set_speed(self.speed)
+
+    def set_speed(self, speed):
+        """Run at another pace."""
+        self.speed = speed
+        self.tell('speed', speed)
+
+    def tell(self, name, value=None):
+        """Send the simulation a request (Runner.told)."""
+        self._pipe.send((name, value))
+
+    def poll(self):
+        """Return the Frames that have come since the last call."""
+        frames = []
+        while self._pipe.poll():
+            name, value = self._pipe.recv()
+            if name == 'frame':
+                frames.append(value)
+            elif name == 'scene':
+                self.scene, self.method = parse_scene(value.text), value.method
+                self.generation += 1
+                self.expected = {}
+                frames.clear()
+            elif name == 'expected':
+                self.expected = value
+            else:
+                self.messages.append(value)
+        return frames
+
+    def command(self, rows):
+        """Give commands (simulation.command_rows) to the body."""
+        self.tell('command', rows)
+
+    def close(self):
+        """End the process."""
+        self._pipe.close()
+        self._process.join(1.0)
+        if self._process.is_alive():
+            self._process.terminate()
+
+
+def pace_for(scene):
+    """Return the speed to begin with: real time, or what turns a slow body in some seconds."""
+    rate = float(np.linalg.norm(scene.initial.angular_velocity))
+    return 10.0 ** round(-math.log10(rate)) if 0.0 < rate < SLOWEST else 1.0

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The mouse on the body: drags and clicks of a page, as requests for its loop.
+
+viser tells of them in its own thread; here they are only written down, in their order.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rigid_body_sim.scene.state import ORIENTATION, POSITION
+from scipy.spatial.transform import Rotation
+
+
+class Pull(NamedTuple):
+    """A drag as it is now: the grabbed point and the cursor, on the page."""
+
+    grabbed: np.ndarray
+    cursor: np.ndarray
+
+
+class Mouse:
+    """What the mouse does to the body of a page.
+
+    Attributes
+    ----------
+    pull : Pull or None
+        The drag that goes on.
+    clicks : list of (origin, direction)
+        Rays of clicks that wait, on the page.
+    """
+
+    def __init__(self):
+        self.pull, self.clicks = None, []
+
+    def listen(self, handles):
+        """Listen to the surfaces of the body."""
+        for handle in handles:
+            handle.on_drag('left')(self._drag)
+            handle.on_click(self._click)
+
+    async def _drag(self, event):
+        if event.phase == 'end':
+            self.pull = None
+        else:
+            self.pull = Pull(np.array(event.start_position), np.array(event.end_position))
+
+    async def _click(self, event):
+        self.clicks.append((np.array(event.ray_origin), np.array(event.ray_direction)))
+
+
+def hit(drawing, vector, origin, direction):
+    """Return the point (world, m) where a ray first meets the body, or None (Moeller, Trumbore).
+
+    Parameters
+    ----------
+    drawing : Drawing
+    vector : array (14,)
+        State of the body.
+    origin, direction : array (3,)
+        The ray, world, m.
+    """
+    turn = Rotation.from_quat(vector[ORIENTATION])
+    start, along = turn.inv().apply(origin - vector[POSITION]), turn.inv().apply(direction)
+    nearest = np.inf
+    for surface in drawing.surfaces:
+        a, b, c = np.moveaxis(surface.vertices[surface.faces], 1, 0)
+        normal = np.cross(along, c - a)
+        size = np.einsum('ij,ij->i', b - a, normal)
+        with np.errstate(divide='ignore', invalid='ignore'):
+            u = np.einsum('ij,ij->i', start - a, normal) / size
+            across = np.cross(start - a, b - a)
+            v = across @ along / size
+            distance = np.einsum('ij,ij->i', c - a, across) / size
+            inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
+        nearest = min(nearest, distance[inside].min(initial=np.inf))
+    return origin + nearest * direction if np.isfinite(nearest) else None

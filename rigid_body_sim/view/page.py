@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page: a viser server, and the loop that brings frames to it and pushes to the body."""
+
+import contextlib
+import io
+import time
+
+import numpy as np
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.view import hand, mouse
+from rigid_body_sim.view.access import Access
+from rigid_body_sim.view.panel import PRESETS, Panel
+from rigid_body_sim.view.stage import Stage
+
+PERIOD = 1.0 / 60.0
+FIELD_OF_VIEW = 0.7
+NUMBERS_EVERY = 0.2
+"""Time between two updates of numbers, curves and traces, s."""
+
+
+def serve(access, port):
+    """Return a viser server; BadInput where viser is not installed."""
+    try:
+        import viser
+    except ImportError:
+        raise BadInput('view', 'the package viser is not installed',
+                       'pip install viser==1.1.1') from None
+    # it prints an address that lacks our token
+    with access.guarding(), contextlib.redirect_stdout(io.StringIO()):
+        server = viser.ViserServer(host=access.host, port=port, label='rigid_body_sim',
+                                   verbose=False)
+    # a page may ask for a tunnel to the outside even without the button: it gets none
+    server.request_share_url = lambda verbose=True: None
+    return server
+
+
+class Page:
+    """A page that shows a source.
+
+    Parameters
+    ----------
+    source : object
+        Live, NodeSource or Player.
+    access : Access
+        Who may open it.
+    port : int
+        The first port to try; 0 is any.
+    dark : bool
+    """
+
+    def __init__(self, source, access=None, port=8080, dark=False):
+        self._source = source
+        self._access = access or Access()
+        self.server = serve(self._access, port)
+        self._shown = {'omega': True, 'momentum': True, 'force': False, 'torque': False,
+                       'axis': True, 'polhode': False, 'herpolhode': False, 'follow': False,
+                       'dark': dark}
+        self._theme(dark)
+        self.server.initial_camera.position = PRESETS['3/4']
+        self.server.initial_camera.look_at = (0.0, 0.0, 0.0)
+        self.server.initial_camera.fov = FIELD_OF_VIEW
+        self.panel = Panel(self.server, source, self._shown)
+        self.mouse = mouse.Mouse()
+        self._generation, self._stages, self._hand = None, [], None
+        self._pulling, self._numbers_due = False, 0.0
+        self.frame = None
+
+    @property
+    def address(self):
+        """The address to open, with its token if there is one."""
+        return self._access.address(self.server.get_port())
+
+    def _theme(self, dark):
+        self.server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False,
+                                        control_width='medium', brand_color=(0, 114, 178))
+
+    def run(self, until=lambda: False):
+        """Serve until `until` returns true or an interrupt comes."""
+        due = time.monotonic()
+        while not until():
+            self.turn()
+            due = max(due + PERIOD, time.monotonic())
+            time.sleep(max(due - time.monotonic(), 0.0))
+
+    def turn(self):
+        """Do what is due: requests, frames, the mouse."""
+        while not self.panel.requests.empty():
+            self._do(*self.panel.requests.get())
+        text = self.panel.edited() if self._source.edits else None
+        if text is not None:
+            self._source.begin(text)
+        frames = self._source.poll()
+        if self._source.generation != self._generation:
+            self._begin()
+        for message in self._source.messages:
+            self.panel.say(message)
+        self._source.messages.clear()
+        for frame in frames:
+            self.frame = frame
+            self.panel.take(frame)
+            self._stages[0].trace(frame)
+        if self.frame is not None:
+            self._push()
+            if frames:
+                self._show()
+            self._numbers()
+
+    def _begin(self):
+        """Put the scene that the source has begun on the stage."""
+        self._generation = self._source.generation
+        for stage in self._stages:
+            stage.remove()
+        scene = self._source.scene
+        stage = Stage(self.server, scene)
+        self._stages = [stage]
+        stage.shown = self._shown
+        kind = scene.constraint.kind if scene else 'free'
+        self._shown['follow'] = kind in ('free', 'table')
+        self._hand = hand.Hand(stage.mechanics) if scene else None
+        self.mouse.pull = None
+        if self._source.pushes:
+            self.mouse.listen(stage.bodies)
+        self.panel.begin(scene, stage.drawing.about, stage.cell)
+
+    def _show(self):
+        stage = self._stages[0]
+        stage.follows = self._shown['follow']
+        pull = self.mouse.pull if self._pulling else None
+        stage.show(self.frame, None if pull is None else
+                   (stage.to_world(pull.grabbed), stage.to_world(pull.cursor)))
+
+    def _numbers(self):
+        now = time.monotonic()
+        if now < self._numbers_due:
+            return
+        self._numbers_due = now + NUMBERS_EVERY
+        stage, frame = self._stages[0], self.frame
+        stage.draw_traces()
+        arrows = stage.mechanics.arrows(frame.vector, frame.wrench) if stage.mechanics else None
+        self.panel.draw(frame, arrows, self._source.expected)
+
+    def _push(self):
+        """Give the commands of the mouse to the body."""
+        if not self._source.pushes:
+            return
+        stage, vector = self._stages[0], self.frame.vector
+        strength = 10.0 ** self.panel.strength.value
+        pull = self.mouse.pull
+        if pull is not None:
+            pace = hand.PULL * np.sqrt(strength) / self._source.speed
+            row = self._hand.pull(vector, stage.to_world(pull.grabbed),
+                                  stage.to_world(pull.cursor), pace)
+            if row is not None:
+                self._pulling = True
+                self._source.command(row)
+        elif self._pulling:
+            self._pulling = False
+            self._source.command(hand.release())
+        while self.mouse.clicks:
+            origin, direction = self.mouse.clicks.pop(0)
+            point = mouse.hit(stage.drawing, vector, stage.to_world(origin), direction)
+            if point is not None:
+                self._strike(vector, point, direction, strength)
+
+    def _strike(self, vector, point, direction, strength):
+        """Strike a point: at strength 1 its speed changes by half a page length a second."""
+        mass = self._hand.felt_mass(vector, point, direction)
+        if mass is not None:
+            speed = 0.5 * strength * self._stages[0].unit / self._source.speed
+            self._source.command(self._hand.strike(vector, point, mass * speed * direction))
+
+    def _do(self, name, value):
+        """Do what a control of the panel asks for."""
+        source = self._source
+        if name == 'choose':
+            try:
+                source.begin(load_scene(value).text)
+            except BadInput as error:
+                self.panel.say(str(error))
+        elif name == 'run':
+            request = {'pause': ('pause', True), 'go on': ('pause', False)}.get(value, (value, None))
+            source.tell(*request)
+        elif name == 'speed':
+            source.set_speed(value)
+        elif name == 'seek':
+            source.seek(value)
+        elif name == 'dark':
+            self._theme(value)
+
+    def close(self):
+        """Let go of the body, end the source and the server."""
+        if self._pulling:
+            self._source.command(hand.release())
+        self._source.close()
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.server.stop()

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The panel beside the picture: what is shown, how fast, what the mouse does, what was measured.
+
+Controls never act by themselves: they put requests into a queue that the page's loop empties, so
+that everything happens in one thread.
+"""
+
+import html
+import math
+import queue
+import time
+
+from rigid_body_sim.scene.scene import scene_names
+from rigid_body_sim.view import parameters
+from rigid_body_sim.view.curves import Curves
+
+SPEEDS = 3.0
+"""Common logarithm of the largest speed; the smallest is its inverse."""
+PRESETS = {'3/4': (2.2, -3.2, 1.7), 'front': (0.0, -4.2, 0.3), 'side': (4.2, 0.0, 0.3),
+           'top': (0.0, -0.01, 4.6)}
+EVENTS = 8
+EDIT_AFTER = 0.4
+"""A changed number is taken when nothing has changed for so long, s."""
+
+
+class Panel:
+    """The controls of a page.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    source : object
+        Where the frames come from (frames.py).
+    shown : dict
+        Name of an arrow or trace -> whether it is drawn; the check boxes change it.
+
+    Attributes
+    ----------
+    requests : queue.Queue
+        ``(name, value)`` pairs for the page's loop.
+    """
+
+    def __init__(self, server, source, shown):
+        self.requests = queue.Queue()
+        self._server, self._source, self._shown = server, source, shown
+        self._events, self._edit = [], None
+        self._scene_controls = {}
+        gui = server.gui
+        self._title = gui.add_html('')
+        self._add_run(gui)
+        self._values = gui.add_html('')
+        self._problem = gui.add_html('')
+        if source.pushes:
+            with gui.add_folder('Push with the mouse'):
+                gui.add_html('<div style="padding:0 1em;font-size:0.85em">Drag the body: a spring '
+                             'pulls the grabbed point to the cursor. Click it: a strike along the '
+                             'line of sight. Drag beside it: turn the picture.</div>')
+                self.strength = gui.add_slider(
+                    'strength (log10)', min=-2.0, max=2.0, step=0.1, initial_value=0.0,
+                    hint='of the spring and of the strike')
+        self.curves = None
+        if not source.plays:
+            with gui.add_folder('Conservation'):
+                self.curves = Curves(gui)
+        self._expected = gui.add_html('')
+        with gui.add_folder('Show', expand_by_default=False):
+            self._add_shown(gui)
+        self._scene_folder = None
+        if source.edits:
+            self._scene_folder = gui.add_folder('Scene', expand_by_default=False)
+        with gui.add_folder('Events', expand_by_default=False):
+            self._event_list = gui.add_html('')
+
+    def _ask(self, name, value=None):
+        self.requests.put((name, value))
+
+    def _add_run(self, gui):
+        source = self._source
+        if source.edits:
+            names = sorted({*scene_names(), source.scene.name})
+            choice = gui.add_dropdown('scene', names, initial_value=source.scene.name)
+            choice.on_update(lambda event: self._ask('choose', event.target.value))
+        buttons = gui.add_button_group('run', ('pause', 'go on', 'step', 'reset'))
+        buttons.on_click(lambda event: self._ask('run', event.target.value))
+        if source.paces:
+            self._speed = gui.add_slider(
+                'speed (log10)', min=-SPEEDS, max=max(SPEEDS, math.log10(source.speed)), step=0.1,
+                initial_value=math.log10(source.speed),
+                marks=((-3.0, '1/1000'), (0.0, '1'), (3.0, '1000')))
+            self._speed.on_update(lambda event: self._ask('speed', 10.0 ** event.target.value))
+        if source.plays:
+            self._timeline = gui.add_slider(
+                'time (s)', min=0.0, max=source.end, step=max(source.end / 2000.0, 1e-9),
+                initial_value=0.0,
+                marks=tuple((at, '') for at, _ in source.marks[:200]))
+            self._timeline.on_update(lambda event: event.client is not None
+                                     and self._ask('seek', event.target.value))
+        cameras = gui.add_button_group('camera', tuple(PRESETS))
+        cameras.on_click(self._look)
+
+    def _look(self, event):
+        """Put the camera of the page that asks to a preset."""
+        clients = self._server.get_clients()
+        client = clients.get(event.client_id) if event.client_id is not None else None
+        for one in [client] if client else clients.values():
+            with one.atomic():
+                one.camera.position = PRESETS[event.target.value]
+                one.camera.look_at = (0.0, 0.0, 0.0)
+                one.camera.up_direction = (0.0, 0.0, 1.0)
+
+    def _add_shown(self, gui):
+        labels = {'omega': 'angular velocity ω', 'momentum': 'angular momentum L',
+                  'force': 'net force', 'torque': 'net torque dL/dt', 'axis': 'trace of the axis',
+                  'polhode': 'polhode (ω in the body)', 'herpolhode': 'herpolhode (ω in space)',
+                  'follow': 'follow the body'}
+        for key, text in labels.items():
+            box = gui.add_checkbox(text, initial_value=self._shown[key])
+            box.on_update(lambda event, key=key: self._shown.update({key: event.target.value}))
+        dark = gui.add_checkbox('dark page', initial_value=self._shown['dark'])
+        dark.on_update(lambda event: self._ask('dark', event.target.value))
+
+    def begin(self, scene, about, cell):
+        """Show the controls of a scene that begins; `about` says in words what is drawn,
+        `cell` how far the lines of the ground are apart, m."""
+        name = html.escape(scene.name.replace('_', ' '))
+        self._title.content = (
+            f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {html.escape(self._source.method)}'
+            f'<div style="font-size:0.85em">{html.escape(scene.about)}</div>'
+            f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground has a line every {cell:g} m.</div></div>')
+        self._events.clear()
+        self._event_list.content = ''
+        self._expected.content = ''
+        self.say('')
+        if self._scene_folder:
+            self._fill_scene(scene)
+
+    def _fill_scene(self, scene):
+        """Make a control for each number of a scene, or put the numbers into those there are."""
+        wanted = list(self._numbers(scene))
+        if [name for name, _, _ in wanted] != list(self._scene_controls):
+            for control in self._scene_controls.values():
+                control.remove()
+            with self._scene_folder:
+                self._scene_controls = {name: self._number(name, value, text_for)
+                                        for name, value, text_for in wanted}
+        for name, value, _ in wanted:
+            if self._scene_controls[name].value != value:
+                self._scene_controls[name].value = value
+
+    def _numbers(self, scene):
+        """Yield (label, number, function) of a scene; the function of a value returns YAML."""
+        source = self._source
+        yield ('spin (rad/s)', parameters.spin_of(scene)[0],
+               lambda value: parameters.with_spin(source.scene, value))
+        if scene.constraint.kind != 'table':
+            yield ('tilt (rad)', parameters.tilt_of(scene),
+                   lambda value: parameters.with_tilt(source.scene, value))
+        for path, value in parameters.numbers(parameters.mapping_of(scene)):
+            yield (parameters.label(path), value,
+                   lambda value, path=path: parameters.changed(source.scene.text, path, value))
+
+    def _number(self, name, value, text_for):
+        control = self._server.gui.add_number(name, initial_value=value)
+
+        def edit(event):
+            if event.client is not None:
+                self._edit = (time.monotonic(), lambda: text_for(event.target.value))
+        control.on_update(edit)
+        return control
+
+    def edited(self):
+        """Return the YAML text of an edited scene when the person has stopped typing, or None."""
+        if self._edit is None or time.monotonic() - self._edit[0] < EDIT_AFTER:
+            return None
+        (_, text), self._edit = self._edit, None
+        return text()
+
+    def say(self, problem):
+        """Show a line that says what is wrong."""
+        style = 'padding:0.3em 1em;color:#c00;font-size:0.9em'
+        self._problem.content = f'<div style="{style}">{html.escape(problem)}</div>'
+
+    def take(self, frame):
+        """Take the events of a Frame."""
+        if self.curves:
+            self.curves.take(frame)
+        self._events = [*self._events, *frame.events][-EVENTS:]
+
+    def draw(self, frame, arrows, expected):
+        """Show the numbers of a Frame; a few times a second is enough."""
+        rows = [('t', f'{frame.time:.3f} s'), ('E', f'{frame.energy:.9g} J')]
+        if arrows:
+            for name, value, unit in (('ω', arrows.omega, 'rad/s'), ('L', arrows.momentum, 'N m s'),
+                                      ('net force', arrows.force, 'N'),
+                                      ('net torque', arrows.torque, 'N m')):
+                rows.append((name, f'{math.hypot(*value):.5g} {unit}'))
+        self._values.content = _table(rows)
+        if self.curves:
+            self.curves.draw()
+        if self._source.plays:
+            self._timeline.value = min(frame.time, self._source.end)
+        lines = [f'{at:.6g} s: {html.escape(text)}' for at, text in reversed(self._events)]
+        self._event_list.content = (f'<div style="padding:0 1em;font-size:0.85em">'
+                                    f'{"<br>".join(lines) or "none yet"}</div>')
+        if expected:
+            self._expected.content = _table([('theory', 'predicted, measured'), *_compared(expected)])
+
+
+def _compared(expected):
+    """Yield the rows of what theory predicts and what was measured."""
+    for key, predicted in expected.items():
+        name = key.removeprefix('predicted_')
+        if name != key:
+            measured = expected.get(f'measured_{name}')
+            seen = '...' if measured is None else f'{measured:.12g}'
+            yield name.replace('_', ' '), f'{predicted:.12g}, {seen}'
+
+
+def _table(rows):
+    cells = ''.join(f'<tr><td style="opacity:0.7;padding-right:1em">{html.escape(name)}</td>'
+                    f'<td>{html.escape(value)}</td></tr>' for name, value in rows)
+    return (f'<table style="margin:0.2em 1em;font-size:0.9em;font-variant-numeric:tabular-nums">'
+            f'{cells}</table>')

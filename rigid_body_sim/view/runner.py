@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A simulation in a process of its own, at the pace of the clock, told what to do through a pipe.
+
+The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
+Frame)``, ``('scene', About)``, ``('refused', text)`` and ``('failed', text)`` back. So a method
+that takes long never holds up the page, and the page never holds up the simulation.
+"""
+
+import math
+import signal
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.node.prediction import expectation
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
+from rigid_body_sim.simulation.command_rows import BODY, HOLD, ZERO
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.view.frames import Frame
+
+PERIOD = 1.0 / 60.0
+"""Time between two frames, s of the clock."""
+LONGEST_WORK = 0.05
+"""Time that the computation of one frame may take, s of the clock: then the motion lags."""
+TURN_BETWEEN = 0.1
+"""Largest turn between two states of a trail, rad, up to MOST_BETWEEN states."""
+MOST_BETWEEN = 40
+LAST_TIME = 1e9
+"""Simulated time that ends the motion, in seconds times the rate over 1000: ticks stay exact."""
+
+
+class About(NamedTuple):
+    """What the page learns of a scene that begins: its YAML text, the method and its notes."""
+
+    text: str
+    method: str
+    notes: list
+
+
+class Runner:
+    """The loop of the process.
+
+    Parameters
+    ----------
+    pipe : multiprocessing.Connection
+    settings : dict
+        ``rate``, ``integrator`` and ``accuracy`` of the Simulation.
+    """
+
+    def __init__(self, pipe, settings):
+        self._pipe, self._settings = pipe, settings
+        self._simulation = None
+        self._speed, self._paused, self._steps = 1.0, False, 0
+        self._cost = 0.0
+        self._told = {'scene': self._begin, 'command': self._command, 'speed': self._set_speed,
+                      'pause': self._pause, 'step': self._step, 'reset': self._reset}
+
+    def told(self, name, value):
+        """Do what the page asks for.
+
+        ``scene``: a YAML text begins. ``command``: rows of commands act at the present tick.
+        ``speed``: simulated seconds per second. ``pause``: a bool. ``step``: the motion goes on by
+        one frame while paused. ``reset``: the state goes back to the initial one.
+        """
+        self._told[name](value)
+
+    def run(self):
+        """Serve until the page's process closes the pipe."""
+        due = last = time.monotonic()
+        while True:
+            while self._pipe.poll(max(due - time.monotonic(), 0.0)):
+                self.told(*self._pipe.recv())
+            now = time.monotonic()
+            self._advance(now - last)
+            last = now
+            due = max(due + PERIOD, now)
+
+    def _begin(self, text):
+        try:
+            simulation = Simulation(parse_scene(text), **self._settings)
+            self._rehearse(simulation.scene)
+        except BadInput as error:
+            self._pipe.send(('refused', str(error)))
+            return
+        self._simulation = simulation
+        self._pipe.send(('scene', About(simulation.scene.text, simulation.choice.method,
+                                        list(simulation.scene.notes))))
+        self._restarted()
+
+    def _rehearse(self, scene):
+        """Compile what the first command needs, before the mouse comes."""
+        simulation = Simulation(scene, **self._settings)
+        simulation.command(np.array([(HOLD, BODY, *ZERO, 1e-9, 0.0, 0.0)]))
+        simulation.advance()
+        simulation.ledger()
+
+    def _restarted(self):
+        self._time = self._shown = 0.0
+        self._cost = 0.0
+        self._expected = expectation(self._simulation.scene, self._simulation.state)
+        self._send(self._simulation.vector.copy()[np.newaxis], restarted=True)
+
+    def _command(self, rows):
+        if self._simulation is None:
+            return
+        for _, refusal in self._simulation.command(rows):
+            self._pipe.send(('refused', str(refusal)))
+        self._expected = None
+
+    def _set_speed(self, speed):
+        self._speed = float(speed)
+
+    def _pause(self, paused):
+        self._paused = bool(paused)
+
+    def _step(self, _):
+        self._steps += 1
+
+    def _reset(self, _):
+        if self._simulation is not None:
+            self._simulation.reset()
+            self._restarted()
+
+    def _advance(self, seconds):
+        """Go on by some seconds of the clock, and send the frame."""
+        if self._simulation is None:
+            return
+        steps, self._steps = self._steps, 0
+        forward = steps * PERIOD * self._speed if self._paused else seconds * self._speed
+        if forward <= 0.0:
+            return
+        if self._cost > 0.0:
+            forward = min(forward, LONGEST_WORK / self._cost)
+        began = time.perf_counter()
+        try:
+            self._move(min(self._time + forward, LAST_TIME * 1000.0 / self._simulation.rate))
+        except (BadInput, NotConverged) as error:
+            self._pipe.send(('failed', str(error)))
+            self._paused = True
+            return
+        took = (time.perf_counter() - began) / forward
+        self._cost = 0.8 * self._cost + 0.2 * took
+
+    def _move(self, until):
+        """Bring the motion to a time (s), which need not be a tick's, and send the frame."""
+        simulation = self._simulation
+        origin = simulation.time_at(0)
+        simulation.advance(max(int((until - origin) * simulation.rate) - simulation.tick, 0))
+        rate = float(np.linalg.norm(simulation.vector[ANGULAR_VELOCITY]))
+        between = 1 + min(int(rate * (until - self._time) / TURN_BETWEEN), MOST_BETWEEN)
+        times = np.linspace(self._time, until, between + 1)[1:]
+        trail = simulation.states(times).vector
+        self._time = until
+        self._send(trail)
+        simulation.forget_past()
+
+    def _send(self, trail, restarted=False):
+        simulation = self._simulation
+        ledger = simulation.ledger()
+        happened = [(event.time, event.name) for event in simulation.events]
+        simulation.events.clear()
+        if self._expected:
+            for at, name in happened:
+                self._expected.note(name, at)
+            self._expected.look(simulation.state)
+        self._pipe.send(('frame', Frame(
+            float(trail[-1, TIME]), trail[-1], trail, simulation.wrench, simulation.energy,
+            ledger['energy_residual'], ledger['momentum_residual'], tuple(happened), restarted)))
+        if self._expected and (compared := self._expected.compared()):
+            self._pipe.send(('expected', {key: value for key, value in compared.items()
+                                          if isinstance(value, str) or math.isfinite(value)}))
+
+
+def serve(pipe, settings):
+    """Run as the main function of the process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        Runner(pipe, settings).run()
+    except (EOFError, OSError):
+        return

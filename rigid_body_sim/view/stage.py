@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The stage: the body, what holds it, its arrows and traces as objects of a viser server.
+
+Lengths on the page are relative to `unit` metres, the reach of the body, so that a needle and
+a planet fill the same picture. The frame /world holds everything; when the page follows the body,
+it moves against it.
+"""
+
+import collections
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.analysis.space import traced_axis
+from rigid_body_sim.drawing import surfaces
+from rigid_body_sim.drawing.body import drawing_of
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
+from rigid_body_sim.view.frames import Mechanics
+
+BODY, ACCENT, GHOST = (70, 140, 210), (240, 165, 60), (150, 150, 160)
+HOLDER = (110, 110, 118)
+COLORS = {'omega': (214, 94, 0), 'momentum': (0, 158, 115), 'force': (204, 60, 60),
+          'torque': (160, 90, 200), 'spring': (230, 200, 40)}
+AXES = ((214, 60, 60), (60, 170, 60), (60, 90, 214))
+TRACES = {'axis': (0, 114, 178), 'polhode': (214, 94, 0), 'herpolhode': (230, 159, 0)}
+TRACE_POINTS = 1500
+ARROW, GROWTH = 1.3, 1.5
+"""Length of the first arrow of a kind, in units, and how much one may grow before
+its kind is rescaled."""
+HEAD = 0.11
+
+
+def nice(length):
+    """Return 1, 2 or 5 times a power of ten, the nearest one below a length."""
+    power = 10.0 ** math.floor(math.log10(length))
+    return next(power * factor for factor in (5.0, 2.0, 1.0) if power * factor <= length)
+
+
+def wxyz(quaternion):
+    """Return a quaternion (x, y, z, w) in viser's order."""
+    x, y, z, w = quaternion
+    return np.array((w, x, y, z))
+
+
+class Stage:
+    """The picture of one scene.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    scene : Scene or None
+    name : str
+        Folder of its objects in the tree; a second recording gets one of its own.
+    ghost : bool
+        Whether the body is drawn in grey and translucent, beside another one.
+
+    Attributes
+    ----------
+    unit : float
+        Metres per length 1 on the page: the reach of the body.
+    cell : float
+        Metres from line to line of the ground.
+    bodies : list
+        Handles of the body's surfaces, for the mouse.
+    shown : dict
+        Name of an arrow or a trace -> whether it is drawn.
+    """
+
+    def __init__(self, server, scene, name='world', ghost=False, unit=None):
+        self._server, self._name, self.scene = server, name, scene
+        self.mechanics = Mechanics(scene) if scene else None
+        self.drawing = drawing_of(scene)
+        self.unit = unit or self._reach()
+        self.cell = nice(self.unit)
+        self.follows = False
+        self._offset = self._about = np.zeros(3)
+        self._references = collections.defaultdict(float)
+        self.what_axis, self._axis = traced_axis(scene)
+        along = (self.drawing.vertices - self._middle()) @ self._axis
+        self._radius = max(1.2 * float(along.max()) / self.unit, 0.7)
+        self._traces = {key: collections.deque(maxlen=TRACE_POINTS) for key in TRACES}
+        self.shown = {}
+        with server.atomic():
+            self._root = server.scene.add_frame(f'/{name}', show_axes=False)
+            self._body = server.scene.add_frame(f'/{name}/body', show_axes=False)
+            self._reference = server.scene.add_frame(f'/{name}/reference', show_axes=False)
+            self.bodies = list(self._add_body(ghost))
+            self._add_axes()
+            if not ghost:
+                self._add_ground()
+            self._add_holder()
+            self._arrows = {key: self._add_arrow(key) for key in COLORS}
+            self._lines = {key: self._add_trace(key) for key in TRACES}
+
+    def _middle(self):
+        """Return the point of reference in body axes, m: of the arrows, and what is followed."""
+        scene = self.scene
+        if scene is None or scene.constraint.kind == 'pivot':
+            return np.zeros(3)
+        if scene.constraint.kind == 'hinge':
+            return np.array(scene.constraint.through)
+        return np.array(scene.body.center_of_mass)
+
+    def _reach(self):
+        """Return the largest distance of the body's surface from the point of reference, m."""
+        vertices = self.drawing.vertices - self._middle()
+        return float(np.linalg.norm(vertices, axis=1).max())
+
+    def _mesh(self, path, vertices, faces, color, smooth, **more):
+        return self._server.scene.add_mesh_simple(
+            path, vertices=np.asarray(vertices) / self.unit, faces=faces, color=color,
+            flat_shading=not smooth, side='double', **more)
+
+    def _add_body(self, ghost):
+        for k, surface in enumerate(self.drawing.surfaces):
+            for accent, color in ((False, BODY), (True, ACCENT)):
+                chosen = surface.accent == accent
+                if chosen.any():
+                    used, faces = np.unique(surface.faces[chosen], return_inverse=True)
+                    yield self._mesh(f'/{self._name}/body/surface_{k}_{int(accent)}',
+                                     surface.vertices[used], faces.reshape(-1, 3),
+                                     GHOST if ghost else color, surface.smooth,
+                                     opacity=0.35 if ghost else None)
+
+    def _add_axes(self):
+        """Add the body's axes, from the centre of mass just beyond its surface."""
+        center = np.array(self.scene.body.center_of_mass if self.scene else (0.0, 0.0, 0.0))
+        reach = 1.25 * np.abs(self.drawing.vertices - center).max(axis=0)
+        ends = center + np.diag(np.maximum(reach, 0.35 * reach.max()))
+        points = np.stack([np.broadcast_to(center, (3, 3)), ends], axis=1) / self.unit
+        self._body_axes = self._server.scene.add_arrows(
+            f'/{self._name}/body/axes', points, np.array(AXES, np.uint8),
+            shaft_radius=0.008, head_radius=0.022, head_length=0.06)
+
+    def _add_ground(self):
+        self.floor = self._floor()
+        self._server.scene.add_grid(
+            f'/{self._name}/ground', infinite_grid=True, plane='xy',
+            cell_size=self.cell / self.unit, section_size=5.0 * self.cell / self.unit,
+            cell_color=(165, 165, 170), section_color=(120, 120, 130), section_thickness=1.2,
+            fade_distance=22.0, fade_strength=1.5, shadow_opacity=0.25,
+            position=(0.0, 0.0, self.floor))
+
+    def _floor(self):
+        """Return the height of the ground on the page: the table, or below all that moves."""
+        scene = self.scene
+        if scene is None:
+            return -1.5
+        start = scene.initial
+        if scene.constraint.kind == 'table':
+            return (float(start.position[2]) - scene.body.radius) / self.unit
+        fixed = start.position + Rotation.from_quat(start.orientation).apply(self._middle())
+        return float(fixed[2] - 1.1 * self._reach()) / self.unit
+
+    def _add_holder(self):
+        """Add what holds the body: a column to a fixed point, an axle."""
+        kind = self.scene.constraint.kind if self.scene else 'free'
+        if kind not in ('pivot', 'hinge'):
+            return
+        start, scale = self.scene.initial, self.unit
+        point = start.position + Rotation.from_quat(start.orientation).apply(self._middle())
+        if kind == 'hinge':
+            axle = surfaces.cylinder(0.025 * scale, 1.0 * scale)
+            turn = Rotation.align_vectors([self.scene.constraint.axis], [[0.0, 0.0, 1.0]])[0]
+            axle = axle.placed(Rotation.from_quat(start.orientation) * turn, point)
+            self._mesh(f'/{self._name}/axle', axle.vertices, axle.faces, HOLDER, True)
+            return
+        ball = surfaces.sphere(0.035 * scale).placed(Rotation.identity(), point)
+        self._mesh(f'/{self._name}/pivot', ball.vertices, ball.faces, HOLDER, True)
+        height = float(point[2]) - self._floor() * scale
+        column = surfaces.cone(0.12 * scale, height).placed(
+            Rotation.identity(), point - (0.0, 0.0, 0.75 * height))
+        self._mesh(f'/{self._name}/column', column.vertices, column.faces, HOLDER, True)
+
+    def _add_arrow(self, key):
+        return self._server.scene.add_arrows(
+            f'/{self._name}/reference/{key}', np.zeros((1, 2, 3)), COLORS[key], visible=False,
+            shaft_radius=0.016, head_radius=0.045, head_length=HEAD)
+
+    def _add_trace(self, key):
+        folder = f'/{self._name}/{"body" if key == "polhode" else "reference"}'
+        return self._server.scene.add_line_segments(
+            f'{folder}/trace_{key}', np.zeros((1, 2, 3)), TRACES[key], thickness=2.0,
+            thickness_units='screen', visible=False)
+
+    def show(self, frame, held=None):
+        """Draw a Frame; `held` is (grabbed point, cursor) of a mouse that pulls, world, m."""
+        vector, unit = frame.vector, self.unit
+        turn = Rotation.from_quat(vector[ORIENTATION])
+        self._about = (vector[POSITION] + turn.apply(self._middle())) / unit
+        self._offset = -self._about if self.follows else np.zeros(3)
+        with self._server.atomic():
+            if not np.array_equal(self._root.position, self._offset):
+                self._root.position = self._offset
+            self._body.position = vector[POSITION] / unit
+            self._body.wxyz = wxyz(vector[ORIENTATION])
+            self._reference.position = self._about
+            if self.mechanics:
+                self._draw_arrows(frame)
+            self._draw_spring(held)
+
+    def _draw_arrows(self, frame):
+        arrows = self.mechanics.arrows(frame.vector, frame.wrench)
+        center = self.mechanics.center(frame.vector) / self.unit - self._about
+        for key, value in arrows._asdict().items():
+            start = center if key == 'force' else np.zeros(3)
+            self._draw_arrow(key, start, value if self.shown.get(key) else np.zeros(3))
+
+    def _draw_arrow(self, key, start, value):
+        """Draw one arrow, in proportion to the first one of its kind; what grows rescales it."""
+        handle, size = self._arrows[key], float(np.linalg.norm(value))
+        reference = self._references[key]
+        if size > GROWTH * reference:
+            reference = self._references[key] = size
+        visible = size > 1e-6 * reference
+        if visible:
+            length = ARROW * size / reference
+            handle.points = np.array([[start, start + value / size * length]], np.float32)
+            handle.head_length = min(HEAD, 0.5 * length)
+        if handle.visible != visible:
+            handle.visible = visible
+
+    def _draw_spring(self, held):
+        handle = self._arrows['spring']
+        if held is not None:
+            handle.points = (np.array(held) / self.unit - self._about)[np.newaxis].astype('f4')
+        if handle.visible != (held is not None):
+            handle.visible = held is not None
+
+    def trace(self, frame):
+        """Take the states of a Frame's trail into the traces."""
+        if frame.restarted:
+            self._references.clear()
+            for trace in self._traces.values():
+                trace.clear()
+        turns = Rotation.from_quat(frame.trail[:, ORIENTATION])
+        omega = frame.trail[:, ANGULAR_VELOCITY]
+        speed = float(np.linalg.norm(omega[-1]))
+        if speed > GROWTH * self._references['omega']:
+            self._references['omega'] = speed
+        scale = ARROW / (self._references['omega'] or 1.0)
+        self._traces['axis'].extend(self._radius * turns.apply(self._axis))
+        self._traces['polhode'].extend(self._middle() / self.unit + scale * omega)
+        self._traces['herpolhode'].extend(scale * turns.apply(omega))
+
+    def draw_traces(self):
+        """Draw the traces as they are now; a few times a second is enough."""
+        for key, trace in self._traces.items():
+            handle, visible = self._lines[key], bool(self.shown.get(key)) and len(trace) > 1
+            if visible:
+                points = np.array(trace, np.float32)
+                handle.points = np.stack([points[:-1], points[1:]], axis=1)
+            if handle.visible != visible:
+                handle.visible = visible
+
+    def to_world(self, point):
+        """Return a point of the page in the world, m."""
+        return (np.asarray(point, float) - self._offset) * self.unit
+
+    def remove(self):
+        """Take everything off the page."""
+        self._root.remove()
