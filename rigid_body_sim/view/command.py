@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `view`: the body in a browser, moving, and pushed with the mouse."""
 
+import pathlib
 import sys
 
 from rigid_body_sim import command_line
@@ -53,15 +54,37 @@ def _run(options):
 
 
 def _source(options):
+    """Return where the frames come from."""
+    recordings = [one for one in options.what if _is_recording(one)]
     if options.node:
-        raise BadInput('--node', 'not yet', '')
-    from rigid_body_sim.view.live import Live
+        if options.what:
+            raise BadInput('--node', f'got {options.what[0]!r} beside it', 'a node, or something else')
+        from rigid_body_sim.view.node_source import NodeSource
+        return NodeSource(options.node)
+    if recordings:
+        return _player(options.what, recordings)
     if len(options.what) > 1:
-        raise BadInput('view', f'got {len(options.what)} scenes', 'one scene, or recordings')
+        raise BadInput('view', f'got {len(options.what)} scenes', 'one scene, or two recordings')
+    from rigid_body_sim.view.live import Live
     scene = load_scene(options.what[0] if options.what else 'tennis_racket', options.set)
     settings = {'rate': options.rate, 'integrator': options.integrator,
                 'accuracy': options.accuracy}
     return Live(scene.text, settings)
+
+
+def _is_recording(name):
+    path = pathlib.Path(name)
+    return path.suffix == '.mcap' or path.is_dir()
+
+
+def _player(names, recordings):
+    if len(names) > 2 or len(recordings) < len(names):
+        raise BadInput('view', f'got {", ".join(names)}', 'one recording, or two of them')
+    from rigid_body_sim.view.player import Player
+    player = Player(recordings[0])
+    if len(recordings) == 2:
+        player.beside = Player(recordings[1])
+    return player
 
 
 if __name__ == '__main__':

@@ -23,6 +23,8 @@ PULL = 2.0 * math.pi * 0.8
 """Angular frequency at which the grabbed point follows the cursor, rad per second of the clock."""
 DAMPING = 0.7
 """Damping of the spring, relative to critical."""
+SLACK = 1e-6
+"""The hand exerts no torque about an axis whose moment is this small, relative to the largest."""
 
 
 class Hand:
@@ -80,7 +82,7 @@ class Hand:
         return np.array([kind, WORLD, *force, *couple]).reshape(1, WIDTH)
 
     def _at_center(self, vector, point, force):
-        """Return force and couple at the centre of mass, without torque about massless axes."""
+        """Return force and couple at the centre of mass, without torque about slack axes."""
         couple = np.cross(point - self._mechanics.center(vector), force)
         turn = Rotation.from_quat(vector[ORIENTATION])
         for axis in turn.apply(self._slack) if len(self._slack) else ():
@@ -94,10 +96,11 @@ def release():
 
 
 def _slack_axes(scene):
-    """Return the principal axes of zero moment in body axes, array (n, 3): none can be turned."""
+    """Return the principal axes of (nearly) zero moment in body axes, array (n, 3)."""
     inertia = (scene.body.about_origin if scene.constraint.kind == 'pivot'
                else scene.body.about_center)
     axes = Rotation.from_quat(inertia.axes).as_matrix().T
     if scene.constraint.kind == 'hinge':
         return np.empty((0, 3))
-    return axes[np.array(inertia.moments) == 0.0]
+    moments = np.array(inertia.moments)
+    return axes[moments < SLACK * moments.max()]

@@ -122,6 +122,9 @@ class Page:
         self.mouse.pull = None
         if self._source.pushes:
             self.mouse.listen(stage.bodies)
+        beside = getattr(self._source, 'beside', None)
+        if beside is not None:
+            self._stages.append(Stage(self.server, beside.scene, 'beside', True, stage.unit))
         self.panel.begin(scene, stage.drawing.about, stage.cell)
 
     def _show(self):
@@ -130,6 +133,10 @@ class Page:
         pull = self.mouse.pull if self._pulling else None
         stage.show(self.frame, None if pull is None else
                    (stage.to_world(pull.grabbed), stage.to_world(pull.cursor)))
+        for other in self._stages[1:]:
+            other.follows = False
+            other.show(self._source.beside.at(self.frame.time, self.frame.time))
+            other.move_with(stage)
 
     def _numbers(self):
         now = time.monotonic()

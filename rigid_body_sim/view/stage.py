@@ -29,6 +29,8 @@ ARROW, GROWTH = 1.3, 1.5
 """Length of the first arrow of a kind, in units, and how much one may grow before
 its kind is rescaled."""
 HEAD = 0.11
+FADING = 0.93
+"""What is left after a frame of the lead that a pulled body has won."""
 
 
 def nice(length):
@@ -75,6 +77,7 @@ class Stage:
         self.cell = nice(self.unit)
         self.follows = False
         self._offset = self._about = np.zeros(3)
+        self._lead = np.zeros(3)
         self._references = collections.defaultdict(float)
         self.what_axis, self._axis = traced_axis(scene)
         along = (self.drawing.vertices - self._middle()) @ self._axis
@@ -89,7 +92,7 @@ class Stage:
             self._add_axes()
             if not ghost:
                 self._add_ground()
-            self._add_holder()
+                self._add_holder()
             self._arrows = {key: self._add_arrow(key) for key in COLORS}
             self._lines = {key: self._add_trace(key) for key in TRACES}
 
@@ -189,7 +192,7 @@ class Stage:
         vector, unit = frame.vector, self.unit
         turn = Rotation.from_quat(vector[ORIENTATION])
         self._about = (vector[POSITION] + turn.apply(self._middle())) / unit
-        self._offset = -self._about if self.follows else np.zeros(3)
+        self._follow(held is not None)
         with self._server.atomic():
             if not np.array_equal(self._root.position, self._offset):
                 self._root.position = self._offset
@@ -199,6 +202,15 @@ class Stage:
             if self.mechanics:
                 self._draw_arrows(frame)
             self._draw_spring(held)
+
+    def _follow(self, pulled):
+        """Move the world against the body; a pull halts this, and its lead fades afterwards."""
+        target = -self._about if self.follows else np.zeros(3)
+        if pulled:
+            self._lead = self._offset - target
+        else:
+            self._lead *= FADING
+            self._offset = target + self._lead
 
     def _draw_arrows(self, frame):
         arrows = self.mechanics.arrows(frame.vector, frame.wrench)
@@ -253,6 +265,10 @@ class Stage:
                 handle.points = np.stack([points[:-1], points[1:]], axis=1)
             if handle.visible != visible:
                 handle.visible = visible
+
+    def move_with(self, other):
+        """Stand in the world where another stage has it."""
+        self._root.position = other._root.position
 
     def to_world(self, point):
         """Return a point of the page in the world, m."""

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source that is a running node: its topics drawn, and the mouse published as its commands.
+
+Subscriptions keep one message and are best effort; nothing is spun, the page's loop takes the
+latest message of each when it draws. So the node sends no message twice, and a thousand poses a
+second cost this process next to nothing. What the mouse holds is sent again at every frame; if the
+page is gone, the node's ``command_timeout`` lets go.
+"""
+
+import math
+import time
+
+import numpy as np
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseStamped, Vector3Stamped, WrenchStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Float64, String
+from std_srvs.srv import SetBool, Trigger
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import State
+from rigid_body_sim.simulation.command_rows import FORCE, IMPULSE, KIND, TORQUE
+from rigid_body_sim.view.frames import Frame
+
+APPEARS_WITHIN = 8.0
+"""How long the node may take to be discovered, s."""
+NANOSECONDS = 1e9
+
+
+class NodeSource:
+    """A node as a source of frames.
+
+    Parameters
+    ----------
+    name : str
+        Full name of the node; its topics are those of its namespace.
+
+    Raises
+    ------
+    BadInput
+        Where no such node publishes a scene within APPEARS_WITHIN.
+    """
+
+    pushes, edits, plays, paces = True, False, False, False
+    speed = 1.0
+
+    def __init__(self, name):
+        self._name = name if name.startswith('/') else f'/{name}'
+        self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
+        self._residuals, self._wrench = {}, Wrench()
+        self._start, self._last = None, {}
+        rclpy.init(args=[])
+        self._node = rclpy.create_node('rigid_body_sim_view')
+        # another node, so that the answers of services can be awaited without taking states
+        self._asking = rclpy.create_node('rigid_body_sim_view_requests')
+        try:
+            self._connect(self._name.rpartition('/')[0])
+        except BaseException:
+            self.close()
+            raise
+
+    def _connect(self, namespace):
+        latest = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        topics = {'scene': (String, latched), 'events': (DiagnosticStatus, latched),
+                  'pose': (PoseStamped, latest), 'angular_velocity': (Vector3Stamped, latest),
+                  'energy': (Float64, latest)}
+        self._types = {topic: type for topic, (type, _) in topics.items()}
+        self._subscriptions = {
+            topic: self._node.create_subscription(type, f'{namespace}/{topic}', lambda _: None, qos)
+            for topic, (type, qos) in topics.items()}
+        self._types['diagnostics'] = DiagnosticArray
+        self._subscriptions['diagnostics'] = self._node.create_subscription(
+            DiagnosticArray, '/diagnostics', lambda _: None, QoSProfile(depth=10))
+        self._held = self._node.create_publisher(WrenchStamped, f'{namespace}/cmd_wrench', 10)
+        self._struck = self._node.create_publisher(WrenchStamped, f'{namespace}/cmd_impulse', 10)
+        self._clients = {
+            'pause': self._asking.create_client(SetBool, f'{self._name}/pause'),
+            'step': self._asking.create_client(Trigger, f'{self._name}/step'),
+            'reset': self._asking.create_client(Trigger, f'{self._name}/reset')}
+        deadline = time.monotonic() + APPEARS_WITHIN
+        while not self._take_scene():
+            if time.monotonic() > deadline:
+                raise BadInput('--node', f'nobody publishes {namespace}/scene',
+                               f'the name of a running sim_node on this ROS_DOMAIN_ID, not '
+                               f'{self._name}')
+            time.sleep(0.05)
+
+    def _take(self, topic):
+        """Yield the messages that wait on a topic."""
+        handle = self._subscriptions[topic].handle
+        while (taken := handle.take_message(self._types[topic], False)) is not None:
+            yield taken[0]
+
+    def _take_scene(self):
+        texts = [message.data for message in self._take('scene')]
+        if texts:
+            self.scene = parse_scene(texts[-1], where=f'{self._name}: scene')
+            self.generation += 1
+        return bool(texts)
+
+    def poll(self):
+        """Return the newest Frame, if there is a new one."""
+        rclpy.spin_once(self._asking, timeout_sec=0.0)
+        self._take_scene()
+        for message in self._take('diagnostics'):
+            self._diagnose(message)
+        fresh = False
+        for topic in ('angular_velocity', 'energy', 'pose'):
+            for message in self._take(topic):
+                self._last[topic], fresh = message, True
+        if not fresh or not {'pose', 'angular_velocity'} <= self._last.keys():
+            return []
+        return [self._frame()]
+
+    def _frame(self):
+        pose, turning = self._last['pose'], self._last['angular_velocity'].vector
+        stamp = pose.header.stamp.sec + pose.header.stamp.nanosec / NANOSECONDS
+        self._start = stamp if self._start is None else self._start
+        at, q = pose.pose.position, pose.pose.orientation
+        vector = State.of(stamp - self._start, (q.x, q.y, q.z, q.w),
+                          (turning.x, turning.y, turning.z), (at.x, at.y, at.z)).vector
+        events = tuple((stamp - self._start, message.message or message.name)
+                       for message in self._take('events'))
+        energy = self._last['energy'].data if 'energy' in self._last else math.nan
+        return Frame(stamp - self._start, vector, vector[np.newaxis], self._wrench, energy,
+                     self._residuals.get('energy_residual', math.nan),
+                     self._residuals.get('momentum_residual', math.nan), events)
+
+    def _diagnose(self, message):
+        for status in message.status:
+            if status.name == f'{self._name.lstrip("/")}: ledger':
+                self._residuals = {value.key: float(value.value) for value in status.values
+                                   if value.key.endswith('_residual')}
+
+    def command(self, rows):
+        """Publish rows of commands (simulation.command_rows) in world axes."""
+        for row in rows:
+            message = WrenchStamped()
+            force, torque = message.wrench.force, message.wrench.torque
+            force.x, force.y, force.z = row[FORCE].tolist()
+            torque.x, torque.y, torque.z = row[TORQUE].tolist()
+            if row[KIND] == IMPULSE:
+                self._struck.publish(message)
+            else:
+                # letting go is holding nothing
+                self._held.publish(message)
+                self._wrench = Wrench(tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist()))
+
+    def tell(self, name, value=None):
+        """Call a service of the node: ``pause`` with a bool, ``step`` or ``reset``."""
+        client = self._clients[name]
+        if not client.service_is_ready():
+            self.messages.append(f'{self._name} has no service {name}')
+            return
+        request = SetBool.Request(data=value) if name == 'pause' else Trigger.Request()
+        client.call_async(request).add_done_callback(
+            lambda future: None if future.result().success
+            else self.messages.append(f'{name}: {future.result().message}'))
+
+    def close(self):
+        """Leave ROS."""
+        self._node.destroy_node()
+        self._asking.destroy_node()
+        rclpy.try_shutdown()

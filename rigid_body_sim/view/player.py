@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source that is a recording: its states at any time, with marks where something happened."""
+
+import math
+import time
+
+import numpy as np
+
+from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.view.frames import Frame
+
+MOST_STATES = 1_000_000
+"""States that are kept; of a longer recording every second, third ... one."""
+MOST_BETWEEN = 40
+MOST_MARKS = 60
+"""With more marks only those of commands and resets are kept."""
+NANOSECONDS = 1e9
+
+
+class Player:
+    """A recording as a source of frames; a second one can be drawn beside it.
+
+    Parameters
+    ----------
+    path : path-like
+        Of a recording; its first body is shown.
+
+    Attributes
+    ----------
+    end : float
+        Time of its last state since its first one, s.
+    marks : list of (float, str)
+        Time (s) and text of what happened.
+    beside : Player or None
+        Another recording, at the same time since its own start.
+    """
+
+    pushes, edits, plays, paces = False, False, True, True
+
+    def __init__(self, path):
+        with Recording(path) as recording:
+            source = sources(recording)[0]
+            self._times, self._vectors, self._energies = _states(recording, source)
+        self.scene, self.generation = source.scene, 1
+        self.method = source.run.get('method', 'a recording')
+        self.marks = [((mark.stamp - source.start) / NANOSECONDS,
+                       f'{mark.kind} {mark.name}'.strip()) for mark in source.history.marks]
+        if len(self.marks) > MOST_MARKS:
+            self.marks = [mark for mark in self.marks if not mark[1].startswith('event')]
+        self.end = float(self._times[-1]) if len(self._times) else 0.0
+        self.messages, self.expected, self.beside = [], {}, None
+        self.speed, self._paused, self._time, self._shown = 1.0, False, 0.0, -1.0
+        self._restarted, self._last = True, time.monotonic()
+
+    def poll(self):
+        """Return the Frame of now, if it differs from the last one."""
+        now = time.monotonic()
+        if not self._paused:
+            self._time += (now - self._last) * self.speed
+            if self._time > self.end:
+                self.seek(0.0)    # it plays again
+        self._last = now
+        if self._time == self._shown:
+            return []
+        before, self._shown = self._shown, self._time
+        frame = self.at(self._time, before)
+        self._restarted = False
+        return [frame]
+
+    def at(self, when, before):
+        """Return the Frame at a time (s), with the trail since another one."""
+        place = max(int(np.searchsorted(self._times, when, side='right')) - 1, 0)
+        first = max(int(np.searchsorted(self._times, before, side='right')), 0)
+        going_on = before <= when and not self._restarted
+        between = range(first, place) if going_on else ()
+        step = max(1, len(between) // MOST_BETWEEN)
+        events = tuple(mark for mark in self.marks if going_on and before < mark[0] <= when)
+        return Frame(when, self._vectors[place], self._vectors[[*between[::step], place]],
+                     Wrench(), float(self._energies[place]), math.nan, math.nan, events,
+                     not going_on)
+
+    def seek(self, when):
+        """Go to a time, s."""
+        self._time, self._shown, self._restarted = when, math.nan, True
+
+    def set_speed(self, speed):
+        """Play at another pace."""
+        self.speed = speed
+
+    def tell(self, name, value=None):
+        """Pause, make a step of a sixtieth of a second, or go back to the start."""
+        if name == 'pause':
+            self._paused = value
+        elif name == 'step':
+            self._paused = True
+            self._time = min(self._time + self.speed / 60.0, self.end)
+        else:
+            self.seek(0.0)
+
+    def close(self):
+        """There is nothing to end."""
+
+
+def _states(recording, source):
+    """Return times (s), states (n, 14) and energies of a body, thinned to MOST_STATES."""
+    step = -(-source.ticks // MOST_STATES)
+    pose = recording.read(source.topics['pose'], ['pose.position', 'pose.orientation'])
+    turning = recording.read(source.topics['angular_velocity'], ['vector'])
+    energy = recording.read(source.topics['energy'], ['data']) if 'energy' in source.topics else {}
+    stamps = pose['log_time'][::step]
+    vectors = np.zeros((len(stamps), STATE_SIZE))
+    vectors[:, 0] = (stamps - source.start) / NANOSECONDS
+    vectors[:, 1:5] = pose['pose.orientation'][::step]
+    vectors[:, 8:11] = pose['pose.position'][::step]
+    place = np.searchsorted(turning['log_time'], stamps).clip(0, len(turning['log_time']) - 1)
+    vectors[:, 5:8] = turning['vector'][place]
+    energies = np.full(len(stamps), math.nan)
+    if energy and len(energy['log_time']):
+        place = np.searchsorted(energy['log_time'], stamps).clip(0, len(energy['log_time']) - 1)
+        energies = energy['data'][place]
+    return vectors[:, 0].copy(), vectors, energies

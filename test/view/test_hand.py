@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hand: springs and strikes as commands, worked out by hand for bodies where that is easy."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim import Simulation, load_scene
+from rigid_body_sim.drawing.body import drawing_of
+from rigid_body_sim.scene.scene import scene_names
+from rigid_body_sim.simulation.command_rows import FORCE, TORQUE
+from rigid_body_sim.view.frames import Mechanics
+from rigid_body_sim.view.hand import PULL, Hand
+from rigid_body_sim.view.mouse import hit
+
+
+def hand_of(name, *overrides):
+    scene = load_scene(name, overrides)
+    return Hand(Mechanics(scene)), scene.initial.vector.copy()
+
+
+def test_the_hand_feels_the_mass_at_the_middle_of_a_ball_and_two_sevenths_of_it_at_its_edge():
+    hand, vector = hand_of('sphere')
+    assert hand.felt_mass(vector, np.zeros(3), np.array([1.0, 0.0, 0.0])) == pytest.approx(1.0)
+    # along y at (a, 0, 0): 1/M + a^2 / (2/5 M a^2) = (1 + 5/2)/M
+    assert hand.felt_mass(vector, np.array([0.1, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])) == \
+        pytest.approx(2.0 / 7.0)
+
+
+def test_at_a_pivot_it_feels_the_moment_about_it_and_nothing_along_the_arm():
+    hand, vector = hand_of('spherical_pendulum', 'initial.euler_zyz=[0, 0, 0]',
+                           'initial.angular_velocity=[0, 0, 0]')
+    tip = np.array([0.0, 0.0, 1.0])
+    assert hand.felt_mass(vector, tip, np.array([1.0, 0.0, 0.0])) == pytest.approx(1.0)
+    assert hand.felt_mass(vector, tip, tip) is None
+    assert hand.pull(vector, tip, 2.0 * tip, PULL) is None
+
+
+def test_the_wrench_is_the_force_at_the_grabbed_point():
+    hand, vector = hand_of('sphere', 'initial.angular_velocity=[0, 0, 0]')
+    grabbed, cursor = np.array([0.1, 0.0, 0.0]), np.array([0.1, 0.3, 0.0])
+    [row] = hand.pull(vector, grabbed, cursor, 2.0)
+    assert row[FORCE] == pytest.approx([0.0, 4.0 * 0.3 * 2.0 / 7.0, 0.0])
+    assert row[TORQUE] == pytest.approx(np.cross(grabbed, row[FORCE]))
+
+
+@pytest.mark.parametrize('name', scene_names())
+def test_a_pull_at_sixty_frames_a_second_is_taken_and_stays_bounded_in_every_scene(name):
+    simulation = Simulation(name, rate=600.0)
+    mechanics = Mechanics(simulation.scene)
+    hand, drawing = Hand(mechanics), drawing_of(simulation.scene)
+    vector = simulation.vector
+    reach = np.linalg.norm(drawing.vertices, axis=1).max()
+    corner = drawing.vertices[np.argmax(drawing.vertices @ (1.0, 0.3, 0.2))]
+    cursor = vector[8:11] + reach * np.array([0.9, 0.5, 0.4])
+    before = np.linalg.norm(vector[5:8])
+    for _ in range(40):
+        grabbed = vector[8:11] + Rotation.from_quat(vector[1:5]).apply(corner)
+        row = hand.pull(vector, grabbed, cursor, PULL)
+        if row is not None:
+            assert simulation.command(row) == []
+        simulation.advance(10)
+    assert np.isfinite(simulation.vector).all()
+    assert np.linalg.norm(vector[5:8]) < 3.0 * before + 40.0 * PULL
+
+
+def test_a_pulled_point_comes_to_the_cursor_and_stays():
+    simulation = Simulation('sphere', rate=600.0)
+    hand, cursor = Hand(Mechanics(simulation.scene)), np.array([0.3, 0.2, 0.1])
+    for _ in range(600):
+        vector = simulation.vector
+        grabbed = vector[8:11] + Rotation.from_quat(vector[1:5]).apply([0.1, 0.0, 0.0])
+        simulation.command(hand.pull(vector, grabbed, cursor, PULL))
+        simulation.advance(10)
+    assert grabbed == pytest.approx(cursor, abs=0.01)
+
+
+def test_a_ray_hits_the_near_side_of_the_body_where_it_stands():
+    scene = load_scene('sphere', ['initial.position=[1, 2, 3]'])
+    point = hit(drawing_of(scene), scene.initial.vector, np.array([1.0, -5.0, 3.0]),
+                np.array([0.0, 1.0, 0.0]))
+    assert point == pytest.approx([1.0, 1.9, 3.0], abs=1e-3)
+    assert hit(drawing_of(scene), scene.initial.vector, np.array([2.0, -5.0, 3.0]),
+               np.array([0.0, 1.0, 0.0])) is None
