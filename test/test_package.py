@@ -24,7 +24,8 @@ KEYS = {
         'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'lifecycle_msgs', 'nav_msgs', 'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
         'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
 }
-OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'plotly', 'pyarrow', 'rosbags', 'zstandard'}
+OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'plotly', 'pyarrow', 'rosbags', 'viser', 'websockets',
+            'zstandard'}
 # what work_precision --peers and hard_cases --peers measure, by import name; requirements/peers.in has them
 PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
 

@@ -46,7 +46,7 @@ def box(size):
     squares = ((0, 1, 3, 2), (0, 4, 5, 1), (0, 2, 6, 4), (4, 6, 7, 5), (2, 3, 7, 6), (1, 5, 7, 3))
     vertices = np.concatenate([corners[list(square)] for square in squares]) * size
     first = 4 * np.arange(6)[:, np.newaxis, np.newaxis]
-    faces = (first + [[0, 1, 2], [0, 2, 3]]).reshape(-1, 3)
+    faces = np.add(first, [[0, 1, 2], [0, 2, 3]]).reshape(-1, 3)
     return Surface(vertices, faces, np.repeat(np.arange(6) >= 3, 2), False)
 
 

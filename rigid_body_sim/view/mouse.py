@@ -7,9 +7,9 @@ viser tells of them in its own thread; here they are only written down, in their
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.scene.state import ORIENTATION, POSITION
-from scipy.spatial.transform import Rotation
 
 
 class Pull(NamedTuple):

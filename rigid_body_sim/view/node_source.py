@@ -68,10 +68,10 @@ class NodeSource:
         topics = {'scene': (String, latched), 'events': (DiagnosticStatus, latched),
                   'pose': (PoseStamped, latest), 'angular_velocity': (Vector3Stamped, latest),
                   'energy': (Float64, latest)}
-        self._types = {topic: type for topic, (type, _) in topics.items()}
+        self._types = {topic: kind for topic, (kind, _) in topics.items()}
         self._subscriptions = {
-            topic: self._node.create_subscription(type, f'{namespace}/{topic}', lambda _: None, qos)
-            for topic, (type, qos) in topics.items()}
+            topic: self._node.create_subscription(kind, f'{namespace}/{topic}', lambda _: None, qos)
+            for topic, (kind, qos) in topics.items()}
         self._types['diagnostics'] = DiagnosticArray
         self._subscriptions['diagnostics'] = self._node.create_subscription(
             DiagnosticArray, '/diagnostics', lambda _: None, QoSProfile(depth=10))

@@ -120,8 +120,10 @@ class Panel:
         dark.on_update(lambda event: self._ask('dark', event.target.value))
 
     def begin(self, scene, about, cell):
-        """Show the controls of a scene that begins; `about` says in words what is drawn,
-        `cell` how far the lines of the ground are apart, m."""
+        """Show the controls of a scene that begins.
+
+        `about` says in words what is drawn, `cell` how far the lines of the ground are apart (m).
+        """
         name = html.escape(scene.name.replace('_', ' '))
         self._title.content = (
             f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {html.escape(self._source.method)}'

@@ -64,14 +64,14 @@ def test_every_scene_that_ships_can_be_drawn(name):
 
 
 def test_a_bare_tensor_is_the_box_of_equal_inertia_and_says_so():
-    scene = parse_scene('''
+    scene = parse_scene("""
 scene: tilted
 body: {mass: 2.0, inertia: [[0.5, 0.1, 0.0], [0.1, 0.6, 0.0], [0.0, 0.0, 0.7]],
        center_of_mass: [0.1, 0.2, 0.3]}
 constraint: free
 effects: []
 initial: {}
-''')
+""")
     drawing = drawing_of(scene)
     assert 'no shape' in drawing.about
     volume, center, inertia = solid_integrals(drawing.surfaces[0].placed(
@@ -83,16 +83,18 @@ initial: {}
 
 
 def test_parts_stand_where_the_scene_puts_them():
-    scene = parse_scene('''
+    scene = parse_scene("""
 scene: handle
 body:
   parts:
-  - {mass: 0.2, shape: {cylinder: {radius: 0.01, length: 0.2}}, orientation: [0.7071067811865476, 0, 0, 0.7071067811865476]}
+  - mass: 0.2
+    shape: {cylinder: {radius: 0.01, length: 0.2}}
+    orientation: [0.7071067811865476, 0, 0, 0.7071067811865476]
   - {mass: 0.1, shape: {cylinder: {radius: 0.01, length: 0.1}}, at: [0, 0, 0.05]}
 constraint: free
 effects: []
 initial: {}
-''')
+""")
     drawing = drawing_of(scene)
     assert drawing.about == 'the true shape, 2 parts'
     assert np.ptp(drawing.surfaces[0].vertices, axis=0) == pytest.approx([0.02, 0.2, 0.02], abs=1e-3)

@@ -10,8 +10,9 @@ import pytest
 
 START = 120.0
 """A process that imports numba, viser and rclpy on a loaded machine. Seconds."""
-FLAGS = ('--no-sandbox --disable-gpu --enable-unsafe-swiftshader --disable-quic --no-first-run '
-         '--disable-background-networking --disable-component-update --disable-sync').split()
+FLAGS = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
+         '--no-first-run', '--disable-background-networking', '--disable-component-update',
+         '--disable-sync']
 WIDTH, HEIGHT = 800, 600
 
 

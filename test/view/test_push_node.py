@@ -17,13 +17,13 @@ pytest.importorskip('rclpy')
 
 from rigid_body_sim.recording.reader import Recording
 
-SCENE = '''
+SCENE = """
 scene: still_ball
 body: {mass: 1.0, shape: {solid_sphere: {radius: 0.1}}}
 constraint: free
 effects: []
 initial: {}
-'''
+"""
 
 
 def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(

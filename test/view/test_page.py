@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a scene: in a browser, and its loop without one."""
+
+import http.client
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import ros
+
+pytest.importorskip('viser')
+
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.view import access, mouse
+from rigid_body_sim.view.live import Live
+from rigid_body_sim.view.page import Page
+
+BALL = """
+scene: still_ball
+body: {mass: 1.0, shape: {solid_sphere: {radius: 0.1}}}
+constraint: free
+effects: []
+initial: {}
+"""
+PATIENCE = 60.0
+"""Time for a process that imports numba on a loaded machine, s."""
+
+
+def until(page, condition):
+    """Turn a page's loop until a condition holds; return what it returned."""
+    deadline = time.monotonic() + PATIENCE
+    while not (found := condition()):
+        assert time.monotonic() < deadline
+        page.turn()
+        time.sleep(0.01)
+    return found
+
+
+@pytest.fixture
+def page():
+    """Return the page of a ball at rest."""
+    opened = Page(Live(parse_scene(BALL).text, {'rate': 1000.0}), port=0)
+    until(opened, lambda: opened.frame)
+    yield opened
+    opened.close()
+
+
+def test_a_drag_in_a_browser_moves_the_body_and_nothing_outside_is_asked(
+        tmp_path, open_tab, address_of):
+    (tmp_path / 'ball.yaml').write_text(BALL)
+    command = [sys.executable, '-m', 'rigid_body_sim', 'view', tmp_path / 'ball.yaml', '--port', '0']
+    with subprocess.Popen(command, cwd=ros.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as process:
+        try:
+            tab = open_tab(address_of(process))
+            tab.see('still ball')
+            tab.see('rad/s')
+            assert tab.page.get_by_role('cell', name='0 rad/s', exact=True).count() == 1
+            tab.drag((400, 290), (480, 230))
+            tab.page.get_by_role('cell', name='0 rad/s', exact=True).wait_for(
+                state='detached', timeout=1000 * PATIENCE)
+            assert tab.page.get_by_label('Share').count() == 0
+            assert tab.outside == []
+            process.send_signal(signal.SIGINT)
+            assert process.wait(30) == 0, process.stderr.read()
+        finally:
+            process.kill()
+
+
+def test_a_pull_and_a_strike_are_commands_to_the_simulation(page):
+    page.mouse.pull = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
+    until(page, lambda: page.frame.energy > 0.0)
+    assert page.frame.wrench.force[1] > 0.0 and page.frame.wrench.torque[2] > 0.0
+    page.mouse.pull = None
+    until(page, lambda: not page.frame.wrench)
+    before = page.frame.vector[11:14].copy()
+    page.mouse.clicks.append((np.array([-3.0, 0.0, 0.0]) + page._stages[0]._offset,
+                              np.array([1.0, 0.0, 0.0])))
+    until(page, lambda: page.frame.vector[11] > before[0] + 0.01)
+    assert abs(page.frame.energy_residual) < 1e-12
+
+
+def test_another_scene_and_a_changed_number_begin_anew(page):
+    page.panel.requests.put(('choose', 'heavy_top'))
+    until(page, lambda: page._source.scene.name == 'heavy_top' and page.frame.energy > 1.0)
+    text = load_scene('heavy_top', ['initial.angular_velocity.2=50']).text
+    page.panel._edit = (0.0, lambda: text)
+    until(page, lambda: page.frame.vector[7] == 50.0)
+    page.panel._edit = (0.0, lambda: text.replace('mass: 1.0', 'mass: -1.0'))
+    until(page, lambda: 'mass' in page.panel._problem.content)
+    assert page._source.scene.body.mass == 1.0
+
+
+def test_pause_step_speed_and_reset(page):
+    page.panel.requests.put(('speed', 10.0))
+    until(page, lambda: page.frame.time > 3.0)
+    page.panel.requests.put(('run', 'pause'))
+    deadline = time.monotonic() + 0.5
+    until(page, lambda: time.monotonic() > deadline)
+    stopped = page.frame.time
+    page.panel.requests.put(('run', 'step'))
+    until(page, lambda: page.frame.time > stopped)
+    assert page.frame.time == pytest.approx(stopped + 10.0 / 60.0)
+    page.panel.requests.put(('run', 'reset'))
+    until(page, lambda: page.frame.time == 0.0)
+
+
+def answer(page, path='/', **headers):
+    """Return the status of a request and the cookie that it gave."""
+    connection = http.client.HTTPConnection('127.0.0.1', page.server.get_port())
+    connection.request('GET', path, headers=headers)
+    got = connection.getresponse()
+    return got.status, (got.getheader('Set-Cookie') or '').partition(';')[0]
+
+
+def test_only_its_own_pages_reach_the_server(page):
+    assert answer(page)[0] == 200
+    assert answer(page, Host='evil.example')[0] == 403
+    assert answer(page, Origin='https://evil.example')[0] == 403
+
+
+def test_on_another_host_a_token_opens_the_page(monkeypatch):
+    monkeypatch.setattr(access, '_is_local', lambda name: False)
+    page = Page(Live(parse_scene(BALL).text, {'rate': 1000.0}), port=0)
+    try:
+        assert answer(page)[0] == 403
+        status, cookie = answer(page, page.address[page.address.index('/?'):])
+        assert status == 200 and cookie
+        assert answer(page, Cookie=cookie)[0] == 200
+        assert answer(page, Cookie=f'{cookie}x')[0] == 403
+    finally:
+        page.close()
+
+
+def test_no_tunnel_is_opened_whoever_asks(page):
+    assert page.server.request_share_url() is None
+    assert page.server._share_tunnel is None
