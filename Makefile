@@ -20,13 +20,16 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run test lint package unit test-noble test-kilted soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
+.PHONY: help run view test lint package unit test-noble test-kilted soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
 
 run: .venv/run.stamp ## the node on SCENE (tennis_racket) at RATE (1000) Hz for DURATION (20) s; its recording, report and figure
 	@.venv/bin/python -m rigid_body_sim run --scene $(SCENE) --rate $(RATE) --duration $(DURATION)
+
+view: .venv/run.stamp ## a page in which SCENE (tennis_racket) moves and is pushed with the mouse
+	@.venv/bin/python -m rigid_body_sim view $(SCENE)
 
 test: lint ## everything: ruff, colcon build and test of the package, pytest
 	@$(MAKE) --no-print-directory --jobs 2 --output-sync=none package unit
