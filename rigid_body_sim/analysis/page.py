@@ -1,5 +1,12 @@
-"""report.html: the report to look at, in one file that works without a network; by Plotly, where it is installed."""
+# SPDX-License-Identifier: Apache-2.0
+"""report.html: the report to look at, in one file that works without a network.
 
+The verdict comes first, then the moving body, then the curves that matter; the rest is folded.
+Plotly and the numbers are carried compressed, and a figure is drawn when it comes into sight.
+"""
+
+import base64
+import gzip
 import html
 import importlib.util
 import json
@@ -8,14 +15,19 @@ import pathlib
 import numpy as np
 
 from rigid_body_sim.analysis import panels
-from rigid_body_sim.analysis.space import playback, spaces
+from rigid_body_sim.analysis.drift import FLOOR
+from rigid_body_sim.analysis.moving import ARROWS, moving
+from rigid_body_sim.analysis.space import spaces
 from rigid_body_sim.analysis.summary import lines, title
 
 COLORS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7')
 DASHES = ('solid', 'dash', 'dashdot', 'dot')
 MOST_MARKS = 500
-PANEL_HEIGHT, SPACE_HEIGHT = 190, 620    # px
-FACES = ((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3))
+MOST_POINTS = 3000
+"""Points of a curve; of a longer one each stretch shows its extremes."""
+PANEL_HEIGHT, SPACE_HEIGHT = 170, 560    # px
+HERE = pathlib.Path(__file__).parent
+SPEEDS = {'0.01': '1/100', '0.1': '1/10', '1': 'real time', '10': '10 x', '100': '100 x'}
 
 
 def available():
@@ -32,41 +44,128 @@ def write_page(path, bodies):
     bodies : list of (name of the recording, Measured, summary, Spectrum or None, ledger or None)
     """
     from plotly.offline import get_plotlyjs
-    here = pathlib.Path(__file__).parent
+    packed = {'figures': {}, 'bodies': {}}
+    sections = [line for number, body in enumerate(bodies)
+                for line in _section(number, packed, *body)]
     heading = ', '.join(title(found) for _, _, found, _, _ in bodies)
-    parts = [f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(heading)}</title>',
-             f'<style>{(here / "page.css").read_text()}</style><script>{get_plotlyjs()}</script>',
-             f'<script>{(here / "playback.js").read_text()}</script></head><body>']
-    for number, body in enumerate(bodies):
-        parts += _section(number, *body)
-    path.write_text('\n'.join([*parts, '</body></html>']), encoding='utf-8')
+    parts = ['<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
+             '<meta name="viewport" content="width=device-width">',
+             f'<title>{html.escape(heading)}</title>',
+             f'<style>{(HERE / "page.css").read_text()}</style></head><body>', *sections,
+             _carried('data', json.dumps(packed, separators=(',', ':'))),
+             _carried('plotly', get_plotlyjs()),
+             *(f'<script>{(HERE / name).read_text()}</script>' for name in ('body.js', 'page.js')),
+             '</body></html>']
+    path.write_text('\n'.join(parts), encoding='utf-8')
 
 
-def _section(number, name, measured, found, spectrum, balance):
-    """Yield the HTML of one body."""
-    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p><pre>{html.escape(chr(10).join(lines(found)[1:]))}</pre>'
-    over_time = [*panels.overview(measured), *panels.motion(measured), *(panels.energies(balance) if balance else ())]
-    yield '<h2>Over time</h2><p>Drag to zoom, double-click to see all; curves of more than 32768 points show the extremes of each stretch.</p>'
-    yield _html(_over_time(over_time, measured.source), f'time{number}')
-    shown = playback(measured)
-    if shown:
-        yield from _playback(number, shown)
+def _carried(name, text):
+    """Return the element that carries a text to page.js."""
+    packed = base64.b64encode(gzip.compress(text.encode(), 9, mtime=0)).decode()
+    return f'<script type="application/gzip" id="{name}">{packed}</script>'
+
+
+def _section(number, packed, name, measured, found, spectrum, balance):
+    """Yield the HTML of one body; what its scripts need goes into `packed`."""
+    figures = packed['figures']
+    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p>{_verdict(found)}'
+    moves = moving(measured)
+    if moves:
+        packed['bodies'][number] = moves.data()
+        yield from _player(number, moves)
+    kept = [panel for panel in panels.overview(measured) if panel.name != 'lateness']
+    first = [*kept[:1], *panels.travel(measured), *kept[1:]]
+    yield ('<h2>Over time</h2><p>Move the mouse over the curves: the body follows. Drag to zoom, '
+           'double-click to see all.</p>')
+    figures[f'time{number}'] = _plain(_over_time(first, measured.source))
+    yield _figure(f'time{number}', PANEL_HEIGHT * (len(first) + 1))
+    more = [*panels.motion(measured), *(panels.energies(balance) if balance else ()),
+            *filter(None, [panels.lateness(measured)])]
+    yield _folded('More curves: world axes, Euler angles, the ledger, lateness',
+                  _drawn(figures, f'more{number}', _over_time(more, measured.source),
+                         PANEL_HEIGHT * (len(more) + 1)))
     for space in spaces(measured):
-        yield f'<h2>{html.escape(space.title)}</h2>'
-        yield _html(_in_space(space), f'{space.name}{number}')
+        yield _folded(space.title, _drawn(figures, f'{space.name}{number}', _in_space(space)))
     if spectrum and spectrum.amplitudes:
-        yield f'<h2>Spectrum of ω in the first {spectrum.seconds:.6g} s, predicted lines dotted</h2>'
-        yield _html(_spectra(spectrum), f'spectrum{number}')
-        yield _table(('line', 'axes', 'predicted (Hz)', 'measured (Hz)', 'source'),
-                     [(line.name, line.axes, f'{line.frequency:.9g}', '-' if found is None else f'{found:.9g}', line.source)
-                      for line, found in spectrum.lines])
+        table = _table(('line', 'axes', 'predicted (Hz)', 'measured (Hz)', 'source'),
+                       [(line.name, line.axes, f'{line.frequency:.9g}',
+                         '-' if seen is None else f'{seen:.9g}', line.source)
+                        for line, seen in spectrum.lines])
+        yield _folded(f'Spectrum of ω in the first {spectrum.seconds:.6g} s, predicted lines dotted',
+                      _drawn(figures, f'spectrum{number}', _spectra(spectrum)) + table)
+    yield _folded('All numbers', f'<pre>{html.escape(chr(10).join(lines(found)))}</pre>')
     marks = measured.source.history.marks
-    yield f'<h2>What happened ({len(marks)})</h2>'
-    yield _table(('time (s)', 'kind', 'what', 'values'), [(f'{(mark.stamp - measured.source.start) * 1e-9:.9g}', mark.kind, mark.name,
-                                                          ', '.join(f'{key} {value}' for key, value in mark.values.items()))
-                                                         for mark in marks[:MOST_MARKS]])
+    rows = [(f'{(mark.stamp - measured.source.start) * 1e-9:.9g}', mark.kind, mark.name,
+             ', '.join(f'{key} {value}' for key, value in mark.values.items()))
+            for mark in marks[:MOST_MARKS]]
+    yield _folded(f'What happened ({len(marks)})',
+                  _table(('time (s)', 'kind', 'what', 'values'), rows))
     if measured.source.scene:
-        yield f'<h2>Scene</h2><pre>{html.escape(measured.source.scene.text)}</pre>'
+        yield _folded('Scene', f'<pre>{html.escape(measured.source.scene.text)}</pre>')
+
+
+def _verdict(found):
+    """Return the HTML of what the numbers come to, in a sentence or two."""
+    names = {'energy': 'energy', 'angular_momentum_squared': 'L²'}
+    kept = {name: found[key]['largest_residual'] for key, name in names.items()
+            if found[key]['largest_residual'] is not None}
+    worst = max(kept.values(), default=0.0)
+    accuracy = max((found['run'] or {}).get('accuracy') or 0.0, FLOOR)
+    lost = found['timing']['missing'] - found['left_out_by_recorder']
+    good = worst <= 10.0 * accuracy and not lost
+    if kept:
+        what = ' and '.join(f'{name} to {size:.1e}' for name, size in kept.items())
+        floor = ', which is round-off' if worst <= FLOOR else ''
+        said = f'{what} (relative{floor})'
+        text = f'<b>{"Kept" if worst <= 10.0 * accuracy else "Not kept"}:</b> {said}.'
+    else:
+        text = 'Neither energy nor L² is constant in this scene; the ledger has their balance.'
+    ticks = found['timing']['ticks']
+    text += f' {ticks} ticks, {lost if lost else "none"} lost.'
+    seen = [one for one in found['lines'] if one['measured'] is not None]
+    if seen:
+        off = max(abs(one['measured'] / one['predicted'] - 1.0) for one in seen)
+        text += (f' {len(seen)} predicted frequenc{"y was" if len(seen) == 1 else "ies were"} '
+                 f'measured, within {off:.1e}.')
+    counts = [f'{count} x {html.escape(name)}' for name, count in found['events'].items()]
+    counts += [f'{found["commands"]} ticks with commands'] if found['commands'] else []
+    text += f' {", ".join(counts)}.' if counts else ''
+    return f'<p class="verdict{"" if good else " bad"}">{text}</p>'
+
+
+def _player(number, moves):
+    """Yield the HTML of the moving body."""
+    times = moves.times
+    legend = [(name, color) for name, color in ARROWS.items()]
+    legend.append(('trace of an axis', (0.0, 0.45, 0.7)))
+    shown = ''.join(f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
+                    f'</i>{html.escape(name)}</span>' for name, color in legend)
+    yield (f'<h2>The body from {times[0]:.6g} to {times[-1]:.6g} s: '
+           f'{html.escape(moves.drawing.about)}</h2><canvas class="body" id="body{number}"></canvas>')
+    speeds = ''.join(f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
+                     for value, name in SPEEDS.items())
+    yield (f'<p class="playback" id="controls{number}"><button>play</button> '
+           f'<input type="range" aria-label="time" min="0" max="{len(times) - 1}" value="0"> '
+           f'<select aria-label="speed">{speeds}</select> <output></output></p>'
+           f'<p class="legend">{shown}</p>')
+
+
+def _folded(heading, content):
+    return f'<details><summary>{html.escape(heading)}</summary>{content}</details>'
+
+
+def _drawn(figures, name, figure, height=SPACE_HEIGHT):
+    figures[name] = _plain(figure)
+    return _figure(name, height)
+
+
+def _figure(name, height):
+    return f'<div class="figure" id="{name}" style="min-height:{height}px"></div>'
+
+
+def _plain(figure):
+    """Return a figure as plain data."""
+    return json.loads(figure.to_json())
 
 
 def _table(heads, rows):
@@ -77,13 +176,27 @@ def _table(heads, rows):
     return f'<table><tr>{head}</tr>{"".join(f"<tr>{row}</tr>" for row in cells)}</table>'
 
 
-def _html(figure, name):
-    return figure.to_html(full_html=False, include_plotlyjs=False, div_id=name, config={'displaylogo': False, 'responsive': True})
-
-
 def _layout(figure, height, **more):
-    figure.update_layout(height=height, margin={'l': 80, 'r': 90, 't': 20, 'b': 50}, template='plotly_white', **more)
+    figure.update_layout(height=height, margin={'l': 80, 'r': 90, 't': 20, 'b': 50},
+                         template='none', **more)
     return figure
+
+
+def thinned(x, y):
+    """Return a curve of at most MOST_POINTS points: of each stretch its least and largest."""
+    if len(x) <= MOST_POINTS:
+        return x, y
+    stretch = -(-len(x) // (MOST_POINTS // 2))
+    count = len(x) // stretch * stretch
+    rows = y[:count].reshape(-1, stretch)
+    first = np.arange(0, count, stretch)
+    low = np.argmin(np.where(np.isnan(rows), np.inf, rows), axis=1)
+    high = np.argmax(np.where(np.isnan(rows), -np.inf, rows), axis=1)
+    holes = first + np.argmax(np.isnan(rows), axis=1)
+    places = np.unique(np.concatenate([first + low, first + high,
+                                       holes[np.isnan(rows).any(axis=1)],
+                                       np.arange(count, len(x))]))
+    return x[places], y[places]
 
 
 def _over_time(over_time, source):
@@ -93,44 +206,62 @@ def _over_time(over_time, source):
     marks = source.history.marks[:MOST_MARKS]
     rows = len(over_time) + 1
     heights = [0.5 if marks else 0.01, *[1.0] * len(over_time)]
-    figure = make_subplots(rows, 1, shared_xaxes=True, vertical_spacing=0.12 / rows, row_heights=heights)
+    figure = make_subplots(rows, 1, shared_xaxes=True, vertical_spacing=0.12 / rows,
+                           row_heights=heights)
+    texts = [f'{mark.name}<br>' + '<br>'.join(f'{key}: {value}' for key, value in mark.values.items())
+             for mark in marks]
     figure.add_trace(go.Scatter(
-        x=[(mark.stamp - source.start) * 1e-9 for mark in marks], y=[mark.kind for mark in marks], mode='markers', marker={'color': 'black'},
-        text=[f'{mark.name}<br>' + '<br>'.join(f'{key}: {value}' for key, value in mark.values.items()) for mark in marks],
-        hovertemplate='%{text}<extra></extra>', showlegend=False), 1, 1)
+        x=[(mark.stamp - source.start) * 1e-9 for mark in marks], y=[mark.kind for mark in marks],
+        mode='markers', marker={'color': '#8a8f98', 'size': 8, 'symbol': 'line-ns-open'},
+        text=texts, hovertemplate='%{text}<extra></extra>', showlegend=False), 1, 1)
     for row, panel in enumerate(over_time, 2):
-        legend = f'legend{row}'
-        for k, line in enumerate(panel.lines):
-            style = {'color': COLORS[k], 'dash': DASHES[k] if len(panel.lines) > 1 else 'solid', 'width': 1.2,
-                     'shape': 'hv' if panel.steps else 'linear'}
-            figure.add_trace(go.Scatter(x=line.x, y=line.y.astype(np.float32), name=line.name, showlegend=len(panel.lines) > 1, legend=legend,
-                                        line=style), row, 1)
-        top = figure.layout[f'yaxis{row}'].domain[1]
-        figure.update_layout({legend: {'y': top, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'left', 'font': {'size': 11}}})
-        figure.update_yaxes(title_text=panel.label.replace('\n', '<br>'), title_font_size=11, row=row, col=1, exponentformat='e',
-                            type='log' if panel.log else 'linear')
-        if panel.band:
-            figure.add_hrect(-panel.band, panel.band, fillcolor='#bbbbbb', opacity=0.3, line_width=0, row=row, col=1)
-        for name, begin, end in panel.spans:
-            figure.add_vrect(begin, end, fillcolor='#E69F00', opacity=0.15, line_width=0, annotation_text=name,
-                             annotation_position='top left', row=row, col=1)
+        _add_panel(figure, row, panel)
     figure.update_yaxes(visible=bool(marks), row=1, col=1)
     figure.update_xaxes(title_text='time since the first tick (s)', row=rows, col=1)
     return _layout(figure, PANEL_HEIGHT * rows, hovermode='x')
+
+
+def _add_panel(figure, row, panel):
+    """Add the curves of a Panel to a row of a figure."""
+    import plotly.graph_objects as go
+    legend, several = f'legend{row}', len(panel.lines) > 1
+    for k, line in enumerate(panel.lines):
+        style = {'color': COLORS[k], 'dash': DASHES[k] if several else 'solid', 'width': 1.2,
+                 'shape': 'hv' if panel.steps else 'linear'}
+        x, y = thinned(line.x, line.y)
+        figure.add_trace(go.Scatter(x=x.astype(np.float32), y=y.astype(np.float32), name=line.name,
+                                    showlegend=several, legend=legend, line=style), row, 1)
+    top = figure.layout[f'yaxis{row}'].domain[1]
+    figure.update_layout({legend: {'y': top, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'left',
+                                   'font': {'size': 11}}})
+    figure.update_yaxes(title_text=panel.label.replace('\n', '<br>'), title_font_size=11, row=row,
+                        col=1, exponentformat='power', type='log' if panel.log else 'linear')
+    if panel.band:
+        figure.add_hrect(-panel.band, panel.band, fillcolor='#888888', opacity=0.25, line_width=0,
+                         row=row, col=1)
+    for name, begin, end in panel.spans:
+        figure.add_vrect(begin, end, fillcolor='#E69F00', opacity=0.15, line_width=0,
+                         annotation_text=name, annotation_position='top left', row=row, col=1)
 
 
 def _in_space(space):
     import plotly.graph_objects as go
     figure = go.Figure()
     for (name, net), color in zip(space.surfaces.items(), ('#999999', COLORS[1]), strict=False):
-        x, y, z = np.moveaxis(net, 2, 0)
-        figure.add_trace(go.Surface(x=x, y=y, z=z, name=name, showscale=False, opacity=0.25, colorscale=[[0, color], [1, color]],
-                                    hoverinfo='name', showlegend=True))
-    x, y, z = space.path.T
-    figure.add_trace(go.Scatter3d(x=x, y=y, z=z, mode='markers', name='path', text=[f't = {time:.6g} s' for time in space.times],
-                                  marker={'size': 2, 'color': space.times, 'colorscale': 'Viridis', 'colorbar': {'title': 't (s)'}}))
+        x, y, z = np.moveaxis(net.astype(np.float32), 2, 0)
+        figure.add_trace(go.Surface(x=x, y=y, z=z, name=name, showscale=False, opacity=0.25,
+                                    colorscale=[[0, color], [1, color]], hoverinfo='name',
+                                    showlegend=True))
+    step = -(-len(space.path) // MOST_POINTS)
+    x, y, z = space.path[::step].astype(np.float32).T
+    times = space.times[::step].astype(np.float32)
+    figure.add_trace(go.Scatter3d(
+        x=x, y=y, z=z, mode='markers', name='path', customdata=times,
+        hovertemplate='t = %{customdata:.6g} s<extra></extra>',
+        marker={'size': 2, 'color': times, 'colorscale': 'Viridis', 'colorbar': {'title': 't (s)'}}))
     axes = {f'{name}axis': {'title': label} for name, label in zip('xyz', space.axes, strict=True)}
-    return _layout(figure, SPACE_HEIGHT, scene={**axes, 'aspectmode': 'data'}, legend={'x': 0.0, 'y': 1.0})
+    return _layout(figure, SPACE_HEIGHT, scene={**axes, 'aspectmode': 'data'},
+                   legend={'x': 0.0, 'y': 1.0})
 
 
 def _spectra(spectrum):
@@ -142,35 +273,16 @@ def _spectra(spectrum):
     for row, axes in enumerate(spectrum.amplitudes, 1):
         seen = spectrum.seen(axes)[:last - 1].astype(np.float32)
         for k, name in enumerate('xyz'):
-            figure.add_trace(go.Scatter(x=spectrum.frequencies[1:last], y=seen[:, k], name=f'{name} ({axes})',
-                                        line={'color': COLORS[k], 'dash': DASHES[k], 'width': 1.2}), row, 1)
+            x, y = thinned(spectrum.frequencies[1:last].astype(np.float32), seen[:, k])
+            figure.add_trace(go.Scatter(x=x, y=y, name=f'{name} ({axes})',
+                                        line={'color': COLORS[k], 'dash': DASHES[k], 'width': 1.2}),
+                             row, 1)
         for line, _ in spectrum.lines:
             if line.axes == axes:
-                figure.add_vline(line.frequency, line_dash='dot', annotation_text=line.name, row=row, col=1)
-        figure.update_yaxes(type='log', title_text=f'ω, {axes} axes (rad/s)', exponentformat='e', row=row, col=1)
+                figure.add_vline(line.frequency, line_dash='dot', annotation_text=line.name,
+                                 row=row, col=1)
+        figure.update_yaxes(type='log', title_text=f'ω, {axes} axes (rad/s)',
+                            exponentformat='power', row=row, col=1)
     figure.update_xaxes(title_text='frequency (Hz)', row=2, col=1)
     figure.update_xaxes(range=[0.0, spectrum.top])
     return _layout(figure, SPACE_HEIGHT)
-
-
-def _playback(number, shown):
-    """Yield the HTML of the moving body: a figure, buttons, and the data that playback.js moves it by."""
-    import plotly.graph_objects as go
-    i, j, k = zip(*FACES, strict=True)
-    reach = float(np.abs(shown.corners).max()) * 1.6
-    x, y, z = shown.corners.T
-    figure = go.Figure(go.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, color='#56B4E9', flatshading=True, opacity=0.9, hoverinfo='skip'))
-    for name, color in zip('xyz', COLORS, strict=False):
-        figure.add_trace(go.Scatter3d(x=[0, 0], y=[0, 0], z=[0, 0], mode='lines', line={'color': color, 'width': 7}, name=f'body {name}'))
-    axis = {'range': [-reach, reach]}
-    _layout(figure, SPACE_HEIGHT, legend={'x': 0.0, 'y': 1.0},
-            scene={'xaxis': axis, 'yaxis': axis, 'zaxis': axis, 'aspectmode': 'cube', 'camera': {'up': {'x': 0, 'y': 0, 'z': 1}}})
-    data = {'times': np.round(shown.times, 9).tolist(), 'orientation': np.round(shown.orientation, 6).tolist(),
-            'corners': shown.corners.tolist(), 'reach': reach}
-    yield f'<h2>The body from {shown.times[0]:.6g} to {shown.times[-1]:.6g} s: a box with its mass and moments</h2>'
-    yield _html(figure, f'body{number}')
-    slider = f'<input type="range" min="0" max="{len(shown.times) - 1}" value="0">'
-    yield (f'<p class="playback" id="controls{number}"><button>play</button> {slider} '
-           '<select><option value="0.01">1/100</option><option value="0.1">1/10</option><option value="1" selected>real time</option>'
-           '<option value="10">10 x</option><option value="100">100 x</option></select> <output></output></p>')
-    yield f'<script>playback("body{number}", "controls{number}", {json.dumps(data)})</script>'

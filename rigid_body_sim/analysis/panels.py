@@ -78,6 +78,19 @@ def motion(measured):
     return panels
 
 
+def travel(measured):
+    """Return the panels of position and velocity of a body that goes somewhere."""
+    follows = measured.motion
+    columns = follows.samples.columns() if follows else ()
+    if not columns or len(columns[0]) < 3 or not np.ptp(columns[3], axis=0).any():
+        return []
+    times, position = columns[0], columns[3]
+    velocity = np.gradient(position, times, axis=0)
+    return [Panel(name, label, tuple(Line(axis, times, values[:, k]) for k, axis in enumerate('xyz')))
+            for name, label, values in (('position', 'position\n(m)', position),
+                                        ('velocity', 'velocity, from\npositions (m/s)', velocity))]
+
+
 def energies(balance):
     """Return the panels of a ledger: (times, terms) as from ledger.ledger."""
     times, terms = balance

@@ -1,15 +1,12 @@
-"""Paths and surfaces in space: the polhode on its two ellipsoids, the trace of an axis on the sphere, the body as a box."""
+"""Paths and surfaces in space: the polhode on its two ellipsoids, the trace of an axis."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.messages.state_topics import box_of
-
 FLATTEST = 1e-6
 """Below this ratio of moments an ellipsoid is a cylinder for all that can be seen, and is not drawn."""
-MOST_FRAMES, TURN_A_FRAME = 4000, 0.15
 
 
 @dataclass(frozen=True)
@@ -90,34 +87,3 @@ def traced_axis(scene):
     if len(set(moments)) == 3:
         return 'middle axis', axes[:, int(np.argsort(moments)[1])]
     return 'body z axis', np.array([0.0, 0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class Playback:
-    """The body as it moves: times (n,) s and quaternions (n, 4), and the corners (8, 3) of a box with its mass and moments, body axes, m."""
-
-    times: np.ndarray
-    orientation: np.ndarray
-    corners: np.ndarray
-
-
-def playback(measured):
-    """Return the Playback of a Measured, or None: of the whole recording where its samples are dense enough, else of its beginning."""
-    if measured.motion is None or not measured.motion.samples.columns():
-        return None
-    times, orientation, omega, _ = measured.motion.samples.columns()
-    fastest = float(np.sqrt((omega * omega).sum(axis=1)).max())
-    if len(times) > 1 and fastest * float(np.diff(times).max()) > 2.0 * TURN_A_FRAME:
-        times, orientation, _, _ = measured.motion.head.columns()
-    step = max(1, int(TURN_A_FRAME / (fastest * (times[1] - times[0])))) if fastest > 0.0 and len(times) > 1 else 1
-    step = min(step, max(1, len(times) // 200))
-    return Playback(times[::step][:MOST_FRAMES], orientation[::step][:MOST_FRAMES], _corners(measured.source.scene))
-
-
-def _corners(scene):
-    signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    if scene is None:
-        return signs * (1.0, 0.6, 0.2)
-    edges = np.array(box_of(scene.body))
-    edges = np.maximum(edges, 0.02 * edges.max()) if edges.max() > 0.0 else np.ones(3)
-    return Rotation.from_quat(scene.body.about_center.axes).apply(signs * edges) + scene.body.center_of_mass

@@ -25,6 +25,7 @@ import numpy as np
 import yaml
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.drawing.body import box_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.messages import cdr, definitions
@@ -252,12 +253,6 @@ def _hinge(scene):
         *turn, cosine = rotations.multiply(-x, -y, -z, w, *moment[ORIENTATION])
         moment[HINGE] = start + 2.0 * math.atan2(axis @ turn, cosine), axis @ moment[ANGULAR_VELOCITY]
     return derive
-
-
-def box_of(body):
-    """Return the edges (m) of the box that has the body's mass and moments of inertia: what to draw for any body."""
-    a, b, c = body.about_center.moments
-    return tuple(math.sqrt(max(6.0 * square / body.mass, 0.0)) for square in (b + c - a, a + c - b, a + b - c))
 
 
 def _box(scene, frames):

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from rigid_body_sim.drawing.setting import follows
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.view import hand, mouse
@@ -116,8 +117,7 @@ class Page:
         stage = Stage(self.server, scene)
         self._stages = [stage]
         stage.shown = self._shown
-        kind = scene.constraint.kind if scene else 'free'
-        self._shown['follow'] = kind in ('free', 'table')
+        self._shown['follow'] = follows(scene)
         self._hand = hand.Hand(stage.mechanics) if scene else None
         self.mouse.pull = None
         if self._source.pushes:

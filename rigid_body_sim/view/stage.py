@@ -7,14 +7,19 @@ it moves against it.
 """
 
 import collections
-import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.analysis.space import traced_axis
-from rigid_body_sim.drawing import surfaces
 from rigid_body_sim.drawing.body import drawing_of
+from rigid_body_sim.drawing.setting import (
+    cell_of,
+    ground_of,
+    holder_of,
+    middle_of,
+    reach_of,
+)
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
 from rigid_body_sim.view.frames import Mechanics
 
@@ -31,12 +36,6 @@ its kind is rescaled."""
 HEAD = 0.11
 FADING = 0.93
 """What is left after a frame of the lead that a pulled body has won."""
-
-
-def nice(length):
-    """Return 1, 2 or 5 times a power of ten, the nearest one below a length."""
-    power = 10.0 ** math.floor(math.log10(length))
-    return next(power * factor for factor in (5.0, 2.0, 1.0) if power * factor <= length)
 
 
 def wxyz(quaternion):
@@ -73,14 +72,15 @@ class Stage:
         self._server, self._name, self.scene = server, name, scene
         self.mechanics = Mechanics(scene) if scene else None
         self.drawing = drawing_of(scene)
-        self.unit = unit or self._reach()
-        self.cell = nice(self.unit)
+        self._middle = middle_of(scene)
+        self.unit = unit or reach_of(scene, self.drawing)
+        self.cell = cell_of(self.unit)
         self.follows = False
         self._offset = self._about = np.zeros(3)
         self._lead = np.zeros(3)
         self._references = collections.defaultdict(float)
         self.what_axis, self._axis = traced_axis(scene)
-        along = (self.drawing.vertices - self._middle()) @ self._axis
+        along = (self.drawing.vertices - self._middle) @ self._axis
         self._radius = max(1.2 * float(along.max()) / self.unit, 0.7)
         self._traces = {key: collections.deque(maxlen=TRACE_POINTS) for key in TRACES}
         self.shown = {}
@@ -95,20 +95,6 @@ class Stage:
                 self._add_holder()
             self._arrows = {key: self._add_arrow(key) for key in COLORS}
             self._lines = {key: self._add_trace(key) for key in TRACES}
-
-    def _middle(self):
-        """Return the point of reference in body axes, m: of the arrows, and what is followed."""
-        scene = self.scene
-        if scene is None or scene.constraint.kind == 'pivot':
-            return np.zeros(3)
-        if scene.constraint.kind == 'hinge':
-            return np.array(scene.constraint.through)
-        return np.array(scene.body.center_of_mass)
-
-    def _reach(self):
-        """Return the largest distance of the body's surface from the point of reference, m."""
-        vertices = self.drawing.vertices - self._middle()
-        return float(np.linalg.norm(vertices, axis=1).max())
 
     def _mesh(self, path, vertices, faces, color, smooth, **more):
         return self._server.scene.add_mesh_simple(
@@ -137,44 +123,17 @@ class Stage:
             shaft_radius=0.008, head_radius=0.022, head_length=0.06)
 
     def _add_ground(self):
-        self.floor = self._floor()
         self._server.scene.add_grid(
             f'/{self._name}/ground', infinite_grid=True, plane='xy',
             cell_size=self.cell / self.unit, section_size=5.0 * self.cell / self.unit,
             cell_color=(165, 165, 170), section_color=(120, 120, 130), section_thickness=1.2,
             fade_distance=22.0, fade_strength=1.5, shadow_opacity=0.25,
-            position=(0.0, 0.0, self.floor))
-
-    def _floor(self):
-        """Return the height of the ground on the page: the table, or below all that moves."""
-        scene = self.scene
-        if scene is None:
-            return -1.5
-        start = scene.initial
-        if scene.constraint.kind == 'table':
-            return (float(start.position[2]) - scene.body.radius) / self.unit
-        fixed = start.position + Rotation.from_quat(start.orientation).apply(self._middle())
-        return float(fixed[2] - 1.1 * self._reach()) / self.unit
+            position=(0.0, 0.0, ground_of(self.scene, self.unit) / self.unit))
 
     def _add_holder(self):
-        """Add what holds the body: a column to a fixed point, an axle."""
-        kind = self.scene.constraint.kind if self.scene else 'free'
-        if kind not in ('pivot', 'hinge'):
-            return
-        start, scale = self.scene.initial, self.unit
-        point = start.position + Rotation.from_quat(start.orientation).apply(self._middle())
-        if kind == 'hinge':
-            axle = surfaces.cylinder(0.025 * scale, 1.0 * scale)
-            turn = Rotation.align_vectors([self.scene.constraint.axis], [[0.0, 0.0, 1.0]])[0]
-            axle = axle.placed(Rotation.from_quat(start.orientation) * turn, point)
-            self._mesh(f'/{self._name}/axle', axle.vertices, axle.faces, HOLDER, True)
-            return
-        ball = surfaces.sphere(0.035 * scale).placed(Rotation.identity(), point)
-        self._mesh(f'/{self._name}/pivot', ball.vertices, ball.faces, HOLDER, True)
-        height = float(point[2]) - self._floor() * scale
-        column = surfaces.cone(0.12 * scale, height).placed(
-            Rotation.identity(), point - (0.0, 0.0, 0.75 * height))
-        self._mesh(f'/{self._name}/column', column.vertices, column.faces, HOLDER, True)
+        """Add what holds the body."""
+        for k, surface in enumerate(holder_of(self.scene, self.unit)):
+            self._mesh(f'/{self._name}/holder_{k}', surface.vertices, surface.faces, HOLDER, True)
 
     def _add_arrow(self, key):
         return self._server.scene.add_arrows(
@@ -191,7 +150,7 @@ class Stage:
         """Draw a Frame; `held` is (grabbed point, cursor) of a mouse that pulls, world, m."""
         vector, unit = frame.vector, self.unit
         turn = Rotation.from_quat(vector[ORIENTATION])
-        self._about = (vector[POSITION] + turn.apply(self._middle())) / unit
+        self._about = (vector[POSITION] + turn.apply(self._middle)) / unit
         self._follow(held is not None)
         with self._server.atomic():
             if not np.array_equal(self._root.position, self._offset):
@@ -253,7 +212,7 @@ class Stage:
             self._references['omega'] = speed
         scale = ARROW / (self._references['omega'] or 1.0)
         self._traces['axis'].extend(self._radius * turns.apply(self._axis))
-        self._traces['polhode'].extend(self._middle() / self.unit + scale * omega)
+        self._traces['polhode'].extend(self._middle / self.unit + scale * omega)
         self._traces['herpolhode'].extend(scale * turns.apply(omega))
 
     def draw_traces(self):

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The moving body of a report: recorded states drawn by WebGL, lit, on a ground grid, with arrows.
+// Lengths are relative to data.unit; quaternions are (x, y, z, w).
+function bodyView(canvas, data) {
+  const gl = canvas.getContext('webgl', {antialias: true});
+  if (!gl) { canvas.replaceWith('This browser has no WebGL: the body is not shown.'); return {show() {}}; }
+  const shader = (type, text) => {
+    const one = gl.createShader(type);
+    gl.shaderSource(one, text); gl.compileShader(one);
+    return one;
+  };
+  const program = gl.createProgram();
+  gl.attachShader(program, shader(gl.VERTEX_SHADER, `
+    attribute vec3 point, normal, color; uniform mat4 camera; uniform mat3 turn; uniform vec3 at;
+    uniform float lit; varying vec3 shade;
+    void main() {
+      vec3 n = normalize(turn * normal + vec3(1e-9));
+      float light = 0.45 + 0.35 * max(dot(n, vec3(0.36, -0.48, 0.8)), 0.0) + 0.2 * n.z;
+      shade = color * mix(1.0, light + 0.15, lit);
+      gl_Position = camera * vec4(turn * point + at, 1.0);
+    }`));
+  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `
+    precision mediump float; varying vec3 shade; void main() { gl_FragColor = vec4(shade, 1.0); }`));
+  gl.linkProgram(program); gl.useProgram(program); gl.enable(gl.DEPTH_TEST);
+  const place = name => gl.getUniformLocation(program, name);
+  const uniforms = {camera: place('camera'), turn: place('turn'), at: place('at'), lit: place('lit')};
+  const attributes = ['point', 'normal', 'color'].map(name => gl.getAttribLocation(program, name));
+  attributes.forEach(one => gl.enableVertexAttribArray(one));
+  const buffer = numbers => {
+    const one = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, one);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
+    return {one, count: numbers.length / 9};
+  };
+  const sub = (a, b) => a.map((x, k) => x - b[k]), dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const unit = a => { const size = Math.hypot(...a) || 1; return a.map(x => x / size); };
+  const rotate = ([x, y, z, w], v) => {
+    const t = cross([x, y, z], v).map(c => 2 * c), u = cross([x, y, z], t);
+    return v.map((c, k) => c + w * t[k] + u[k]);
+  };
+  const matrix = q => [[1, 0, 0], [0, 1, 0], [0, 0, 1]].flatMap(e => rotate(q, e));
+
+  // Triangles with a normal at each corner: of the face where edges are sharp, else the mean there.
+  function triangles({points, faces, colors, smooth}) {
+    const normals = faces.map(([a, b, c]) => cross(sub(points[b], points[a]), sub(points[c], points[a])));
+    const key = point => point.map(x => x.toFixed(6)).join(), sums = {};
+    if (smooth) faces.forEach((face, k) => face.forEach(v => {
+      const sum = sums[key(points[v])] ||= [0, 0, 0];
+      normals[k].forEach((x, j) => { sum[j] += x; });
+    }));
+    return faces.flatMap((face, k) => face.flatMap(v => {
+      const mean = smooth ? unit(sums[key(points[v])]) : null;
+      const normal = mean && dot(mean, unit(normals[k])) > 0.7 ? mean : unit(normals[k]);
+      return [...points[v], ...normal, ...colors[k]];
+    }));
+  }
+
+  const body = buffer(data.surfaces.flatMap(triangles)), holder = buffer(data.holder.flatMap(triangles));
+  const arrows = data.arrows.map(one => ({...one, buffer: buffer(triangles({...data.arrow,
+    colors: data.arrow.faces.map(() => one.color)}))}));
+  const lines = [], far = 12, cell = data.cell;
+  for (let k = -far; k <= far; k++) {
+    for (const [a, b] of [[[k, -far], [k, far]], [[-far, k], [far, k]]]) {
+      for (const [x, y] of [a, b]) lines.push(x * cell, y * cell, 0, 0, 0, 1, 0.55, 0.55, 0.57);
+    }
+  }
+  const ground = buffer(lines), trail = gl.createBuffer();
+  let yaw = 0.6, pitch = 0.42, distance = 4.6, frame = 0;
+
+  function camera() {
+    const eye = [Math.sin(yaw) * Math.cos(pitch), -Math.cos(yaw) * Math.cos(pitch), Math.sin(pitch)].map(x => x * distance);
+    const z = unit(eye), x = unit(cross([0, 0, 1], z)), y = cross(z, x), f = 1 / Math.tan(0.36);
+    const aspect = canvas.width / canvas.height, near = 0.05, out = 60;
+    const rows = [x, y, z].map(axis => [...axis, -dot(axis, eye)]);
+    const m = [rows[0].map(c => c * f / aspect), rows[1].map(c => c * f),
+      rows[2].map((c, k) => c * (out + near) / (near - out) + (k === 3 ? 2 * out * near / (near - out) : 0)), rows[2].map(c => -c)];
+    return [0, 1, 2, 3].flatMap(column => m.map(row => row[column]));
+  }
+
+  function draw({one, count}, turn, at, lit, mode) {
+    gl.bindBuffer(gl.ARRAY_BUFFER, one);
+    attributes.forEach((place, k) => gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 36, 12 * k));
+    gl.uniformMatrix3fv(uniforms.turn, false, turn);
+    gl.uniform3fv(uniforms.at, at);
+    gl.uniform1f(uniforms.lit, lit);
+    gl.drawArrays(mode, 0, count);
+  }
+
+  function paint() {
+    const size = canvas.clientWidth * (window.devicePixelRatio || 1), high = canvas.clientHeight * (window.devicePixelRatio || 1);
+    if (canvas.width !== Math.round(size) || canvas.height !== Math.round(high)) { canvas.width = size; canvas.height = high; }
+    gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.uniformMatrix4fv(uniforms.camera, false, camera());
+    const q = data.orientation[frame], position = data.position[frame], same = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+    const middle = rotate(q, data.middle).map((x, k) => x + position[k]);
+    // the world moves against a free body; its grid repeats
+    const origin = data.follow ? middle : [0, 0, 0];
+    const wrapped = origin.map(x => x - Math.floor(x / (cell * 5)) * cell * 5);
+    draw(ground, same, [-wrapped[0], -wrapped[1], data.floor - origin[2]], 0, gl.LINES);
+    draw(body, matrix(q), sub(position, origin), 1, gl.TRIANGLES);
+    draw(holder, same, sub([0, 0, 0], origin), 1, gl.TRIANGLES);
+    arrows.forEach(arrow => {
+      const value = arrow.values[frame], length = Math.hypot(...value);
+      if (length < 1e-3) return;
+      const z = unit(value), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
+      draw(arrow.buffer, [...x, ...y, ...z.map(c => c * length)], sub(middle, origin), 1, gl.TRIANGLES);
+    });
+    const points = [];
+    for (let k = Math.max(0, frame - 400); k <= frame; k++) {
+      points.push(...rotate(data.orientation[k], data.axis), 0, 0, 1, 0, 0.45, 0.7);
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, trail);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points), gl.DYNAMIC_DRAW);
+    draw({one: trail, count: points.length / 9}, same, sub(middle, origin), 0, gl.LINE_STRIP);
+  }
+
+  canvas.onpointerdown = () => {
+    canvas.onpointermove = event => {
+      yaw -= event.movementX * 0.008;
+      pitch = Math.min(1.5, Math.max(-0.2, pitch + event.movementY * 0.008));
+      paint();
+    };
+  };
+  window.addEventListener('pointerup', () => { canvas.onpointermove = null; });
+  canvas.addEventListener('wheel', event => {
+    event.preventDefault();
+    distance = Math.min(30, Math.max(1.5, distance * Math.exp(event.deltaY * 0.001)));
+    paint();
+  }, {passive: false});
+  new ResizeObserver(paint).observe(canvas);
+  return {show(k) { frame = k; paint(); }};
+}

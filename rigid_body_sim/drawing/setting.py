@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What surrounds a drawn body: its point of reference, the ground below it, what holds it."""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.drawing import surfaces
+
+
+def middle_of(scene):
+    """Return the point of reference in body axes, m: the point held, else the centre of mass."""
+    if scene is None or scene.constraint.kind == 'pivot':
+        return np.zeros(3)
+    if scene.constraint.kind == 'hinge':
+        return np.array(scene.constraint.through)
+    return np.array(scene.body.center_of_mass)
+
+
+def reach_of(scene, drawing):
+    """Return the largest distance (m) of the drawn surface from the point of reference."""
+    return float(np.linalg.norm(drawing.vertices - middle_of(scene), axis=1).max())
+
+
+def follows(scene):
+    """Return whether the body can travel, so that a picture should move with it."""
+    return scene is not None and scene.constraint.kind in ('free', 'table')
+
+
+def start_of(scene):
+    """Return where the point of reference is at the start, world, m."""
+    if scene is None:
+        return np.zeros(3)
+    turn = Rotation.from_quat(scene.initial.orientation)
+    return scene.initial.position + turn.apply(middle_of(scene))
+
+
+def ground_of(scene, reach):
+    """Return the height of the ground, m: the table, or just below all that turns."""
+    start = float(start_of(scene)[2])
+    if scene is not None and scene.constraint.kind == 'table':
+        return start - scene.body.radius
+    return start - 1.1 * reach
+
+
+def holder_of(scene, reach):
+    """Return what holds the body as surfaces in the world: a column to a fixed point, an axle."""
+    kind = scene.constraint.kind if scene else 'free'
+    start = start_of(scene)
+    if kind == 'pivot':
+        height = float(start[2]) - ground_of(scene, reach)
+        column = surfaces.cone(0.12 * reach, height)
+        return [column.placed(Rotation.identity(), start - (0.0, 0.0, 0.75 * height))]
+    if kind == 'hinge':
+        to_axis = Rotation.align_vectors([scene.constraint.axis], [[0.0, 0.0, 1.0]])[0]
+        turn = Rotation.from_quat(scene.initial.orientation) * to_axis
+        return [surfaces.cylinder(0.025 * reach, reach).placed(turn, start)]
+    return []
+
+
+def cell_of(reach):
+    """Return the distance of the lines of the ground, m: 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(reach))
+    return next(power * factor for factor in (5.0, 2.0, 1.0) if power * factor <= reach)
