@@ -22,9 +22,19 @@ def aligned(recording, topics, progress=None):
     for topic, columns in recording.blocks(list(topics), progress=progress):
         waiting[topic].append(columns)
         left[topic] -= len(columns['log_time'])
-        if all(blocks or not left[name] for name, blocks in waiting.items()) or sum(len(part['log_time']) for part in waiting[topic]) > LARGEST:
+        if (
+            all(blocks or not left[name] for name, blocks in waiting.items())
+            or sum(len(part['log_time']) for part in waiting[topic]) > LARGEST
+        ):
             # what comes later of a topic has a log time of at least its last one
-            until = min((waiting[name][-1]['log_time'][-1] - 1 for name in topics if left[name] and waiting[name]), default=None)
+            until = min(
+                (
+                    waiting[name][-1]['log_time'][-1] - 1
+                    for name in topics
+                    if left[name] and waiting[name]
+                ),
+                default=None,
+            )
             stretch = {name: _take(waiting, name, until) for name in topics if waiting[name]}
             stretch = {name: part for name, part in stretch.items() if part is not None}
             if stretch:
@@ -40,6 +50,14 @@ def _take(waiting, name, until):
     joined = blocks[0] if len(blocks) == 1 else {
         key: np.concatenate([block[key] for block in blocks]) for key, column in blocks[0].items()
         if all(key in block and block[key].shape[1:] == column.shape[1:] for block in blocks)}
-    count = len(joined['log_time']) if until is None else int(np.searchsorted(joined['log_time'], until, side='right'))
-    waiting[name] = [{key: column[count:] for key, column in joined.items()}] if count < len(joined['log_time']) else []
+    count = (
+        len(joined['log_time'])
+        if until is None
+        else int(np.searchsorted(joined['log_time'], until, side='right'))
+    )
+    waiting[name] = (
+        [{key: column[count:] for key, column in joined.items()}]
+        if count < len(joined['log_time'])
+        else []
+    )
     return {key: column[:count] for key, column in joined.items()} if count else None

@@ -29,11 +29,16 @@ class Curve:
         """Take samples: times (n,), values (n,) or (n, curves)."""
         values = values.reshape(len(times), -1)
         if self._pending is not None:
-            times, values = np.concatenate([self._pending[0], times]), np.concatenate([self._pending[1], values])
+            times, values = np.concatenate([self._pending[0], times]), np.concatenate(
+                [self._pending[1], values]
+            )
         whole = len(times) // self._group * self._group
         self._pending = (times[whole:], values[whole:])
         if whole:
-            self._thin(times[:whole].reshape(-1, self._group), values[:whole].reshape(-1, self._group, values.shape[1]))
+            self._thin(
+                times[:whole].reshape(-1, self._group),
+                values[:whole].reshape(-1, self._group, values.shape[1]),
+            )
 
     def _thin(self, times, values):
         """Keep the least and the greatest of each row: times (k, m), values (k, m, curves)."""
@@ -45,7 +50,9 @@ class Curve:
         places = np.sort(np.stack([values.argmin(axis=1), values.argmax(axis=1)], axis=1), axis=1)
         rows = np.arange(len(times))[:, None, None]
         self._times.append(times[rows, places].reshape(-1, values.shape[2]))
-        self._values.append(np.take_along_axis(values, places, axis=1).reshape(-1, values.shape[2]))
+        self._values.append(
+            np.take_along_axis(values, places, axis=1).reshape(-1, values.shape[2])
+        )
 
     def curve(self, which=0):
         """Return times (k,) and values (k,) of one of the curves."""
@@ -87,7 +94,11 @@ class Samples:
 
     def columns(self):
         """Return the columns kept."""
-        return [np.concatenate(parts) for parts in zip(*self._parts, strict=True)] if self._parts else []
+        return (
+            [np.concatenate(parts) for parts in zip(*self._parts, strict=True)]
+            if self._parts
+            else []
+        )
 
 
 class Head:
@@ -110,4 +121,8 @@ class Head:
 
     def columns(self):
         """Return the columns kept."""
-        return [np.concatenate(parts) for parts in zip(*self._parts, strict=True)] if self._parts else []
+        return (
+            [np.concatenate(parts) for parts in zip(*self._parts, strict=True)]
+            if self._parts
+            else []
+        )

@@ -39,8 +39,9 @@ class Comparison:
     parting : dict or None
         Where bits differ first: tick, time (s), quantity, the recorded and the resimulated value.
     largest : dict
-        Quantity -> the largest ``difference``: the angle between attitudes (rad), else the length of the difference; when that was, in s
-        ``since_start``; and the ``scale`` of the quantity, the largest that was recorded.
+        Quantity -> the largest ``difference``: the angle between attitudes (rad), else the length
+        of the difference; when that was, in s ``since_start``; and the ``scale`` of the quantity,
+        the largest that was recorded.
     turned : float
         Angle through which the body turned, rad.
     """
@@ -51,23 +52,42 @@ class Comparison:
         self.parting = None
         self.largest = {}
         self.turned = 0.0
-        self._curves = {name: Curve(source.ticks) for quantities in QUANTITIES.values() for name, _ in quantities}
+        self._curves = {
+            name: Curve(source.ticks)
+            for quantities in QUANTITIES.values()
+            for name, _ in quantities
+        }
 
     def take(self, stretch):
         """Compare a stretch (see align.aligned)."""
-        ticks_of = {topic: self._rerun.ticks(columns['log_time']) for topic, columns in stretch.items()}
+        ticks_of = {
+            topic: self._rerun.ticks(columns['log_time']) for topic, columns in stretch.items()
+        }
         for name, topic in self._topics.items():
             if topic in stretch:
                 check_numbers(topic, stretch[topic], name)
         for topic, ticks in ticks_of.items():
             if ticks.min() < self._rerun.next_tick:
-                raise BadInput(topic, f'tick {int(ticks.min())} comes too late', 'messages in the order of time')
+                raise BadInput(
+                    topic,
+                    f'tick {int(ticks.min())} comes too late',
+                    'messages in the order of time',
+                )
         recorded = np.unique(np.concatenate(list(ticks_of.values())))
         self.ticks += len(recorded)
         for first, last in _runs(recorded):
-            inside = {topic: (ticks >= first) & (ticks <= last) for topic, ticks in ticks_of.items()}
-            self._take_run({topic: {name: column[inside[topic]] for name, column in columns.items()} for topic, columns in stretch.items()},
-                           {topic: ticks[inside[topic]] for topic, ticks in ticks_of.items()}, first, last)
+            inside = {
+                topic: (ticks >= first) & (ticks <= last) for topic, ticks in ticks_of.items()
+            }
+            self._take_run(
+                {
+                    topic: {name: column[inside[topic]] for name, column in columns.items()}
+                    for topic, columns in stretch.items()
+                },
+                {topic: ticks[inside[topic]] for topic, ticks in ticks_of.items()},
+                first,
+                last,
+            )
 
     def _take_run(self, stretch, ticks_of, first, last):
         """Compare the messages of the ticks from `first` to `last`, of which few are missing."""
@@ -75,30 +95,58 @@ class Comparison:
             self._rerun.skip_to(first)
         ticks, states, energies, momenta = self._rerun.through(last)
         vectors = states.vector
-        self.turned += float(np.sqrt((states.angular_velocity ** 2).sum(axis=1)).sum()) / self._rerun.simulation.rate
-        found = {'energy': energies, 'angular_momentum_squared': momenta, **{name: vectors[:, part] for name, part in SLICES.items()}}
+        self.turned += (
+            float(np.sqrt((states.angular_velocity**2).sum(axis=1)).sum())
+            / self._rerun.simulation.rate
+        )
+        found = {
+            'energy': energies,
+            'angular_momentum_squared': momenta,
+            **{name: vectors[:, part] for name, part in SLICES.items()},
+        }
         for name, topic in self._topics.items():
             if topic not in stretch or not len(ticks_of[topic]):
                 continue
             rows = ticks_of[topic] - ticks[0]
             self.messages += len(rows)
             for quantity, column in QUANTITIES[name]:
-                self._compare(quantity, ticks_of[topic], vectors[rows, TIME], stretch[topic], column, found[quantity][rows])
+                self._compare(
+                    quantity,
+                    ticks_of[topic],
+                    vectors[rows, TIME],
+                    stretch[topic],
+                    column,
+                    found[quantity][rows],
+                )
 
     def _compare(self, quantity, ticks, times, columns, column, resimulated):
         recorded = columns[column]
-        recorded, resimulated = (np.ascontiguousarray(values, dtype=float).reshape(len(ticks), -1) for values in (recorded, resimulated))
+        recorded, resimulated = (
+            np.ascontiguousarray(values, dtype=float).reshape(len(ticks), -1)
+            for values in (recorded, resimulated)
+        )
         different = (recorded.view(np.int64) != resimulated.view(np.int64)).any(axis=1)
         if different.any():
             first = int(different.argmax())
             if self.parting is None or ticks[first] < self.parting['tick']:
-                self.parting = {'tick': int(ticks[first]), 'time': float(times[first]), 'quantity': quantity,
-                                'recorded': recorded[first].tolist(), 'resimulated': resimulated[first].tolist()}
-        size = _angle(recorded, resimulated) if quantity == 'orientation' else np.sqrt(((recorded - resimulated) ** 2).sum(axis=1))
+                self.parting = {
+                    'tick': int(ticks[first]),
+                    'time': float(times[first]),
+                    'quantity': quantity,
+                    'recorded': recorded[first].tolist(),
+                    'resimulated': resimulated[first].tolist(),
+                }
+        size = (
+            _angle(recorded, resimulated)
+            if quantity == 'orientation'
+            else np.sqrt(((recorded - resimulated) ** 2).sum(axis=1))
+        )
         since_start = (columns['log_time'] - self._start) / NANOSECONDS
         self._curves[quantity].add(since_start, size)
         worst = int(size.argmax())
-        largest = self.largest.setdefault(quantity, {'difference': -1.0, 'since_start': 0.0, 'scale': 0.0})
+        largest = self.largest.setdefault(
+            quantity, {'difference': -1.0, 'since_start': 0.0, 'scale': 0.0}
+        )
         if size[worst] > largest['difference']:
             largest.update(difference=float(size[worst]), since_start=float(since_start[worst]))
         largest['scale'] = max(largest['scale'], float(np.sqrt((recorded ** 2).sum(axis=1).max())))
@@ -122,8 +170,10 @@ def _runs(ticks):
 
 def within(largest, limit):
     """Return whether all differences are small: attitudes within `limit` (rad), other quantities within 4 times that part of their scale."""
-    return all(worst['difference'] <= limit * (1.0 if quantity == 'orientation' else 4.0 * worst['scale'])
-               for quantity, worst in largest.items())
+    return all(
+        worst['difference'] <= limit * (1.0 if quantity == 'orientation' else 4.0 * worst['scale'])
+        for quantity, worst in largest.items()
+    )
 
 
 def _angle(p, q):

@@ -18,11 +18,13 @@ class Residual:
     kept : callable
         Says of a Segment whether the quantity is constant there.
     scale : float
-        Least scale of the residual, in the unit of the quantity; it is relative to the largest of that and its size at the segment's start.
+        Least scale of the residual, in the unit of the quantity; it is relative to the largest of
+        that and its size at the segment's start.
     count : int
         How many values will come, about.
     size : int
-        Number of components; the residual of a vector is the length of its change, that of a number has a sign.
+        Number of components; the residual of a vector is the length of its change, that of a
+        number has a sign.
     """
 
     def __init__(self, history, kept, scale, count, size=1):
@@ -43,7 +45,9 @@ class Residual:
         self.values.add(times, values)
         self.first = values[0] if self.first is None else self.first
         self.last = values[-1]
-        self.least, self.greatest = np.minimum(self.least, values.min(axis=0)), np.maximum(self.greatest, values.max(axis=0))
+        self.least, self.greatest = np.minimum(self.least, values.min(axis=0)), np.maximum(
+            self.greatest, values.max(axis=0)
+        )
         places = self._history.at(stamps)
         # for each value, which one before it (-1: of an earlier block) is the first of its segment
         begins = np.flatnonzero(np.diff(places, prepend=self._place))
@@ -65,7 +69,11 @@ class Residual:
     @property
     def not_kept_from(self):
         """Stamps (ns) from which on the quantity is not kept for a while."""
-        return [segment.stamp for segment, kept in zip(self._history.segments, self._kept, strict=True) if not kept]
+        return [
+            segment.stamp
+            for segment, kept in zip(self._history.segments, self._kept, strict=True)
+            if not kept
+        ]
 
     def curve(self):
         """Return times (s) and residuals where the quantity is kept."""
@@ -73,13 +81,22 @@ class Residual:
 
     def summary(self):
         """Return a dict: first, last, least and greatest value; the largest and the last residual (None where it is never constant)."""
-        seen = {name: _plain(getattr(self, name)) if self.first is not None else None for name in ('first', 'last', 'least', 'greatest')}
-        return {**seen, 'largest_residual': self.largest if self.judged else None, 'last_residual': self.last_residual if self.judged else None,
-                'judged_ticks': self.judged}
+        seen = {
+            name: _plain(getattr(self, name)) if self.first is not None else None
+            for name in ('first', 'last', 'least', 'greatest')
+        }
+        return {
+            **seen,
+            'largest_residual': self.largest if self.judged else None,
+            'last_residual': self.last_residual if self.judged else None,
+            'judged_ticks': self.judged,
+        }
 
 
 def _length(vectors):
-    return np.sqrt((vectors * vectors).sum(axis=1)) if vectors.shape[1] > 1 else np.abs(vectors[:, 0])
+    return (
+        np.sqrt((vectors * vectors).sum(axis=1)) if vectors.shape[1] > 1 else np.abs(vectors[:, 0])
+    )
 
 
 def _plain(values):

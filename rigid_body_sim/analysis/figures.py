@@ -8,7 +8,12 @@ FORMATS = ('png', 'svg')
 
 def draw_overview(folder, measured, title):
     """Write the overview; return the path of the PNG."""
-    return _save(plots.stack(panels.overview(measured), title, measured.source), folder, 'overview', measured.source)[0]
+    return _save(
+        plots.stack(panels.overview(measured), title, measured.source),
+        folder,
+        'overview',
+        measured.source,
+    )[0]
 
 
 def draw_all(folder, measured, spectrum, balance, title):

@@ -30,10 +30,15 @@ class Flips:
         along = m @ self._middle
         strong = np.abs(along) >= SHARE * np.sqrt((m * m).sum(axis=1))
         positive = along > 0.0
-        changed = np.diff(positive, prepend=positive[0] if self._positive is None else self._positive)
+        changed = np.diff(
+            positive, prepend=positive[0] if self._positive is None else self._positive
+        )
         begins = np.flatnonzero(changed)
         # whether m2 was large in the stretch before each change
-        before = [self._strong, *(strong[begin:end].any() for begin, end in itertools.pairwise(begins))]
+        before = [
+            self._strong,
+            *(strong[begin:end].any() for begin, end in itertools.pairwise(begins)),
+        ]
         if len(begins):
             before[0] = before[0] or bool(strong[:begins[0]].any())
             self.count += sum(map(bool, before))
@@ -45,4 +50,8 @@ class Flips:
 
 def can_flip(scene):
     """Return whether flips mean something: a free body with three different moments."""
-    return scene is not None and scene.constraint.kind == 'free' and len(set(scene.body.about_center.moments)) == 3
+    return (
+        scene is not None
+        and scene.constraint.kind == 'free'
+        and len(set(scene.body.about_center.moments)) == 3
+    )

@@ -49,13 +49,25 @@ def _free(inertia, omega):
     if len({I1, I2, I3}) == 2:
         equal, distinct, along = (I1, I3, w3) if I1 == I2 else (I2, I1, w1)
         section = 'notes, Symmetric top (no gravity)'
-        yield SpectralLine('Ω = ω₃(I₃-I₁)/I₁', abs(symmetric_top.precession_rate(along, equal, distinct)) / math.tau, 'body', section)
+        yield SpectralLine(
+            'Ω = ω₃(I₃-I₁)/I₁',
+            abs(symmetric_top.precession_rate(along, equal, distinct)) / math.tau,
+            'body',
+            section,
+        )
         L = math.hypot(I1 * w1, I2 * w2, I3 * w3)
-        yield SpectralLine('L/I₁', symmetric_top.precession_rate_in_space(L, equal) / math.tau, 'world', section)
+        yield SpectralLine(
+            'L/I₁', symmetric_top.precession_rate_in_space(L, equal) / math.tau, 'world', section
+        )
     elif seconds := asymmetric_top.time_between_flips((I1, I2, I3), (w1, w2, w3)):
         # odd harmonics in sn and cn, even ones in dn
         for harmonic in (1, 2, 3):
-            yield SpectralLine(f'{harmonic}/T', 0.5 * harmonic / seconds, 'body', 'Landau and Lifshitz, Mechanics, section 37')
+            yield SpectralLine(
+                f'{harmonic}/T',
+                0.5 * harmonic / seconds,
+                'body',
+                'Landau and Lifshitz, Mechanics, section 37',
+            )
 
 
 def _heavy_top(scene, g, omega):
@@ -82,9 +94,21 @@ def _pendulum(scene, g):
     arm = np.subtract(body.center_of_mass, constraint.through)
     across = arm - (arm @ n) * n
     Mgl = body.mass * g * np.linalg.norm(across) * np.linalg.norm(attitude.apply(n)[:2])
-    moment, rate = parameters.moment_about_hinge(body, constraint), scene.initial.angular_velocity @ n
+    moment, rate = (
+        parameters.moment_about_hinge(body, constraint),
+        scene.initial.angular_velocity @ n,
+    )
     if Mgl > 0.0:
-        k2 = (0.5 * moment * rate * rate + body.mass * g * attitude.apply(across)[2] + Mgl) / (2.0 * Mgl)
+        k2 = (0.5 * moment * rate * rate + body.mass * g * attitude.apply(across)[2] + Mgl) / (
+            2.0 * Mgl
+        )
         if 0.0 < k2 < 1.0:
-            seconds = kater_pendulum.period(math.sqrt(Mgl / moment), 2.0 * math.asin(math.sqrt(k2)))
-            yield SpectralLine('1/T', 1.0 / seconds, 'body', 'physical pendulum at this amplitude, T = 4 K(k) sqrt(I/(M g l))')
+            seconds = kater_pendulum.period(
+                math.sqrt(Mgl / moment), 2.0 * math.asin(math.sqrt(k2))
+            )
+            yield SpectralLine(
+                '1/T',
+                1.0 / seconds,
+                'body',
+                'physical pendulum at this amplitude, T = 4 K(k) sqrt(I/(M g l))',
+            )

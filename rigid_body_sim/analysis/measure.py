@@ -37,12 +37,22 @@ class Measured:
     def __init__(self, source):
         self.source = source
         energy_scale, momentum_scale = scales(source.scene)
-        self.energy = Residual(source.history, lambda segment: segment.keeps_energy, energy_scale, source.ticks)
-        self.momentum = Residual(source.history, lambda segment: segment.keeps_momentum, momentum_scale, source.ticks)
+        self.energy = Residual(
+            source.history, lambda segment: segment.keeps_energy, energy_scale, source.ticks
+        )
+        self.momentum = Residual(
+            source.history, lambda segment: segment.keeps_momentum, momentum_scale, source.ticks
+        )
         self.angular_velocity = Curve(source.ticks)
         self.punctuality = Punctuality(source.history)
-        self.flips = Flips(source.scene) if can_flip(source.scene) and 'angular_velocity' in source.topics else None
-        self.motion = Motion(source) if {'pose', 'angular_velocity'} <= set(source.topics) else None
+        self.flips = (
+            Flips(source.scene)
+            if can_flip(source.scene) and 'angular_velocity' in source.topics
+            else None
+        )
+        self.motion = (
+            Motion(source) if {'pose', 'angular_velocity'} <= set(source.topics) else None
+        )
 
     def take(self, stretch):
         """Take messages of one stretch of time: name in source.EVERY_TICK -> columns. BadInput where they hold no sensible numbers."""
@@ -66,32 +76,66 @@ class Measured:
 
     def _take_motion(self, pose, omega):
         """Take the ticks of which both messages are here: those with the same stamp in their headers."""
-        _, mine, theirs = np.intersect1d(pose['header.stamp'], omega['header.stamp'], assume_unique=True, return_indices=True)
+        _, mine, theirs = np.intersect1d(
+            pose['header.stamp'], omega['header.stamp'], assume_unique=True, return_indices=True
+        )
         if len(mine):
             stamps = pose['log_time'][mine]
-            self.motion.add(stamps, (stamps - self.source.start) / NANOSECONDS, pose['pose.orientation'][mine], omega['vector'][theirs],
-                            pose['pose.position'][mine])
+            self.motion.add(
+                stamps,
+                (stamps - self.source.start) / NANOSECONDS,
+                pose['pose.orientation'][mine],
+                omega['vector'][theirs],
+                pose['pose.position'][mine],
+            )
 
 
 def check_numbers(topic, columns, name):
     """Raise BadInput where the columns of a topic of every tick (`name` in source.EVERY_TICK) are not what a motion has."""
     for column, width in COLUMNS[name].items():
-        if column not in columns or columns[column].shape[1:] != width or columns[column].dtype != np.float64:
-            raise BadInput(topic, f'has no {column} in its messages, or not of {width[0] if width else 1} doubles', EVERY_TICK[name])
+        if (
+            column not in columns
+            or columns[column].shape[1:] != width
+            or columns[column].dtype != np.float64
+        ):
+            raise BadInput(
+                topic,
+                f'has no {column} in its messages, or not of {width[0] if width else 1} doubles',
+                EVERY_TICK[name],
+            )
         if not (np.abs(columns[column]) < LARGEST).all():     # false for NaN
-            raise BadInput(topic, f'holds a number that is not finite, or beyond {LARGEST:g}', 'a recording of a simulation that went well')
-    if name in HAVE_STAMPS and ('header.stamp' not in columns or columns['header.stamp'].dtype != np.int64):
+            raise BadInput(
+                topic,
+                f'holds a number that is not finite, or beyond {LARGEST:g}',
+                'a recording of a simulation that went well',
+            )
+    if name in HAVE_STAMPS and (
+        'header.stamp' not in columns or columns['header.stamp'].dtype != np.int64
+    ):
         raise BadInput(topic, 'has no stamps in its messages', EVERY_TICK[name])
     q = columns.get('pose.orientation')
     if q is not None and not (np.abs((q * q).sum(axis=1) - 1.0) < UNIT).all():
-        raise BadInput(topic, 'holds an orientation that is no unit quaternion', 'a recording of a rigid body')
+        raise BadInput(
+            topic, 'holds an orientation that is no unit quaternion', 'a recording of a rigid body'
+        )
 
 
 def measure(recording, sources, progress=None):
     """Return a Measured for each Source of a Recording; `progress` is called with numbers of messages done."""
     measured = [Measured(source) for source in sources]
-    names = {one.source.topics[name]: (one, name) for one in measured for name in EVERY_TICK if name in one.source.topics}
+    names = {
+        one.source.topics[name]: (one, name)
+        for one in measured
+        for name in EVERY_TICK
+        if name in one.source.topics
+    }
     for stretch in aligned(recording, list(names), progress):
         for one in measured:
-            one.take({names[topic][1]: columns for topic, columns in stretch.items() if names[topic][0] is one})
+            one.take(
+                {
+                    names[topic][1]: columns
+                    for topic, columns in stretch.items()
+                    if names[topic][0] is one
+                }
+            )
     return measured

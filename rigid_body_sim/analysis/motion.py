@@ -30,13 +30,16 @@ class Motion:
     momentum : Residual or None
         Of the angular momentum that the scene conserves, see `conserved`.
     slip : Curve or None
-        Speed of the point of contact of a sphere on the table, m/s; from differences of neighbouring positions.
+        Speed of the point of contact of a sphere on the table, m/s; from differences of
+        neighbouring positions.
     phases : list of (str, float)
-        Of a sphere on the table, at most MOST_PHASES: ``slip`` or ``roll``, and when it begins (s).
+        Of a sphere on the table, at most MOST_PHASES: ``slip`` or ``roll``, and when it begins
+        (s).
     until : float
         Time of the last tick, s.
     samples, head : collectors
-        Times (s), quaternions, angular velocities, positions: over the whole recording, and of the first ticks without a hole.
+        Times (s), quaternions, angular velocities, positions: over the whole recording, and of the
+        first ticks without a hole.
     """
 
     def __init__(self, source):
@@ -46,8 +49,16 @@ class Motion:
         self.conserved = conserved(scene)
         self.momentum = None
         if self.conserved:
-            self.momentum = Residual(source.history, self.conserved.kept, self.conserved.scale, source.ticks, self.conserved.size)
-        self.slip = Curve(source.ticks) if scene is not None and scene.constraint.kind == 'table' else None
+            self.momentum = Residual(
+                source.history,
+                self.conserved.kept,
+                self.conserved.scale,
+                source.ticks,
+                self.conserved.size,
+            )
+        self.slip = (
+            Curve(source.ticks) if scene is not None and scene.constraint.kind == 'table' else None
+        )
         self.phases, self.until = [], 0.0
         self.samples, self.head = Samples(source.ticks, SAMPLES), Head(HEAD)
 
@@ -57,7 +68,8 @@ class Motion:
         world = attitude.apply(angular_velocity)
         self.angular_velocity_world.add(times, world)
         with warnings.catch_warnings():
-            warnings.simplefilter('ignore')     # upright, alpha and gamma are not unique: any pair that fits will do
+            # upright, alpha and gamma are not unique: any pair that fits will do
+            warnings.simplefilter('ignore')
             self.euler.add(times, attitude.as_euler('ZYZ'))
         if self.momentum:
             self.momentum.add(stamps, times, self.conserved.of(attitude, angular_velocity))
@@ -74,14 +86,24 @@ class Motion:
         if whole.any():
             v = (position[2:] - position[:-2])[whole] / steps[whole, None]
             omega, a = world[1:-1][whole], self._scene.body.radius
-            at, slip = times[1:-1][whole], np.hypot(v[:, 0] - a * omega[:, 1], v[:, 1] + a * omega[:, 0])
+            at, slip = times[1:-1][whole], np.hypot(
+                v[:, 0] - a * omega[:, 1], v[:, 1] + a * omega[:, 0]
+            )
             self.slip.add(at, slip)
-            self._add_phases(at, slip > ROLLS * (np.hypot(v[:, 0], v[:, 1]) + a * np.hypot(omega[:, 0], omega[:, 1])))
+            self._add_phases(
+                at,
+                slip
+                > ROLLS * (np.hypot(v[:, 0], v[:, 1]) + a * np.hypot(omega[:, 0], omega[:, 1])),
+            )
 
     def _add_phases(self, times, slips):
         last = self.phases[-1][0] == 'slip' if self.phases else not slips[0]
-        for k in np.flatnonzero(np.diff(slips, prepend=last))[:MOST_PHASES - len(self.phases)].tolist():
-            self.phases.append(('slip' if slips[k] else 'roll', float(times[k]) if self.phases else 0.0))
+        for k in np.flatnonzero(np.diff(slips, prepend=last))[
+            : MOST_PHASES - len(self.phases)
+        ].tolist():
+            self.phases.append(
+                ('slip' if slips[k] else 'roll', float(times[k]) if self.phases else 0.0)
+            )
 
 
 class Conserved:
@@ -91,7 +113,11 @@ class Conserved:
         self.name, self._inertia, self._vertical = name, inertia.matrix, name == 'L_z'
         self.size = 1 if self._vertical else 3
         self.scale = float(np.linalg.norm(self._inertia @ scene.initial.angular_velocity))
-        self.kept = lambda segment: segment.scene is not None and segment.scene.text == scene.text and kept(segment)
+        self.kept = (
+            lambda segment: segment.scene is not None
+            and segment.scene.text == scene.text
+            and kept(segment)
+        )
 
     def of(self, attitude, angular_velocity):
         """Return it, (n,) or (n, 3), for attitudes and angular velocities (body axes)."""
@@ -105,5 +131,12 @@ def conserved(scene):
         return None
 
     if scene.constraint.kind == 'free':
-        return Conserved('L', scene, scene.body.about_center, lambda segment: segment.keeps_momentum)
-    return Conserved('L_z' if scene.effect('gravity') else 'L', scene, scene.body.about_origin, lambda segment: segment.keeps_energy)
+        return Conserved(
+            'L', scene, scene.body.about_center, lambda segment: segment.keeps_momentum
+        )
+    return Conserved(
+        'L_z' if scene.effect('gravity') else 'L',
+        scene,
+        scene.body.about_origin,
+        lambda segment: segment.keeps_energy,
+    )

@@ -91,8 +91,10 @@ def _section(number, packed, name, measured, found, spectrum, balance):
                        [(line.name, line.axes, f'{line.frequency:.9g}',
                          '-' if seen is None else f'{seen:.9g}', line.source)
                         for line, seen in spectrum.lines])
-        yield _folded(f'Spectrum of ω in the first {spectrum.seconds:.6g} s, predicted lines dotted',
-                      _drawn(figures, f'spectrum{number}', _spectra(spectrum)) + table)
+        yield _folded(
+            f'Spectrum of ω in the first {spectrum.seconds:.6g} s, predicted lines dotted',
+            _drawn(figures, f'spectrum{number}', _spectra(spectrum)) + table,
+        )
     yield _folded('All numbers', f'<pre>{html.escape(chr(10).join(lines(found)))}</pre>')
     marks = measured.source.history.marks
     rows = [(f'{(mark.stamp - measured.source.start) * 1e-9:.9g}', mark.kind, mark.name,
@@ -138,12 +140,19 @@ def _player(number, moves):
     times = moves.times
     legend = [(name, color) for name, color in ARROWS.items()]
     legend.append(('trace of an axis', (0.0, 0.45, 0.7)))
-    shown = ''.join(f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
-                    f'</i>{html.escape(name)}</span>' for name, color in legend)
-    yield (f'<h2>The body from {times[0]:.6g} to {times[-1]:.6g} s: '
-           f'{html.escape(moves.drawing.about)}</h2><canvas class="body" id="body{number}"></canvas>')
-    speeds = ''.join(f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
-                     for value, name in SPEEDS.items())
+    shown = ''.join(
+        f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
+        f'</i>{html.escape(name)}</span>'
+        for name, color in legend
+    )
+    yield (
+        f'<h2>The body from {times[0]:.6g} to {times[-1]:.6g} s: '
+        f'{html.escape(moves.drawing.about)}</h2><canvas class="body" id="body{number}"></canvas>'
+    )
+    speeds = ''.join(
+        f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
+        for value, name in SPEEDS.items()
+    )
     yield (f'<p class="playback" id="controls{number}"><button>play</button> '
            f'<input type="range" aria-label="time" min="0" max="{len(times) - 1}" value="0"> '
            f'<select aria-label="speed">{speeds}</select> <output></output></p>'
@@ -208,8 +217,10 @@ def _over_time(over_time, source):
     heights = [0.5 if marks else 0.01, *[1.0] * len(over_time)]
     figure = make_subplots(rows, 1, shared_xaxes=True, vertical_spacing=0.12 / rows,
                            row_heights=heights)
-    texts = [f'{mark.name}<br>' + '<br>'.join(f'{key}: {value}' for key, value in mark.values.items())
-             for mark in marks]
+    texts = [
+        f'{mark.name}<br>' + '<br>'.join(f'{key}: {value}' for key, value in mark.values.items())
+        for mark in marks
+    ]
     figure.add_trace(go.Scatter(
         x=[(mark.stamp - source.start) * 1e-9 for mark in marks], y=[mark.kind for mark in marks],
         mode='markers', marker={'color': '#8a8f98', 'size': 8, 'symbol': 'line-ns-open'},
@@ -255,10 +266,23 @@ def _in_space(space):
     step = -(-len(space.path) // MOST_POINTS)
     x, y, z = space.path[::step].astype(np.float32).T
     times = space.times[::step].astype(np.float32)
-    figure.add_trace(go.Scatter3d(
-        x=x, y=y, z=z, mode='markers', name='path', customdata=times,
-        hovertemplate='t = %{customdata:.6g} s<extra></extra>',
-        marker={'size': 2, 'color': times, 'colorscale': 'Viridis', 'colorbar': {'title': 't (s)'}}))
+    figure.add_trace(
+        go.Scatter3d(
+            x=x,
+            y=y,
+            z=z,
+            mode='markers',
+            name='path',
+            customdata=times,
+            hovertemplate='t = %{customdata:.6g} s<extra></extra>',
+            marker={
+                'size': 2,
+                'color': times,
+                'colorscale': 'Viridis',
+                'colorbar': {'title': 't (s)'},
+            },
+        )
+    )
     axes = {f'{name}axis': {'title': label} for name, label in zip('xyz', space.axes, strict=True)}
     return _layout(figure, SPACE_HEIGHT, scene={**axes, 'aspectmode': 'data'},
                    legend={'x': 0.0, 'y': 1.0})
@@ -274,9 +298,16 @@ def _spectra(spectrum):
         seen = spectrum.seen(axes)[:last - 1].astype(np.float32)
         for k, name in enumerate('xyz'):
             x, y = thinned(spectrum.frequencies[1:last].astype(np.float32), seen[:, k])
-            figure.add_trace(go.Scatter(x=x, y=y, name=f'{name} ({axes})',
-                                        line={'color': COLORS[k], 'dash': DASHES[k], 'width': 1.2}),
-                             row, 1)
+            figure.add_trace(
+                go.Scatter(
+                    x=x,
+                    y=y,
+                    name=f'{name} ({axes})',
+                    line={'color': COLORS[k], 'dash': DASHES[k], 'width': 1.2},
+                ),
+                row,
+                1,
+            )
         for line, _ in spectrum.lines:
             if line.axes == axes:
                 figure.add_vline(line.frequency, line_dash='dot', annotation_text=line.name,

@@ -4,15 +4,28 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/), which also differ in lightness; line styles tell them apart without colour
+# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/), which also differ in lightness; line
+# styles tell them apart without colour
 COLORS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7')
 DASHES = ('-', '--', '-.', ':')
 SHADE = '#fbe8c0'
 GREY, BLACK = '#777777', '#000000'
-MARKS = {'event': ('v', BLACK), 'commands': ('|', COLORS[1]), 'reset': ('D', COLORS[1]), 'parameters': ('s', COLORS[0]), 'gap': ('x', BLACK)}
+MARKS = {
+    'event': ('v', BLACK),
+    'commands': ('|', COLORS[1]),
+    'reset': ('D', COLORS[1]),
+    'parameters': ('s', COLORS[0]),
+    'gap': ('x', BLACK),
+}
 MOST_MARKS = 500    # of each kind
-LEGEND = {'loc': 'center left', 'bbox_to_anchor': (1.0, 0.5), 'frameon': False, 'handlelength': 2.5}
-ROUND_OFF = 20      # up to so many times the band, the residual is about round-off, and the band is named
+LEGEND = {
+    'loc': 'center left',
+    'bbox_to_anchor': (1.0, 0.5),
+    'frameon': False,
+    'handlelength': 2.5,
+}
+# up to so many times the band, the residual is about round-off, and the band is named
+ROUND_OFF = 20
 
 
 def stack(panels, title, source):
@@ -33,17 +46,33 @@ def spectra(spectrum, title):
     axes = figure.subplots(2, 1, sharex=True)
     for one, name in zip(axes, spectrum.amplitudes, strict=True):
         for k, component in enumerate('xyz'):
-            one.plot(spectrum.frequencies[1:], spectrum.seen(name)[:, k], linewidth=0.9, color=COLORS[k], linestyle=DASHES[k], label=component)
+            one.plot(
+                spectrum.frequencies[1:],
+                spectrum.seen(name)[:, k],
+                linewidth=0.9,
+                color=COLORS[k],
+                linestyle=DASHES[k],
+                label=component,
+            )
         one.set_yscale('log')
         one.set_ylabel(f'ω, {name} axes\n(rad/s)')
         for line, _ in spectrum.lines:
             if line.axes == name:
                 one.axvline(line.frequency, color=GREY, linewidth=0.8, linestyle=':')
-                one.annotate(line.name, (line.frequency, 1.0), xycoords=('data', 'axes fraction'), xytext=(2, -9), textcoords='offset points',
-                             fontsize=8, color=BLACK)
+                one.annotate(
+                    line.name,
+                    (line.frequency, 1.0),
+                    xycoords=('data', 'axes fraction'),
+                    xytext=(2, -9),
+                    textcoords='offset points',
+                    fontsize=8,
+                    color=BLACK,
+                )
         _finish(one)
     axes[-1].set_xlim(0.0, spectrum.top)
-    axes[-1].set_xlabel(f'frequency (Hz); from the first {spectrum.seconds:.6g} s, Hann window; dotted: predicted')
+    axes[-1].set_xlabel(
+        f'frequency (Hz); from the first {spectrum.seconds:.6g} s, Hann window; dotted: predicted'
+    )
     figure.align_ylabels()
     return figure
 
@@ -53,10 +82,14 @@ def space(one):
     figure = _figure(8.0, one.title)
     axes = figure.add_subplot(projection='3d')
     for (name, net), color in zip(one.surfaces.items(), (GREY, COLORS[1]), strict=False):
-        axes.plot_wireframe(*np.moveaxis(net, 2, 0), rstride=2, cstride=3, linewidth=0.35, color=color, label=name)
+        axes.plot_wireframe(
+            *np.moveaxis(net, 2, 0), rstride=2, cstride=3, linewidth=0.35, color=color, label=name
+        )
     # as points, for a path may begin anew anywhere
     points = axes.scatter(*one.path.T, c=one.times, cmap='viridis', s=3.0, depthshade=False)
-    for set_label, label in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), one.axes, strict=True):
+    for set_label, label in zip(
+        (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), one.axes, strict=True
+    ):
         set_label(label)
     axes.set_aspect('equal')
     figure.colorbar(points, ax=axes, shrink=0.6, label='time since the first tick (s)')
@@ -77,12 +110,30 @@ def _draw(axes, panel):
         axes.axhspan(-panel.band, panel.band, color='#e8e8e8', linewidth=0)
     for name, begin, end in panel.spans:
         axes.axvspan(begin, end, color=SHADE, linewidth=0)
-        axes.annotate(name, (begin, 1.0), xycoords=('data', 'axes fraction'), xytext=(3, -10), textcoords='offset points', fontsize=8)
+        axes.annotate(
+            name,
+            (begin, 1.0),
+            xycoords=('data', 'axes fraction'),
+            xytext=(3, -10),
+            textcoords='offset points',
+            fontsize=8,
+        )
     for k, line in enumerate(panel.lines):
-        axes.plot(line.x, line.y, linewidth=0.7 if panel.band else 1.1, color=COLORS[k], linestyle='-' if len(panel.lines) == 1 else DASHES[k],
-                  label=line.name, drawstyle='steps-post' if panel.steps else 'default', marker='.' if len(line.x) < 100 else '', markersize=3)
+        axes.plot(
+            line.x,
+            line.y,
+            linewidth=0.7 if panel.band else 1.1,
+            color=COLORS[k],
+            linestyle='-' if len(panel.lines) == 1 else DASHES[k],
+            label=line.name,
+            drawstyle='steps-post' if panel.steps else 'default',
+            marker='.' if len(line.x) < 100 else '',
+            markersize=3,
+        )
     axes.set_ylabel(panel.label)
-    largest = max((float(np.nanmax(np.abs(line.y))) for line in panel.lines if len(line.y)), default=0.0)
+    largest = max(
+        (float(np.nanmax(np.abs(line.y))) for line in panel.lines if len(line.y)), default=0.0
+    )
     if panel.log:
         axes.set_yscale('log')
     if panel.limits:
@@ -91,8 +142,17 @@ def _draw(axes, panel):
         limit = max(1.3 * largest, 1.5 * panel.band)
         axes.set_ylim(-limit, limit)
         if limit < ROUND_OFF * panel.band and len(panel.lines) == 1:
-            axes.annotate('round-off: 4 ulp', (1.0, panel.band), xycoords=('axes fraction', 'data'), xytext=(4, 0), textcoords='offset points',
-                          va='center', fontsize=8, color=GREY, annotation_clip=False)
+            axes.annotate(
+                'round-off: 4 ulp',
+                (1.0, panel.band),
+                xycoords=('axes fraction', 'data'),
+                xytext=(4, 0),
+                textcoords='offset points',
+                va='center',
+                fontsize=8,
+                color=GREY,
+                annotation_clip=False,
+            )
     _finish(axes, len(panel.lines) > 1)
 
 
@@ -108,9 +168,31 @@ def _marks(axes, source):
     """Mark events and commands above the axes."""
     top = 1.04
     for kind, (marker, color) in MARKS.items():
-        times = (np.array([mark.stamp for mark in source.history.marks if mark.kind == kind])[:MOST_MARKS] - source.start) * 1e-9
+        times = (
+            np.array([mark.stamp for mark in source.history.marks if mark.kind == kind])[
+                :MOST_MARKS
+            ]
+            - source.start
+        ) * 1e-9
         if len(times):
-            axes.plot(times, np.full(len(times), top), marker, color=color, markersize=5, transform=axes.get_xaxis_transform(), clip_on=False)
-            axes.annotate(kind, (1.0, top), xycoords='axes fraction', xytext=(6, 0), textcoords='offset points', va='center', fontsize=8,
-                          color=color, annotation_clip=False)
+            axes.plot(
+                times,
+                np.full(len(times), top),
+                marker,
+                color=color,
+                markersize=5,
+                transform=axes.get_xaxis_transform(),
+                clip_on=False,
+            )
+            axes.annotate(
+                kind,
+                (1.0, top),
+                xycoords='axes fraction',
+                xytext=(6, 0),
+                textcoords='offset points',
+                va='center',
+                fontsize=8,
+                color=color,
+                annotation_clip=False,
+            )
             top += 0.09

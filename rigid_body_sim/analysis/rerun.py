@@ -41,10 +41,17 @@ class Rerun:
     """
 
     def __init__(self, entries, method):
-        self.begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), None)
+        self.begin = next(
+            (entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry),
+            None,
+        )
         anchor = next((entry for entry in entries if entry['kind'] == 'state'), None)
         if self.begin is None or anchor is None:
-            raise BadInput('journal', 'is missing', 'a recording by sim_node or simulate: ros2 bag record knows no ticks of commands')
+            raise BadInput(
+                'journal',
+                'is missing',
+                'a recording by sim_node or simulate: ros2 bag record knows no ticks of commands',
+            )
         self._method = method
         self.recorded = json.loads(self.begin['simulation'])
         self.simulation = self._simulation(self.begin['scene'], self.recorded)
@@ -65,8 +72,19 @@ class Rerun:
     def _simulation(self, text, asked):
         asked = {**asked, **self._method}
         # what auto chose then, not what it would choose now
-        settled = None if self._method else (asked['method'], asked['tolerance'], asked['expected_error'])
-        return Simulation(parse_scene(text), asked['integrator'], asked['accuracy'], asked['rate'], horizon=asked['horizon'], settled=settled)
+        settled = (
+            None
+            if self._method
+            else (asked['method'], asked['tolerance'], asked['expected_error'])
+        )
+        return Simulation(
+            parse_scene(text),
+            asked['integrator'],
+            asked['accuracy'],
+            asked['rate'],
+            horizon=asked['horizon'],
+            settled=settled,
+        )
 
     def ticks(self, stamps):
         """Return the ticks of stamps (n,) int64, ns; BadInput where one lies between ticks."""
@@ -76,12 +94,22 @@ class Rerun:
         for place, line in enumerate(self._lines):
             mine = places == place
             if mine.any():
-                ticks[mine] = line.tick + np.rint((stamps[mine] - line.origin) * float(line.rate) / NANOSECONDS).astype(np.int64)
+                ticks[mine] = line.tick + np.rint(
+                    (stamps[mine] - line.origin) * float(line.rate) / NANOSECONDS
+                ).astype(np.int64)
                 if not -1 < ticks[mine].min() <= ticks[mine].max() <= LONGEST:
-                    raise BadInput('recording', 'has a stamp before its first tick, or years after it', 'stamps of a simulation')
+                    raise BadInput(
+                        'recording',
+                        'has a stamp before its first tick, or years after it',
+                        'stamps of a simulation',
+                    )
                 for k in np.flatnonzero(mine)[[0, -1]]:
                     if line.instant(int(ticks[k])) != stamps[k]:
-                        raise BadInput('recording', f'a message at {int(stamps[k])} ns, between two ticks', 'stamps of a simulation')
+                        raise BadInput(
+                            'recording',
+                            f'a message at {int(stamps[k])} ns, between two ticks',
+                            'stamps of a simulation',
+                        )
         return ticks
 
     def stamp(self, tick):
@@ -103,7 +131,13 @@ class Rerun:
         """Run on to a tick; return all ticks not yet given (the first one is 0), their States after all commands, energies and L^2."""
         first, parts = self._given + 1, []
         if self._given < self.simulation.tick:
-            parts.append((self.simulation.vector[np.newaxis].copy(), [self.simulation.energy], [self.simulation.angular_momentum_squared]))
+            parts.append(
+                (
+                    self.simulation.vector[np.newaxis].copy(),
+                    [self.simulation.energy],
+                    [self.simulation.angular_momentum_squared],
+                )
+            )
         self._given = max(tick, self.simulation.tick)
         while self.simulation.tick < tick:
             simulation = self.simulation
@@ -111,10 +145,15 @@ class Rerun:
             energies, momenta = simulation.diagnose(States(vectors))
             if self._act():
                 vectors[-1] = self.simulation.vector
-                energies[-1], momenta[-1] = self.simulation.energy, self.simulation.angular_momentum_squared
+                energies[-1], momenta[-1] = (
+                    self.simulation.energy,
+                    self.simulation.angular_momentum_squared,
+                )
             self.simulation.events.clear()
             parts.append((vectors, energies, momenta))
-        vectors, energies, momenta = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+        vectors, energies, momenta = (
+            np.concatenate(columns) for columns in zip(*parts, strict=True)
+        )
         return np.arange(first, first + len(vectors)), States(vectors), energies, momenta
 
     @property

@@ -45,7 +45,9 @@ def resimulate(path, method=None):
             topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
             comparison = Comparison(rerun, topics, source)
             total = sum(recording.topics[topic].count for topic in topics.values())
-            with tqdm(total=total, unit=' messages', unit_scale=True, disable=None, leave=False) as progress:
+            with tqdm(
+                total=total, unit=' messages', unit_scale=True, disable=None, leave=False
+            ) as progress:
                 for stretch in aligned(recording, list(topics.values()), progress.update):
                     with journal_of(recording.path):
                         comparison.take(stretch)
@@ -56,28 +58,45 @@ def resimulate(path, method=None):
 def tolerance(rerun, comparison):
     """Return the difference of attitude (rad) to be expected where bits are not promised: the accuracy asked, and round-off over all turns."""
     exact = rerun.recorded['method'] == 'exact'
-    return (0.0 if exact else 10.0 * rerun.recorded['accuracy']) + 1e-12 + 64.0 * EPS * comparison.turned
+    return (
+        (0.0 if exact else 10.0 * rerun.recorded['accuracy'])
+        + 1e-12
+        + 64.0 * EPS * comparison.turned
+    )
 
 
 def other_machine(rerun):
     """Return what differs of the machine on which bits depend: name -> (recorded, here)."""
     before, here = json.loads(rerun.begin['machine']), about.machine()
-    return {name: (before.get(name), here.get(name)) for name in sorted({*before, *here}) if before.get(name) != here.get(name)}
+    return {
+        name: (before.get(name), here.get(name))
+        for name in sorted({*before, *here})
+        if before.get(name) != here.get(name)
+    }
 
 
 def verdict(source, rerun, comparison, changed, allowed):
     """Return the outcome as plain data.
 
-    `good` says whether the run was reproduced: to the bit on the same machine, within `allowed` (rad) on another one (see compare.within);
-    always, where the method was `changed` on purpose.
+    `good` says whether the run was reproduced: to the bit on the same machine, within `allowed`
+    (rad) on another one (see compare.within); always, where the method was `changed` on purpose.
     """
     elsewhere = other_machine(rerun)
     limit = tolerance(rerun, comparison) if allowed is None else allowed
     identical = comparison.parting is None
-    return {'namespace': source.namespace, 'identical': identical, 'messages': comparison.messages, 'states': comparison.ticks,
-            'parting': comparison.parting, 'largest': comparison.largest, 'machine_differs': list(elsewhere),
-            'tolerance': limit, 'good': bool(changed or identical or (elsewhere and within(comparison.largest, limit))),
-            'recorded': rerun.recorded, 'resimulated': about.run_of(rerun.simulation)}
+    return {
+        'namespace': source.namespace,
+        'identical': identical,
+        'messages': comparison.messages,
+        'states': comparison.ticks,
+        'parting': comparison.parting,
+        'largest': comparison.largest,
+        'machine_differs': list(elsewhere),
+        'tolerance': limit,
+        'good': bool(changed or identical or (elsewhere and within(comparison.largest, limit))),
+        'recorded': rerun.recorded,
+        'resimulated': about.run_of(rerun.simulation),
+    }
 
 
 def lines(found, changed):
@@ -88,35 +107,63 @@ def lines(found, changed):
         text.append(f'{where}identical, {found["states"]} states ({found["messages"]} messages)')
     else:
         parting = found['parting']
-        text.append(f'{where}{"as expected, " if changed else ""}differs from tick {parting["tick"]} on (t = {parting["time"]!r} s), '
-                    f'{parting["quantity"].replace("_", " ")}:')
-        text += [f'  {name:12}{", ".join(map(repr, parting[name]))}' for name in ('recorded', 'resimulated')]
-        text += [f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, {worst["since_start"]:.9g} s after the start'
-                 for name, worst in found['largest'].items()]
+        text.append(
+            f'{where}{"as expected, " if changed else ""}differs from tick {parting["tick"]} on (t = {parting["time"]!r} s), '
+            f'{parting["quantity"].replace("_", " ")}:'
+        )
+        text += [
+            f'  {name:12}{", ".join(map(repr, parting[name]))}'
+            for name in ('recorded', 'resimulated')
+        ]
+        text += [
+            f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, {worst["since_start"]:.9g} s after the start'
+            for name, worst in found['largest'].items()
+        ]
     if found['machine_differs'] and not (found['identical'] or changed):
-        text.append(f'  bits are promised on the same machine only; these differ: {", ".join(found["machine_differs"])}')
-        text.append(f'  allowed are {found["tolerance"]:.1e} rad: the differences are {"less" if found["good"] else "more than that explains"}')
+        text.append(
+            f'  bits are promised on the same machine only; these differ: {", ".join(found["machine_differs"])}'
+        )
+        text.append(
+            f'  allowed are {found["tolerance"]:.1e} rad: the differences are {"less" if found["good"] else "more than that explains"}'
+        )
     return text
 
 
 def main(arguments=None):
     """Run the command; return the exit status."""
-    parser = command_line.parser('resimulate', "Run a recording's scene and commands again and compare every state, bit for bit.",
-                                 'python -m rigid_body_sim resimulate recordings/racket\n'
-                                 '  python -m rigid_body_sim resimulate recordings/racket --integrator dop8 --accuracy 1e-6')
+    parser = command_line.parser(
+        'resimulate',
+        "Run a recording's scene and commands again and compare every state, bit for bit.",
+        'python -m rigid_body_sim resimulate recordings/racket\n'
+        '  python -m rigid_body_sim resimulate recordings/racket --integrator dop8 --accuracy 1e-6',
+    )
     parser.add_argument('recording', help='folder of a recording, or .mcap file')
-    parser.add_argument('--integrator', help='another method: what would it have changed in this run')
+    parser.add_argument(
+        '--integrator', help='another method: what would it have changed in this run'
+    )
     parser.add_argument('--accuracy', type=float, help='another accuracy (rad)')
-    parser.add_argument('--tolerance', type=float, help='allowed difference of attitudes (rad) on another machine; default: what accuracy '
-                        'and round-off explain')
-    parser.add_argument('--output', metavar='FOLDER', help='where the differences go as a figure and CSV, if there are any '
-                        '(default: the folder of the report, beside the recording)')
+    parser.add_argument(
+        '--tolerance',
+        type=float,
+        help='allowed difference of attitudes (rad) on another machine; default: what accuracy '
+        'and round-off explain',
+    )
+    parser.add_argument(
+        '--output',
+        metavar='FOLDER',
+        help='where the differences go as a figure and CSV, if there are any '
+        '(default: the folder of the report, beside the recording)',
+    )
     parser.add_argument('--json', action='store_true', help='machine-readable')
     return command_line.run(_run, parser.parse_args(arguments))
 
 
 def _run(options):
-    method = {name: value for name in ('integrator', 'accuracy') if (value := getattr(options, name)) is not None}
+    method = {
+        name: value
+        for name in ('integrator', 'accuracy')
+        if (value := getattr(options, name)) is not None
+    }
     folder = pathlib.Path(options.output) if options.output else report_folder(options.recording)
     outcomes, files = [], []
     for source, rerun, comparison in resimulate(options.recording, method):
@@ -126,16 +173,30 @@ def _run(options):
     if options.json:
         command_line.print_json({'bodies': outcomes, 'files': [str(path) for path in files]})
     else:
-        print('\n'.join([line for found in outcomes for line in lines(found, bool(method))] + [f'  {path}' for path in files]))
-    return command_line.GOOD if all(found['good'] for found in outcomes) else command_line.CHECK_FAILED
+        print(
+            '\n'.join(
+                [line for found in outcomes for line in lines(found, bool(method))]
+                + [f'  {path}' for path in files]
+            )
+        )
+    return (
+        command_line.GOOD
+        if all(found['good'] for found in outcomes)
+        else command_line.CHECK_FAILED
+    )
 
 
 def _write(folder, source, comparison, found):
     """Write the curves of the differences; return the paths."""
     # matplotlib takes a second to import
     from rigid_body_sim.analysis import panels, plots
-    recorded, now = (f'{one["method"]} ({one["accuracy"]:g})' for one in (found['recorded'], found['resimulated']))
-    figure = plots.stack(panels.differences(comparison), f'Recorded by {recorded}, run again by {now}', source)
+    recorded, now = (
+        f'{one["method"]} ({one["accuracy"]:g})'
+        for one in (found['recorded'], found['resimulated'])
+    )
+    figure = plots.stack(
+        panels.differences(comparison), f'Recorded by {recorded}, run again by {now}', source
+    )
     path = folder / '_'.join(filter(None, ('difference', *source.namespace.split('/'))))
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -144,9 +205,14 @@ def _write(folder, source, comparison, found):
             stream.write('quantity,seconds_since_start,difference\n')
             for quantity in comparison.largest:
                 times, sizes = comparison.curve(quantity)
-                stream.writelines(f'{quantity},{time!r},{size!r}\n' for time, size in zip(times.tolist(), sizes.tolist(), strict=True))
+                stream.writelines(
+                    f'{quantity},{time!r},{size!r}\n'
+                    for time, size in zip(times.tolist(), sizes.tolist(), strict=True)
+                )
     except OSError as error:
-        raise BadInput(str(folder), f'cannot be written ({error.strerror})', 'another folder: --output FOLDER') from error
+        raise BadInput(
+            str(folder), f'cannot be written ({error.strerror})', 'another folder: --output FOLDER'
+        ) from error
     return [path.with_suffix('.png'), path.with_suffix('.csv')]
 
 

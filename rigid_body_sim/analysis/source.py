@@ -1,7 +1,7 @@
 """What a recording holds of one simulated body: its topics, how it was made, what happened to it.
 
-A recording may hold several bodies, each in a namespace of its own, and it may come from ``ros2 bag record``: then there is no journal, and
-the scene is known only if its topic was recorded.
+A recording may hold several bodies, each in a namespace of its own, and it may come from ``ros2
+bag record``: then there is no journal, and the scene is known only if its topic was recorded.
 """
 
 import contextlib
@@ -15,13 +15,27 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.scene.scene import parse_scene
 
-EVERY_TICK = {'pose': 'geometry_msgs/msg/PoseStamped', 'angular_velocity': 'geometry_msgs/msg/Vector3Stamped',
-              'energy': 'std_msgs/msg/Float64', 'angular_momentum_squared': 'std_msgs/msg/Float64'}
+EVERY_TICK = {
+    'pose': 'geometry_msgs/msg/PoseStamped',
+    'angular_velocity': 'geometry_msgs/msg/Vector3Stamped',
+    'energy': 'std_msgs/msg/Float64',
+    'angular_momentum_squared': 'std_msgs/msg/Float64',
+}
 # topic of every tick -> its columns of numbers, and how many numbers each has
-COLUMNS = {'pose': {'pose.orientation': (4,), 'pose.position': (3,)}, 'angular_velocity': {'vector': (3,)}, 'energy': {'data': ()},
-           'angular_momentum_squared': {'data': ()}}
-TYPES = {**EVERY_TICK, 'events': 'diagnostic_msgs/msg/DiagnosticStatus', 'scene': 'std_msgs/msg/String', 'journal': 'std_msgs/msg/String',
-         'cmd_wrench': 'geometry_msgs/msg/WrenchStamped', 'cmd_impulse': 'geometry_msgs/msg/WrenchStamped'}
+COLUMNS = {
+    'pose': {'pose.orientation': (4,), 'pose.position': (3,)},
+    'angular_velocity': {'vector': (3,)},
+    'energy': {'data': ()},
+    'angular_momentum_squared': {'data': ()},
+}
+TYPES = {
+    **EVERY_TICK,
+    'events': 'diagnostic_msgs/msg/DiagnosticStatus',
+    'scene': 'std_msgs/msg/String',
+    'journal': 'std_msgs/msg/String',
+    'cmd_wrench': 'geometry_msgs/msg/WrenchStamped',
+    'cmd_impulse': 'geometry_msgs/msg/WrenchStamped',
+}
 
 
 @dataclass(frozen=True)
@@ -71,9 +85,17 @@ def sources(recording):
         namespace, _, last = name.rpartition('/')
         if TYPES.get(last) == topic.type and topic.count:
             found.setdefault(namespace, {})[last] = name
-    bodies = [_source(recording, namespace or '/', topics) for namespace, topics in sorted(found.items()) if set(topics) & set(EVERY_TICK)]
+    bodies = [
+        _source(recording, namespace or '/', topics)
+        for namespace, topics in sorted(found.items())
+        if set(topics) & set(EVERY_TICK)
+    ]
     if not bodies:
-        raise BadInput(str(recording.path), f'holds none of the topics {", ".join(EVERY_TICK)}', 'a recording of a simulation')
+        raise BadInput(
+            str(recording.path),
+            f'holds none of the topics {", ".join(EVERY_TICK)}',
+            'a recording of a simulation',
+        )
     return bodies
 
 
@@ -83,17 +105,33 @@ def _source(recording, namespace, topics):
     start = min(_first_time(recording, topic.name) for topic in ticking)
     with journal_of(recording.path):
         run, begin, happened = _run(recording, topics, entries, start)
-    return Source(namespace, topics, run, begin.get('made_by', ''), begin.get('version', ''), happened, entries, start,
-                  _last_time(recording, ticking[0].name), max(topic.count for topic in ticking))
+    return Source(
+        namespace,
+        topics,
+        run,
+        begin.get('made_by', ''),
+        begin.get('version', ''),
+        happened,
+        entries,
+        start,
+        _last_time(recording, ticking[0].name),
+        max(topic.count for topic in ticking),
+    )
 
 
 def _run(recording, topics, entries, start):
     """Return what the run was asked for, the journal's first entry and the History."""
-    begin = next((entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {})
+    begin = next(
+        (entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {}
+    )
     text = begin.get('scene') or _latched_scene(recording, topics)
     scene = parse_scene(text, where=f'{recording.path}: scene') if text else None
     run = json.loads(begin.get('simulation', '{}'))
-    pace = 0.0 if begin.get('made_by') == 'simulate' else float(json.loads(begin.get('parameters', '{}')).get('real_time_factor', 1.0))
+    pace = (
+        0.0
+        if begin.get('made_by') == 'simulate'
+        else float(json.loads(begin.get('parameters', '{}')).get('real_time_factor', 1.0))
+    )
     # commands without a journal: nobody knows at which tick they acted
     held = not entries and bool({'cmd_wrench', 'cmd_impulse'} & set(topics))
     events = recording.decoded(topics['events']) if 'events' in topics else ()
@@ -108,8 +146,11 @@ def journal_of(where):
     try:
         yield
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise BadInput(str(where), f'the journal makes no sense ({type(error).__name__}: {" ".join(str(error).split())[:200]})',
-                       'an undamaged recording') from error
+        raise BadInput(
+            str(where),
+            f'the journal makes no sense ({type(error).__name__}: {" ".join(str(error).split())[:200]})',
+            'an undamaged recording',
+        ) from error
 
 
 def _first_time(recording, topic):
@@ -119,7 +160,9 @@ def _first_time(recording, topic):
 def _last_time(recording, topic):
     """Return the last log time of a topic, from the last second of the recording if it has it, else from all of it."""
     for start in (recording.end_time - NANOSECONDS, recording.start_time):
-        times = [int(columns['log_time'].max()) for _, columns in recording.blocks([topic], [], start)]
+        times = [
+            int(columns['log_time'].max()) for _, columns in recording.blocks([topic], [], start)
+        ]
         if times:
             return max(times)
     return recording.end_time
@@ -129,11 +172,17 @@ def _estimated_rate(recording, topics):
     """Return the ticks per second that the stamps of the first block of messages show; 0 where there are none."""
     for name in ('pose', 'angular_velocity'):
         if name in topics:
-            steps = np.diff(next(recording.blocks([topics[name]], ['header.stamp']))[1]['header.stamp'])
+            steps = np.diff(
+                next(recording.blocks([topics[name]], ['header.stamp']))[1]['header.stamp']
+            )
             steps = steps[steps > 0]
             return NANOSECONDS / float(np.median(steps)) if len(steps) else 0.0
     return 0.0
 
 
 def _latched_scene(recording, topics):
-    return next((message['data'] for _, message in recording.decoded(topics['scene'])), '') if 'scene' in topics else ''
+    return (
+        next((message['data'] for _, message in recording.decoded(topics['scene'])), '')
+        if 'scene' in topics
+        else ''
+    )

@@ -39,8 +39,17 @@ def spaces(measured):
 
 
 def _sphere(rows=25, columns=49):
-    latitude, longitude = np.meshgrid(np.linspace(0.0, np.pi, rows), np.linspace(0.0, 2.0 * np.pi, columns), indexing='ij')
-    return np.stack([np.sin(latitude) * np.cos(longitude), np.sin(latitude) * np.sin(longitude), np.cos(latitude)], axis=2)
+    latitude, longitude = np.meshgrid(
+        np.linspace(0.0, np.pi, rows), np.linspace(0.0, 2.0 * np.pi, columns), indexing='ij'
+    )
+    return np.stack(
+        [
+            np.sin(latitude) * np.cos(longitude),
+            np.sin(latitude) * np.sin(longitude),
+            np.cos(latitude),
+        ],
+        axis=2,
+    )
 
 
 def _polhode(measured):
@@ -54,20 +63,38 @@ def _polhode(measured):
     first = Rotation.from_quat(inertia.axes).inv().apply(omega[0])
     surfaces = {}
     if first.any() and moments.min() > FLATTEST * moments.max():
-        energy, momentum = np.sqrt(moments @ first**2 / moments), np.linalg.norm(moments * first) / moments
+        energy, momentum = (
+            np.sqrt(moments @ first**2 / moments),
+            np.linalg.norm(moments * first) / moments,
+        )
         for name, axes in (('energy ellipsoid, 2T', energy), ('momentum ellipsoid, L', momentum)):
             net = _sphere() * axes
-            surfaces[name] = Rotation.from_quat(inertia.axes).apply(net.reshape(-1, 3)).reshape(net.shape)
+            surfaces[name] = (
+                Rotation.from_quat(inertia.axes).apply(net.reshape(-1, 3)).reshape(net.shape)
+            )
     labels = tuple(f'ω{name} (rad/s)' for name in 'xyz')
-    return Space('polhode', 'Polhode: ω in the body, on the ellipsoids of its energy and its momentum', labels, times, omega, surfaces)
+    return Space(
+        'polhode',
+        'Polhode: ω in the body, on the ellipsoids of its energy and its momentum',
+        labels,
+        times,
+        omega,
+        surfaces,
+    )
 
 
 def _trace(measured):
     """Return the path of an axis of the body on the unit sphere of the world."""
     times, orientation, _, _ = measured.motion.samples.columns()
     what, axis = traced_axis(measured.source.scene)
-    return Space('axis', f'Trace of the {what} on the sphere', ('x', 'y', 'z'), times, Rotation.from_quat(orientation).apply(axis),
-                 {'unit sphere': _sphere()})
+    return Space(
+        'axis',
+        f'Trace of the {what} on the sphere',
+        ('x', 'y', 'z'),
+        times,
+        Rotation.from_quat(orientation).apply(axis),
+        {'unit sphere': _sphere()},
+    )
 
 
 def traced_axis(scene):
@@ -75,7 +102,9 @@ def traced_axis(scene):
     if scene is None:
         return 'body z axis', np.array([0.0, 0.0, 1.0])
     held = scene.constraint.kind in ('pivot', 'hinge')
-    inertia = scene.body.about_origin if scene.constraint.kind == 'pivot' else scene.body.about_center
+    inertia = (
+        scene.body.about_origin if scene.constraint.kind == 'pivot' else scene.body.about_center
+    )
     axes = Rotation.from_quat(inertia.axes).as_matrix()
     moments = list(inertia.moments)
     if len(set(moments)) == 2:

@@ -20,7 +20,8 @@ class Spectrum:
     Parameters
     ----------
     measured : measure.Measured
-        Its first ticks up to the first change from outside are taken (at least a tenth of them, or else all).
+        Its first ticks up to the first change from outside are taken (at least a tenth of them, or
+        else all).
 
     Attributes
     ----------
@@ -45,16 +46,26 @@ class Spectrum:
         size = PADDING * len(times)
         self.frequencies = np.fft.rfftfreq(size, step)
         window = np.hanning(len(times))
-        for axes, values in (('body', omega), ('world', Rotation.from_quat(orientation).apply(omega))):
+        for axes, values in (
+            ('body', omega),
+            ('world', Rotation.from_quat(orientation).apply(omega)),
+        ):
             weighted = (values - values.mean(axis=0)) * window[:, None]
-            self.amplitudes[axes] = 2.0 * np.abs(np.fft.rfft(weighted, size, axis=0)) / window.sum()
-        self.lines = [(line, self._measured(line)) for line in predicted_lines(measured.source.scene)
-                      if line.frequency < self.frequencies[-1]]
+            self.amplitudes[axes] = (
+                2.0 * np.abs(np.fft.rfft(weighted, size, axis=0)) / window.sum()
+            )
+        self.lines = [
+            (line, self._measured(line))
+            for line in predicted_lines(measured.source.scene)
+            if line.frequency < self.frequencies[-1]
+        ]
 
     def seen(self, axes):
         """Return the amplitudes without the mean, none smaller than SMALLEST of the largest: for logarithmic axes."""
         amplitudes = self.amplitudes[axes][1:]
-        return np.maximum(amplitudes, SMALLEST * max(float(amplitudes.max()), np.finfo(float).tiny / SMALLEST))
+        return np.maximum(
+            amplitudes, SMALLEST * max(float(amplitudes.max()), np.finfo(float).tiny / SMALLEST)
+        )
 
     @property
     def top(self):
@@ -77,18 +88,27 @@ class Spectrum:
         peak = near[power[near].argmax()]
         left, top, right = power[peak - 1:peak + 2]
         around = np.median(power[(away > 3.0) & (away < 12.0)])
-        if not (top > RISES * around and top > SMALLEST**2 * power.max() and top >= left and top >= right):
+        if not (
+            top > RISES * around
+            and top > SMALLEST**2 * power.max()
+            and top >= left
+            and top >= right
+        ):
             return None
         left, top, right = np.log(np.maximum((left, top, right), np.finfo(float).tiny))
         curvature = left - 2.0 * top + right
-        return float(f[peak] + (0.5 * (left - right) / curvature if curvature < 0.0 else 0.0) * f[1])
+        return float(
+            f[peak] + (0.5 * (left - right) / curvature if curvature < 0.0 else 0.0) * f[1]
+        )
 
 
 def _undisturbed(source, times):
     """Return how many of the first ticks come before the first change from outside and the first hole."""
     stop = len(times)
     if len(source.history.segments) > 1:
-        stop = int(np.searchsorted(times, (source.history.segments[1].stamp - source.start) * 1e-9))
+        stop = int(
+            np.searchsorted(times, (source.history.segments[1].stamp - source.start) * 1e-9)
+        )
     stop = stop if stop > 0.1 * len(times) else len(times)
     steps = np.diff(times[:stop])
     holes = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else ()

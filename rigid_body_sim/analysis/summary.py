@@ -12,7 +12,9 @@ def summary(measured, spectrum=None, balance=None):
     source, motion = measured.source, measured.motion
     segment = source.history.segments[0]
     marks = collections.Counter(mark.kind for mark in source.history.marks)
-    events = collections.Counter(mark.name for mark in source.history.marks if mark.kind == 'event')
+    events = collections.Counter(
+        mark.name for mark in source.history.marks if mark.kind == 'event'
+    )
     return {
         'namespace': source.namespace,
         'scene': source.scene.name if source.scene else None,
@@ -29,19 +31,38 @@ def summary(measured, spectrum=None, balance=None):
         'resets': marks['reset'],
         'parameter_changes': marks['parameters'],
         'timing': measured.punctuality.summary(),
-        'left_out_by_recorder': sum(mark.values['ticks'] for mark in source.history.marks if mark.kind == 'gap'),
-        'momentum': {'of': motion.conserved.name, **motion.momentum.summary()} if motion and motion.momentum else None,
+        'left_out_by_recorder': sum(
+            mark.values['ticks'] for mark in source.history.marks if mark.kind == 'gap'
+        ),
+        'momentum': (
+            {'of': motion.conserved.name, **motion.momentum.summary()}
+            if motion and motion.momentum
+            else None
+        ),
         'phases': phases(motion) if motion and motion.slip else None,
-        'lines': [{'name': line.name, 'axes': line.axes, 'source': line.source, 'predicted': line.frequency, 'measured': found}
-                  for line, found in (spectrum.lines if spectrum else ())],
-        'ledger': {name: float(values[-1]) for name, values in balance[1].items()} if balance else None,
+        'lines': [
+            {
+                'name': line.name,
+                'axes': line.axes,
+                'source': line.source,
+                'predicted': line.frequency,
+                'measured': found,
+            }
+            for line, found in (spectrum.lines if spectrum else ())
+        ],
+        'ledger': (
+            {name: float(values[-1]) for name, values in balance[1].items()} if balance else None
+        ),
     }
 
 
 def phases(motion):
     """Return the phases of a sphere on the table as data: ``kind``, ``from``, ``to`` (s)."""
     ends = [begin for _, begin in motion.phases[1:]] + [motion.until]
-    return [{'kind': kind, 'from': begin, 'to': end} for (kind, begin), end in zip(motion.phases, ends, strict=True)]
+    return [
+        {'kind': kind, 'from': begin, 'to': end}
+        for (kind, begin), end in zip(motion.phases, ends, strict=True)
+    ]
 
 
 def title(found):
@@ -57,28 +78,46 @@ def lines(found):
     """Return the short report, a list of lines."""
     timing = found['timing']
     text = [f'{title(found)}; {timing["ticks"]} ticks']
-    for name, label, unit in (('energy', 'energy', 'J'), ('angular_momentum_squared', 'L^2', '(kg m^2/s)^2')):
+    for name, label, unit in (
+        ('energy', 'energy', 'J'),
+        ('angular_momentum_squared', 'L^2', '(kg m^2/s)^2'),
+    ):
         text.append(f'  {label:9}{_quantity(found[name], unit)}')
     if found['momentum'] and found['momentum']['largest_residual'] is not None:
         text.append(f'  {found["momentum"]["of"]:9}{_residual(found["momentum"])}')
     if found['flips'] is not None:
         text.append(f'  flips    {found["flips"]}')
     if found['phases']:
-        told = [f'{phase["kind"]} {phase["from"]:.6g} to {phase["to"]:.6g} s' for phase in found['phases'][:TOLD]]
+        told = [
+            f'{phase["kind"]} {phase["from"]:.6g} to {phase["to"]:.6g} s'
+            for phase in found['phases'][:TOLD]
+        ]
         more = len(found['phases']) - TOLD
         text.append(f'  phases   {", ".join(told)}{f" and {more} more" if more > 0 else ""}')
-    text += [f'  {line["name"]}: {_line(line)}' for line in found['lines'] if line['measured'] is not None]
+    text += [
+        f'  {line["name"]}: {_line(line)}'
+        for line in found['lines']
+        if line['measured'] is not None
+    ]
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
-    others += [f'{found[kind]} {name}' for kind, name in
-               (('commands', 'ticks with commands'), ('parameter_changes', 'changes of parameters')) if found[kind]]
+    others += [
+        f'{found[kind]} {name}'
+        for kind, name in (
+            ('commands', 'ticks with commands'),
+            ('parameter_changes', 'changes of parameters'),
+        )
+        if found[kind]
+    ]
     if others:
         text.append(f'  events   {", ".join(others)}')
     if timing['lateness']:
         late = {name: value * 1e6 for name, value in timing['lateness'].items()}
         rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
         stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
-        text.append(f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us'
-                    f'{rate}{stood}')
+        text.append(
+            f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us'
+            f'{rate}{stood}'
+        )
     text.append(f'  drops    {_drops(found)}')
     return text
 

@@ -1,8 +1,10 @@
 """How punctual a run was: lateness of every tick, the rate achieved, ticks that are missing.
 
-A tick is late by publish time minus stamp over pace, counted from the schedule. The schedule of a run stands still in a pause and slips when
-the node cannot keep up, and the wall clock is adjusted against the steady clock that ticks obey; so it is found anew in every group of ticks:
-it is never later than the promptest of them, follows the wall clock by at most SLEW, and a step of more than STANDSTILL is no lateness.
+A tick is late by publish time minus stamp over pace, counted from the schedule. The schedule of a
+run stands still in a pause and slips when the node cannot keep up, and the wall clock is adjusted
+against the steady clock that ticks obey; so it is found anew in every group of ticks: it is never
+later than the promptest of them, follows the wall clock by at most SLEW, and a step of more than
+STANDSTILL is no lateness.
 """
 
 import numpy as np
@@ -28,7 +30,9 @@ class Punctuality:
         self._counts = np.zeros(BINS + 1, np.int64)
         self._pending = (np.empty(0, np.int64), np.empty(0, np.int64))
         self._pace = self._rate = 0.0
-        self._origin = self._last_stamp = self._schedule = self._last_time = self._paced_until = None
+        self._origin = self._last_stamp = self._schedule = self._last_time = self._paced_until = (
+            None
+        )
         self._running = self._worst = 0
         self._groups = []
         self.ticks = self.missing = self._standstills = 0
@@ -46,13 +50,17 @@ class Punctuality:
                 self._pace, self._schedule, self._last_time = segment.pace, None, None
             self._rate = segment.rate
             more = stamps[begin:end], publish_times[begin:end]
-            self._pending = tuple(np.concatenate(pair) for pair in zip(self._pending, more, strict=True))
+            self._pending = tuple(
+                np.concatenate(pair) for pair in zip(self._pending, more, strict=True)
+            )
             self._take_groups()
 
     def _count_missing(self, stamps, places):
         """Count the ticks that should lie between two neighbours."""
         self._origin = stamps[0] if self._origin is None else self._origin
-        steps = np.diff(stamps, prepend=stamps[0] if self._last_stamp is None else self._last_stamp)
+        steps = np.diff(
+            stamps, prepend=stamps[0] if self._last_stamp is None else self._last_stamp
+        )
         rates = np.array([segment.rate for segment in self._history.segments])[places]
         self.missing += int(np.maximum(np.rint(steps * rates / NANOSECONDS) - 1, 0).sum())
         self.ticks += len(stamps)
@@ -77,7 +85,9 @@ class Punctuality:
             self._standstills += 1
             self._schedule = promptest
         else:
-            self._schedule = min(promptest, self._schedule + int(SLEW * (times[-1] - self._last_time)))
+            self._schedule = min(
+                promptest, self._schedule + int(SLEW * (times[-1] - self._last_time))
+            )
         if self._last_time is None:
             self._last_time, self._paced_until = times[0], stamps[0]
         self._running += int(times[-1] - self._last_time) - stood
@@ -93,12 +103,21 @@ class Punctuality:
     def summary(self):
         """Return lateness (s), the rate achieved (Hz) and counts, as a dict; None for what a run that was not paced cannot tell."""
         self._take_groups(all_of_them=True)
-        found = {'ticks': self.ticks, 'missing': self.missing, 'standstills': self._standstills, 'lateness': None, 'achieved_rate': None}
+        found = {
+            'ticks': self.ticks,
+            'missing': self.missing,
+            'standstills': self._standstills,
+            'lateness': None,
+            'achieved_rate': None,
+        }
         measured = int(self._counts.sum())
         if measured:
             ranks = np.cumsum(self._counts)
             # the upper edge of a bin: a percentile is never said to be smaller than it was
-            p50, p99 = (min((int(np.searchsorted(ranks, share * measured)) + 1) * 1e-6, self._worst * 1e-9) for share in (0.5, 0.99))
+            p50, p99 = (
+                min((int(np.searchsorted(ranks, share * measured)) + 1) * 1e-6, self._worst * 1e-9)
+                for share in (0.5, 0.99)
+            )
             found['lateness'] = {'p50': p50, 'p99': p99, 'max': self._worst * 1e-9}
         if self._running > 0:
             found['achieved_rate'] = self._advanced / self._running

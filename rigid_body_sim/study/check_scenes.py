@@ -21,19 +21,38 @@ SHAPES = 'inertia_tensors'
 def main(arguments=None):
     """Run the command; return the exit status: 1 if a quantity is not as predicted."""
     parser = command_line.parser(
-        'check_scenes', 'Run every scene by its exact motion and by dop8 on the full equations, measure what the notes predict, compare.',
-        'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80')
-    parser.add_argument('--scene', action='append', metavar='NAME', help=f'only this scene (name or .yaml file), or {SHAPES}; may be repeated')
-    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE', help='change of the scene, key.path=value; may be repeated')
+        'check_scenes',
+        'Run every scene by its exact motion and by dop8 on the full equations, measure what the notes predict, compare.',
+        'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80',
+    )
+    parser.add_argument(
+        '--scene',
+        action='append',
+        metavar='NAME',
+        help=f'only this scene (name or .yaml file), or {SHAPES}; may be repeated',
+    )
+    parser.add_argument(
+        '--set',
+        action='append',
+        default=[],
+        metavar='KEY=VALUE',
+        help='change of the scene, key.path=value; may be repeated',
+    )
     parser.add_argument('--json', action='store_true', help='every quantity with 17 digits')
     return command_line.run(_check, parser.parse_args(arguments))
 
 
 def _check(options):
     if options.set and (options.scene is None or SHAPES in options.scene):
-        raise BadInput('--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME')
+        raise BadInput(
+            '--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME'
+        )
     names = options.scene or [SHAPES, *SYSTEMS]
-    held = {name: name != SHAPES and load_scene(name, options.set).constraint.kind in ('pivot', 'hinge') for name in names}
+    held = {
+        name: name != SHAPES
+        and load_scene(name, options.set).constraint.kind in ('pivot', 'hinge')
+        for name in names
+    }
     began, tables = time.perf_counter(), []
     for table in _tables(held, options.set):
         tables.append(table)
@@ -42,29 +61,46 @@ def _check(options):
     quantities = [quantity for table in tables for quantity in table['quantities']]
     failed = sum(quantity['verdict'] != CONFIRMED for quantity in quantities)
     if options.json:
-        command_line.print_json({'scenes': tables, 'quantities': len(quantities), 'failed': failed, 'seconds': time.perf_counter() - began})
+        command_line.print_json(
+            {
+                'scenes': tables,
+                'quantities': len(quantities),
+                'failed': failed,
+                'seconds': time.perf_counter() - began,
+            }
+        )
     else:
-        print(f'{len(quantities)} quantities of {len(tables)} systems: {len(quantities) - failed} confirmed, {failed} not; '
-              f'{time.perf_counter() - began:.1f} s')
+        print(
+            f'{len(quantities)} quantities of {len(tables)} systems: {len(quantities) - failed} confirmed, {failed} not; '
+            f'{time.perf_counter() - began:.1f} s'
+        )
     return command_line.CHECK_FAILED if failed else command_line.GOOD
 
 
 def _tables(held, overrides):
     """Yield the tables of the systems in order, with progress on a terminal.
 
-    Several are shared out between two processes, held bodies in one and the others in another: so neither compiles what the other does.
+    Several are shared out between two processes, held bodies in one and the others in another: so
+    neither compiles what the other does.
     """
     with contextlib.ExitStack() as stack:
         if len(held) == 1:
             pending = [functools.partial(_table, name, overrides) for name in held]
         else:
             spawn = multiprocessing.get_context('spawn')
-            workers = [stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn)) for _ in range(2)]
+            workers = [
+                stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn))
+                for _ in range(2)
+            ]
             futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
             for worker in workers:
                 stack.callback(worker.shutdown, cancel_futures=True)
             pending = [future.result for future in futures]
-        progress = stack.enter_context(tqdm(zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'))
+        progress = stack.enter_context(
+            tqdm(
+                zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'
+            )
+        )
         for name, result in progress:
             progress.set_postfix_str(name)
             table = result()
@@ -81,9 +117,17 @@ def _table(name, overrides):
         rows = confirm(scene) if scene else confirm_shapes()
     except BadInput as error:
         return error.where, error.problem, error.remedy
-    about = scene.about if scene else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
-    return {'scene': scene.name if scene else name, 'about': about, 'notes': scene.notes if scene else [],
-            'quantities': [_plain(row) for row in rows]}
+    about = (
+        scene.about
+        if scene
+        else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
+    )
+    return {
+        'scene': scene.name if scene else name,
+        'about': about,
+        'notes': scene.notes if scene else [],
+        'quantities': [_plain(row) for row in rows],
+    }
 
 
 CONFIRMED, REFUTED = 'confirmed', 'NOT CONFIRMED'
@@ -92,13 +136,22 @@ CONFIRMED, REFUTED = 'confirmed', 'NOT CONFIRMED'
 def _plain(row):
     """Return a row, {method: Quantity}, as plain data."""
     first = next(iter(row.values()))
-    plain = {'quantity': first.name, 'unit': first.unit, 'predicted': _number(first.predicted),
-             'measured': {way: _number(quantity.measured) for way, quantity in row.items()},
-             'error': {way: _finite(quantity.error) for way, quantity in row.items()}, 'tolerance': first.tolerance,
-             'kind': ('bound, ' if first.bound else '') + ('absolute' if first.absolute else 'relative'),
-             'verdict': CONFIRMED if all(quantity.passed for quantity in row.values()) else REFUTED}
+    plain = {
+        'quantity': first.name,
+        'unit': first.unit,
+        'predicted': _number(first.predicted),
+        'measured': {way: _number(quantity.measured) for way, quantity in row.items()},
+        'error': {way: _finite(quantity.error) for way, quantity in row.items()},
+        'tolerance': first.tolerance,
+        'kind': ('bound, ' if first.bound else '')
+        + ('absolute' if first.absolute else 'relative'),
+        'verdict': CONFIRMED if all(quantity.passed for quantity in row.values()) else REFUTED,
+    }
     if first.as_written is not None:
-        plain |= {'as_written': _number(first.as_written), 'error_as_written': _finite(first.error_as_written)}
+        plain |= {
+            'as_written': _number(first.as_written),
+            'error_as_written': _finite(first.error_as_written),
+        }
     return plain | ({'detail': first.detail} if first.detail else {})
 
 
@@ -121,10 +174,14 @@ def _tell(table):
         measured = next(iter(row['measured'].values()))
         errors = ', '.join(f'{way} {_short(error)}' for way, error in row['error'].items())
         print(f'  {row["quantity"]}{unit}')
-        print(f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  {row["kind"]} error: {errors}  '
-              f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}')
+        print(
+            f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  {row["kind"]} error: {errors}  '
+            f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}'
+        )
         if 'as_written' in row:
-            print(f'      uncorrected, the notes give {_digits(row["as_written"])}: off by {_short(row["error_as_written"])}')
+            print(
+                f'      uncorrected, the notes give {_digits(row["as_written"])}: off by {_short(row["error_as_written"])}'
+            )
         if 'detail' in row:
             print(f'      {row["detail"]}')
     print()

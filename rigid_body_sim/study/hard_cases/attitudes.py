@@ -1,8 +1,9 @@
 """Cases with a reference of 34 digits and more: the attitude at every reference time, and the times of flips (groups 1, 2, 3 and 6).
 
-Bound: the floor of two roundings of a quaternion, 2e-15 rad, plus for free bodies half an ulp of the angle turned over (the rounding of omega
-itself; the motion may magnify it far beyond: up to 3 rad on the separatrix, yet the closed form stays here, its rates have more digits than a
-double). A flip: 4 ulp of its time.
+Bound: the floor of two roundings of a quaternion, 2e-15 rad, plus for free bodies half an ulp of
+the angle turned over (the rounding of omega itself; the motion may magnify it far beyond: up to 3
+rad on the separatrix, yet the closed form stays here, its rates have more digits than a double). A
+flip: 4 ulp of its time.
 """
 
 import functools
@@ -29,9 +30,17 @@ def scene_of(record):
     body = {'mass': record.get('mass', 1.0), 'inertia': record['moments']}
     if top:
         body |= {'inertia_about': 'origin', 'center_of_mass': record['center']}
-    return parse_scene(json.dumps({
-        'scene': 'hard_case', 'body': body, 'constraint': record['kind'], 'effects': [{'gravity': {'g': record['g']}}] if top else [],
-        'initial': {key: record[key] for key in ('orientation', 'angular_velocity')}}))
+    return parse_scene(
+        json.dumps(
+            {
+                'scene': 'hard_case',
+                'body': body,
+                'constraint': record['kind'],
+                'effects': [{'gravity': {'g': record['g']}}] if top else [],
+                'initial': {key: record[key] for key in ('orientation', 'angular_velocity')},
+            }
+        )
+    )
 
 
 def attitude(record):
@@ -41,9 +50,16 @@ def attitude(record):
     size = math.hypot(*record['angular_velocity']) if record['kind'] == 'free' else 0.0
     found = [(beside.angle(q, state['orientation']), FLOOR + 0.5 * EPSILON * size * state['time'])
              for q, state in zip(states, record['states'], strict=True)]
-    error, bound = max(found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf)
+    error, bound = max(
+        found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf
+    )
     last = record['states'][-1]['time']
-    return Outcome(error, bound, 'rad', f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, up to {last:g} s')
+    return Outcome(
+        error,
+        bound,
+        'rad',
+        f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, up to {last:g} s',
+    )
 
 
 def flips(record):
@@ -53,15 +69,32 @@ def flips(record):
     simulation.advance(math.ceil(min(last, 1e15)) + 1)
     times = [event.time for event in simulation.events if event.name == 'flip']
     with mp.workdps(40):
-        errors = [float(abs(mpf(times[flip['count'] - 1]) / mpf(flip['time']) - 1)) for flip in record['flips']]
-    return Outcome(max(errors), 4.0 * EPSILON, 'of the time', f'rounding of the times of flips {[flip["count"] for flip in record["flips"]]}')
+        errors = [
+            float(abs(mpf(times[flip['count'] - 1]) / mpf(flip['time']) - 1))
+            for flip in record['flips']
+        ]
+    return Outcome(
+        max(errors),
+        4.0 * EPSILON,
+        'of the time',
+        f'rounding of the times of flips {[flip["count"] for flip in record["flips"]]}',
+    )
 
 
 def cases():
     """Yield the cases."""
     for record in RECORDS:
-        yield Case(record['group'], record['name'], record['why'], functools.partial(attitude, record),
-                   beside.attitude(scene_of(record), record))
+        yield Case(
+            record['group'],
+            record['name'],
+            record['why'],
+            functools.partial(attitude, record),
+            beside.attitude(scene_of(record), record),
+        )
         if record['group'] == 1 and record['flips']:
-            yield Case(1, f'flips: {record["name"]}', 'energy says nothing of them; each is the time of a passage through the middle axis',
-                       functools.partial(flips, record))
+            yield Case(
+                1,
+                f'flips: {record["name"]}',
+                'energy says nothing of them; each is the time of a passage through the middle axis',
+                functools.partial(flips, record),
+            )

@@ -1,6 +1,7 @@
 """The peers beside a case: their error at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say.
 
-Each answer is asked of a process of its own, so that a peer that crashes or goes on for ever is one more answer.
+Each answer is asked of a process of its own, so that a peer that crashes or goes on for ever is
+one more answer.
 """
 
 import importlib
@@ -74,7 +75,11 @@ def _asked(module, question):
 def attitude(scene, record):
     """Return the Question for the attitude (rad) of a record (attitudes.py), at the last of its times that peers can reach."""
     size = math.hypot(*record['angular_velocity'])
-    near = [state for state in record['states'] if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS]
+    near = [
+        state
+        for state in record['states']
+        if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS
+    ]
     state = (near or record['states'][:1])[-1]
 
     def measure(run):
@@ -87,7 +92,14 @@ def smooth(scene, time, unit, measure):
     """Return the Question for what is measured on the started Run (precision/runner.py) of a smooth scene."""
     def ask(module):
         from rigid_body_sim.study.precision.suite import Problem
-        runner = next(iter(module.runners(Problem(scene.name, scene.about, time, scene), _Rates([scene.initial.angular_velocity]))))
+        runner = next(
+            iter(
+                module.runners(
+                    Problem(scene.name, scene.about, time, scene),
+                    _Rates([scene.initial.angular_velocity]),
+                )
+            )
+        )
         step = time / max(1, round(time / STEP))
         run = runner.make(step if runner.control == 'step' else TOLERANCE)
         run.start()
@@ -108,7 +120,12 @@ def angle(found, expected):
         p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
         size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
         sign = 1 if mp.fdot(p, q) > 0 else -1
-        across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2 for a, b in zip(p, q)))
+        across = mp.sqrt(
+            sum(
+                (sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2
+                for a, b in zip(p, q)
+            )
+        )
         return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
 
 

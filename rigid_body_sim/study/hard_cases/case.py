@@ -51,7 +51,8 @@ class Case:
     Attributes
     ----------
     group : int
-        1 racket, 2 inertia, 3 speed, 4 steps, 5 long runs, 6 tops, 7 contact, 8 dissipation, 9 commands, 10 reversal.
+        1 racket, 2 inertia, 3 speed, 4 steps, 5 long runs, 6 tops, 7 contact, 8 dissipation, 9
+        commands, 10 reversal.
     name, why : str
         `why` says what makes it hard.
     run : callable
@@ -67,5 +68,15 @@ class Case:
     asked: object = None
 
 
-GROUPS = {1: 'racket', 2: 'inertia', 3: 'speed', 4: 'steps', 5: 'long runs', 6: 'tops', 7: 'contact', 8: 'dissipation', 9: 'commands',
-          10: 'reversal'}
+GROUPS = {
+    1: 'racket',
+    2: 'inertia',
+    3: 'speed',
+    4: 'steps',
+    5: 'long runs',
+    6: 'tops',
+    7: 'contact',
+    8: 'dissipation',
+    9: 'commands',
+    10: 'reversal',
+}

@@ -97,7 +97,14 @@ class _Scipy(_Equations):
     def to(self, time):
         from scipy.integrate import solve_ivp
         if time > self.time:
-            found = solve_ivp(lambda _, y: rates(y, self.drive), (self.time, time), self.y, 'DOP853', rtol=TOLERANCE, atol=TOLERANCE)
+            found = solve_ivp(
+                lambda _, y: rates(y, self.drive),
+                (self.time, time),
+                self.y,
+                'DOP853',
+                rtol=TOLERANCE,
+                atol=TOLERANCE,
+            )
             if not found.success:
                 raise NotConverged(found.message)
             self.time, self.y = time, found.y[:, -1].copy()
@@ -108,8 +115,12 @@ class _Heyoka(_Equations):
         import heyoka
         super().__init__(shot)
         names = heyoka.make_vars('vx', 'vy', 'awx', 'awy')
-        right = rates(names, self.drive, heyoka.sqrt) if self.drive else [0.0 * name for name in names]
-        self._integrator = heyoka.taylor_adaptive(list(zip(names, right, strict=True)), self.y, tol=TOLERANCE)
+        right = (
+            rates(names, self.drive, heyoka.sqrt) if self.drive else [0.0 * name for name in names]
+        )
+        self._integrator = heyoka.taylor_adaptive(
+            list(zip(names, right, strict=True)), self.y, tol=TOLERANCE
+        )
 
     def to(self, time):
         if time > self.time:
@@ -128,9 +139,12 @@ class _Mujoco:
     def __init__(self, shot):
         import mujoco
         mujoco.set_mju_user_warning(lambda text: None)
-        model = mujoco.MjModel.from_xml_string(self.SCENE.format(step=STEP, g=G, mu=shot.mu, a=A, mass=MASS))
+        model = mujoco.MjModel.from_xml_string(
+            self.SCENE.format(step=STEP, g=G, mu=shot.mu, a=A, mass=MASS)
+        )
         self._data, self._done = mujoco.MjData(model), 0
-        self._data.qvel[:] = *shot.v, 0.0, *shot.omega      # at first the body's axes are the world's
+        # at first the body's axes are the world's
+        self._data.qvel[:] = *shot.v, 0.0, *shot.omega
         self._steps = lambda count: mujoco.mj_step(model, self._data, nstep=count)
 
     def to(self, time):
@@ -155,10 +169,23 @@ class _Bullet:
         engine.setPhysicsEngineParameter(fixedTimeStep=STEP, numSubSteps=0)
         engine.setGravity(0.0, 0.0, -G)
         plane = engine.createMultiBody(0.0, engine.createCollisionShape(engine.GEOM_PLANE))
-        self._ball = engine.createMultiBody(MASS, engine.createCollisionShape(engine.GEOM_SPHERE, radius=A), basePosition=[0.0, 0.0, A])
+        self._ball = engine.createMultiBody(
+            MASS,
+            engine.createCollisionShape(engine.GEOM_SPHERE, radius=A),
+            basePosition=[0.0, 0.0, A],
+        )
         for body, mu in ((plane, 1.0), (self._ball, shot.mu)):      # it takes their product
-            engine.changeDynamics(body, -1, lateralFriction=mu, rollingFriction=0.0, spinningFriction=0.0, restitution=0.0, linearDamping=0.0,
-                                  angularDamping=0.0, maxJointVelocity=1e9)
+            engine.changeDynamics(
+                body,
+                -1,
+                lateralFriction=mu,
+                rollingFriction=0.0,
+                spinningFriction=0.0,
+                restitution=0.0,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                maxJointVelocity=1e9,
+            )
         engine.resetBaseVelocity(self._ball, [*shot.v, 0.0], list(shot.omega))
 
     def to(self, time):
@@ -187,13 +214,21 @@ class _Drake:
         builder = DiagramBuilder()
         self._plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=STEP)
         friction = CoulombFriction(shot.mu, shot.mu)
-        self._plant.RegisterCollisionGeometry(self._plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction)
-        self._ball = self._plant.AddRigidBody('ball', SpatialInertia(MASS, np.zeros(3), UnitInertia.SolidSphere(A)))
-        self._plant.RegisterCollisionGeometry(self._ball, RigidTransform(), Sphere(A), 'ball', friction)
+        self._plant.RegisterCollisionGeometry(
+            self._plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction
+        )
+        self._ball = self._plant.AddRigidBody(
+            'ball', SpatialInertia(MASS, np.zeros(3), UnitInertia.SolidSphere(A))
+        )
+        self._plant.RegisterCollisionGeometry(
+            self._ball, RigidTransform(), Sphere(A), 'ball', friction
+        )
         self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -G])
         self._plant.Finalize()
         self._simulator = Simulator(builder.Build())
-        self._context = self._plant.GetMyMutableContextFromRoot(self._simulator.get_mutable_context())
+        self._context = self._plant.GetMyMutableContextFromRoot(
+            self._simulator.get_mutable_context()
+        )
         self._plant.SetPositions(self._context, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, A])
         self._plant.SetVelocities(self._context, [*shot.omega, *shot.v, 0.0])
 
@@ -210,5 +245,12 @@ class _Drake:
         return tuple(found[3:5]), tuple(found[:2])
 
 
-PEERS = {'heyoka': _Heyoka, 'numba RK4': _Rk4, 'SciPy DOP853': _Scipy, 'MuJoCo': _Mujoco, 'Drake': _Drake, 'PyBullet': _Bullet}
+PEERS = {
+    'heyoka': _Heyoka,
+    'numba RK4': _Rk4,
+    'SciPy DOP853': _Scipy,
+    'MuJoCo': _Mujoco,
+    'Drake': _Drake,
+    'PyBullet': _Bullet,
+}
 """By the NAME of the peer's module; RK4 is plain Python here, the same numbers."""

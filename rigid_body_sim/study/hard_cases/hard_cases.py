@@ -15,7 +15,9 @@ With --peers the errors of the programs installed here (requirements/peers.txt h
 
 def main(arguments=None):
     """Run the command; return the exit status: 1 if one of ours fails."""
-    parser = command_line.parser('hard_cases', ABOUT, 'python -m rigid_body_sim hard_cases --peers')
+    parser = command_line.parser(
+        'hard_cases', ABOUT, 'python -m rigid_body_sim hard_cases --peers'
+    )
     parser.add_argument('--peers', action='store_true', help='run the peers too, some minutes')
     parser.add_argument('--json', action='store_true', help='machine-readable')
     return command_line.run(_run, parser.parse_args(arguments))
@@ -27,8 +29,10 @@ def _run(options):
         command_line.print_json({'cases': rows, 'peers_not_installed': missing})
     else:
         for row in rows:
-            print(f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  {row["case"]}: {row["error"]:.1e} {row["unit"]}'
-                  f' (bound {row["bound"]:.1e}: {row["reason"]})')
+            print(
+                f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  {row["case"]}: {row["error"]:.1e} {row["unit"]}'
+                f' (bound {row["bound"]:.1e}: {row["reason"]})'
+            )
             for name, value in row['peers'].items():
                 said = value if isinstance(value, str) else f'{value:.1e} {row["peer_unit"]}'
                 print(f'           {name} after {row["peer_time"]:g} s: {said or "not asked"}')
@@ -44,11 +48,25 @@ def measure(with_peers, watch):
     rows = []
     for case in tqdm(CASES, disable=not watch, unit='case'):
         outcome = case.run()
-        row = {'group': GROUPS[case.group], 'case': case.name, 'why': case.why, 'error': _number(float(outcome.error)),
-               'bound': float(outcome.bound), 'unit': outcome.unit, 'reason': outcome.reason, 'good': bool(outcome.good), 'peers': {}}
+        row = {
+            'group': GROUPS[case.group],
+            'case': case.name,
+            'why': case.why,
+            'error': _number(float(outcome.error)),
+            'bound': float(outcome.bound),
+            'unit': outcome.unit,
+            'reason': outcome.reason,
+            'good': bool(outcome.good),
+            'peers': {},
+        }
         if case.asked and installed:
-            row |= {'peer_time': case.asked.time, 'peer_unit': case.asked.unit,
-                    'peers': {name: beside.answer(module, case.asked) for name, module in installed.items()}}
+            row |= {
+                'peer_time': case.asked.time,
+                'peer_unit': case.asked.unit,
+                'peers': {
+                    name: beside.answer(module, case.asked) for name, module in installed.items()
+                },
+            }
         rows.append(row)
     return rows, missing
 

@@ -40,7 +40,12 @@ def _excess(omega):
 def stays(scene, seconds):
     """Ask how far omega has gone from where it must stay (rad/s)."""
     def measure(run):
-        return float(max(np.abs(omega - scene.initial.angular_velocity).max() for _, omega in _passed(run, seconds)))
+        return float(
+            max(
+                np.abs(omega - scene.initial.angular_velocity).max()
+                for _, omega in _passed(run, seconds)
+            )
+        )
     return beside.smooth(scene, seconds, 'rad/s', measure)
 
 
@@ -60,7 +65,9 @@ def cancel(impulses):
 
     def ask(module):
         def omega_after(omega):
-            scene = load_scene('tennis_racket', [f'initial.angular_velocity={[float(x) for x in omega]}'])
+            scene = load_scene(
+                'tennis_racket', [f'initial.angular_velocity={[float(x) for x in omega]}']
+            )
             found = []
 
             def measure(run):

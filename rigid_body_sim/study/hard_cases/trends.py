@@ -1,8 +1,9 @@
 """Group 5, long runs: does a residual have a trend? By statistics, not by eye.
 
-Stationary noise (anchored exact motion): least squares over the run gives a slope whose own uncertainty is known from the scatter; a trend is
-a slope beyond 5 of these. A walk at random (anchored anew at each tick): its steps are the noise, and their mean is compared with 5 of its
-own uncertainty; what a walk of n steps may reach is 5 sqrt(n) of a step.
+Stationary noise (anchored exact motion): least squares over the run gives a slope whose own
+uncertainty is known from the scatter; a trend is a slope beyond 5 of these. A walk at random
+(anchored anew at each tick): its steps are the noise, and their mean is compared with 5 of its own
+uncertainty; what a walk of n steps may reach is 5 sqrt(n) of a step.
 """
 
 import math
@@ -26,7 +27,11 @@ def slope_in_sigmas(means, scatter):
     """Return the slope of block means over the run in units of its uncertainty, scatter being that of one mean."""
     place = np.linspace(-1.0, 1.0, len(means))
     slope = place @ means / (place @ place)
-    return abs(slope) / (scatter / math.sqrt(place @ place)) if scatter > 0.0 else (0.0 if slope == 0.0 else math.inf)
+    return (
+        abs(slope) / (scatter / math.sqrt(place @ place))
+        if scatter > 0.0
+        else (0.0 if slope == 0.0 else math.inf)
+    )
 
 
 def residuals(simulation, states):
@@ -43,7 +48,10 @@ def residuals(simulation, states):
     g = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), (z * z + w * w) - (x * x + y * y)
     P_alpha, P_gamma = I1 * (o1 * g[0] + o2 * g[1]) + I3 * o3 * g[2], I3 * o3
     # about their mean: the first value is rounded too
-    return found | {'p_alpha': P_alpha / P_alpha.mean() - 1.0, 'p_gamma': P_gamma / P_gamma[0] - 1.0}
+    return found | {
+        'p_alpha': P_alpha / P_alpha.mean() - 1.0,
+        'p_gamma': P_gamma / P_gamma[0] - 1.0,
+    }
 
 
 def anchored(name):
@@ -66,10 +74,16 @@ def anchored(name):
     for key in means[0]:
         values = np.array([mean[key] for mean in means])
         within = np.mean([square[key] for square in squares]) - values.mean() ** 2
-        # of a block mean: by its own scatter between blocks, but no less than that of independent roundings
+        # of a block mean: by its own scatter between blocks, but no less than that of independent
+        # roundings
         scatter = max(values.std(), math.sqrt(max(within, 0.0) / in_block))
         worst = max(worst, slope_in_sigmas(values, scatter))
-    return Outcome(worst, SIGMAS, 'sigma', f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, stationary noise')
+    return Outcome(
+        worst,
+        SIGMAS,
+        'sigma',
+        f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, stationary noise',
+    )
 
 
 @compiled_allocating
@@ -83,8 +97,18 @@ def walk(parameters, start, ticks, every, moments, out):
             row = (k + 1) // every - 1
             w1, w2, w3 = state[5], state[6], state[7]
             out[row, 0] = moments[0] * w1 * w1 + moments[1] * w2 * w2 + moments[2] * w3 * w3
-            out[row, 1] = moments[0] * moments[0] * w1 * w1 + moments[1] * moments[1] * w2 * w2 + moments[2] * moments[2] * w3 * w3
-            out[row, 2] = state[1] * state[1] + state[2] * state[2] + state[3] * state[3] + state[4] * state[4] - 1.0
+            out[row, 1] = (
+                moments[0] * moments[0] * w1 * w1
+                + moments[1] * moments[1] * w2 * w2
+                + moments[2] * moments[2] * w3 * w3
+            )
+            out[row, 2] = (
+                state[1] * state[1]
+                + state[2] * state[2]
+                + state[3] * state[3]
+                + state[4] * state[4]
+                - 1.0
+            )
 
 
 def anchored_anew():
@@ -92,13 +116,25 @@ def anchored_anew():
     scene = load_scene('free_body')
     ticks = 100_000_000 if LONG else 64_000
     out = np.empty((BLOCKS, 3))
-    walk(free_body.parameters(scene), scene.initial.vector, ticks, ticks // BLOCKS, np.array(scene.body.about_center.moments), out)
+    walk(
+        free_body.parameters(scene),
+        scene.initial.vector,
+        ticks,
+        ticks // BLOCKS,
+        np.array(scene.body.about_center.moments),
+        out,
+    )
     worst = 0.0
     for column in (0, 1):
         steps = np.diff(out[:, column] / out[0, column])
         worst = max(worst, abs(steps.mean()) / (steps.std() / math.sqrt(len(steps))))
     assert np.abs(out[:, 2]).max() < 1e-14
-    return Outcome(worst, SIGMAS, 'sigma', f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a walk at random')
+    return Outcome(
+        worst,
+        SIGMAS,
+        'sigma',
+        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a walk at random',
+    )
 
 
 def cases():
@@ -106,4 +142,9 @@ def cases():
     why = 'a bias of a thousandth of an ulp a tick is 1e-11 after a day at 1 kHz, while noise hides it from the eye'
     for name in ('free_body', 'heavy_top'):
         yield Case(5, f'{name.replace("_", " ")}, a day', why, lambda name=name: anchored(name))
-    yield Case(5, 'free body, anchored anew at each tick', f'{why}; every tick rounds the state', anchored_anew)
+    yield Case(
+        5,
+        'free body, anchored anew at each tick',
+        f'{why}; every tick rounds the state',
+        anchored_anew,
+    )

@@ -1,6 +1,7 @@
 """The work-precision figure: error against CPU time per simulated second, one line a method, readable in print and by the colour-blind.
 
-Lines that are the cheapest of ours, or of the peers, at some accuracy are thick; fixed steps of a method that has both are dotted.
+Lines that are the cheapest of ours, or of the peers, at some accuracy are thick; fixed steps of a
+method that has both are dotted.
 """
 
 import math
@@ -11,7 +12,8 @@ from matplotlib.figure import Figure
 
 from rigid_body_sim.study.precision import table
 
-# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); markers tell the lines apart without colour, dashes mark the peers
+# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); markers tell the lines apart without
+# colour, dashes mark the peers
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000', '#7F7F7F')
 MARKERS = 'osD^v<>PXh'
 SHADE = '#E3E3E3'
@@ -27,7 +29,12 @@ def draw(results):
     FigureCanvasAgg(figure)
     looks = {}    # a method looks the same in all panels
     for peers in (False, True):
-        names = dict.fromkeys(family(line['name']) for result in results for line in result['lines'] if line['is_peer'] == peers)
+        names = dict.fromkeys(
+            family(line['name'])
+            for result in results
+            for line in result['lines']
+            if line['is_peer'] == peers
+        )
         looks |= {name: number for number, name in enumerate(names)}
     for result, axes in zip(results, figure.subplots(rows, columns, squeeze=False).flat):
         panel(axes, result, looks)
@@ -40,7 +47,15 @@ def panel(axes, result, looks):
     """Draw one problem; `looks` has a number for each method, which is its colour and marker."""
     floor = result['floor']
     axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
-    axes.text(0.01, floor, 'half an ulp on the inputs', ha='left', va='top', fontsize=7.5, transform=axes.get_yaxis_transform())
+    axes.text(
+        0.01,
+        floor,
+        'half an ulp on the inputs',
+        ha='left',
+        va='top',
+        fontsize=7.5,
+        transform=axes.get_yaxis_transform(),
+    )
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
     for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
@@ -54,18 +69,40 @@ def panel(axes, result, looks):
             errors = [min(MOST, max(LEAST, point['error'])) for point in line['points']]
             single = line['control'] == 'none'
             size = 15 if line['name'] == 'exact' else 9 if single else 3 if fixed else 5
-            axes.errorbar(times, errors, xerr=spread, linestyle=':' if fixed else dashes, color=colour, label=line['name'],
-                          marker='*' if single else MARKERS[k % len(MARKERS)], markersize=size, markerfacecolor=colour if filled else 'white',
-                          linewidth=2.4 if line['name'] in leading else 0.9, elinewidth=0.6, zorder=4 if single else 3)
+            axes.errorbar(
+                times,
+                errors,
+                xerr=spread,
+                linestyle=':' if fixed else dashes,
+                color=colour,
+                label=line['name'],
+                marker='*' if single else MARKERS[k % len(MARKERS)],
+                markersize=size,
+                markerfacecolor=colour if filled else 'white',
+                linewidth=2.4 if line['name'] in leading else 0.9,
+                elinewidth=0.6,
+                zorder=4 if single else 3,
+            )
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.set_ylim(LEAST / 4.0, MOST)
-    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76), fontsize=10, loc='left')
+    axes.set_title(
+        textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76),
+        fontsize=10,
+        loc='left',
+    )
     axes.set_xlabel('CPU seconds per simulated second')
     axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
     axes.grid(color='#dddddd', linewidth=0.5)
     axes.spines[['top', 'right']].set_visible(False)
-    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=3.0, labelspacing=0.3)
+    axes.legend(
+        loc='center left',
+        bbox_to_anchor=(1.0, 0.5),
+        frameon=False,
+        fontsize=7.5,
+        handlelength=3.0,
+        labelspacing=0.3,
+    )
 
 
 def family(name):
@@ -77,6 +114,10 @@ def leaders(lines):
     """Return the names of the lines that are the cheapest at some level of the table: they are drawn thick."""
     names = set()
     for level in table.LEVELS:
-        costs = [(cost, line['name']) for line in lines if (cost := table.cost_at(line, level)) is not None]
+        costs = [
+            (cost, line['name'])
+            for line in lines
+            if (cost := table.cost_at(line, level)) is not None
+        ]
         names |= {min(costs)[1]} if costs else set()
     return names

@@ -1,6 +1,7 @@
 """The numbers of a scene in multiple precision, as the reference integrators take them: exact doubles, or moved by half an ulp.
 
-Only the inputs are shared with the package's own methods; the equations and the arithmetic of a reference are its own.
+Only the inputs are shared with the package's own methods; the equations and the arithmetic of a
+reference are its own.
 """
 
 import math
@@ -41,7 +42,8 @@ class Inputs:
     kind : str
         free, pivot, hinge or table.
     mass, g, linear, angular, inner, mu, radius : mpf
-        kg, m/s^2; coefficients of drag, internal dissipation and sliding friction; 0 where the scene has none.
+        kg, m/s^2; coefficients of drag, internal dissipation and sliding friction; 0 where the
+        scene has none.
     moments : tuple of 3 mpf
         Principal, about the point of reference, kg m^2.
     axes : tuple of 4 mpf
@@ -53,7 +55,8 @@ class Inputs:
     couples : tuple
         (times (floats), values (mpf), 'body' or 'world') of the torque effects.
     strikes : tuple
-        (time (float), impulse (mpf), lever from the centre of mass (mpf, body axes), height (mpf), 'body' or 'world'), by time.
+        (time (float), impulse (mpf), lever from the centre of mass (mpf, body axes), height (mpf),
+        'body' or 'world'), by time.
     orientation, omega, velocity : tuples of mpf
         Start: unit quaternion body -> world, rad/s in body axes, m/s in the world.
     """
@@ -89,21 +92,53 @@ def of(scene, move):
     inertia = body.about_origin if kind == 'pivot' else body.about_center
     center, through = tuple(map(move, body.center_of_mass)), tuple(map(move, constraint.through))
     arm = {'pivot': center, 'hinge': tuple(c - p for c, p in zip(center, through))}.get(kind, ZERO)
-    gravity, drag, inner, friction = map(scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction'))
-    couples = tuple((effect.times, tuple(tuple(map(move, value)) for value in effect.values), effect.frame)
-                    for effect in scene.effects if effect.name == 'torque')
+    gravity, drag, inner, friction = map(
+        scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction')
+    )
+    couples = tuple(
+        (effect.times, tuple(tuple(map(move, value)) for value in effect.values), effect.frame)
+        for effect in scene.effects
+        if effect.name == 'torque'
+    )
     strikes = []
-    for strike in sorted((effect for effect in scene.effects if effect.name == 'strike'), key=lambda effect: effect.time):
-        lever = ZERO if strike.point is None else tuple(p - c for p, c in zip(map(move, strike.point), center))
-        strikes.append((strike.time, tuple(map(move, strike.impulse)), lever, move(strike.height), strike.frame))
+    for strike in sorted(
+        (effect for effect in scene.effects if effect.name == 'strike'),
+        key=lambda effect: effect.time,
+    ):
+        lever = (
+            ZERO
+            if strike.point is None
+            else tuple(p - c for p, c in zip(map(move, strike.point), center))
+        )
+        strikes.append(
+            (
+                strike.time,
+                tuple(map(move, strike.impulse)),
+                lever,
+                move(strike.height),
+                strike.frame,
+            )
+        )
     initial = scene.initial
     return Inputs(
-        kind, move(body.mass), tuple(map(move, inertia.moments)), unit(tuple(map(move, inertia.axes))), arm,
+        kind,
+        move(body.mass),
+        tuple(map(move, inertia.moments)),
+        unit(tuple(map(move, inertia.axes))),
+        arm,
         unit(tuple(map(move, constraint.axis))) if kind == 'hinge' else None,
-        move(gravity.g if gravity else friction.g if friction else 0.0), move(drag.linear if drag else 0.0),
-        move(drag.angular if drag else 0.0), move(inner.coefficient if inner else 0.0), move(friction.mu if friction else 0.0),
-        move(body.radius if kind == 'table' else 0.0), couples, tuple(strikes), unit(tuple(map(move, initial.orientation))),
-        tuple(map(move, initial.angular_velocity)), tuple(map(move, initial.velocity)))
+        move(gravity.g if gravity else friction.g if friction else 0.0),
+        move(drag.linear if drag else 0.0),
+        move(drag.angular if drag else 0.0),
+        move(inner.coefficient if inner else 0.0),
+        move(friction.mu if friction else 0.0),
+        move(body.radius if kind == 'table' else 0.0),
+        couples,
+        tuple(strikes),
+        unit(tuple(map(move, initial.orientation))),
+        tuple(map(move, initial.angular_velocity)),
+        tuple(map(move, initial.velocity)),
+    )
 
 
 def cross(a, b):
@@ -119,8 +154,12 @@ def dot(a, b):
 def product(p, q):
     """Return the quaternion p q, (x, y, z, w)."""
     (ax, ay, az, aw), (bx, by, bz, bw) = p, q
-    return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz)
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
 
 
 def turned(q, v):

@@ -4,7 +4,8 @@
 
     .venv/bin/python -m rigid_body_sim.study.precision.make_measured [KIND ...]
 
-All kinds of scene, or the kinds named (``pivot``, ``free`` ...), while the others stay as they are.
+All kinds of scene, or the kinds named (``pivot``, ``free`` ...), while the others stay as they
+are.
 """
 
 import json
@@ -33,14 +34,32 @@ def main(only=()):
         controlled = [one for one in runner.ours(problem, truth) if one.control == 'accuracy']
         found = measure.measure(problem, truth, controlled, LIMIT, REPEATS)
         for line in found['lines']:
-            rows = gathered.setdefault(measured.kind(problem.scene), {}).setdefault(line['name'], {})
+            rows = gathered.setdefault(measured.kind(problem.scene), {}).setdefault(
+                line['name'], {}
+            )
             for point in line['points']:
-                rows.setdefault(point['setting'], []).append((point['largest_error'], point['cpu']['median'] / measured.pace(problem.scene)))
-    kinds = {kind: {method: [entry for tolerance, found in sorted(rows.items(), reverse=True) if (entry := _entry(tolerance, found))]
-                    for method, rows in methods.items()} for kind, methods in gathered.items()}
+                rows.setdefault(point['setting'], []).append(
+                    (point['largest_error'], point['cpu']['median'] / measured.pace(problem.scene))
+                )
+    kinds = {
+        kind: {
+            method: [
+                entry
+                for tolerance, found in sorted(rows.items(), reverse=True)
+                if (entry := _entry(tolerance, found))
+            ]
+            for method, rows in methods.items()
+        }
+        for kind, methods in gathered.items()
+    }
     if only:
         kinds = measured.table()['kinds'] | kinds
-    measured.FILE.write_text(json.dumps({'made': time.strftime('%Y-%m-%d'), 'machine': machine(), 'kinds': kinds}, indent=1) + '\n')
+    measured.FILE.write_text(
+        json.dumps(
+            {'made': time.strftime('%Y-%m-%d'), 'machine': machine(), 'kinds': kinds}, indent=1
+        )
+        + '\n'
+    )
 
 
 def _entry(tolerance, found):

@@ -1,7 +1,8 @@
 """Error and CPU time of every runner on one problem.
 
-Errors first, from coarse to fine until round-off or the limit of cost is met; then the timed runs, all in turn in one process, each several
-times over, so that whatever else the machine does falls on all alike.
+Errors first, from coarse to fine until round-off or the limit of cost is met; then the timed runs,
+all in turn in one process, each several times over, so that whatever else the machine does falls
+on all alike.
 """
 
 import gc
@@ -40,12 +41,18 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
     Returns
     -------
     dict
-        ``lines``: for each runner name, control, is_peer, ``notes`` (what went wrong at some settings) and ``points``: setting, set_up (s),
-        errors, residuals, cpu per simulated second: median, least, most; ``refused``: name -> reason.
+        ``lines``: for each runner name, control, is_peer, ``notes`` (what went wrong at some
+        settings) and ``points``: setting, set_up (s), errors, residuals, cpu per simulated second:
+        median, least, most; ``refused``: name -> reason.
     """
     balance = Balance(problem.scene)
     lines, refused, timed = [], {}, []
-    for runner in tqdm(runners, desc=f'{problem.name}: errors', disable=None if watch is None else not watch, leave=False):
+    for runner in tqdm(
+        runners,
+        desc=f'{problem.name}: errors',
+        disable=None if watch is None else not watch,
+        leave=False,
+    ):
         points, notes = [], []
         try:
             for point, run in _sweep(problem, reference, runner, limit, balance, notes):
@@ -54,13 +61,26 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
         except (RefusedError, BadInput) as error:
             notes.append(str(error))
         if points:
-            lines.append({'name': runner.name, 'control': runner.control, 'is_peer': runner.is_peer, 'points': points, 'notes': notes})
+            lines.append(
+                {
+                    'name': runner.name,
+                    'control': runner.control,
+                    'is_peer': runner.is_peer,
+                    'points': points,
+                    'notes': notes,
+                }
+            )
         else:
             refused[runner.name] = notes[0]
     gc.collect()
     gc.disable()
     try:
-        for _ in tqdm(range(repeats), desc=f'{problem.name}: times', disable=None if watch is None else not watch, leave=False):
+        for _ in tqdm(
+            range(repeats),
+            desc=f'{problem.name}: times',
+            disable=None if watch is None else not watch,
+            leave=False,
+        ):
             for one in timed:
                 one.sample()
     finally:
@@ -95,8 +115,16 @@ def _sweep(problem, reference, runner, limit, balance, notes):
             notes.append(str(error))
             continue
         angles, omegas = reference.errors(states)
-        yield {'setting': setting, 'set_up': set_up, 'first_run': first_run, 'error': float(angles[-1]), 'largest_error': float(angles.max()),
-               'omega_error': float(omegas[-1]), 'largest_omega_error': float(omegas.max()), **balance.residuals(final, reference)}, run
+        yield {
+            'setting': setting,
+            'set_up': set_up,
+            'first_run': first_run,
+            'error': float(angles[-1]),
+            'largest_error': float(angles.max()),
+            'omega_error': float(omegas[-1]),
+            'largest_omega_error': float(omegas.max()),
+            **balance.residuals(final, reference),
+        }, run
         worse = worse + 1 if angles[-1] > WORSE * best and best < NEAR * reference.floor[-1] else 0
         best = min(best, angles[-1])
         if worse == 2 or first_run > limit:
@@ -146,7 +174,11 @@ class _Timed:
         """Write median, least and most per simulated second into the point."""
         if not self._failed:
             per_second = [value / self._end for value in self._samples]
-            self._point['cpu'] = {'median': statistics.median(per_second), 'least': min(per_second), 'most': max(per_second)}
+            self._point['cpu'] = {
+                'median': statistics.median(per_second),
+                'least': min(per_second),
+                'most': max(per_second),
+            }
 
 
 class Balance:
@@ -154,24 +186,40 @@ class Balance:
 
     def __init__(self, scene):
         body, kind = scene.body, scene.constraint.kind
-        inertia, gravity = body.about_origin if kind == 'pivot' else body.about_center, scene.effect('gravity')
+        inertia, gravity = (
+            body.about_origin if kind == 'pivot' else body.about_center
+        ), scene.effect('gravity')
         self._moments, self._axes = inertia.moments, inertia.axes
         # of a hinged body the centre of mass moves too
-        self._arm = np.subtract(body.center_of_mass, scene.constraint.through) if kind == 'hinge' else np.array(body.center_of_mass)
+        self._arm = (
+            np.subtract(body.center_of_mass, scene.constraint.through)
+            if kind == 'hinge'
+            else np.array(body.center_of_mass)
+        )
         self._mass = body.mass if kind == 'hinge' else 0.0
         self._weight = body.mass * gravity.g if gravity and kind in ('pivot', 'hinge') else 0.0
 
     def of(self, q, omega):
         """Return energy (J) and angular momentum about the point of reference (world axes)."""
-        m = np.array(rotate(*self._axes, *np.multiply(self._moments, rotate_back(*self._axes, *omega))))
+        m = np.array(
+            rotate(*self._axes, *np.multiply(self._moments, rotate_back(*self._axes, *omega)))
+        )
         m += self._mass * np.cross(self._arm, np.cross(omega, self._arm))
-        return 0.5 * np.dot(m, omega) + self._weight * rotate(*q, *self._arm)[2], np.array(rotate(*q, *m))
+        return 0.5 * np.dot(m, omega) + self._weight * rotate(*q, *self._arm)[2], np.array(
+            rotate(*q, *m)
+        )
 
     def residuals(self, final, reference):
         """Return the residuals of a final state, relative to kinetic plus potential energy and to the momentum."""
         energy, momentum = self.of(final[:4] / np.linalg.norm(final[:4]), final[4:])
         omega = np.array([float(x) for x in reference.omega[-1]])
-        true_energy, true_momentum = self.of(np.array([float(x) for x in reference.orientation[-1]]), omega)
+        true_energy, true_momentum = self.of(
+            np.array([float(x) for x in reference.orientation[-1]]), omega
+        )
         size = max(abs(true_energy), self._weight * float(np.linalg.norm(self._arm)))
-        return {'energy_residual': abs(energy - true_energy) / size if size else 0.0,
-                'momentum_residual': float(np.linalg.norm(momentum - true_momentum) / (np.linalg.norm(true_momentum) or 1.0))}
+        return {
+            'energy_residual': abs(energy - true_energy) / size if size else 0.0,
+            'momentum_residual': float(
+                np.linalg.norm(momentum - true_momentum) / (np.linalg.norm(true_momentum) or 1.0)
+            ),
+        }

@@ -1,7 +1,8 @@
 """What is measured: a method (ours or a peer's) on one problem, from coarse to fine.
 
-A peer is a module in peers/ with NAME, `version()` and `runners(problem)`; ours come from the table of methods. A Runner's `make(setting)` does
-what a user does once (compile, allocate); the Run it returns is what is timed.
+A peer is a module in peers/ with NAME, `version()` and `runners(problem)`; ours come from the
+table of methods. A Runner's `make(setting)` does what a user does once (compile, allocate); the
+Run it returns is what is timed.
 """
 
 from dataclasses import dataclass
@@ -53,7 +54,8 @@ class Runner:
 class Run:
     """A method made ready.
 
-    `start()` goes (back) to the start and `to(time)` goes on; these are timed. `state()` returns q and omega there, 7 numbers.
+    `start()` goes (back) to the start and `to(time)` goes on; these are timed. `state()` returns q
+    and omega there, 7 numbers.
     """
 
     def __init__(self, start, to, state):
@@ -63,8 +65,13 @@ class Run:
 def steps_for(problem, reference):
     """Return steps (s) from coarse to fine that end at the duration, by the fastest rate of the motion."""
     fastest = max(float(sum(x * x for x in omega)) ** 0.5 for omega in reference.omega)
-    fastest = max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity))) + swing_rate(problem.scene) / 2.0
-    counts = {GRID * max(1, round(problem.duration * fastest * k / GRID)) for k in STEPS_OF_A_RADIAN}
+    fastest = (
+        max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity)))
+        + swing_rate(problem.scene) / 2.0
+    )
+    counts = {
+        GRID * max(1, round(problem.duration * fastest * k / GRID)) for k in STEPS_OF_A_RADIAN
+    }
     return tuple(problem.duration / count for count in sorted(counts))
 
 
@@ -74,12 +81,24 @@ def ours(problem, reference):
     for name in methods_for(problem.scene):
         if name == 'exact':
             yield Runner(name, 'none', (None,), lambda _: _our_run(problem, 'exact', {}))
-            yield Runner(ONE_MORE, 'none', (None,), lambda _: _one_more(_our_run(problem, 'exact', {})))
+            yield Runner(
+                ONE_MORE, 'none', (None,), lambda _: _one_more(_our_run(problem, 'exact', {}))
+            )
             continue
         for control in METHODS[name].TAKES:
-            label = name if len(METHODS[name].TAKES) == 1 or control == 'accuracy' else f'{name}, fixed step'
-            yield Runner(label, control, TOLERANCES if control == 'accuracy' else steps,
-                         lambda setting, name=name, control=control: _our_run(problem, name, {control: setting}))
+            label = (
+                name
+                if len(METHODS[name].TAKES) == 1 or control == 'accuracy'
+                else f'{name}, fixed step'
+            )
+            yield Runner(
+                label,
+                control,
+                TOLERANCES if control == 'accuracy' else steps,
+                lambda setting, name=name, control=control: _our_run(
+                    problem, name, {control: setting}
+                ),
+            )
 
 
 def begun(scene):

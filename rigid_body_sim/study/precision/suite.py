@@ -19,55 +19,157 @@ def _written(body, constraint, effects, initial):
     return f'body: {body}\nconstraint: {constraint}\neffects: {effects}\ninitial: {initial}\n'
 
 
-HEAVY = '{mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}'
+HEAVY = (
+    '{mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}'
+)
 FREE = '{mass: 1.0, inertia: [1.0, 2.0, 3.0]}'
 WEIGHT = '[gravity: {g: 9.81}]'
 
 _PROBLEMS = {
-    'racket': ('the middle axis is unstable', 100.0, _written(
-        FREE, 'free', '[]', '{angular_velocity: [0.01, 5.0, 0.01]}')),
-    'generic_free_body': ('no axis, no direction is special', 1000.0, _written(
-        '{mass: 1.0, inertia: [1.3, 2.1, 2.9]}', 'free', '[]', '{orientation: [0.1, -0.5, 0.3, 0.8], angular_velocity: [0.9, -1.1, 0.7]}')),
-    # I1 (I2 - I1) omega1^2 = I3 (I3 - I2) omega3^2 (1 + 2e-9): the polhode is the separatrix but for that
-    'separatrix_free_body': ('all but on the separatrix, far from the axes', 100.0, _written(
-        FREE, 'free', '[]', '{orientation: [0.3, 0.1, -0.4, 0.7], angular_velocity: [1.212435567710711, 1.1, 0.7]}')),
-    'heavy_symmetric_top': ('precession and nutation', 20.0, _written(
-        HEAVY, 'pivot', WEIGHT, '{euler_zyz: [0.0, 0.5, 0.0], angular_velocity: [0, 0, 60]}')),
-    'asymmetric_heavy_top': ('no closed form is known', 20.0, _written(
-        '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0.01, 0.005, 0.1]}', 'pivot', WEIGHT,
-        '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}')),
-    'driven_body': ('a torque fixed in an asymmetric body', 20.0, _written(
-        FREE, 'free', '[torque: {value: [0.3, -0.2, 0.5]}]', '{angular_velocity: [0.1, 2.0, 0.3]}')),
-    'damped_body': ('drag, and heat from inside', 50.0, _written(
-        FREE, 'free', '[drag: {angular: 0.02}, internal_dissipation: {coefficient: 0.02}]', '{angular_velocity: [4.0, 0.3, 0.2]}')),
-    'ball_slip_to_roll': ('a billiard ball with side spin slides, then rolls', 3.0, _written(
-        '{mass: 0.17, shape: {solid_sphere: {radius: 0.028575}}}', 'table', '[sliding_friction: {mu: 0.2, g: 9.81}]',
-        '{angular_velocity: [40.0, -60.0, 30.0], velocity: [1.5, 0.4, 0.0]}')),
+    'racket': (
+        'the middle axis is unstable',
+        100.0,
+        _written(FREE, 'free', '[]', '{angular_velocity: [0.01, 5.0, 0.01]}'),
+    ),
+    'generic_free_body': (
+        'no axis, no direction is special',
+        1000.0,
+        _written(
+            '{mass: 1.0, inertia: [1.3, 2.1, 2.9]}',
+            'free',
+            '[]',
+            '{orientation: [0.1, -0.5, 0.3, 0.8], angular_velocity: [0.9, -1.1, 0.7]}',
+        ),
+    ),
+    # I1 (I2 - I1) omega1^2 = I3 (I3 - I2) omega3^2 (1 + 2e-9): the polhode is the separatrix but
+    # for that
+    'separatrix_free_body': (
+        'all but on the separatrix, far from the axes',
+        100.0,
+        _written(
+            FREE,
+            'free',
+            '[]',
+            '{orientation: [0.3, 0.1, -0.4, 0.7], angular_velocity: [1.212435567710711, 1.1, 0.7]}',
+        ),
+    ),
+    'heavy_symmetric_top': (
+        'precession and nutation',
+        20.0,
+        _written(
+            HEAVY, 'pivot', WEIGHT, '{euler_zyz: [0.0, 0.5, 0.0], angular_velocity: [0, 0, 60]}'
+        ),
+    ),
+    'asymmetric_heavy_top': (
+        'no closed form is known',
+        20.0,
+        _written(
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0.01, 0.005, 0.1]}',
+            'pivot',
+            WEIGHT,
+            '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
+        ),
+    ),
+    'driven_body': (
+        'a torque fixed in an asymmetric body',
+        20.0,
+        _written(
+            FREE,
+            'free',
+            '[torque: {value: [0.3, -0.2, 0.5]}]',
+            '{angular_velocity: [0.1, 2.0, 0.3]}',
+        ),
+    ),
+    'damped_body': (
+        'drag, and heat from inside',
+        50.0,
+        _written(
+            FREE,
+            'free',
+            '[drag: {angular: 0.02}, internal_dissipation: {coefficient: 0.02}]',
+            '{angular_velocity: [4.0, 0.3, 0.2]}',
+        ),
+    ),
+    'ball_slip_to_roll': (
+        'a billiard ball with side spin slides, then rolls',
+        3.0,
+        _written(
+            '{mass: 0.17, shape: {solid_sphere: {radius: 0.028575}}}',
+            'table',
+            '[sliding_friction: {mu: 0.2, g: 9.81}]',
+            '{angular_velocity: [40.0, -60.0, 30.0], velocity: [1.5, 0.4, 0.0]}',
+        ),
+    ),
     # from hanging upwards with 1e-9 less than the rate 2 sqrt(M g l/I) that reaches the top
-    'separatrix_pendulum': ('all but enough to reach the top', 20.0, _written(
-        '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}', WEIGHT,
-        '{angle: 0.0, rate: 6.2641839015}')),
-    'sleeping_top_unstable': ('P_gamma^2 at 0.999 of 4 I1 M g l, a seed of 1e-6 rad/s', 20.0, _written(
-        HEAVY, 'pivot', WEIGHT, '{angular_velocity: [1.0e-6, 0, 34.2931]}')),
+    'separatrix_pendulum': (
+        'all but enough to reach the top',
+        20.0,
+        _written(
+            '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}',
+            '{hinge: {axis: [0, 1, 0]}}',
+            WEIGHT,
+            '{angle: 0.0, rate: 6.2641839015}',
+        ),
+    ),
+    'sleeping_top_unstable': (
+        'P_gamma^2 at 0.999 of 4 I1 M g l, a seed of 1e-6 rad/s',
+        20.0,
+        _written(HEAVY, 'pivot', WEIGHT, '{angular_velocity: [1.0e-6, 0, 34.2931]}'),
+    ),
 }
 
 # kinds of scene that the suite lacks, for the table that `auto` chooses by
 _TRAINING = {
-    'fast_asymmetric_top': ('fast nutation of a small size', 10.0, _written(
-        '{mass: 0.4, inertia: [0.003, 0.0036, 0.002], inertia_about: origin, center_of_mass: [0.002, 0, 0.04]}', 'pivot', WEIGHT,
-        '{euler_zyz: [0.3, 0.5, 0.1], angular_velocity: [0.4, 0.3, 120]}')),
-    'damped_heavy_top': ('drag on an asymmetric top', 10.0, _written(
-        '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}', 'pivot',
-        '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]', '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}')),
-    'driven_body_with_drag': ('thrown, driven and held back by the air', 20.0, _written(
-        FREE, 'free', '[gravity: {g: 9.81}, torque: {value: [0.3, -0.2, 0.5]}, drag: {linear: 0.1, angular: 0.05}]',
-        '{angular_velocity: [0.1, 2.0, 0.3], velocity: [3.0, 0.0, 9.0]}')),
-    'driven_pendulum': ('a pendulum under a constant couple', 20.0, _written(
-        '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}',
-        '[gravity: {g: 9.81}, torque: {value: [0, 1.5, 0]}]', '{angle: 0.3, rate: 4.0}')),
-    'damped_pendulum': ('a pendulum with drag', 20.0, _written(
-        '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}', '{hinge: {axis: [0, 1, 0]}}',
-        '[gravity: {g: 9.81}, drag: {linear: 0.05, angular: 0.01}]', '{angle: 0.3, rate: 9.0}')),
+    'fast_asymmetric_top': (
+        'fast nutation of a small size',
+        10.0,
+        _written(
+            '{mass: 0.4, inertia: [0.003, 0.0036, 0.002], inertia_about: origin, center_of_mass: [0.002, 0, 0.04]}',
+            'pivot',
+            WEIGHT,
+            '{euler_zyz: [0.3, 0.5, 0.1], angular_velocity: [0.4, 0.3, 120]}',
+        ),
+    ),
+    'damped_heavy_top': (
+        'drag on an asymmetric top',
+        10.0,
+        _written(
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}',
+            'pivot',
+            '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]',
+            '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
+        ),
+    ),
+    'driven_body_with_drag': (
+        'thrown, driven and held back by the air',
+        20.0,
+        _written(
+            FREE,
+            'free',
+            '[gravity: {g: 9.81}, torque: {value: [0.3, -0.2, 0.5]}, drag: {linear: 0.1, angular: 0.05}]',
+            '{angular_velocity: [0.1, 2.0, 0.3], velocity: [3.0, 0.0, 9.0]}',
+        ),
+    ),
+    'driven_pendulum': (
+        'a pendulum under a constant couple',
+        20.0,
+        _written(
+            '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}',
+            '{hinge: {axis: [0, 1, 0]}}',
+            '[gravity: {g: 9.81}, torque: {value: [0, 1.5, 0]}]',
+            '{angle: 0.3, rate: 4.0}',
+        ),
+    ),
+    'damped_pendulum': (
+        'a pendulum with drag',
+        20.0,
+        _written(
+            '{mass: 2.0, inertia: [0.48, 0.48, 0.002], center_of_mass: [0, 0, -0.4]}',
+            '{hinge: {axis: [0, 1, 0]}}',
+            '[gravity: {g: 9.81}, drag: {linear: 0.05, angular: 0.01}]',
+            '{angle: 0.3, rate: 9.0}',
+        ),
+    ),
 }
 NAMES, TRAINING = tuple(_PROBLEMS), tuple(_TRAINING)
 QUICK = ('racket', 'heavy_symmetric_top', 'asymmetric_heavy_top', 'driven_body')
@@ -77,7 +179,9 @@ QUICK = ('racket', 'heavy_symmetric_top', 'asymmetric_heavy_top', 'driven_body')
 def problem(name):
     """Return a problem of the suite."""
     about, duration, text = (_PROBLEMS | _TRAINING)[name]
-    return Problem(name, about, duration, parse_scene(f'scene: {name}\n{text}', where=f'suite: {name}'))
+    return Problem(
+        name, about, duration, parse_scene(f'scene: {name}\n{text}', where=f'suite: {name}')
+    )
 
 
 def of_scene(scene, overrides, duration):

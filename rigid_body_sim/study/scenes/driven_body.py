@@ -19,7 +19,13 @@ def check(run):
     if I1 == I2 and not Gamma[:2].any():
         times = np.linspace(0.0, SECONDS, 41)
         predicted = theory.angular_velocity(times, start, Gamma[2], I1, I3)
-        yield Quantity('omega at 41 times', predicted.ravel(), run.read(lambda states: states.angular_velocity, times).ravel(), 1e-12, 'rad/s')
+        yield Quantity(
+            'omega at 41 times',
+            predicted.ravel(),
+            run.read(lambda states: states.angular_velocity, times).ravel(),
+            1e-12,
+            'rad/s',
+        )
         yield from _turn(run, start, Gamma[2], I1, I3)
     yield from equations_of_euler(run, Gamma, SECONDS)
     yield from momentum(run, Gamma, SECONDS)
@@ -33,22 +39,44 @@ def _turn(run, start, Gamma3, I1, I3):
     """Yield when the spin runs through zero, and how far omega has turned in the body then and at the end."""
     reversal = theory.spin_reversal_time(start[2], Gamma3, I3)
     if 0.0 < reversal < SECONDS:
-        yield Quantity('omega3 runs through zero', reversal, run.crossings(instruments.omega(2), 0.0, SECONDS, 50)[0], 1e-12, 's')
+        yield Quantity(
+            'omega3 runs through zero',
+            reversal,
+            run.crossings(instruments.omega(2), 0.0, SECONDS, 50)[0],
+            1e-12,
+            's',
+        )
     times = np.linspace(0.0, SECONDS, 2001)
     omega = run.states(times).angular_velocity
     turned = np.unwrap(np.arctan2(omega[:, 1], omega[:, 0]))
-    yield Quantity('angle that omega turned in the body', theory.phase(SECONDS, start[2], Gamma3, I1, I3), turned[-1] - turned[0], 1e-11, 'rad')
+    yield Quantity(
+        'angle that omega turned in the body',
+        theory.phase(SECONDS, start[2], Gamma3, I1, I3),
+        turned[-1] - turned[0],
+        1e-11,
+        'rad',
+    )
 
 
 def equations_of_euler(run, Gamma, seconds, about=''):
     """Yield omega' by differentiation of the motion, against Euler's equations."""
     moments = np.array(run.scene.body.about_center.moments)
     times = seconds * np.array([0.21, 0.53, 0.88])
-    predicted = euler_equations.angular_acceleration(moments, run.states(times).angular_velocity, Gamma)
+    predicted = euler_equations.angular_acceleration(
+        moments, run.states(times).angular_velocity, Gamma
+    )
     pace = np.linalg.norm(run.states(times).angular_velocity, axis=1).max()
-    measured = [[run.derivative(instruments.omega(k), time, 0.3 / pace) for k in range(3)] for time in times]
-    yield Quantity(f"omega'/omega^2 by Euler's equations, 3 times{about}", predicted.ravel() / pace**2, np.ravel(measured) / pace**2, 1e-10,
-                   absolute=True)
+    measured = [
+        [run.derivative(instruments.omega(k), time, 0.3 / pace) for k in range(3)]
+        for time in times
+    ]
+    yield Quantity(
+        f"omega'/omega^2 by Euler's equations, 3 times{about}",
+        predicted.ravel() / pace**2,
+        np.ravel(measured) / pace**2,
+        1e-10,
+        absolute=True,
+    )
 
 
 def momentum(run, Gamma, seconds, about=''):
@@ -59,5 +87,9 @@ def momentum(run, Gamma, seconds, about=''):
     times = (0.5 * (edges[1:] + edges[:-1]))[:, np.newaxis] + half * points
     torque = instruments.axes(run.states(times.ravel())) @ Gamma
     integral = np.sum(torque * (half * weights).ravel()[:, np.newaxis], axis=0)
-    L = run.read(instruments.momentum_in_world(run.scene.body.about_center.moments), [0.0, seconds])
-    yield Quantity(f'change of L in {seconds:g} s{about}', integral, L[1] - L[0], 1e-11, 'kg m^2/s')
+    L = run.read(
+        instruments.momentum_in_world(run.scene.body.about_center.moments), [0.0, seconds]
+    )
+    yield Quantity(
+        f'change of L in {seconds:g} s{about}', integral, L[1] - L[0], 1e-11, 'kg m^2/s'
+    )

@@ -45,8 +45,13 @@ class System:
 
 
 SYSTEMS = {
-    **{f'billiard_{name}': System(billiard.check, 2.0) for name in ('center', 'low', 'natural_roll', 'follow')},
-    **dict.fromkeys(('kater_pendulum', 'kater_pendulum_from_p'), System(kater_pendulum.check, 20.0)),
+    **{
+        f'billiard_{name}': System(billiard.check, 2.0)
+        for name in ('center', 'low', 'natural_roll', 'follow')
+    },
+    **dict.fromkeys(
+        ('kater_pendulum', 'kater_pendulum_from_p'), System(kater_pendulum.check, 20.0)
+    ),
     'baseball_bat': System(baseball_bat.check, 10.0),
     'driven_body': System(driven_body.check, 10.0),
     'free_body': System(free_body.check, 100.0),
@@ -59,5 +64,8 @@ SYSTEMS = {
     'steady_precession': System(steady_precession.check, 20.0),
     'fast_top': System(fast_top.check, 20.0),
     **dict.fromkeys(('sleeping_top', 'falling_top'), System(sleeping_top.check, 40.0)),
-    **{name: System(getattr(degenerate, name), 20.0) for name in ('thin_rod', 'sphere', 'needle', 'spherical_pendulum')},
+    **{
+        name: System(getattr(degenerate, name), 20.0)
+        for name in ('thin_rod', 'sphere', 'needle', 'spherical_pendulum')
+    },
 }

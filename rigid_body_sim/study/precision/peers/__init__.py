@@ -1,7 +1,8 @@
 """Peers: other programs that turn bodies, one file each, run as their users run them, in the fastest way they offer.
 
-A module has NAME, `version()` (ImportError where it is not installed) and `runners(problem, reference)`, which yields a runner.Runner for each
-way to run it or raises RefusedError with the reason. requirements/peers.txt installs them all.
+A module has NAME, `version()` (ImportError where it is not installed) and `runners(problem,
+reference)`, which yields a runner.Runner for each way to run it or raises RefusedError with the
+reason. requirements/peers.txt installs them all.
 """
 
 import contextlib
@@ -11,8 +12,16 @@ import sys
 
 from rigid_body_sim.study.precision.runner import RefusedError, Runner
 
-MODULES = ('heyoka_taylor', 'numba_rk4', 'scipy_dop853', 'mujoco_engine', 'drake_engine', 'pybullet_engine', 'pinocchio_engine',
-           'basilisk_engine')
+MODULES = (
+    'heyoka_taylor',
+    'numba_rk4',
+    'scipy_dop853',
+    'mujoco_engine',
+    'drake_engine',
+    'pybullet_engine',
+    'pinocchio_engine',
+    'basilisk_engine',
+)
 
 
 @contextlib.contextmanager

@@ -1,7 +1,8 @@
 """A ball on a table as a peer's user writes it down: it slides, with friction along the slip, which keeps its direction, and then rolls.
 
-Unknowns: q, omega in world axes, v_x, v_y; e the direction of the slip u = v + omega x (-a z) at the start; v' = -mu g e, I omega' =
--a z x (-mu M g e) until e . u = 0: an event for the methods that find events. From there on v and omega stay.
+Unknowns: q, omega in world axes, v_x, v_y; e the direction of the slip u = v + omega x (-a z) at
+the start; v' = -mu g e, I omega' = -a z x (-mu M g e) until e . u = 0: an event for the methods
+that find events. From there on v and omega stay.
 """
 
 from dataclasses import dataclass
@@ -58,8 +59,15 @@ def of(scene):
     slides = size > ROLLS * (np.hypot(*velocity[:2]) + a * np.hypot(wx, wy)) and mu * g > 0.0
     ex, ey = u / size if slides else (0.0, 0.0)
     turn = mu * g / (ratio * a)
-    return Ball(a, mu, g, np.array([0.0, 0.0, 0.0, 0.0, -turn * ey, turn * ex, 0.0, -mu * g * ex, -mu * g * ey]),
-                np.array([0.0, 0.0, 0.0, 0.0, a * ey, -a * ex, 0.0, ex, ey]), np.array([*q, wx, wy, wz, *velocity[:2]]), slides)
+    return Ball(
+        a,
+        mu,
+        g,
+        np.array([0.0, 0.0, 0.0, 0.0, -turn * ey, turn * ex, 0.0, -mu * g * ex, -mu * g * ey]),
+        np.array([0.0, 0.0, 0.0, 0.0, a * ey, -a * ex, 0.0, ex, ey]),
+        np.array([*q, wx, wy, wz, *velocity[:2]]),
+        slides,
+    )
 
 
 @numba.njit(cache=True)

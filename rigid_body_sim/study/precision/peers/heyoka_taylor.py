@@ -18,17 +18,27 @@ def runners(problem, reference):
     """Yield heyoka in doubles and, but for a ball, in 80-bit numbers."""
     numbers = given.of(problem)
     made = _rolling if isinstance(numbers, ball.Ball) else smooth_run
-    yield Runner(NAME, 'tolerance', TOLERANCES, lambda tolerance: made(numbers, tolerance, np.float64), True)
+    yield Runner(
+        NAME, 'tolerance', TOLERANCES, lambda tolerance: made(numbers, tolerance, np.float64), True
+    )
     if made is smooth_run:
         finer = (1e-12, 1e-15, 1e-18)
-        yield Runner(f'{NAME}, 80 bit', 'tolerance', finer, lambda tolerance: smooth_run(numbers, tolerance, np.longdouble), True)
+        yield Runner(
+            f'{NAME}, 80 bit',
+            'tolerance',
+            finer,
+            lambda tolerance: smooth_run(numbers, tolerance, np.longdouble),
+            True,
+        )
 
 
 def smooth_run(numbers, tolerance, number):
     """Return the Run of a Body or Pendulum in numbers of a type (float64 or longdouble)."""
     import heyoka
     swings = isinstance(numbers, pendulum.Pendulum)
-    variables = heyoka.make_vars(*(('phi', 'rate') if swings else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3')))
+    variables = heyoka.make_vars(
+        *(('phi', 'rate') if swings else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3'))
+    )
     system = list(zip(variables, (swinging if swings else turning)(numbers, number, *variables)))
     start = numbers.start.astype(number)
     integrator = heyoka.taylor_adaptive(system, start, tol=number(tolerance), fp_type=number)
@@ -47,16 +57,28 @@ def _rolling(numbers, tolerance, _):
     import heyoka
     variables = heyoka.make_vars('x', 'y', 'z', 'w', 'w1', 'w2', 'w3', 'v1', 'v2')
     x, y, z, w, w1, w2, w3 = variables[:7]
-    turn = [0.5 * (w * w1 + w2 * z - w3 * y), 0.5 * (w * w2 + w3 * x - w1 * z), 0.5 * (w * w3 + w1 * y - w2 * x),
-            -0.5 * (w1 * x + w2 * y + w3 * z)]
+    turn = [
+        0.5 * (w * w1 + w2 * z - w3 * y),
+        0.5 * (w * w2 + w3 * x - w1 * z),
+        0.5 * (w * w3 + w1 * y - w2 * x),
+        -0.5 * (w1 * x + w2 * y + w3 * z),
+    ]
 
     def integrator(push, **events):
         system = [*turn, *(heyoka.expression(float(c)) for c in push[4:])]
-        return heyoka.taylor_adaptive(list(zip(variables, system)), numbers.start, tol=tolerance, **events)
+        return heyoka.taylor_adaptive(
+            list(zip(variables, system)), numbers.start, tol=tolerance, **events
+        )
     rolling = sliding = integrator(np.zeros(9))
     if numbers.slides:
-        onset = sum((c * one for c, one in zip(numbers.slip[5:], variables[5:])), numbers.slip[4] * variables[4])
-        sliding = integrator(numbers.push, t_events=[heyoka.t_event(onset, direction=heyoka.event_direction.negative)])
+        onset = sum(
+            (c * one for c, one in zip(numbers.slip[5:], variables[5:])),
+            numbers.slip[4] * variables[4],
+        )
+        sliding = integrator(
+            numbers.push,
+            t_events=[heyoka.t_event(onset, direction=heyoka.event_direction.negative)],
+        )
     now = sliding
 
     def begin():
@@ -82,7 +104,9 @@ def swinging(numbers, number, phi, rate):
     """Return the right-hand sides of a pendulum; what is zero is not written."""
     import heyoka
     a, b, k, d = numbers.numbers.astype(number)
-    parts = [c * e for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0]
+    parts = [
+        c * e for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0
+    ]
     right = sum(parts[1:], parts[0]) if parts else 0.0 * rate
     return [rate, right + k if k else right]
 
@@ -99,20 +123,40 @@ def turning(numbers, number, x, y, z, w, *omega):
     # constants are formed in the precision of the numbers
     i, c = numbers.moments.astype(number), number(numbers.inner)
     products = [omega[1] * omega[2], omega[2] * omega[0], omega[0] * omega[1]]
-    a = omega if not numbers.inner else [plus(omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k]))) for k in range(3)]
+    a = (
+        omega
+        if not numbers.inner
+        else [
+            plus(omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k])))
+            for k in range(3)
+        ]
+    )
     columns = [[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
                [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
                [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)]]
     rates = []
     for k in range(3):
         j, l = (k + 1) % 3, (k + 2) % 3
-        inertia = total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j])) if numbers.inner else \
-            total(((i[j] - i[l]) / i[k], products[k]))
-        couple = total((numbers.weight_arm[l] / i[k], columns[j][2]), (-numbers.weight_arm[j] / i[k], columns[l][2]),
-                       *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
-                       *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)))
+        inertia = (
+            total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j]))
+            if numbers.inner
+            else total(((i[j] - i[l]) / i[k], products[k]))
+        )
+        couple = total(
+            (numbers.weight_arm[l] / i[k], columns[j][2]),
+            (-numbers.weight_arm[j] / i[k], columns[l][2]),
+            *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
+            *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)),
+        )
         constant = number(numbers.torque[k]) / i[k]
-        parts = plus(inertia, couple) if inertia is not None or couple is not None else 0.0 * omega[k]
+        parts = (
+            plus(inertia, couple) if inertia is not None or couple is not None else 0.0 * omega[k]
+        )
         rates.append(parts + constant if constant else parts)
-    return [0.5 * (w * a[0] + y * a[2] - z * a[1]), 0.5 * (w * a[1] + z * a[0] - x * a[2]), 0.5 * (w * a[2] + x * a[1] - y * a[0]),
-            -0.5 * (x * a[0] + y * a[1] + z * a[2]), *rates]
+    return [
+        0.5 * (w * a[0] + y * a[2] - z * a[1]),
+        0.5 * (w * a[1] + z * a[0] - x * a[2]),
+        0.5 * (w * a[2] + x * a[1] - y * a[0]),
+        -0.5 * (x * a[0] + y * a[1] + z * a[2]),
+        *rates,
+    ]

@@ -19,7 +19,8 @@ class Pendulum:
     axis : array (3,)
         Of the hinge, body axes, unit length.
     numbers : array (4,)
-        a, b, k (rad/s^2) and d (1/s), in 80-bit numbers, as a rounding of them counts near a separatrix.
+        a, b, k (rad/s^2) and d (1/s), in 80-bit numbers, as a rounding of them counts near a
+        separatrix.
     torque, friction : float
         I k (N m), I d (N m s).
     orientation : tuple
@@ -38,7 +39,9 @@ class Pendulum:
     def state(self, values):
         """Return q and omega (body axes) of phi and phi'."""
         half, rate = 0.5 * values[0], values[1]
-        return *multiply(*self.orientation, *(math.sin(half) * self.axis), math.cos(half)), *(rate * self.axis)
+        return *multiply(*self.orientation, *(math.sin(half) * self.axis), math.cos(half)), *(
+            rate * self.axis
+        )
 
 
 def of(scene):
@@ -46,7 +49,9 @@ def of(scene):
     body, constraint = scene.body, scene.constraint
     q, omega, _ = start.of(scene)
     long = np.longdouble
-    axis, arm = np.array(constraint.axis, long), np.subtract(body.center_of_mass, constraint.through, dtype=long)
+    axis, arm = np.array(constraint.axis, long), np.subtract(
+        body.center_of_mass, constraint.through, dtype=long
+    )
     out = arm - axis * (axis @ arm)
     moment = axis @ body.about_center.matrix.astype(long) @ axis + body.mass * (out @ out)
     # the vertical in the body at phi = 0; the weight's torque about the axis is M g n . (z x r)
@@ -56,9 +61,30 @@ def of(scene):
     torque, friction = long(0), drag.angular + drag.linear * (out @ out) if drag else long(0)
     for effect in scene.effects:
         if effect.name == 'torque':
-            torque += axis @ effect.values[0] if effect.frame == 'body' else np.dot(rotate(*q, *axis.astype(float)), effect.values[0])
-    numbers = np.array([weight * (axis @ np.cross(up, out)), weight * (axis @ np.cross(up, np.cross(axis, out))), torque, friction]) / moment
-    return Pendulum(axis.astype(float), numbers, float(torque), float(friction), q, np.array([0.0, np.dot(constraint.axis, omega)]))
+            torque += (
+                axis @ effect.values[0]
+                if effect.frame == 'body'
+                else np.dot(rotate(*q, *axis.astype(float)), effect.values[0])
+            )
+    numbers = (
+        np.array(
+            [
+                weight * (axis @ np.cross(up, out)),
+                weight * (axis @ np.cross(up, np.cross(axis, out))),
+                torque,
+                friction,
+            ]
+        )
+        / moment
+    )
+    return Pendulum(
+        axis.astype(float),
+        numbers,
+        float(torque),
+        float(friction),
+        q,
+        np.array([0.0, np.dot(constraint.axis, omega)]),
+    )
 
 
 @numba.njit(cache=True)

@@ -7,11 +7,15 @@ from rigid_body_sim.study.precision.runner import RefusedError, begun
 def of(scene):
     """Return the attitude, omega (body axes) and velocity (world) from which a peer starts: those of the scene, strikes at time 0 done.
 
-    RefusedError where something jumps later: a peer's user would stop there and start anew, which is no line of a sweep.
+    RefusedError where something jumps later: a peer's user would stop there and start anew, which
+    is no line of a sweep.
     """
     if any(effect.name == 'strike' and effect.time > 0.0 for effect in scene.effects):
         raise RefusedError('a strike on the way: the harness gives peers smooth motions only')
-    if any(effect.name == 'torque' and (len(effect.times) > 1 or effect.times[0] > 0.0) for effect in scene.effects):
+    if any(
+        effect.name == 'torque' and (len(effect.times) > 1 or effect.times[0] > 0.0)
+        for effect in scene.effects
+    ):
         raise RefusedError('a torque that jumps: the harness gives peers smooth motions only')
     vector = begun(scene)
     return tuple(vector[ORIENTATION]), tuple(vector[ANGULAR_VELOCITY]), tuple(vector[VELOCITY])
