@@ -47,7 +47,7 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 
 soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
-	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py test/node/test_long_run.py
+	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py test/node/test_long_run.py test/node/test_cold_start.py
 
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)

@@ -192,9 +192,11 @@ def main():
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
     from rigid_body_sim.compilation.environment import processor
-    from rigid_body_sim.node.engine import warm_up
+    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+    from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
-    warm_up(Simulation('tennis_racket'))
+    simulation = Simulation('tennis_racket')
+    rehearse(simulation, TickMessages(EVERY_TICK, simulation.scene, Frames()))
     cases = []
     with tempfile.TemporaryDirectory() as folder:
         for subscribers, rate in itertools.product(options.subscribers, options.rates):

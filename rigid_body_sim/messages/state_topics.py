@@ -296,4 +296,11 @@ ON_REQUEST = (
     Output('tf', 'tf2_msgs/msg/TFMessage', _transform, ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True),
     Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
 )
+
+
+def chosen(names):
+    """Return the outputs of every tick and those among the others that are asked for, in the order of the table."""
+    return [*EVERY_TICK, *(output for output in ON_REQUEST if output.name in names)]
+
+
 OUTPUTS = {output.name: output for output in EVERY_TICK + ON_REQUEST}

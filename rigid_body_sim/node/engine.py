@@ -1,18 +1,19 @@
 """The engine: all the parts of a running node, made from its parameters; the plain and the managed node are two ways to start it."""
 
 import concurrent.futures
-import contextlib
-import threading
 
 from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import state_topics
+from rigid_body_sim.messages.state_topics import TickMessages
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.journal import open_journal
 from rigid_body_sim.node.priority import quicken
 from rigid_body_sim.node.publishing import Publishing, frames_of
+from rigid_body_sim.node.rehearsal import rehearse
 from rigid_body_sim.node.session import Session
 from rigid_body_sim.node.shutdown import say, tell
 from rigid_body_sim.node.ticking import Followed, Steady, Ticker
@@ -23,8 +24,6 @@ from rigid_body_sim.simulation.simulation import Simulation
 ANSWER_WITHIN = 0.2
 """How long a service waits for the tick that does what it asks, s; later it answers what will happen."""
 STOP_WITHIN = 0.4
-PATIENCE = 4.0
-"""After so long at the start the node says what it is doing, s."""
 
 
 class Engine:
@@ -52,10 +51,12 @@ class Engine:
         for line in simulation.scene.notes:
             node.get_logger().info(line)
         frames = frames_of(node, settings)
+        outputs = state_topics.chosen(settings.publish)
+        messages = TickMessages(outputs, simulation.scene, frames)
         # before anything is offered: who finds the topics finds them alive
-        warm_up(simulation)
+        rehearse(simulation, messages)
         self.commands = Commands(node, frames)
-        self.publishing = Publishing(node, settings, frames, simulation.scene)
+        self.publishing = Publishing(node, outputs, frames, messages)
         settings.refuse_unknown_qos()
         self.journal = open_journal(node, settings, simulation, self.publishing, frames)
         self.session = Session(simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
@@ -115,9 +116,10 @@ class Engine:
         """Refuse changes that cannot be; make ready what takes long."""
         self._prepared = None
         if SIMULATION_PARAMETERS & set(changes):
-            self._prepared = self._prepare(changes)
-            self.publishing.messages_for(self._prepared.scene)
-            warm_up(self._prepared)
+            simulation = self._prepare(changes)
+            messages = self.publishing.messages_for(simulation.scene)
+            rehearse(simulation, messages)
+            self._prepared = simulation, messages
 
     def _after_change(self, changes):
         """Have the changes take effect at a tick, where they are recorded."""
@@ -129,7 +131,7 @@ class Engine:
 
         def change(session):
             if prepared is not None:
-                session.switch(prepared, keep_state)
+                session.switch(*prepared, keep_state)
             session.command_timeout = settings.command_timeout
             self.ticker.skip_publish = settings.overrun == 'skip_publish'
             if {'rate', 'real_time_factor'} & set(changes):
@@ -196,30 +198,3 @@ def _result_soon(future):
         return future.result(ANSWER_WITHIN)
     except concurrent.futures.TimeoutError:
         return None
-
-
-def warm_up(simulation):
-    """Compile or load all that ticks and commands need, on a simulation of its own, so that no tick waits for it."""
-    patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])
-    patience.daemon = True
-    patience.start()
-    try:
-        _use_everything(simulation)
-    finally:
-        patience.cancel()
-
-
-def _use_everything(simulation):
-    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, simulation.rate, horizon=simulation.choice.horizon)
-    trial.advance()
-    trial.diagnose(trial.foresee(2))
-    if trial.scene.accepts_commands:
-        for act in (trial.impulse, trial.hold):
-            with contextlib.suppress(BadInput):
-                act(torque=(1e-9, 1e-9, 1e-9))
-                trial.advance()
-                trial.foresee(2)
-        trial.forget_past()
-        trial.release()
-    trial.ledger()
-    trial.reset()

@@ -35,9 +35,10 @@ class Publishing:
     Parameters
     ----------
     node : rclpy.node.Node
-    settings : parameters.Settings
+    outputs : list of state_topics.Output
     frames : state_topics.Frames
-    scene : scenes.Scene
+    messages : state_topics.TickMessages
+        Of these outputs, for the scene that runs first.
 
     Attributes
     ----------
@@ -45,24 +46,19 @@ class Publishing:
         Makes the messages of a tick for the present scene.
     """
 
-    def __init__(self, node, settings, frames, scene):
-        self._node, self._frames = node, frames
-        self._outputs = [*state_topics.EVERY_TICK, *(output for output in state_topics.ON_REQUEST if output.name in settings.publish)]
+    def __init__(self, node, outputs, frames, messages):
+        self._node, self._frames, self._outputs = node, frames, outputs
         self._publishers = [self._create(output.type, output.name, QoSProfile(depth=DEPTH), output.absolute) for output in self._outputs]
         self._publish = [publisher.handle.publish_raw for publisher in self._publishers]
         self._events = self._create(DiagnosticStatus, 'events', _latched(EVENTS_KEPT))
         self._scene = self._create(String, 'scene', _latched(1))
-        self.use_scene(scene)
+        self.ticking = messages
 
     def _create(self, type_or_name, topic, profile, absolute=False):
         message_type = type_or_name if isinstance(type_or_name, type) else _import_type(type_or_name, topic)
         return self._node.create_publisher(
             message_type, f'/{topic}' if absolute else topic, profile, event_callbacks=qos.publisher_mismatch(self._node, topic),
             qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
-
-    def use_scene(self, scene):
-        """Fill the messages for this scene from now on; BadInput where a topic has no meaning for it."""
-        self.ticking = self.messages_for(scene)
 
     def messages_for(self, scene):
         """Return the TickMessages for a scene; BadInput where a topic that is published has no meaning for it."""

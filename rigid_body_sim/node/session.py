@@ -185,8 +185,8 @@ class Session:
         self._journal.entry('reset', self.stamp, tick=self.next_tick)
         return self.next_tick
 
-    def switch(self, simulation, keep_state):
-        """Go on with another simulation from the present tick on; called at a tick."""
+    def switch(self, simulation, messages, keep_state):
+        """Go on with another simulation, and its TickMessages, from the present tick on; called at a tick."""
         self._report_events()
         simulation.follow(self.simulation, keep_state)
         if simulation.rate != self.simulation.rate:
@@ -196,7 +196,7 @@ class Session:
         self._disturbed()
         if not keep_state:
             self._release_tick = None
-            self._publishing.use_scene(simulation.scene)
+            self._publishing.ticking = messages
             self.announce_scene()
 
     def _find_last_tick(self):

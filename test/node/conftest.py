@@ -19,12 +19,14 @@ START = 60.0
 @pytest.fixture(scope='session')
 def compiled_kernels():
     """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
-    from rigid_body_sim.node.engine import warm_up
+    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+    from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
     with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}', 'w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for scene in ('tennis_racket', 'sphere'):
-            warm_up(Simulation(scene))
+            simulation = Simulation(scene)
+            rehearse(simulation, TickMessages(EVERY_TICK, simulation.scene, Frames()))
 
 
 class Client:

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A rehearsal of the ticks before the clock starts, so that no tick waits for anything that is done for the first time.
+
+Kernels are compiled, or loaded from the cache, when they are first called, and modules are imported when
+they are first needed. The rehearsal therefore runs the session itself, with a simulation of its own and
+with outputs that lead nowhere: through ticks made one by one and ahead, commands, a reset, a balance.
+"""
+
+import threading
+import types
+
+import numpy as np
+
+from rigid_body_sim.node.journal import NoJournal
+from rigid_body_sim.node.session import QUIET, Session
+from rigid_body_sim.node.shutdown import say
+from rigid_body_sim.recording import about
+from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, ZERO
+from rigid_body_sim.simulation.simulation import Simulation
+
+PATIENCE = 4.0
+"""After this time (s) the node says what it is doing."""
+FASTEST = 1000.0
+"""Least rate of the rehearsal (Hz): it covers a tenth of a second of the motion however slow the node ticks."""
+SMALL = (1e-9, 1e-9, 1e-9)
+COMMANDS = np.array([(kind, axes, *ZERO, *SMALL) for kind in (IMPULSE, HOLD) for axes in (BODY, WORLD)])
+
+
+def rehearse(simulation, messages):
+    """Run ticks as a node will run them, on a simulation of its own, before any clock starts.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        It stays as it is.
+    messages : state_topics.TickMessages
+        Makes the messages of its scene.
+    """
+    patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])
+    patience.daemon = True
+    patience.start()
+    try:
+        _rehearse(simulation, messages)
+    finally:
+        patience.cancel()
+
+
+def _rehearse(simulation, messages):
+    choice = simulation.choice
+    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, max(simulation.rate, FASTEST),
+                       horizon=choice.horizon, settled=(choice.method, choice.tolerance, choice.expected_error))
+    queue = _Queue()
+    settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0)
+    session = Session(trial, queue, _Nowhere(messages), NoJournal(), settings, lambda: 0)
+    session.begin()
+    _run(session)
+    if trial.scene.accepts_commands:
+        # twice: the second time they meet a body that is already commanded
+        for rows in (COMMANDS, COMMANDS, LET_GO):
+            queue.put(rows)
+            _run(session)
+    session.request(Session.reset)
+    _run(session)
+
+
+def _run(session):
+    session.want_balance()
+    # the last of these ticks are made ahead
+    for _ in range(QUIET + 4):
+        session.run_tick(True)
+
+
+class _Queue:
+    """Stands for the commands that wait."""
+
+    def __init__(self):
+        self._rows = np.empty(0)
+        self.waiting = self.applied = 0
+
+    def put(self, rows):
+        self._rows, self.waiting = rows, len(rows)
+
+    def take(self, scene_accepts):
+        """Nothing else comes."""
+
+    def collect(self):
+        self.waiting = 0
+        return self._rows
+
+    def refuse(self, topic, reason, got, remedy=None):
+        """Hear that the body has an axis of zero moment and cannot take a torque about it."""
+
+
+class _Nowhere:
+    """Stands for the publishers: makes every message and sends none."""
+
+    def __init__(self, messages):
+        self.ticking = messages
+
+    def tick(self, messages):
+        pass
+
+    def event(self, level, name, message, values):
+        return '', about.event_message('rehearsal', level, name, message, values)
+
+    def scene(self, scene):
+        return '', about.scene_message(scene)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Once the clock of a node runs, nothing is compiled, loaded or imported for the first time.
+
+How late a tick is depends on the machine; what it does for the first time does not. So these tests look
+at the latter: see cold_starts.py.
+"""
+
+import json
+import os
+import pathlib
+
+import pytest
+
+DRIVER = pathlib.Path(__file__).with_name('cold_starts.py')
+CASES = [
+    ['scene:=tennis_racket', 'record:=false'],
+    ['scene:=tennis_racket', 'publish:=[odom, imu, marker, clock]', 'recording.directory:={folder}'],
+    ['scene:=tennis_racket', 'rate:=4000', 'record:=false'],
+    ['scene:=free_body', 'integrator:=dop8', 'record:=false'],
+    ['scene:=sphere', 'publish:=[imu]', 'record:=false'],
+    ['scene:=heavy_top', 'publish:=[reaction, imu]', 'record:=false'],
+    ['scene:=kater_pendulum', 'publish:=[reaction, joint_states]', 'record:=false'],
+    # a strike and a change of torque that the rehearsal does not reach
+    ['scene:=billiard_center', 'scene_overrides:=[strike.time=0.11]', 'record:=false'],
+    ['scene:=driven_body', 'record:=false',
+     'scene_overrides:=["torque={times: [0.0, 0.11], values: [[0.0, 0.0, 0.1], [0.0, 0.1, 0.0]]}"]'],
+    ['scene:=thin_rod', 'rate:=100', 'record:=false'],
+]
+COMPILED_IN = 0.05
+"""No kernel is compiled in less processor time than this, and no tick here takes as much (s)."""
+
+
+def cold_starts(domain, folder, cases, timeout, **environment):
+    """Start the nodes in fresh processes; return what cold_starts.py tells of each."""
+    words = [json.dumps([word.replace('{folder}', str(folder)) for word in case]) for case in cases]
+    environment = {**domain.environment, 'PYTHONPATH': os.pathsep.join([os.getcwd(), os.environ.get('PYTHONPATH', '')]), **environment}
+    done = domain.run(DRIVER, *words, timeout=timeout, env=environment)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{')]
+
+
+def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(ros_domain, tmp_path, compiled_kernels):
+    found = cold_starts(ros_domain, tmp_path, CASES, 280)
+    assert len(found) == len(CASES)
+    assert {start['arguments'][0]: start['first_times'] for start in found if start['first_times']} == {}
+    assert {start['arguments'][0]: start['dearest_tick'] for start in found if start['dearest_tick'] > COMPILED_IN} == {}
+    assert min(start['ticks'] for start in found) > 100
+
+
+@pytest.mark.skipif(not os.environ.get('RIGID_BODY_SIM_SOAK'), reason='takes ten minutes: make soak')
+@pytest.mark.parametrize('case', CASES, ids=lambda case: ' '.join(case)[:60])
+def test_cold_start_with_an_empty_cache(ros_domain, tmp_path, case):
+    [found] = cold_starts(ros_domain, tmp_path, [case], 280, XDG_CACHE_HOME=str(tmp_path / 'cache'))
+    assert any((tmp_path / 'cache').rglob('*.nbc'))
+    assert found['first_times'] == []
+    assert found['dearest_tick'] < COMPILED_IN
