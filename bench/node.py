@@ -39,7 +39,8 @@ def floor(rate):
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+    from rigid_body_sim.messages.tick_messages import TickMessages
     from rigid_body_sim.node.shutdown import leave, signals
     from rigid_body_sim.node.ticking import Steady, Ticker
     from rigid_body_sim.simulation.simulation import Simulation
@@ -192,7 +193,8 @@ def main():
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
     from rigid_body_sim.compilation.environment import processor
-    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+    from rigid_body_sim.messages.tick_messages import TickMessages
     from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
     simulation = Simulation('tennis_racket')

@@ -29,6 +29,7 @@ import numpy as np
 
 from rigid_body_sim.messages.definitions import definition
 from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.recording.mcap.compression import records_of
 from rigid_body_sim.recording.mcap.reading import FileReader
 from rigid_body_sim.recording.mcap.walk import heads, walk
@@ -61,18 +62,10 @@ class Racket:
         simulation = Simulation(scene, rate=rate)
         states = simulation.states(np.arange(count) / rate)
         self.stamps = time.time_ns() + np.arange(count) * round(1e9 / rate)
-        packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
-        columns = [
-            output.columns(self.stamps, states, *simulation.diagnose(states))
-            for output in EVERY_TICK
-        ]
-        self.rows = [
-            packer.pack_many(column) for packer, column in zip(packers, columns, strict=True)
-        ]
-        self.ticking = [
-            (Topic(f'/{output.name}', output.type), packer.size)
-            for output, packer in zip(EVERY_TICK, packers, strict=True)
-        ]
+        messages = TickMessages(EVERY_TICK, simulation.scene, Frames())
+        self.rows = messages.columns(states.vector, *simulation.diagnose(states), self.stamps)
+        self.ticking = [(Topic(f'/{output.name}', output.type), size)
+                        for output, size in zip(EVERY_TICK, messages.sizes, strict=True)]
         self.payload = sum(rows.size for rows in self.rows)
 
 

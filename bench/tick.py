@@ -22,7 +22,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import node as node_bench
 
 from rigid_body_sim.cli import simulate
-from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames, TickMessages
+from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.precision import suite

@@ -16,7 +16,8 @@ from tqdm import tqdm
 from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.messages import state_topics
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.needed import need_mcap
@@ -48,18 +49,21 @@ class Recording:
     simulation : Simulation
     parameters : dict
         What the command was told.
+    publish : sequence of str
+        Topics beside those of every tick, by the names of state_topics.ON_REQUEST.
     writing : dict
         ``compression_name``, ``split_bytes``, ``split_seconds`` of the Writer.
     """
 
-    def __init__(self, path, simulation, parameters, **writing):
+    def __init__(self, path, simulation, parameters, publish=(), **writing):
         need_mcap()
         from rigid_body_sim.recording.writer import Writer
         self._simulation = simulation
-        self._packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
+        outputs = state_topics.chosen(publish)
+        self._messages = TickMessages(outputs, simulation.scene, state_topics.Frames())
         self._journal = journal_topic()
-        ticking = [(Topic(f'/{output.name}', output.type), packer.size)
-                   for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
+        ticking = [(Topic(f'/{output.name}', output.type), size)
+                   for output, size in zip(outputs, self._messages.sizes, strict=True)]
         self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal,
                               about.about(SOURCE, simulation, parameters), **writing)
         self._timeline = Timeline(time.time_ns(), simulation.rate)
@@ -67,11 +71,9 @@ class Recording:
 
     def ticks(self, first, states, events):
         """Record the States of the ticks from `first` up to now, and the events among them."""
-        stamps = np.array([self._timeline.instant(tick)
-                           for tick in range(first, first + len(states))])
-        energies, momenta = self._simulation.diagnose(states)
-        rows = [packer.pack_many(output.columns(stamps, states, energies, momenta))
-                for output, packer in zip(EVERY_TICK, self._packers, strict=True)]
+        stamps = np.array(self._timeline.instants(first, len(states)))
+        rows = self._messages.columns(states.vector, *self._simulation.diagnose(states), stamps,
+                                      self._simulation.wrench)
         begin = 0
         for event in events:
             self._record_ticks(first, begin, event.tick - first, stamps, rows)
@@ -176,6 +178,9 @@ def main(arguments=None):
     add('--set', action='append', default=[], metavar='KEY=VALUE',
         help='change of the scene, key.path=value; may be repeated')
     add('--output', metavar='FOLDER', help='recording to make; it must not exist yet')
+    names = [output.name for output in state_topics.ON_REQUEST]
+    add('--publish', nargs='+', default=[], metavar='TOPIC', choices=names,
+        help=f'topics to record beside those of every tick: {", ".join(names)}')
     add('--compression', choices=compression.NAMES, default=compression.DEFAULT,
         help=f'of chunks ({compression.DEFAULT})')
     add('--split-bytes', type=float, default=0.0, metavar='BYTES',
@@ -204,7 +209,7 @@ def _simulate(options, bar):
                             horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
-        recording = Recording(options.output, simulation, _parameters(options),
+        recording = Recording(options.output, simulation, _parameters(options), options.publish,
                               **_writing(options)) if options.output else None
         prepared = time.perf_counter()
         bar.set_description(simulation.scene.name)
@@ -241,7 +246,7 @@ def _parameters(options):
     """Return what was asked, by the names that the node's parameters have."""
     return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate,
             'integrator': options.integrator, 'accuracy': options.accuracy,
-            'duration': options.duration}
+            'duration': options.duration, 'publish': options.publish}
 
 
 def _writing(options):

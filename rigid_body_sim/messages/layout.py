@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixed layouts: where in a message each number lies.
 
-So one message is packed in under a microsecond, and thousands by NumPy at once. A message whose
-strings and sequences keep their lengths has the same layout each time. Its numbers are then
-*columns*, named by their path:
+A message whose strings and sequences keep their lengths has the same layout each time. Its numbers
+are then *columns*, named by their path:
 
 =================== ======================================== ====================================
 field               column                                   array
@@ -16,12 +15,10 @@ string              ``header.frame_id``                      (n,) bytes
 =================== ======================================== ====================================
 """
 
-import struct
 
 import numpy as np
 
-from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages import cdr, definitions
+from rigid_body_sim.messages import cdr
 
 NANOSECONDS = 1_000_000_000
 _TIME = [('sec', 'i', 1), ('nanosec', 'I', 1)]
@@ -133,89 +130,3 @@ class Layout:
             else:
                 columns[name] = view[name].copy()
         return columns
-
-    def put(self, view, name, values):
-        """Set one column of messages viewed as `dtype`."""
-        if name in self._times:
-            view[f'{name}.sec'], view[f'{name}.nanosec'] = np.divmod(values, NANOSECONDS)
-        else:
-            view[name] = values
-
-
-class Packer:
-    """Messages of one topic: everything constant but a few numbers.
-
-    Parameters
-    ----------
-    type_name : str
-        ``package/msg/Name``, one of the types we ship.
-    constants : dict
-        Nested values of the constant fields, and the lengths of all strings and sequences (a
-        sequence that changes is given as zeros).
-    variable : sequence of str
-        Paths of what changes, with all numbers below them: ``('header.stamp', 'pose')``.
-    """
-
-    def __init__(self, type_name, constants, variable):
-        self.type_name = type_name
-        self._blank = cdr.encode(type_name, constants)
-        self.layout = Layout(definitions.schema(type_name), type_name, self._blank)
-        self.size = len(self._blank)
-        self._runs = []
-        self.count = 0
-        for path, code, offset, count in self.layout.leaves:
-            if code in '#s' or not any(
-                path == name or path.startswith((f'{name}.', f'{name}[')) for name in variable
-            ):
-                continue
-            self._append_run(code, offset, count)
-        if not self._runs:
-            raise BadInput(
-                type_name,
-                f'none of {", ".join(variable)} is a number in it',
-                f'some of {", ".join(self.layout.columns)}',
-            )
-        self._runs = [
-            (struct.Struct('<' + codes).pack_into, offset, first, last)
-            for codes, offset, first, last in self._runs
-        ]
-
-    def _append_run(self, code, offset, count):
-        """Add numbers to the last run of neighbours, or begin another."""
-        codes, first = code * count, self.count
-        self.count += count
-        if self._runs:
-            before, start, first_before, _ = self._runs[-1]
-            if start + struct.calcsize('<' + before) == offset:
-                self._runs[-1] = (before + codes, start, first_before, self.count)
-                return
-        self._runs.append((codes, offset, first, self.count))
-
-    def pack(self, *values):
-        """Return one message of all variable numbers in wire order.
-
-        A time is two integers, seconds and nanoseconds.
-
-        About 0.6 us. struct.error where a number has the wrong type or their count is not `count`.
-        """
-        if len(values) != self.count:
-            raise struct.error(
-                f'{self.type_name} takes {self.count} numbers here, got {len(values)}'
-            )
-        message = bytearray(self._blank)
-        for pack_into, offset, first, last in self._runs:
-            pack_into(message, offset, *values[first:last])
-        return bytes(message)
-
-    def pack_many(self, columns):
-        """Return n messages as uint8 of shape (n, size).
-
-        `columns` maps column names (see the module) to arrays of n rows.
-        """
-        count = len(next(iter(columns.values())))
-        rows = np.empty((count, self.size), np.uint8)
-        rows[:] = np.frombuffer(self._blank, np.uint8)
-        view = rows.view(self.layout.dtype)[:, 0]
-        for name, values in columns.items():
-            self.layout.put(view, name, values)
-        return rows

@@ -7,7 +7,7 @@ from std_srvs.srv import SetBool, Trigger
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import state_topics
-from rigid_body_sim.messages.state_topics import TickMessages
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.journal import open_journal

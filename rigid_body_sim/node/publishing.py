@@ -9,6 +9,7 @@ from std_msgs.msg import String
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import state_topics
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.node import qos
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.topics import Topic
@@ -37,12 +38,12 @@ class Publishing:
     node : rclpy.node.Node
     outputs : list of state_topics.Output
     frames : state_topics.Frames
-    messages : state_topics.TickMessages
+    messages : tick_messages.TickMessages
         Of these outputs, for the scene that runs first.
 
     Attributes
     ----------
-    ticking : state_topics.TickMessages
+    ticking : tick_messages.TickMessages
         Makes the messages of a tick for the present scene.
     """
 
@@ -62,7 +63,7 @@ class Publishing:
 
     def messages_for(self, scene):
         """Return the TickMessages for a scene; BadInput where a topic that is published has no meaning for it."""
-        return state_topics.TickMessages(self._outputs, scene, self._frames)
+        return TickMessages(self._outputs, scene, self._frames)
 
     def tick(self, messages):
         """Publish the messages of a tick, as `ticking` made them."""

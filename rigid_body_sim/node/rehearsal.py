@@ -33,7 +33,7 @@ def rehearse(simulation, messages):
     ----------
     simulation : Simulation
         It stays as it is.
-    messages : state_topics.TickMessages
+    messages : tick_messages.TickMessages
         Makes the messages of its scene.
     """
     patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])

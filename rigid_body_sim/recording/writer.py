@@ -3,13 +3,11 @@
 
 ::
 
-    pose = Packer('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}},
-                  ('header.stamp', 'pose'))
-    with Writer('run', ticking=[(Topic('/pose', pose.type_name), pose.size)],
-                others=[Topic('/scene', 'std_msgs/msg/String')], journal=journal_topic(),
-                about={'scene': text}) as writer:
+    made = TickMessages([OUTPUTS['pose']], scene, Frames())
+    with Writer('run', ticking=[(Topic('/pose', 'geometry_msgs/msg/PoseStamped'), made.sizes[0])], others=[Topic('/scene', 'std_msgs/msg/String')],
+                journal=journal_topic(), about={'scene': text}) as writer:
         writer.message('/scene', stamp, wall_clock, cdr.encode(...))
-        writer.ticks(0, stamps, wall_clocks, [pose.pack_many(columns)])
+        writer.ticks(0, stamps, wall_clocks, made.columns(vectors, energies, squares, stamps))
 
 log_time is the stamp (it never falls: an older one is raised to the last), publish_time the wall
 clock, both in ns; ``sequence`` counts ticks. metadata.yaml is written last, so its counts match

@@ -6,6 +6,7 @@ from rosbags.rosbag2 import Writer as ForeignWriter
 from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
@@ -25,9 +26,9 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
     """
     simulation = Simulation(scene if not isinstance(scene, str) else load_scene(scene), rate=rate)
     spaces = [namespace, *(bodies or ())]
-    packers = [output.packer(simulation.scene, Frames()) for output in EVERY_TICK]
-    ticking = [(Topic(f'{space}/{output.name}', output.type), packer.size)
-               for space in spaces for output, packer in zip(EVERY_TICK, packers, strict=True)]
+    messages = TickMessages(EVERY_TICK, simulation.scene, Frames())
+    ticking = [(Topic(f'{space}/{output.name}', output.type), size)
+               for space in spaces for output, size in zip(EVERY_TICK, messages.sizes, strict=True)]
     others = [Topic(f'{space}/{name}', kind, depth, durability='transient_local')
               for space in spaces for name, kind, depth in (('events', about.STATUS_TYPE, 100), ('scene', about.STRING_TYPE, 1))]
     line = Timeline(START, rate)
@@ -53,9 +54,7 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
                     note('gap', line.instant(left_out[0] - 1), ticks=len(left_out), after=line.instant(left_out[0] - 1), until=stamp)
                 continue
             states = States(simulation.vector[np.newaxis].copy())
-            energies, momenta = simulation.diagnose(states)
-            rows = [packer.pack_many(output.columns(np.array([stamp]), states, energies, momenta))
-                    for output, packer in zip(EVERY_TICK, packers, strict=True)]
+            rows = messages.columns(states.vector, *simulation.diagnose(states), [stamp])
             writer.ticks(tick, [stamp], [stamp + (int(late[tick]) if late is not None else 0)], rows * len(spaces))
             if writer.state_wanted:
                 writer.state_wanted = False

@@ -91,7 +91,7 @@ def test_it_says_all_that_is_needed_to_run_it_again(flipping):
                                    'horizon': 10.0, 'tolerance': 1e-12, 'expected_error': about['simulation']['expected_error']}
     assert 0.0 < about['simulation']['expected_error'] < 1e-13
     assert about['parameters'] == {'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'], 'rate': 500.0,
-                                   'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0}
+                                   'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0, 'publish': []}
     assert {'processor', 'libc', 'python', 'numpy', 'numba', 'sources'} <= set(about['machine'])
     begin, state = recording.journal()
     assert begin['kind'] == 'begin' and begin['scene'] == recording.about['scene']
@@ -116,6 +116,25 @@ def test_json_is_the_state_to_the_last_bit_with_and_without_a_recording(tmp_path
     recorded = json.loads(capsys.readouterr().out)
     assert {**recorded, 'cost': None} == {**result, 'cost': None}
     assert recorded['cost']['messages'] == Recording(tmp_path / 'run').message_count
+
+
+def test_topics_on_request_are_recorded_with_every_tick(tmp_path):
+    """A top: its reaction and proper acceleration are what the simulation tells of the same ticks."""
+    path = tmp_path / 'top'
+    assert main(['--scene', 'heavy_top', '--duration', '0.2', '--output', str(path), '--publish', 'imu', 'odom', 'reaction', 'clock']) == 0
+    simulation = Simulation('heavy_top')
+    times = np.arange(201) / 1000.0
+    states, reactions = simulation.states(times), simulation.reactions(times)
+    recording = Recording(path)
+    assert set(recording.topics) >= {'/pose', '/imu', '/odom', '/reaction', '/clock'}
+    force = recording.read('/reaction', ['wrench.force', 'header.stamp'])
+    assert np.array_equal(force['wrench.force'], reactions.force)
+    assert np.array_equal(recording.read('/pose', ['header.stamp'])['header.stamp'], force['header.stamp'])
+    assert np.array_equal(recording.read('/clock', ['clock'])['clock'], force['header.stamp'])
+    assert np.array_equal(recording.read('/odom', ['twist.twist.angular'])['twist.twist.angular'], states.angular_velocity)
+    assert np.array_equal(recording.read('/imu', ['angular_velocity'])['angular_velocity'], states.angular_velocity)
+    with pytest.raises(SystemExit):
+        main(['--output', str(tmp_path / 'other'), '--publish', 'imo'])
 
 
 def test_no_duration_is_the_first_state_alone(tmp_path, capsys):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages of a tick: decoded by the message classes of ROS, they hold what the state says."""
 
 import importlib
@@ -9,9 +10,10 @@ from rclpy.serialization import deserialize_message
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr, definitions, state_topics
+from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.numerics.rotations import from_rotation_vector, multiply
 from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.scene.state import State, States
+from rigid_body_sim.scene.state import STATE_SIZE, State, States
 
 STAMP = 1_795_263_252_907_662_526
 FRAMES = state_topics.Frames('map', 'racket', '')
@@ -26,7 +28,7 @@ def ros(kind, data):
 def messages(scene, *names, moments=(STATE,), stamp=STAMP):
     """Return the messages of the last of some states, by name, decoded by ROS."""
     outputs = [state_topics.OUTPUTS[name] for name in names]
-    made = state_topics.TickMessages(outputs, load_scene(scene) if isinstance(scene, str) else scene, FRAMES)
+    made = TickMessages(outputs, load_scene(scene) if isinstance(scene, str) else scene, FRAMES)
     for state in moments:
         [data] = made.messages(state.vector[None], [0.1], [0.2], [stamp])
     assert [len(one) for one in data] == made.sizes
@@ -51,18 +53,37 @@ def test_topics_of_every_tick():
     assert (energy.data, square.data) == (0.1, 0.2)
 
 
-def test_many_at_once_are_the_same_bytes():
-    scene = load_scene('free_body')
-    made = state_topics.TickMessages(state_topics.EVERY_TICK, scene, FRAMES)
-    stamps = np.array([STAMP, STAMP + 1_000_000])
-    states = States(np.array([STATE.vector, -STATE.vector]))
-    energies, squares = np.array([0.1, 0.3]), np.array([0.2, 0.4])
+def random_states(count):
+    """Return States, energies, squares and stamps with no two numbers alike."""
+    random = np.random.default_rng(1)
+    states = States(random.normal(size=(count, STATE_SIZE)))
+    states.orientation[:] /= np.linalg.norm(states.orientation, axis=1)[:, np.newaxis]
+    return states, *random.normal(size=(2, count)), random.integers(0, 2 * 10**18, count)
+
+
+SCENES = {'joint_states': 'kater_pendulum', 'reaction': 'heavy_top'}
+EVERY_TOPIC = pytest.mark.parametrize('name', list(state_topics.OUTPUTS))
+
+
+@EVERY_TOPIC
+def test_a_message_is_what_the_encoder_makes(name):
+    output, scene = state_topics.OUTPUTS[name], load_scene(SCENES.get(name, 'free_body'))
+    states, energies, squares, stamps = random_states(1)
+    [[data]] = TickMessages([output], scene, FRAMES).messages(states.vector, energies, squares, stamps)
+    values = cdr.decode(definitions.schema(output.type), output.type, data)
+    assert cdr.encode(output.type, values) == data
+
+
+@EVERY_TOPIC
+def test_many_at_once_are_the_same_bytes_as_one_by_one(name):
+    outputs, scene = [*state_topics.EVERY_TICK, state_topics.OUTPUTS[name]], load_scene(SCENES.get(name, 'free_body'))
+    made = TickMessages(outputs, scene, FRAMES)
+    states, energies, squares, stamps = random_states(5)
     ticks = made.messages(states.vector, energies, squares, stamps)
-    alone = [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1], stamps[k:k + 1])[0] for k in range(2)]
-    assert ticks == alone
-    for output, data in zip(state_topics.EVERY_TICK, zip(*ticks, strict=True), strict=True):
-        columns = output.columns(stamps, states, energies, squares)
-        assert output.packer(scene, FRAMES).pack_many(columns).tobytes() == b''.join(data), output.name
+    assert ticks == [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1], stamps[k:k + 1])[0] for k in range(5)]
+    columns = made.columns(states.vector, energies, squares, stamps)
+    assert [(column.dtype, column.shape) for column in columns] == [(np.uint8, (5, size)) for size in made.sizes]
+    assert [[column[k].tobytes() for column in columns] for k in range(5)] == ticks
 
 
 def test_odometry_has_its_twist_in_body_axes():
@@ -110,7 +131,7 @@ def test_joint_state_counts_the_angle_as_the_scene_does(angle):
     scene = load_scene('kater_pendulum', [f'initial.angle={start}'])
     axis = np.array(scene.constraint.axis)
     turned = from_rotation_vector(*((angle - start) * axis))
-    made = state_topics.TickMessages([state_topics.OUTPUTS['joint_states']], scene, FRAMES)
+    made = TickMessages([state_topics.OUTPUTS['joint_states']], scene, FRAMES)
     vector = State.of(1.0, multiply(*scene.initial.orientation, *turned), 0.7 * axis).vector
     [[data]] = made.messages(vector[None], [0.1], [0.2], [STAMP])
     joint = ros('sensor_msgs/msg/JointState', data)
@@ -141,7 +162,7 @@ def test_clock_is_the_stamp():
 def test_transform_is_the_pose():
     """No class for tf2_msgs among the wheels: decoded by our own codec."""
     kind = 'tf2_msgs/msg/TFMessage'
-    made = state_topics.TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']], load_scene('free_body'), FRAMES)
+    made = TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']], load_scene('free_body'), FRAMES)
     [[_, data]] = made.messages(STATE.vector[None], [0.1], [0.2], [STAMP])
     [transform] = cdr.decode(definitions.schema(kind), kind, data)['transforms']
     assert transform['header'] == {'stamp': {'sec': STAMP // 10**9, 'nanosec': STAMP % 10**9}, 'frame_id': 'map'}

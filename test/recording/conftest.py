@@ -6,9 +6,9 @@ import os
 
 import numpy as np
 import pytest
+from packing import Packed
 
 from rigid_body_sim.messages import cdr
-from rigid_body_sim.messages.layout import Packer
 from rigid_body_sim.recording.topics import Topic, journal_topic
 from rigid_body_sim.recording.writer import Writer
 
@@ -16,18 +16,10 @@ START = 1_700_000_000_000_000_000
 LATE = 41_234
 """By how many ns, times the number of the tick modulo 7, the wall clock is behind the stamp."""
 PACKERS = {
-    '/pose': Packer(
-        'geometry_msgs/msg/PoseStamped',
-        {'header': {'frame_id': 'world'}},
-        ('header.stamp', 'pose'),
-    ),
-    '/angular_velocity': Packer(
-        'geometry_msgs/msg/Vector3Stamped',
-        {'header': {'frame_id': 'body'}},
-        ('header.stamp', 'vector'),
-    ),
-    '/energy': Packer('std_msgs/msg/Float64', {}, ('data',)),
-    '/angular_momentum_squared': Packer('std_msgs/msg/Float64', {}, ('data',)),
+    '/pose': Packed('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}}),
+    '/angular_velocity': Packed('geometry_msgs/msg/Vector3Stamped', {'header': {'frame_id': 'body'}}),
+    '/energy': Packed('std_msgs/msg/Float64', {}),
+    '/angular_momentum_squared': Packed('std_msgs/msg/Float64', {}),
 }
 TICKING = [(Topic(name, packer.type_name), packer.size) for name, packer in PACKERS.items()]
 SCENE = Topic('/scene', 'std_msgs/msg/String', depth=1, durability='transient_local')

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 from mcap.writer import Writer as TheirWriter
+from packing import Packed
 from recording.conftest import START, Ticks
 
 from rigid_body_sim import Recording
@@ -13,7 +14,6 @@ from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.definitions import definition
-from rigid_body_sim.messages.layout import Packer
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
 from rigid_body_sim.recording.writer import Writer
 from rigid_body_sim.scene.scene import load_scene
@@ -60,11 +60,9 @@ def test_states_of_an_interval_keep_their_times(flight):
 def test_velocity_comes_from_odom_turned_into_the_world(tmp_path):
     ticks = Ticks(0, 50)
     turn = np.array([np.sin(0.3), 0.0, 0.0, np.cos(0.3)])       # 0.6 rad about x
-    packers = {'/odom': Packer('nav_msgs/msg/Odometry', {},
-                               ('header.stamp', 'pose.pose', 'twist.twist')),
-               '/pose': Packer('geometry_msgs/msg/PoseStamped', {}, ('header.stamp', 'pose')),
-               '/angular_velocity': Packer('geometry_msgs/msg/Vector3Stamped', {},
-                                           ('header.stamp', 'vector'))}
+    packers = {'/odom': Packed('nav_msgs/msg/Odometry', {}),
+               '/pose': Packed('geometry_msgs/msg/PoseStamped', {}),
+               '/angular_velocity': Packed('geometry_msgs/msg/Vector3Stamped', {})}
     columns = {'/odom': {'twist.twist.linear': np.tile([0.0, 2.0, 0.0], (50, 1))},
                '/pose': {'pose.orientation': np.tile(turn, (50, 1))}, '/angular_velocity': {}}
     ticking = [(Topic(name, packer.type_name), packer.size) for name, packer in packers.items()]
