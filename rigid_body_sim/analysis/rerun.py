@@ -176,8 +176,8 @@ class Rerun:
                 self.simulation.reset()
             elif entry['kind'] == 'commands':
                 self.simulation.forget_past()
-                for _, refusal in self.simulation.command(rows_of(entry['commands'])):
-                    raise refusal
+                for refusal in self.simulation.command(rows_of(entry['commands'])):
+                    raise refusal.error
             elif SIMULATION_PARAMETERS & set(entry['changed']):
                 following = self._simulation(entry['scene'], entry['simulation'])
                 following.follow(self.simulation, entry['keeps_state'])

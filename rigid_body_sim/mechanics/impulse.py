@@ -120,10 +120,16 @@ def push(p, state, force, couple, given):
         return True, 0.0
     exchange = np.empty(EXCHANGE_SIZE)
     solvable = apply_impulse(p, state, force, couple, exchange)
+    add_exchange(exchange, given)
+    return solvable, exchange[WORK]
+
+
+@compiled
+def add_exchange(exchange, given):
+    """Add the work and the angular impulse of an impulse to what was exchanged with the body so far."""
     given[GIVEN_WORK] += exchange[WORK]
     for k in range(3):
         given[GIVEN_IMPULSE + k] += exchange[ANGULAR_IMPULSE + k]
-    return solvable, exchange[WORK]
 
 
 @compiled

@@ -1,13 +1,15 @@
-"""Commands from topics: taken by the tick thread itself, checked, and applied at the next tick, each exactly once and in order.
+# SPDX-License-Identifier: Apache-2.0
+"""Commands from topics: the tick thread takes them itself and applies them at the next tick, in order.
 
-``cmd_wrench`` is held until it is replaced or times out, ``cmd_impulse`` (N s and N m s) acts once. Both are geometry_msgs/WrenchStamped;
-the frame_id is the body's or the world's name, empty means the world, and the stamp is ignored. What cannot be right is refused as a whole.
+``cmd_wrench`` is held until it is replaced or times out, ``cmd_impulse`` (N s and N m s) acts once. Both
+are geometry_msgs/WrenchStamped. The frame_id is the name of the body's frame or of the world's; an empty
+one means the world. The stamp is ignored. Messages become rows (simulation/command_rows.py) as soon as
+they are taken; whether the body takes the numbers is for the simulation to say, at the tick.
 """
 
 import collections
 import functools
 import itertools
-import math
 import struct
 
 import numpy as np
@@ -21,28 +23,21 @@ from rigid_body_sim.messages.cdr import ENCAPSULATION
 from rigid_body_sim.node import qos
 from rigid_body_sim.node.doorbell import Doorbell
 from rigid_body_sim.node.gaps import NUMBER, Gaps
-from rigid_body_sim.simulation.command_rows import BODY, FORCE, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
+from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
 
 DEPTH = 10_000
 """Messages that may wait in a subscription: a second of 10,000 a second."""
 MOST_QUEUED = 100_000
 """Commands that may wait for a tick, while paused or at a low rate."""
-LARGEST = 1e100
-"""A number beyond this would overflow in the energies."""
 _LENGTH = struct.Struct('<I').unpack_from
-# encapsulation and stamp (4 and 8 bytes), length and text of the frame_id, the numbers
+# a message: encapsulation and stamp (4 and 8 bytes), length and text of the frame_id, the numbers
 _LITTLE_ENDIAN, _FRAME_FROM, _FRAME_AT, _NUMBERS_SIZE = ENCAPSULATION[:2], 12, 16, 48
 MOST_HEADS = 64
-"""Forms of messages that are known again: padding may hold anything."""
-_REMEDIES = {
-    'malformed': 'a geometry_msgs/msg/WrenchStamped',
-    'the scene refuses commands': 'in the scene file: commands: accept',
-    'too many wait for the next tick': 'resume the node, or send fewer',
-}
+"""Number of message heads that are remembered; padding may hold anything."""
 
 
 class TakenElsewhere(CallbackGroup):
-    """A group whose messages the executor leaves alone, for the tick thread takes them."""
+    """A group of subscriptions that the executor leaves alone: the tick thread takes their messages."""
 
     def can_execute(self, entity):
         """Return that the executor does not serve an entity."""
@@ -54,8 +49,8 @@ class TakenElsewhere(CallbackGroup):
         """Do nothing."""
 
 
-def decode(data):
-    """Return the frame_id (bytes) of a serialised WrenchStamped, and where its six numbers end.
+def decode(data: bytes) -> tuple[bytes, int]:
+    """Return the frame_id of a serialised WrenchStamped, and where its six numbers end.
 
     Raises
     ------
@@ -75,21 +70,23 @@ def decode(data):
 
 
 class Commands:
-    """The two subscriptions and the queue between them and the next tick.
+    """The two subscriptions, and the queue between them and the next tick.
 
     Parameters
     ----------
     node : rclpy.node.Node
-    frames : topics.Frames
+    frames : state_topics.Frames
 
     Attributes
     ----------
     report : callable
-        To be set: called by :meth:`look` with (topic, reason, what was got, the line that would be right) for each refused message.
+        To be set: called with (topic, reason, what was got, what would be right) for each refused
+        command.
     received, accepted, applied, waiting : int
-        Messages so far, and those that wait for the next tick.
+        Messages so far: all, those that became a row, those that the body took; rows that wait for the
+        next tick.
     refusals : collections.Counter
-        Refused messages by reason.
+        Refused commands by reason.
     """
 
     def __init__(self, node, frames):
@@ -100,28 +97,33 @@ class Commands:
         self.refusals = collections.Counter()
         self._rows = []
         group = TakenElsewhere()
-        self._subscriptions = {kind: self._subscribe(node, TOPICS[kind], group) for kind in (HOLD, IMPULSE)}
+        self._subscriptions = {kind: self._subscribe(node, TOPICS[kind], group)
+                               for kind in (HOLD, IMPULSE)}
         self._mismatches = [qos.SubscriptionMismatch(node, TOPICS[kind], subscription.qos_profile)
                             for kind, subscription in self._subscriptions.items()]
         self._bell = Doorbell(node, list(self._subscriptions.values()))
-        self._takers = [(kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
-                        for kind, subscription in self._subscriptions.items()]
-        self._gaps = {kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind])) for kind in (HOLD, IMPULSE)}
-        # what rows begin with, by what messages have between stamp and numbers: senders hardly ever change it
+        self._takers = [
+            (kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
+            for kind, subscription in self._subscriptions.items()]
+        self._gaps = {kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind]))
+                      for kind in (HOLD, IMPULSE)}
+        # the beginning of a row, by the bytes that a message has between its stamp and its numbers:
+        # senders hardly ever change them
         self._heads = {HOLD: {}, IMPULSE: {}}
 
     @staticmethod
     def _subscribe(node, topic, group):
         return node.create_subscription(
-            WrenchStamped, topic, lambda _: None, QoSProfile(depth=DEPTH), callback_group=group, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False), qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
+            WrenchStamped, topic, lambda _: None, QoSProfile(depth=DEPTH), callback_group=group,
+            raw=True, event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
 
-    def take(self, scene_accepts):
-        """Take what has come, at a tick: the tick thread calls this and :meth:`look`, nobody else."""
+    def take(self):
+        """Take what has come, if the bell rang; only the tick thread calls this and :meth:`look`."""
         if not self._bell.silent():
-            self.look(scene_accepts)
+            self.look()
 
-    def look(self, scene_accepts):
+    def look(self):
         """Take all that has come."""
         found = 0
         for kind, take in self._takers:
@@ -129,56 +131,61 @@ class Commands:
             if taken:
                 found += len(taken)
                 self._gaps[kind].look([about[NUMBER] for _, about in taken])
-                self._receive(kind, [data for data, _ in taken], scene_accepts)
+                self._receive(kind, [data for data, _ in taken])
         self._bell.answer(found)
 
     @property
-    def lost(self):
-        """Messages that never came, since more than DEPTH waited or for another reason."""
+    def lost(self) -> int:
+        """Messages that never came, because more than DEPTH waited or for another reason."""
         return sum(gaps.lost for gaps in self._gaps.values())
 
-    def collect(self):
-        """Return the commands that wait, in their order (command_rows.py); they wait no more."""
+    def collect(self) -> np.ndarray:
+        """Return the rows that wait, in their order; they wait no more."""
         rows = self._rows[0] if len(self._rows) == 1 else np.concatenate(self._rows)
         self._rows, self.waiting = [], 0
         return rows
 
     def look_for_mismatches(self):
-        """Warn of publishers whose commands do not arrive; from another thread, now and then."""
+        """Warn of publishers whose commands do not arrive; another thread calls this now and then."""
         for mismatch in self._mismatches:
             mismatch.look()
 
     def remove(self):
-        """Take away what the node would not find by itself."""
+        """Remove from the node what it would not find by itself."""
         self._bell.remove()
 
-    def _receive(self, kind, messages, scene_accepts):
-        """Put into the queue what may be right among some messages of a topic, refuse the rest."""
+    def _receive(self, kind, messages):
+        """Queue the rows of some messages of a topic; refuse messages that are no command."""
         self.received += len(messages)
-        heads, pieces, topic = self._heads[kind], [], TOPICS[kind]
+        heads, pieces = self._heads[kind], []
         for data in messages:
             head = heads.get(data[_FRAME_FROM:-_NUMBERS_SIZE])
             if head is None or data[:2] != _LITTLE_ENDIAN:
                 head, data = self._examine(kind, data)
             if head is not None:
                 pieces += head, data[-_NUMBERS_SIZE:]
-        if not pieces:
-            return
         rows = np.frombuffer(bytearray().join(pieces)).reshape(-1, WIDTH)
-        # so written, it is false for what is not a number too
-        if not (scene_accepts and self.waiting + len(rows) <= MOST_QUEUED and rows.min() >= -LARGEST and rows.max() <= LARGEST):
-            rows = self._sift(topic, rows, scene_accepts)
-        self._rows.append(rows)
-        self.waiting += len(rows)
-        self.accepted += len(rows)
+        room = MOST_QUEUED - self.waiting
+        for _ in range(room, len(rows)):
+            self.refuse(TOPICS[kind], 'too many wait for the next tick',
+                        f'one more than {MOST_QUEUED}', 'resume the node, or send fewer')
+        rows = rows[:room]
+        if len(rows):
+            self._rows.append(rows)
+            self.waiting += len(rows)
+            self.accepted += len(rows)
 
     def _examine(self, kind, data):
-        """Return what the row of a message begins with, None if it is refused, and the message without what may follow its numbers."""
+        """Return the beginning of a message's row, and the message up to the end of its numbers.
+
+        The beginning is None if the message is refused.
+        """
         topic = TOPICS[kind]
         try:
             frame, end = decode(data)
         except ValueError as error:
-            self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}')
+            self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}',
+                        'a geometry_msgs/msg/WrenchStamped')
             return None, data
         axes = self._axes.get(frame)
         if axes is None:
@@ -189,30 +196,15 @@ class Commands:
             self._heads[kind][data[_FRAME_FROM:-_NUMBERS_SIZE]] = head
         return head, data[:end]
 
-    def _sift(self, topic, rows, scene_accepts):
-        """Refuse what cannot be right, and what is beyond what may wait; return the other rows."""
-        kept = []
-        for row in rows:
-            numbers = row[FORCE.start:].tolist()
-            got = f'force {tuple(numbers[:3])}, torque {tuple(numbers[3:])}'
-            if not all(map(math.isfinite, numbers)):
-                self.refuse(topic, 'not finite', got)
-            elif max(map(abs, numbers)) > LARGEST:
-                self.refuse(topic, 'too large', got)
-            elif not scene_accepts:
-                self.refuse(topic, 'the scene refuses commands', 'a command')
-            elif self.waiting + len(kept) >= MOST_QUEUED:
-                self.refuse(topic, 'too many wait for the next tick', f'one more than {MOST_QUEUED}')
-            else:
-                kept.append(row)
-        return np.array(kept).reshape(-1, WIDTH)
+    def refuse(self, topic: str, reason: str, got: str, remedy: str = ''):
+        """Count a command that is not applied, and report it with what would be right.
 
-    def refuse(self, topic, reason, got, remedy=None):
-        """Count a command that is not applied, and report it with the line that would be right."""
+        Without a remedy that is the shell command that sends a right one.
+        """
         self.refusals[reason] += 1
-        self.report(topic, reason, got, remedy or _REMEDIES.get(reason) or self._example(topic))
+        self.report(topic, reason, got, remedy or self._example(topic))
 
     def _example(self, topic):
         full_name = self._subscriptions[TOPICS.index(topic)].topic_name
-        return (f'ros2 topic pub --once {full_name} geometry_msgs/msg/WrenchStamped '
-                f'"{{header: {{frame_id: {self._frames.body}}}, wrench: {{torque: {{x: 0.1}}}}}}"')
+        return (f'ros2 topic pub --once {full_name} geometry_msgs/msg/WrenchStamped "{{header: '
+                f'{{frame_id: {self._frames.body}}}, wrench: {{torque: {{x: 0.1}}}}}}"')

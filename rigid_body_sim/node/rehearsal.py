@@ -80,7 +80,7 @@ class _Queue:
     def put(self, rows):
         self._rows, self.waiting = rows, len(rows)
 
-    def take(self, scene_accepts):
+    def take(self):
         """Nothing else comes."""
 
     def collect(self):

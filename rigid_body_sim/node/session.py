@@ -23,12 +23,15 @@ from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 from rigid_body_sim.scene.state import States
+from rigid_body_sim.simulation.admission import NOT_FINITE, REASONS, TOO_MUCH_WORK
 from rigid_body_sim.simulation.command_rows import HOLD, KIND, LET_GO, RELEASE, TOPICS
 
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
 AHEAD = 64
 """How many ticks are made ahead at 1 kHz or less; at higher rates fewer, so that making them fits between two ticks."""
+WITH_EXAMPLE = (REASONS[NOT_FINITE], REASONS[TOO_MUCH_WORK])
+"""Reasons of refusals that are reported with a command that would be right."""
 QUIET = 16
 """For how many ticks after a disturbance nothing is made ahead."""
 
@@ -107,7 +110,7 @@ class Session:
         if self._requests:
             self._catch_up()
             self._serve_requests()
-        self._commands.take(self.simulation.scene.accepts_commands)
+        self._commands.take()
         if self._commands.waiting or self._release_tick is not None:
             self._catch_up()
             self._command(tick)
@@ -165,7 +168,7 @@ class Session:
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
         if self.timeline is None:
             return
-        self._commands.look(self.simulation.scene.accepts_commands)
+        self._commands.look()
         if self._balance_wanted:
             self.take_balance()
 
@@ -248,10 +251,12 @@ class Session:
 
     def _take_effect(self, tick, rows):
         refused = self.simulation.command(rows)
-        for place, refusal in refused:
-            self._commands.refuse(TOPICS[int(rows[place, KIND])], 'the body cannot take it', refusal.problem, refusal.remedy)
+        for refusal in refused:
+            remedy = '' if refusal.reason in WITH_EXAMPLE else refusal.error.remedy
+            self._commands.refuse(TOPICS[int(rows[refusal.place, KIND])], refusal.reason,
+                                  refusal.error.problem.removeprefix('got '), remedy)
         if refused:
-            rows = np.delete(rows, [place for place, _ in refused], axis=0)
+            rows = np.delete(rows, [refusal.place for refusal in refused], axis=0)
         if not len(rows):
             return
         kinds = set(rows[:, KIND].tolist())

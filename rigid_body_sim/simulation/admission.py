@@ -1,99 +1,153 @@
-"""What is no command, and what a body cannot take: each command of a tick is tried on what those before it leave of the state."""
+# SPDX-License-Identifier: Apache-2.0
+"""Admission of commands: the one place that decides whether the body takes a command, and applies it.
+
+The impulses of a tick are added before they act, so opposite ones cancel to the last bit. Each command is
+tried with the sum of those before it: the body's state after the sum is computed once for each command,
+and the state after the last impulse taken is the state from which the motion goes on.
+"""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.compilation.jit import compiled_allocating
+from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.impulse import EXCHANGE_SIZE, WORK, apply_impulse
+from rigid_body_sim.mechanics.parameters import MOMENTS
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
-from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, FRAMES, IMPULSE, KIND, TORQUE
+from rigid_body_sim.simulation.command_rows import (
+    AXES,
+    BODY,
+    FORCE,
+    IMPULSE,
+    KIND,
+    NAMES,
+    TORQUE,
+    not_three_numbers,
+)
 
 LARGEST_WORK = 1e250
-"""Work (J) of all impulses of a tick, and of what is held within it: energies stay far below what a double holds."""
+"""Largest work (J) of the impulses of a tick, and of a wrench within it, so that energies fit a double."""
 LARGEST_TURN = 1e7
-"""Angle (rad) through which a held wrench may turn the body within a tick: beyond, a tick would take minutes."""
+"""Largest angle (rad) that a held wrench may turn the body within a tick: beyond, a tick takes minutes."""
 
 TAKEN, NOT_FINITE, NOT_SOLVABLE, TOO_MUCH_WORK, TOO_FAST = range(5)
 """Verdicts on a command."""
-
-# layout of what the impulses of a tick add up to: force, torque (world axes), work
-SUM_FORCE, SUM_TORQUE, SUM_WORK = slice(0, 3), slice(3, 6), 6
-SUM_SIZE = 7
+SCENE_REFUSES = 'the scene refuses commands'
+REASONS = ('', 'not finite', 'the body cannot take it', 'too large', 'the body cannot take it')
+"""The reason of each verdict, as events and diagnostics name it."""
 _F, _T, _Q, _W = FORCE.start, TORQUE.start, ORIENTATION.start, ANGULAR_VELOCITY.start
 
 
-def well_formed(force, torque, frame, what):
-    """Return the row (command_rows.py) without its kind of a force and a torque; BadInput if they or the frame are none."""
-    force, torque = tuple(map(float, force)), tuple(map(float, torque))
-    if (len(force), len(torque)) != (3, 3) or not all(map(math.isfinite, force + torque)):
-        raise BadInput(what, f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each')
-    if frame not in FRAMES:
-        raise BadInput(what, f'got frame {frame!r}', "'world' or 'body'")
-    return (FRAMES.index(frame), *force, *torque)
+class Refusal(NamedTuple):
+    """A command that is not taken; nothing comes of it.
+
+    Attributes
+    ----------
+    place : int
+        Its row.
+    reason : str
+        In words: SCENE_REFUSES or one of REASONS.
+    error : BadInput
+        What is wrong, with the numbers, and what would be right.
+    """
+
+    place: int
+    reason: str
+    error: BadInput
+
+
+class Given(NamedTuple):
+    """What the commands of one tick amount to so far, filled by :func:`admit`.
+
+    Attributes
+    ----------
+    start : array (14,)
+        The state at the tick before its first command. Commands in body axes turn with this attitude.
+    sums : array (6,)
+        Force (N s) and torque (N m s) of all impulses, world axes.
+    after : array (14,)
+        The state after the sums.
+    exchange : array (10,)
+        What the sums exchange with the body (mechanics/impulse.py).
+    """
+
+    start: np.ndarray
+    sums: np.ndarray
+    after: np.ndarray
+    exchange: np.ndarray
+
+    @classmethod
+    def at(cls, vector: np.ndarray) -> 'Given':
+        """Return that of no commands at a state (14,)."""
+        return cls(vector.copy(), np.zeros(6), vector.copy(), np.zeros(EXCHANGE_SIZE))
+
+    @property
+    def any_impulse(self) -> bool:
+        """Whether the impulses do not cancel."""
+        return any(self.sums.tolist())
 
 
 @compiled_allocating
-def take(p, rate, start, rows, left, sums, verdicts, amounts):
-    """Add up the impulses of a tick, and find what is held from it on, each command tried on what those before it leave of the state.
+def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
+    """Take the commands of a tick, in their order.
 
     Parameters
     ----------
     p : array
-        Of mechanics/parameters.py.
+        See mechanics/parameters.py.
     rate : float
-        Ticks per second: what is held is tried as what it gives in a tick.
-    start : array (14,)
-        The state at the tick before its first command; commands in body axes turn with its attitude, so that opposite ones cancel.
+        Ticks per second: a held wrench is tried as the impulse that it gives in a tick.
     rows : array (n, 8)
         See command_rows.py.
-    left : array (14,)
-        The state that the impulses so far leave, and sums, shape (7,), what they add up to; both are changed in place.
+    start, sums, after, exchange : array
+        Of a Given; the last three are changed in place.
     verdicts, amounts : array (n,)
-        Filled with what becomes of each command, and with what is too much: J or rad.
+        Filled with the verdict on each command, and with the amount that is too large: J or rad.
 
     Returns
     -------
     int, int
-        Place of the last row that holds or releases, -1 if there is none; how many are not taken.
+        Row of the last command that holds or releases, -1 if there is none; number of refused commands.
     """
     last, taken = -1, 0
-    force, torque, after, exchange = np.empty(3), np.empty(3), np.empty(STATE_SIZE), np.empty(EXCHANGE_SIZE)
+    alone, total = np.empty(6), np.empty(6)
+    trial, trial_exchange = np.empty(STATE_SIZE), np.empty(EXCHANGE_SIZE)
+    some_do_not_turn = p[MOMENTS] == 0.0 or p[MOMENTS + 1] == 0.0 or p[MOMENTS + 2] == 0.0
     for k in range(len(rows)):
         row = rows[k]
         impulse = row[KIND] == IMPULSE
-        fx, fy, fz, tx, ty, tz = row[_F], row[_F + 1], row[_F + 2], row[_T], row[_T + 1], row[_T + 2]
         acts, finite = False, True
         for j in range(_F, _T + 3):
             acts = acts or row[j] != 0.0
             finite = finite and math.isfinite(row[j])
-        if row[AXES] == BODY:
-            fx, fy, fz = rotate(start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3], fx, fy, fz)
-            tx, ty, tz = rotate(start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3], tx, ty, tz)
-        share = 1.0 if impulse else rate
-        force[0], force[1], force[2] = fx / share, fy / share, fz / share
-        torque[0], torque[1], torque[2] = tx / share, ty / share, tz / share
-        for j in range(STATE_SIZE):
-            after[j] = left[j]
-        solvable = apply_impulse(p, after, force, torque, exchange)
-        work = exchange[WORK]
-        turn = max(abs(after[_W]), abs(after[_W + 1]), abs(after[_W + 2])) / rate
+        _to_world(row, start, 1.0 if impulse else rate, alone)
+        solvable = True
+        if some_do_not_turn:
+            # asked of the command alone: in a sum that nearly cancels, rounding looks like a torque
+            solvable = _apply(p, start, alone, trial, trial_exchange)
+        for j in range(6):
+            total[j] = sums[j] + alone[j]
+        _apply(p, start, total, trial, trial_exchange)
+        work = trial_exchange[WORK]
+        turn = max(abs(trial[_W]), abs(trial[_W + 1]), abs(trial[_W + 2])) / rate
         verdicts[k], amounts[k] = TAKEN, 0.0
         if not finite:
             verdicts[k] = NOT_FINITE
         elif not solvable:
             verdicts[k] = NOT_SOLVABLE
-        elif not max(abs(work), abs(sums[SUM_WORK] + work)) <= LARGEST_WORK:
+        elif not abs(work) <= LARGEST_WORK:
             verdicts[k], amounts[k] = TOO_MUCH_WORK, work
         elif impulse:
-            sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
-            sums[3], sums[4], sums[5] = sums[3] + tx, sums[4] + ty, sums[5] + tz
-            sums[SUM_WORK] += work
             taken += 1
+            for j in range(6):
+                sums[j] = total[j]
             for j in range(STATE_SIZE):
-                left[j] = after[j]
+                after[j] = trial[j]
+            for j in range(EXCHANGE_SIZE):
+                exchange[j] = trial_exchange[j]
         elif acts and turn > LARGEST_TURN:
             verdicts[k], amounts[k] = TOO_FAST, turn
         else:
@@ -102,19 +156,61 @@ def take(p, rate, start, rows, left, sums, verdicts, amounts):
     return last, len(rows) - taken
 
 
-def refusal(verdict, amount, row, attitude):
+@compiled
+def _to_world(row, start, share, out):
+    """Fill out, shape (6,), with force and torque of a row divided by `share`, in world axes."""
+    fx, fy, fz, tx, ty, tz = row[_F], row[_F + 1], row[_F + 2], row[_T], row[_T + 1], row[_T + 2]
+    if row[AXES] == BODY:
+        qx, qy, qz, qw = start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3]
+        fx, fy, fz = rotate(qx, qy, qz, qw, fx, fy, fz)
+        tx, ty, tz = rotate(qx, qy, qz, qw, tx, ty, tz)
+    out[0], out[1], out[2] = fx / share, fy / share, fz / share
+    out[3], out[4], out[5] = tx / share, ty / share, tz / share
+
+
+@compiled
+def _apply(p, start, given, after, exchange):
+    """Fill `after` and `exchange` with what an impulse (6,) does to a state; return if it can be."""
+    some = False
+    for j in range(len(start)):
+        after[j] = start[j]
+    for j in range(len(exchange)):
+        exchange[j] = 0.0
+    for j in range(6):
+        some = some or given[j] != 0.0
+    return not some or apply_impulse(p, after, given[:3], given[3:], exchange)
+
+
+def scene_refuses(scene_name: str, count: int) -> list[Refusal]:
+    """Return the refusals of commands to a scene that takes none."""
+    error = BadInput('command', f'the scene {scene_name} refuses commands',
+                     'its key `commands` says so; set commands: accept')
+    return [Refusal(place, SCENE_REFUSES, error) for place in range(count)]
+
+
+def refusals(verdicts: np.ndarray, amounts: np.ndarray, rows: np.ndarray,
+             start: np.ndarray) -> list[Refusal]:
+    """Return the Refusal of each row that :func:`admit` did not take."""
+    attitude = start[ORIENTATION].tolist()
+    return [Refusal(place, REASONS[verdicts[place]],
+                    _error(verdicts[place], amounts.item(place), rows[place], attitude))
+            for place in np.flatnonzero(verdicts).tolist()]
+
+
+def _error(verdict, amount, row, attitude):
     """Return the BadInput that says why a command is not taken."""
-    what = 'impulse' if row[KIND] == IMPULSE else 'wrench'
-    force, torque = row[FORCE].tolist(), row[TORQUE].tolist()
+    kind, force, torque = int(row[KIND]), row[FORCE].tolist(), row[TORQUE].tolist()
     if verdict == NOT_FINITE:
-        return BadInput(what, f'got force {force}, torque {torque}', 'three finite numbers each')
+        return not_three_numbers(kind, force, torque)
     if row[AXES] == BODY:
         force, torque = list(rotate(*attitude, *force)), list(rotate(*attitude, *torque))
     if verdict == NOT_SOLVABLE:
-        return BadInput(what, f'torque {torque} (world axes) about an axis of zero moment',
+        return BadInput(NAMES[kind], f'torque {torque} (world axes) about an axis of zero moment',
                         'leave that component 0: an axis without moment takes no angular momentum')
     if verdict == TOO_MUCH_WORK:
-        return BadInput(what, f'force {force}, torque {torque} would do a work of {amount!r} J',
+        return BadInput(NAMES[kind],
+                        f'force {force}, torque {torque} would do a work of {amount!r} J',
                         f'at most {LARGEST_WORK:g} J in a tick: energies are doubles')
-    return BadInput(what, f'torque {torque} would turn the body by {amount:.3g} rad within a tick',
+    return BadInput(NAMES[kind],
+                    f'torque {torque} would turn the body by {amount:.3g} rad within a tick',
                     f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')

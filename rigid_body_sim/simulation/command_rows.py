@@ -1,21 +1,30 @@
-"""Commands as rows of doubles: what a node takes, a simulation applies and a recording keeps; one array holds all of a tick, in their order.
+# SPDX-License-Identifier: Apache-2.0
+"""Commands as rows of doubles: one form from the topic to the body and to the recording.
 
-====== ======= ===================================================================================================================
+The node takes rows from its topics, a simulation applies them, a recording keeps them. One array holds
+the commands of a tick in their order.
+
+====== ======= ==================================================================================
 column name    meaning
-====== ======= ===================================================================================================================
-0      KIND    IMPULSE: force and torque are impulses (N s, N m s), and act once; HOLD: they are held (N, N m) until the next hold;
-               RELEASE: the held ones end
+====== ======= ==================================================================================
+0      KIND    IMPULSE: force and torque are impulses (N s, N m s) and act once; HOLD: they are
+               held (N, N m) until the next hold; RELEASE: what is held ends
 1      AXES    of the components: WORLD, or BODY (they turn with the body while held)
 2:5    FORCE   at the centre of mass
 5:8    TORQUE
-====== ======= ===================================================================================================================
+====== ======= ==================================================================================
 """
 
 import numpy as np
 
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.wrench import Wrench
+
 IMPULSE, HOLD, RELEASE = range(3)
 TOPICS = ('cmd_impulse', 'cmd_wrench', 'release')
 """Of each kind, as the journal of a recording names it."""
+NAMES = ('impulse', 'wrench', 'release')
+"""Of each kind, as an error names it."""
 WORLD, BODY = range(2)
 FRAMES = ('world', 'body')
 
@@ -25,13 +34,51 @@ ZERO = (0.0, 0.0, 0.0)
 LET_GO = np.array([(RELEASE, WORLD, *ZERO, *ZERO)])
 
 
-def rows_of(commands):
-    """Return the rows of commands as a journal has them: dicts with ``topic``, ``frame``, ``force``, ``torque``."""
-    rows = [(TOPICS.index(one['topic']), FRAMES.index(one['frame']), *one['force'], *one['torque']) for one in commands]
+def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
+    """Return one command as an array of shape (1, 8).
+
+    Parameters
+    ----------
+    kind : int
+        IMPULSE or HOLD.
+    force, torque : sequence of 3 floats
+    frame : {'world', 'body'}
+
+    Raises
+    ------
+    BadInput
+        If these are not three numbers each, or the frame is unknown. Whether a body can take the numbers
+        is for the simulation to say (admission.py).
+    """
+    force, torque = tuple(map(float, force)), tuple(map(float, torque))
+    if (len(force), len(torque)) != (3, 3):
+        raise not_three_numbers(kind, force, torque)
+    if frame not in FRAMES:
+        raise BadInput(NAMES[kind], f'got frame {frame!r}', "'world' or 'body'")
+    return np.array([(kind, FRAMES.index(frame), *force, *torque)])
+
+
+def not_three_numbers(kind: int, force, torque) -> BadInput:
+    """Return the error for a force and a torque that are not three finite numbers each."""
+    return BadInput(NAMES[kind], f'got force {list(force)}, torque {list(torque)}',
+                    'three finite numbers each')
+
+
+def wrench_of(row: np.ndarray) -> Wrench:
+    """Return the Wrench that a row holds from its tick on: the zero wrench if it lets go."""
+    force, torque = tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist())
+    return Wrench(force, torque, FRAMES[int(row[AXES])]) if any(force + torque) else Wrench()
+
+
+def rows_of(commands) -> np.ndarray:
+    """Return the rows of commands as a journal has them: topic, frame, force and torque of each."""
+    rows = [(TOPICS.index(one['topic']), FRAMES.index(one['frame']), *one['force'], *one['torque'])
+            for one in commands]
     return np.array(rows, dtype=float).reshape(-1, WIDTH)
 
 
-def commands_of(rows):
+def commands_of(rows: np.ndarray) -> list[dict]:
     """Return rows as the dicts that :func:`rows_of` takes."""
-    return [{'topic': TOPICS[int(kind)], 'frame': FRAMES[int(axes)], 'force': numbers[:3], 'torque': numbers[3:]}
+    return [{'topic': TOPICS[int(kind)], 'frame': FRAMES[int(axes)],
+             'force': numbers[:3], 'torque': numbers[3:]}
             for kind, axes, *numbers in rows.tolist()]

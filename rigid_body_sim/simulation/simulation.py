@@ -24,25 +24,15 @@ from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
-from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, State, States
-from rigid_body_sim.simulation import admission
+from rigid_body_sim.scene.state import STATE_SIZE, State, States
 from rigid_body_sim.simulation.admission import (
     LARGEST_WORK,
-    SUM_FORCE,
-    SUM_SIZE,
-    SUM_TORQUE,
-    SUM_WORK,
-    well_formed,
+    Given,
+    admit,
+    refusals,
+    scene_refuses,
 )
-from rigid_body_sim.simulation.command_rows import (
-    AXES,
-    FORCE,
-    FRAMES,
-    HOLD,
-    IMPULSE,
-    LET_GO,
-    TORQUE,
-)
+from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, row_of, wrench_of
 from rigid_body_sim.simulation.spans import Event, Span
 
 LOOKS = 1024    # parts of the time ahead in which at_event looks first
@@ -282,7 +272,7 @@ class Simulation:
         BadInput
             Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
         """
-        self._command_one((IMPULSE, *well_formed(force, torque, frame, 'impulse')))
+        self._command_one(row_of(IMPULSE, force, torque, frame))
 
     def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
         """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
@@ -290,15 +280,15 @@ class Simulation:
         The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
         the axes turn with the body. The same errors as for :meth:`impulse`.
         """
-        self._command_one((HOLD, *well_formed(force, torque, frame, 'wrench')))
+        self._command_one(row_of(HOLD, force, torque, frame))
 
     def release(self) -> None:
         """Let go of the held wrench at the present tick."""
         self.command(LET_GO)
 
     def _command_one(self, row):
-        for _, refusal in self.command(np.array([row])):
-            raise refusal
+        for refusal in self.command(row):
+            raise refusal.error
 
     def command(self, rows):
         """Give commands at the present tick, in their order: to the bit what they do one by one, but computed once.
@@ -310,24 +300,20 @@ class Simulation:
 
         Returns
         -------
-        list of (int, BadInput)
-            Place and reason of each command that is not taken, for the same reasons as of :meth:`impulse`; nothing comes of it.
+        list of admission.Refusal
+            The commands that are not taken, for the same reasons as of :meth:`impulse`; nothing comes of them.
         """
         if not self.scene.accepts_commands:
-            refusal = BadInput('command', f'the scene {self.scene.name} refuses commands', 'its key `commands` says so; set commands: accept')
-            return [(k, refusal) for k in range(len(rows))]
+            return scene_refuses(self.scene.name, len(rows))
         if self._commands is None:
-            self._commands = _Commands(len(self._spans), self.wrench, self.vector.copy(), self.vector.copy(), np.zeros(SUM_SIZE))
-        given = self._commands
+            self._commands = _Commands(len(self._spans), self.wrench, Given.at(self.vector))
+        given = self._commands.given
         verdicts, amounts = np.empty(len(rows), np.int64), np.empty(len(rows))
-        last, refused = admission.take(self._mechanics, self.rate, given.start, rows, given.left, given.sums, verdicts, amounts)
+        last, refused = admit(self._mechanics, self.rate, rows, *given, verdicts, amounts)
         if last >= 0:
-            self._commands = given._replace(wrench=_wrench(rows[last]))
+            self._commands = self._commands._replace(wrench=wrench_of(rows[last]))
         self._settle()
-        if not refused:
-            return []
-        attitude = given.start[ORIENTATION].tolist()
-        return [(k, admission.refusal(verdicts[k], amounts.item(k), rows[k], attitude)) for k in np.flatnonzero(verdicts).tolist()]
+        return refusals(verdicts, amounts, rows, given.start) if refused else []
 
     @property
     def wrench(self) -> Wrench:
@@ -434,12 +420,13 @@ class Simulation:
     def _settle(self):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""
         commands, time = self._commands, self.time
-        kept = self._spans[:commands.base]
+        kept, given = self._spans[:commands.base], commands.given
         last = kept[-1]
-        if any(commands.sums[:SUM_WORK].tolist()) or commands.wrench != last.wrench:
-            start, given = commands.start.copy(), last.given + last.solver.exchanged(time)
-            impulse.push(self._mechanics, start, commands.sums[SUM_FORCE], commands.sums[SUM_TORQUE], given)
-            kept = [*kept, self._span(time, start, commands.wrench, last.strikes, given)]
+        if given.any_impulse or commands.wrench != last.wrench:
+            exchanged = last.given + last.solver.exchanged(time)
+            if given.any_impulse:
+                impulse.add_exchange(given.exchange, exchanged)
+            kept = [*kept, self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged)]
         self._spans = kept
         self._arrive()
 
@@ -468,13 +455,11 @@ def _restored(made, spans, kept):
 
 
 class _Commands(typing.NamedTuple):
-    """What the commands of the present tick come to: the number of spans before them, the wrench they leave; state and sums as of take."""
+    """The commands of the present tick: the number of spans before them, the wrench that they leave, and their Given."""
 
     base: int
     wrench: Wrench
-    start: np.ndarray
-    left: np.ndarray
-    sums: np.ndarray
+    given: Given
 
 
 class _Foreseen(typing.NamedTuple):
@@ -488,9 +473,3 @@ class _Foreseen(typing.NamedTuple):
 def _places(spans, times):
     """Return for each time the number of the span it lies in."""
     return np.searchsorted([span.time for span in spans], times, side='right') - 1
-
-
-def _wrench(row):
-    """Return what a row holds from its tick on: the Wrench of all zeros if it lets go."""
-    force, torque = tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist())
-    return Wrench(force, torque, FRAMES[int(row[AXES])]) if any(force) or any(torque) else Wrench()

@@ -106,8 +106,8 @@ class Runner:
     def _command(self, rows):
         if self._simulation is None:
             return
-        for _, refusal in self._simulation.command(rows):
-            self._pipe.send(('refused', str(refusal)))
+        for refusal in self._simulation.command(rows):
+            self._pipe.send(('refused', str(refusal.error)))
         self._expected = None
 
     def _set_speed(self, speed):

@@ -53,9 +53,10 @@ def test_refused_commands_leave_the_others(pair):
     simulation, expected = pair
     bad = np.array([(IMPULSE, BODY, *NONE, 0.0, np.nan, 0.0), (HOLD, WORLD, *NONE, 1e15, 0.0, 0.0), (IMPULSE, WORLD, 1e200, *NONE, 0.0, 0.0)])
     refused = simulation.command(np.concatenate([ROWS[:3], bad, ROWS[3:]]))
-    assert [place for place, _ in refused] == [3, 4, 5]
-    assert [refusal.where for _, refusal in refused] == ['impulse', 'wrench', 'impulse']
-    assert [words in str(refusal) for words, (_, refusal) in zip(
+    assert [refusal.place for refusal in refused] == [3, 4, 5]
+    assert [refusal.reason for refusal in refused] == ['not finite', 'the body cannot take it', 'too large']
+    assert [refusal.error.where for refusal in refused] == ['impulse', 'wrench', 'impulse']
+    assert [words in str(refusal.error) for words, refusal in zip(
         ('three finite numbers', 'rad within a tick', 'energies are doubles'), refused, strict=True)] == [True] * 3
     expected.command(ROWS)
     assert_same(simulation, expected)
@@ -66,8 +67,8 @@ def test_what_is_held_is_tried_on_what_the_impulses_before_it_leave():
     body = load_scene('tennis_racket', ['body={mass: 1.0, inertia: [1.0, 1.0, 1.0]}', 'initial.angular_velocity=[0, 0, 0]'])
     hold, impulse = (HOLD, WORLD, *NONE, 6e12, 0.0, 0.0), (IMPULSE, WORLD, *NONE, 6e9, 0.0, 0.0)
     assert Simulation(body).command(np.array([hold, impulse])) == []
-    [(place, refusal)] = Simulation(body).command(np.array([impulse, hold]))
-    assert (place, refusal.where) == (1, 'wrench')
+    [refusal] = Simulation(body).command(np.array([impulse, hold]))
+    assert (refusal.place, refusal.error.where) == (1, 'wrench')
 
 
 def test_none_changes_nothing(pair):
