@@ -41,8 +41,8 @@ def floor(rate):
 
     from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
     from rigid_body_sim.messages.tick_messages import TickMessages
-    from rigid_body_sim.node.shutdown import leave, signals
-    from rigid_body_sim.node.ticking import Steady, Ticker
+    from rigid_body_sim.realtime.shutdown import leave, signals
+    from rigid_body_sim.realtime.ticking import Steady, Ticker
     from rigid_body_sim.simulation.simulation import Simulation
     simulation = Simulation('tennis_racket')
     ticking = TickMessages(EVERY_TICK, simulation.scene, Frames())
@@ -90,7 +90,7 @@ def subscribe():
     from rclpy.signals import SignalHandlerOptions
     from std_msgs.msg import Float64
 
-    from rigid_body_sim.node.shutdown import leave, signals
+    from rigid_body_sim.realtime.shutdown import leave, signals
     counts = dict.fromkeys(TOPICS, 0)
 
     def count(topic):

@@ -35,9 +35,9 @@ def imports_of(path, name):
             yield part.lineno, part.module
             if part.module == 'rigid_body_sim':
                 yield from ((part.lineno, f'rigid_body_sim.{alias.name}') for alias in part.names)
-        elif isinstance(part, ast.Call) and 'import_module' in ast.unparse(part.func):
-            if part.args and isinstance(part.args[0], ast.Constant):
-                yield part.lineno, part.args[0].value
+        elif (isinstance(part, ast.Call) and 'import_module' in ast.unparse(part.func)
+                and part.args and isinstance(part.args[0], ast.Constant)):
+            yield part.lineno, part.args[0].value
 
 
 def arrows():

@@ -12,7 +12,7 @@ import numpy as np
 from rigid_body_sim.messages.timeline import NANOSECONDS
 
 SLEW = 5e-4                 # s a second: what adjusts clocks gently changes them by no more
-STANDSTILL = 100_000_000    # ns; a node that is further behind slips (node/ticking.py)
+STANDSTILL = 100_000_000    # ns; a node that is further behind slips (realtime/ticking.py)
 FEWEST = 20                 # ticks in a group, which else takes a second
 BINS = 100_000              # of 1 us: up to STANDSTILL
 

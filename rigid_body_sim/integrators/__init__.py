@@ -1,8 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of methods: one file each, one line each.
 
 A method is a module with NAME, ORDER, PRESERVES (what it keeps exactly), SOURCE (where it is published), NEEDS (the view of every effect
 that it asks for, rigid_body_sim/scene/effects/views.py), HEAT (whether it runs scenes in which anything makes heat), TAKES (what controls it:
 accuracy, step) and FAMILY (the module that makes its kernels).
+
+It may import ``motions`` and what lies below.
 """
 
 from rigid_body_sim.integrators.families import runge_kutta

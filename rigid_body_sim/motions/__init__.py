@@ -1,6 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Motions solved in closed form, one file each; the one that absorbs all of a scene makes the scene exact.
 
 A motion declares in `absorbs(scene)` which constraint, effects and bodies it solves whole; `docs/design.md` says how a motion file is built.
+
+It may import ``mechanics`` and what lies below.
 """
 
 import importlib

@@ -10,13 +10,14 @@ from rigid_body_sim.messages import state_topics
 from rigid_body_sim.messages.tick_messages import TickMessages
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
+from rigid_body_sim.node.followed_clock import Followed
 from rigid_body_sim.node.journal import open_journal
-from rigid_body_sim.node.priority import quicken
 from rigid_body_sim.node.publishing import Publishing, frames_of
 from rigid_body_sim.node.rehearsal import rehearse
-from rigid_body_sim.node.session import Session
-from rigid_body_sim.node.shutdown import say, tell
-from rigid_body_sim.node.ticking import Followed, Steady, Ticker
+from rigid_body_sim.realtime.priority import quicken
+from rigid_body_sim.realtime.session import Session
+from rigid_body_sim.realtime.shutdown import say, tell
+from rigid_body_sim.realtime.ticking import Steady, Ticker
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation

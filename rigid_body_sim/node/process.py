@@ -9,7 +9,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.node.shutdown import say
+from rigid_body_sim.realtime.shutdown import say
 
 RCLError = rclpy_implementation.RCLError
 

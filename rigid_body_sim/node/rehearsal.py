@@ -12,8 +12,8 @@ import types
 import numpy as np
 
 from rigid_body_sim.node.journal import NoJournal
-from rigid_body_sim.node.session import QUIET, Session
-from rigid_body_sim.node.shutdown import say
+from rigid_body_sim.realtime.session import QUIET, Session
+from rigid_body_sim.realtime.shutdown import say
 from rigid_body_sim.recording import about
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation

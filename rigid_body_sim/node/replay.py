@@ -7,7 +7,7 @@ import sys
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
-from rigid_body_sim.node.shutdown import leave, say, signals
+from rigid_body_sim.realtime.shutdown import leave, say, signals
 from rigid_body_sim.recording.reader import Recording
 
 EXAMPLES = ('python -m rigid_body_sim replay recordings/racket --rate 0.5 --topics /pose /scene\n'

@@ -16,9 +16,9 @@ from rigid_body_sim.command_line import CHECK_FAILED, GOOD, print_json
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.node.offered_qos import offered_qos
-from rigid_body_sim.node.playing import MOST_REAL_TIME, Player, Reading
-from rigid_body_sim.node.priority import PRIORITY, ask_for_priority, quicken
-from rigid_body_sim.node.shutdown import say, tell
+from rigid_body_sim.realtime.playing import MOST_REAL_TIME, Player, Reading
+from rigid_body_sim.realtime.priority import PRIORITY, ask_for_priority, quicken
+from rigid_body_sim.realtime.shutdown import say, tell
 
 CLOCK_TOPIC = '/clock'
 ACKNOWLEDGED_WITHIN = 1.0

@@ -4,7 +4,7 @@ import importlib
 import sys
 
 from rigid_body_sim import command_line
-from rigid_body_sim.node.shutdown import leave, signals
+from rigid_body_sim.realtime.shutdown import leave, signals
 
 
 def start(name, about, examples, node_class, arguments):

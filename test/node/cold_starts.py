@@ -19,8 +19,8 @@ from geometry_msgs.msg import WrenchStamped
 from numba.core import event as numba_event
 from rclpy.executors import SingleThreadedExecutor
 
-from rigid_body_sim.node.session import QUIET, Session
 from rigid_body_sim.node.simulation_node import SimulationNode
+from rigid_body_sim.realtime.session import QUIET, Session
 
 ALL_THREADS = ('import', 'compile', 'exec')
 TICK_THREAD = (*ALL_THREADS, 'open', 'ctypes.dlopen', 'subprocess.Popen')

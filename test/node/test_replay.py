@@ -18,7 +18,7 @@ from std_srvs.srv import SetBool
 
 from rigid_body_sim.node import replay
 from rigid_body_sim.node.offered_qos import offered_qos
-from rigid_body_sim.node.playing import Player, Reading
+from rigid_body_sim.realtime.playing import Player, Reading
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.topics import Topic
 
@@ -125,8 +125,8 @@ def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
         elif player._paused and clock.now > player.now_paused + SECOND:
             player.resume()
 
-    monkeypatch.setattr('rigid_body_sim.node.playing.time', types.SimpleNamespace(monotonic_ns=lambda: clock.now, sleep=sleep))
-    monkeypatch.setattr('rigid_body_sim.node.playing.ask_for_priority', lambda _: None)
+    monkeypatch.setattr('rigid_body_sim.realtime.playing.time', types.SimpleNamespace(monotonic_ns=lambda: clock.now, sleep=sleep))
+    monkeypatch.setattr('rigid_body_sim.realtime.playing.ask_for_priority', lambda _: None)
     with Recording(recording) as recorded:
         reading = Reading(recorded, ['/energy'], recorded.start_time, recorded.end_time, loop=False)
         told = []

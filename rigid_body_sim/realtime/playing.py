@@ -11,8 +11,8 @@ import time
 from fractions import Fraction
 
 from rigid_body_sim.messages.timeline import NANOSECONDS
-from rigid_body_sim.node.lateness import Lateness
-from rigid_body_sim.node.priority import ask_for_priority
+from rigid_body_sim.realtime.lateness import Lateness
+from rigid_body_sim.realtime.priority import ask_for_priority
 
 CLOCK_PERIOD = 10_000_000
 """From one message on /clock to the next, ns of the steady clock."""

@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PR_CAPBSET_DROP, CAP_SYS_NICE = 24, 23
 SLICES = """
 import ctypes, os, struct
-from rigid_body_sim.node import priority
+from rigid_body_sim.realtime import priority
 def slice():
     attributes = ctypes.create_string_buffer(48)
     assert ctypes.CDLL(None).syscall(priority.SCHED_SETATTR[os.uname().machine] + 1, 0, attributes, 48, 0) == 0    # sched_getattr

@@ -4,8 +4,8 @@ import itertools
 
 import pytest
 
-from rigid_body_sim.node.lateness import Lateness
-from rigid_body_sim.node.ticking import BACKLOG, CLOCK_JUMP, LONGEST_SLEEP, Ticker
+from rigid_body_sim.realtime.lateness import Lateness
+from rigid_body_sim.realtime.ticking import BACKLOG, CLOCK_JUMP, LONGEST_SLEEP, Ticker
 
 MILLISECOND = 1_000_000
 START = 5_000_000_000
@@ -161,7 +161,7 @@ def test_long_waits_look_after_commands():
 
 def test_pause_and_steps_leave_out_no_tick_and_no_time(monkeypatch):
     clock = Clock()
-    monkeypatch.setattr('rigid_body_sim.node.ticking.time.sleep', lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep', lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
     steps = []
 
     def between(work):

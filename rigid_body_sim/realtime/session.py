@@ -19,12 +19,12 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
-from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 from rigid_body_sim.scene.state import States
 from rigid_body_sim.simulation.admission import NOT_FINITE, REASONS, TOO_MUCH_WORK
 from rigid_body_sim.simulation.command_rows import HOLD, KIND, LET_GO, RELEASE, TOPICS
+from rigid_body_sim.theory.prediction import Prediction
 
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""

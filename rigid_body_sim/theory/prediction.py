@@ -21,7 +21,6 @@ import threading
 
 import numpy as np
 
-from rigid_body_sim.node.expectations import Interval, Relaxing, Rolling, Steady, Turning
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.theory import (
@@ -32,6 +31,7 @@ from rigid_body_sim.theory import (
     kater_pendulum,
     symmetric_top,
 )
+from rigid_body_sim.theory.expectations import Interval, Relaxing, Rolling, Steady, Turning
 
 
 def expectation(scene, state):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rigid_body_sim.node.prediction import Prediction
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.theory.prediction import Prediction
 
 
 def compared(scene, overrides, seconds, rate=100.0):

@@ -13,8 +13,8 @@ import time
 from fractions import Fraction
 
 from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
-from rigid_body_sim.node.lateness import Lateness
-from rigid_body_sim.node.priority import ask_for_priority
+from rigid_body_sim.realtime.lateness import Lateness
+from rigid_body_sim.realtime.priority import ask_for_priority
 
 LONGEST_SLEEP = 0.01
 """While it waits longer than this, the thread looks after commands and requests, s."""
@@ -40,34 +40,6 @@ class Steady:
         time.sleep(min(nanoseconds * 1e-9, LONGEST_SLEEP))
 
 
-class Followed:
-    """The node's clock when it follows /clock: it moves when a message says so."""
-
-    follows_clock_topic = True
-
-    def __init__(self, clock):
-        from rclpy.clock import JumpThreshold
-        from rclpy.duration import Duration
-        self._clock = clock
-        self._moved = threading.Event()
-        forward, backward = Duration(nanoseconds=1), Duration(nanoseconds=-1)
-        threshold = JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
-        self._handle = clock.create_jump_callback(threshold, post_callback=lambda _: self._moved.set())
-
-    def now(self):
-        """Return what /clock said last, ns; 0 before it said anything."""
-        return self._clock.now().nanoseconds
-
-    def close(self):
-        """Hear no more of the clock."""
-        self._handle.unregister()
-
-    def wait(self, _):
-        """Wait until /clock moves, at most LONGEST_SLEEP."""
-        self._moved.wait(LONGEST_SLEEP)
-        self._moved.clear()
-
-
 class Ticker(threading.Thread):
     """The thread that runs the ticks.
 
@@ -77,7 +49,8 @@ class Ticker(threading.Thread):
         ``work.begin()`` is called once, just before the first tick; ``work.next_tick`` is the number of the tick to run,
         ``work.run_tick(publish)`` runs it, ``work.between_ticks()`` looks after commands while there is time, ``work.finished`` says that
         there are no more ticks to run.
-    time_source : Steady or Followed
+    time_source : Steady, or what stands for it
+        With ``follows_clock_topic``, ``now()`` (ns), ``wait(nanoseconds)`` and ``close()``.
     rate, real_time_factor : float
         See the parameters of the node; a factor of 0 runs without waiting.
     skip_publish : bool
