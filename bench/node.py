@@ -193,12 +193,11 @@ def main():
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', '97')
     from rigid_body_sim.compilation.environment import processor
-    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
-    from rigid_body_sim.messages.tick_messages import TickMessages
+    from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
     from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
     simulation = Simulation('tennis_racket')
-    rehearse(simulation, TickMessages(EVERY_TICK, simulation.scene, Frames()))
+    rehearse(simulation, scene_messages(chosen(()), simulation.scene, Frames()))
     cases = []
     with tempfile.TemporaryDirectory() as folder:
         for subscribers, rate in itertools.product(options.subscribers, options.rates):

@@ -6,6 +6,7 @@ The recording is the one that the node would write.
 
 import collections
 import contextlib
+import operator
 import signal
 import sys
 import time
@@ -17,8 +18,7 @@ from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import state_topics
-from rigid_body_sim.messages.tick_messages import TickMessages
-from rigid_body_sim.messages.timeline import Timeline
+from rigid_body_sim.messages.timeline import Pace, Timeline
 from rigid_body_sim.recording import about, compression
 from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
@@ -60,11 +60,15 @@ class Recording:
         from rigid_body_sim.recording.writer import Writer
         self._simulation = simulation
         outputs = state_topics.chosen(publish)
-        self._messages = TickMessages(outputs, simulation.scene, state_topics.Frames())
+        self._messages = state_topics.scene_messages(outputs, simulation.scene,
+                                                     state_topics.Frames())
+        self._pace = Pace(state_topics.DISPLAY_RATE, simulation.rate)
+        self._paced = [Topic(f'/{output.name}', output.type) for output in outputs.paced]
         self._journal = journal_topic()
         ticking = [(Topic(f'/{output.name}', output.type), size)
-                   for output, size in zip(outputs, self._messages.sizes, strict=True)]
-        self._writer = Writer(path, ticking, [EVENTS, SCENE], self._journal,
+                   for output, size in zip(outputs.ticking, self._messages.ticking.sizes,
+                                           strict=True)]
+        self._writer = Writer(path, ticking, [EVENTS, SCENE, *self._paced], self._journal,
                               about.about(SOURCE, simulation, parameters), **writing)
         self._timeline = Timeline(time.time_ns(), simulation.rate)
         self._message(SCENE, self._timeline.instant(0), about.scene_message(simulation.scene))
@@ -72,17 +76,27 @@ class Recording:
     def ticks(self, first, states, events):
         """Record the States of the ticks from `first` up to now, and the events among them."""
         stamps = np.array(self._timeline.instants(first, len(states)))
-        rows = self._messages.columns(states.vector, *self._simulation.diagnose(states), stamps,
-                                      self._simulation.wrench)
+        given = states.vector, *self._simulation.diagnose(states), stamps
+        rows = self._messages.ticking.columns(*given, self._simulation.wrench)
         begin = 0
-        for event in events:
-            self._record_ticks(first, begin, event.tick - first, stamps, rows)
-            begin = event.tick - first
-            message, values = about.event_text(event)
-            self._message(EVENTS, stamps[begin],
-                          about.event_message(SOURCE, about.OK, event.name, message, values))
+        between = [*_events(events), *self._paced_messages(first, *given)]
+        for tick, topic, data in sorted(between, key=operator.itemgetter(0)):
+            self._record_ticks(first, begin, tick - first, stamps, rows)
+            begin = tick - first
+            self._message(topic, stamps[begin], data)
         self._record_ticks(first, begin, len(states), stamps, rows)
         self._record_state(int(stamps[-1]))
+
+    def _paced_messages(self, first, vectors, energies, squares, stamps):
+        """Return (tick, topic, bytes) of the topics with a rate of their own."""
+        if not self._paced:
+            return []
+        due = self._pace.due(first, len(vectors))
+        k = np.array(due, dtype=int) - first
+        made = self._messages.paced.messages(vectors[k], energies[k], squares[k], stamps[k],
+                                             self._simulation.wrench)
+        return [(tick, topic, data) for tick, messages in zip(due, made, strict=True)
+                for topic, data in zip(self._paced, messages, strict=True)]
 
     def _record_ticks(self, first, begin, end, stamps, rows):
         if end > begin:
@@ -107,6 +121,13 @@ class Recording:
     def close(self):
         """Finish the files."""
         self._writer.close()
+
+
+def _events(events):
+    """Return (tick, topic, bytes) of events."""
+    return [(event.tick, EVENTS,
+             about.event_message(SOURCE, about.OK, event.name, *about.event_text(event)))
+            for event in events]
 
 
 @contextlib.contextmanager

@@ -14,15 +14,17 @@ import yaml
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.messages import marker
 from rigid_body_sim.messages.tick_messages import (
     ACCELERATION,
     BODY_VELOCITY,
-    BOX,
     ENERGY,
     HINGE,
     REACTION,
+    SHAPE,
     SQUARE,
     VECTOR,
+    TickMessages,
 )
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
@@ -55,6 +57,8 @@ class Output:
         from their states.
     absolute : bool
         Whether the name is outside of the node's namespace.
+    paced : bool
+        Whether it has a rate of its own instead of that of the ticks.
     """
 
     name: str
@@ -64,6 +68,7 @@ class Output:
     places: tuple
     derive: Callable | None = None
     absolute: bool = False
+    paced: bool = False
 
 
 def _in_world(scene, frames):
@@ -147,29 +152,18 @@ def _hinge(scene):
     return derive
 
 
-def box_of(body):
-    """Return the edges (m) of the box that has the body's mass and moments of inertia."""
-    a, b, c = body.about_center.moments
-    return tuple(math.sqrt(max(6.0 * square / body.mass, 0.0))
-                 for square in (b + c - a, a + c - b, a + b - c))
+def _marker(scene, frames):
+    return {**_in_world(scene, frames), 'ns': frames.body, **marker.shape_fields(scene)}
 
 
-def _box(scene, frames):
-    edges = box_of(scene.body)
-    thinnest = 0.02 * max(edges)
-    scale = dict(zip('xyz', (max(edge, thinnest) for edge in edges), strict=True))
-    return {**_in_world(scene, frames), 'ns': frames.body, 'type': 1, 'scale': scale,
-            'color': {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}}
-
-
-def _box_pose(scene):
-    center, axes = scene.body.center_of_mass, scene.body.about_center.axes
+def _marker_pose(scene):
+    center, axes = marker.place_of(scene)
 
     def derive(samples, wrench):
         for sample in samples:
             q = sample[ORIENTATION]
-            sample[BOX] = (*(sample[POSITION] + rotations.rotate(*q, *center)),
-                           *rotations.multiply(*q, *axes))
+            sample[SHAPE] = (*(sample[POSITION] + rotations.rotate(*q, *center)),
+                             *rotations.multiply(*q, *axes))
     return derive
 
 
@@ -195,14 +189,47 @@ ON_REQUEST = (
            ('position', 'velocity'), (HINGE,), _hinge),
     Output('reaction', 'geometry_msgs/msg/WrenchStamped', _held,
            ('wrench',), (REACTION,), _reaction),
-    Output('marker', 'visualization_msgs/msg/Marker', _box, ('pose',), (BOX,), _box_pose),
+    Output('marker', 'visualization_msgs/msg/Marker', _marker, ('pose',), (SHAPE,),
+           _marker_pose, paced=True),
     Output('tf', 'tf2_msgs/msg/TFMessage', _transform,
-           ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True),
+           ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True, paced=True),
     Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
 )
+DISPLAY_RATE = 30.0
+"""How often paced outputs are made by default (Hz of simulated time): for eyes, not for controllers."""
 OUTPUTS = {output.name: output for output in EVERY_TICK + ON_REQUEST}
 
 
-def chosen(names) -> list[Output]:
+class Outputs(NamedTuple):
+    """The outputs of a run: those of every tick, and those with a rate of their own."""
+
+    ticking: list[Output]
+    paced: list[Output]
+
+
+def chosen(names) -> Outputs:
     """Return the outputs of every tick, and those on request that are named, in the table's order."""
-    return [*EVERY_TICK, *(output for output in ON_REQUEST if output.name in names)]
+    named = [output for output in ON_REQUEST if output.name in names]
+    return Outputs([*EVERY_TICK, *(output for output in named if not output.paced)],
+                   [output for output in named if output.paced])
+
+
+class SceneMessages(NamedTuple):
+    """What makes the messages of a scene.
+
+    Attributes
+    ----------
+    ticking : TickMessages
+        Of every tick.
+    paced : TickMessages or None
+        Of the outputs with a rate of their own; None where there are none.
+    """
+
+    ticking: TickMessages
+    paced: TickMessages | None
+
+
+def scene_messages(outputs: Outputs, scene, frames: Frames) -> SceneMessages:
+    """Return the SceneMessages of a scene; BadInput where a topic has no meaning for it."""
+    paced = TickMessages(outputs.paced, scene, frames) if outputs.paced else None
+    return SceneMessages(TickMessages(outputs.ticking, scene, frames), paced)

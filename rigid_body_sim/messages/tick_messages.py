@@ -27,8 +27,8 @@ REACTION = slice(22, 28)
 """Force (N) and torque (N m) of the constraint on the body, world axes."""
 HINGE = slice(28, 30)
 """Angle (rad) and rate (rad/s) of a hinged body."""
-BOX = slice(30, 37)
-"""Position (m) and quaternion of the principal axes at the centre of mass."""
+SHAPE = slice(30, 37)
+"""Position (m) and quaternion of what a marker draws."""
 SAMPLE_SIZE = 37
 STAMPS = ('header.stamp.sec', 'transforms[0].header.stamp.sec', 'clock.sec')
 """Paths of stamps; each is set in every message that has it."""

@@ -50,3 +50,22 @@ class Timeline:
     def from_tick(self, tick, rate):
         """Return the timeline that goes on from a tick of this one at another rate."""
         return Timeline(self.instant(tick), rate, tick)
+
+
+class Pace:
+    """The ticks at which a topic with a rate of its own is due: the first at or after each instant.
+
+    Parameters
+    ----------
+    rate, tick_rate : float
+        How often it is due, and ticks, per second. It is due at every tick if `rate` is the larger.
+    """
+
+    def __init__(self, rate: float, tick_rate: float):
+        self._ratio = min(Fraction(rate) / Fraction(tick_rate), Fraction(1)).as_integer_ratio()
+
+    def due(self, tick: int, count: int) -> list[int]:
+        """Return the ticks at which it is due, among `count` ticks from `tick` on."""
+        numerator, denominator = self._ratio
+        return [k for k in range(tick, tick + count)
+                if k * numerator // denominator > (k - 1) * numerator // denominator]

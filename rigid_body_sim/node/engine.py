@@ -6,8 +6,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages import state_topics
-from rigid_body_sim.messages.tick_messages import TickMessages
+from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.followed_clock import Followed
@@ -53,11 +52,12 @@ class Engine:
             node.get_logger().info(line)
         frames = frames_of(node, settings)
         outputs = state_topics.chosen(settings.publish)
-        messages = TickMessages(outputs, simulation.scene, frames)
+        messages = state_topics.scene_messages(outputs, simulation.scene, frames)
         # before anything is offered: who finds the topics finds them alive
         rehearse(simulation, messages)
         self.commands = Commands(node, frames)
-        self.publishing = Publishing(node, outputs, frames, messages)
+        described = robot_description.TOPIC in settings.publish
+        self.publishing = Publishing(node, outputs, frames, messages, described)
         settings.refuse_unknown_qos()
         self.journal = open_journal(node, settings, simulation, self.publishing, frames)
         self.session = Session(simulation, self.commands, self.publishing, self.journal, settings, self._epoch)

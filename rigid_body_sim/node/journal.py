@@ -46,7 +46,7 @@ class Journal:
         journal = journal_topic(node.get_namespace())
         command_topics = CommandTopics(tuple(node.resolve_topic_name(TOPICS[kind]) for kind in (IMPULSE, HOLD)), (frames.world, frames.body))
         others = [*publishing.others(), *(Topic(name, WRENCH_TYPE) for name in reversed(command_topics.topics))]
-        ticking = list(zip(publishing.every_tick(), publishing.ticking.sizes, strict=True))
+        ticking = list(zip(publishing.every_tick(), publishing.messages.ticking.sizes, strict=True))
         told = about.about('sim_node', simulation, settings.values)
         asked = settings['recording.compression']
         options = (compression.DEFAULT if asked == 'auto' else asked, settings['recording.split_bytes'], settings['recording.split_seconds'],
@@ -68,6 +68,10 @@ class Journal:
     def tick(self, stamp, messages):
         """Record the messages of a tick; return whether the full state (:meth:`state`) is wanted, as it is after a gap."""
         return self._record_tick(stamp, time.time_ns(), messages)
+
+    def paced(self, topic, stamp, data):
+        """Record a message of an output with a rate of its own."""
+        self._recorder.message(topic, stamp, time.time_ns(), data)
 
     def state(self, simulation, stamp):
         """Record the full state of a tick, after its messages."""

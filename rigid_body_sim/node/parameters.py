@@ -15,11 +15,11 @@ from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.messages import state_topics
+from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.recording import compression
 
 STATE_TOPICS = tuple(output.name for output in state_topics.EVERY_TICK)
-EXTRA_TOPICS = tuple(output.name for output in state_topics.ON_REQUEST)
+EXTRA_TOPICS = (*(output.name for output in state_topics.ON_REQUEST), robot_description.TOPIC)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,6 +127,8 @@ TABLE = (
     Entry('overrun', 'slip', 'when it cannot keep up: slip (simulated time falls behind) or skip_publish (messages are left out first)',
           choices=('slip', 'skip_publish'), changeable=True),
     Entry('publish', (), f'topics beside {", ".join(STATE_TOPICS)}', choices=STATE_TOPICS + EXTRA_TOPICS),
+    Entry('display_rate', state_topics.DISPLAY_RATE, 'how often marker and tf are published (Hz of simulated time), at most at every tick',
+          1e-3, 1e5),
     Entry('stamp_origin', 'clock', 'stamp of tick 0: the node clock at start, or zero', choices=('clock', 'zero')),
     Entry('frame_prefix', 'auto', 'put before both frame names; auto: the namespace of the node'),
     Entry('world_frame', 'world', 'name of the fixed frame'),

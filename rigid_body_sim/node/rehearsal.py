@@ -33,7 +33,7 @@ def rehearse(simulation, messages):
     ----------
     simulation : Simulation
         It stays as it is.
-    messages : tick_messages.TickMessages
+    messages : state_topics.SceneMessages
         Makes the messages of its scene.
     """
     patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])
@@ -50,7 +50,7 @@ def _rehearse(simulation, messages):
     trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, max(simulation.rate, FASTEST),
                        horizon=choice.horizon, settled=(choice.method, choice.tolerance, choice.expected_error))
     queue = _Queue()
-    settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0)
+    settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0, display_rate=FASTEST)
     session = Session(trial, queue, _Nowhere(messages), NoJournal(), settings, lambda: 0)
     session.begin()
     _run(session)
@@ -95,13 +95,16 @@ class _Nowhere:
     """Stands for the publishers: makes every message and sends none."""
 
     def __init__(self, messages):
-        self.ticking = messages
+        self.messages = messages
 
     def tick(self, messages):
         pass
+
+    def paced(self, messages):
+        return [('', message) for message in messages]
 
     def event(self, level, name, message, values):
         return '', about.event_message('rehearsal', level, name, message, values)
 
     def scene(self, scene):
-        return '', about.scene_message(scene)
+        return [('', about.scene_message(scene))]

@@ -18,7 +18,7 @@ from fractions import Fraction
 import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
+from rigid_body_sim.messages.timeline import NANOSECONDS, Pace, Timeline
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.about import ERROR, OK, WARN
 from rigid_body_sim.scene.state import States
@@ -71,6 +71,8 @@ class Session:
         command_queue.report = self._report_refusal
         self.command_timeout = settings.command_timeout
         self._duration, self._last_tick = settings.duration, None
+        self._display_rate = settings.display_rate
+        self._pace = Pace(settings.display_rate, simulation.rate)
         self._tick = self.next_tick = simulation.tick
         self._ahead = collections.deque()
         self._look_ahead_from = self._tick
@@ -115,11 +117,14 @@ class Session:
             self._catch_up()
             self._command(tick)
         if self._ahead:
-            stamp, messages = self._ahead.popleft()
+            stamp, messages, paced = self._ahead.popleft()
         else:
-            stamp, messages = self._present(tick)
+            stamp, messages, paced = self._present(tick)
         if publish:
             self._publishing.tick(messages)
+            if paced:
+                for topic, message in self._publishing.paced(paced):
+                    self._journal.paced(topic, stamp, message)
             if self._journal.tick(stamp, messages):
                 self._catch_up()
                 self._journal.state(self.simulation, stamp)
@@ -132,7 +137,7 @@ class Session:
             self._look_ahead(tick)
 
     def _present(self, tick):
-        """Go to a tick that was not made ahead, tell of its events, return its stamp and messages."""
+        """Go to a tick that was not made ahead, tell of its events, return what `_messages` does."""
         self._catch_up()
         if self.simulation.events:
             self._report_events()
@@ -159,10 +164,15 @@ class Session:
             self._look_ahead_from = tick + QUIET
 
     def _messages(self, vectors, tick):
-        """Return stamp and messages of consecutive ticks from that one on."""
+        """Return of consecutive ticks from that one on the stamp, the messages, and those that are paced or None."""
         energies, squares = self.simulation.diagnose(States(vectors))
         stamps = self.timeline.instants(tick, len(vectors))
-        return zip(stamps, self._publishing.ticking.messages(vectors, energies, squares, stamps, self.simulation.wrench), strict=True)
+        made, wrench, paced = self._publishing.messages, self.simulation.wrench, [None] * len(vectors)
+        if made.paced:
+            for k in self._pace.due(tick, len(vectors)):
+                one = slice(k - tick, k - tick + 1)
+                [paced[k - tick]] = made.paced.messages(vectors[one], energies[one], squares[one], stamps[one], wrench)
+        return zip(stamps, made.ticking.messages(vectors, energies, squares, stamps, wrench), paced, strict=True)
 
     def between_ticks(self):
         """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
@@ -189,17 +199,18 @@ class Session:
         return self.next_tick
 
     def switch(self, simulation, messages, keep_state):
-        """Go on with another simulation, and its TickMessages, from the present tick on; called at a tick."""
+        """Go on with another simulation, and its SceneMessages, from the present tick on; called at a tick."""
         self._report_events()
         simulation.follow(self.simulation, keep_state)
         if simulation.rate != self.simulation.rate:
             self.timeline = self.timeline.from_tick(self.next_tick, simulation.rate)
             self._find_last_tick()
+            self._pace = Pace(self._display_rate, simulation.rate)
         self.simulation = simulation
         self._disturbed()
         if not keep_state:
             self._release_tick = None
-            self._publishing.ticking = messages
+            self._publishing.messages = messages
             self.announce_scene()
 
     def _find_last_tick(self):
@@ -216,8 +227,8 @@ class Session:
 
     def announce_scene(self):
         """Publish and record the scene as it runs."""
-        topic, data = self._publishing.scene(self.simulation.scene)
-        self._journal.message(topic, self.stamp, data)
+        for topic, data in self._publishing.scene(self.simulation.scene):
+            self._journal.message(topic, self.stamp, data)
 
     @property
     def stamp(self):

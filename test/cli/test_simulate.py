@@ -121,12 +121,14 @@ def test_json_is_the_state_to_the_last_bit_with_and_without_a_recording(tmp_path
 def test_topics_on_request_are_recorded_with_every_tick(tmp_path):
     """A top: its reaction and proper acceleration are what the simulation tells of the same ticks."""
     path = tmp_path / 'top'
-    assert main(['--scene', 'heavy_top', '--duration', '0.2', '--output', str(path), '--publish', 'imu', 'odom', 'reaction', 'clock']) == 0
+    assert main(['--scene', 'heavy_top', '--duration', '0.2', '--output', str(path), '--publish', 'imu', 'odom', 'reaction', 'clock', 'tf']) == 0
     simulation = Simulation('heavy_top')
     times = np.arange(201) / 1000.0
     states, reactions = simulation.states(times), simulation.reactions(times)
     recording = Recording(path)
     assert set(recording.topics) >= {'/pose', '/imu', '/odom', '/reaction', '/clock'}
+    # tf at 30 Hz: at 0, 34, 67, 100, ... ms
+    assert recording.topics['/tf'].count == 7
     force = recording.read('/reaction', ['wrench.force', 'header.stamp'])
     assert np.array_equal(force['wrench.force'], reactions.force)
     assert np.array_equal(recording.read('/pose', ['header.stamp'])['header.stamp'], force['header.stamp'])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
 
+from rigid_body_sim.drawing.body import drawing_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr, definitions, state_topics
 from rigid_body_sim.messages.tick_messages import TickMessages
@@ -145,13 +146,48 @@ def test_joint_states_of_a_free_body_are_refused():
         messages('free_body', 'joint_states')
 
 
-def test_marker_is_a_box_with_the_moments_of_the_body():
+def test_marker_of_a_body_without_a_shape_is_a_box_with_its_moments():
     [marker] = messages('free_body', 'marker')
     x, y, z = values(marker.scale)
     body = load_scene('free_body').body
     assert np.array([y * y + z * z, x * x + z * z, x * x + y * y]) * body.mass / 12.0 == pytest.approx(body.about_center.moments, rel=1e-12)
     assert values(marker.pose.orientation) == STATE.orientation.tolist()
     assert (marker.type, marker.action, marker.color.a) == (1, 0, 1.0)
+
+
+PARTS = ['constraint=free', 'effects=[]', 'body={parts: [{mass: 1.0, shape: {rod: {length: 1.0}}}, '
+         '{mass: 2.0, shape: {box: {size: [0.2, 0.1, 0.3]}}, at: [0, 0, 0.5]}]}']
+
+
+@pytest.mark.parametrize(('shape', 'kind', 'scale'), [
+    ('solid_sphere: {radius: 0.25}', 2, [0.5, 0.5, 0.5]), ('box: {size: [1, 2, 3]}', 1, [1.0, 2.0, 3.0]),
+    ('ellipsoid: {semi_axes: [1, 2, 3]}', 2, [2.0, 4.0, 6.0]), ('cylinder: {radius: 0.5, length: 3}', 3, [1.0, 1.0, 3.0])])
+def test_marker_of_a_solid_is_the_primitive_at_the_centre_of_mass(shape, kind, scale):
+    scene = load_scene('free_body', [f'body={{mass: 1.0, shape: {{{shape}}}}}'])
+    [marker] = messages(scene, 'marker')
+    assert (marker.type, values(marker.scale)) == (kind, scale)
+    assert values(marker.pose.position) == STATE.position.tolist()
+
+
+@pytest.mark.parametrize('overrides', [['body={mass: 1.0, shape: {torus: {radius: 0.5, tube: 0.1}}}'], PARTS])
+def test_marker_of_any_other_shape_is_its_surface_in_triangles(overrides):
+    scene = load_scene('free_body', overrides)
+    [marker] = messages(scene, 'marker')
+    surfaces = drawing_of(scene).surfaces
+    assert marker.type == 11
+    assert len(marker.points) == len(marker.colors) == 3 * sum(len(surface.faces) for surface in surfaces)
+    corner = surfaces[0].vertices[surfaces[0].faces[0, 0]]
+    assert values(marker.points[0]) == corner.tolist()
+    # the points are in body axes
+    assert values(marker.pose.position) == STATE.position.tolist()
+    assert values(marker.pose.orientation) == STATE.orientation.tolist()
+
+
+def test_paced_outputs_are_apart_from_those_of_every_tick():
+    outputs = state_topics.chosen(['tf', 'odom', 'marker'])
+    assert [output.name for output in outputs.paced] == ['marker', 'tf']
+    assert [output.name for output in outputs.ticking][-1] == 'odom'
+    assert state_topics.scene_messages(state_topics.chosen([]), load_scene('free_body'), FRAMES).paced is None
 
 
 def test_clock_is_the_stamp():

@@ -19,15 +19,14 @@ START = 60.0
 @pytest.fixture(scope='session')
 def compiled_kernels():
     """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
-    from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
-    from rigid_body_sim.messages.tick_messages import TickMessages
+    from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
     from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
     with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}', 'w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for scene in ('tennis_racket', 'sphere'):
             simulation = Simulation(scene)
-            rehearse(simulation, TickMessages(EVERY_TICK, simulation.scene, Frames()))
+            rehearse(simulation, scene_messages(chosen(()), simulation.scene, Frames()))
 
 
 class Client:

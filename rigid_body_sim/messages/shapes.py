@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The body of a scene as the simple solids that markers and robot descriptions know."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import yaml
+
+from rigid_body_sim.drawing.surfaces import THIN
+from rigid_body_sim.scene.bodies import IDENTITY
+
+BOX, SPHERE, CYLINDER = 'box', 'sphere', 'cylinder'
+
+
+class Solid(NamedTuple):
+    """A box, an ellipsoid (`sphere`) or a cylinder along its z axis.
+
+    Attributes
+    ----------
+    kind : str
+        BOX, SPHERE or CYLINDER.
+    size : tuple of 3 floats
+        Full extents, m.
+    at, orientation : tuple of floats
+        Centre (m) and axes (quaternion) in the body.
+    """
+
+    kind: str
+    size: tuple
+    at: tuple
+    orientation: tuple = IDENTITY
+
+
+def _sphere(radius):
+    return SPHERE, (2.0 * radius,) * 3
+
+
+def _cylinder(radius, length):
+    return CYLINDER, (2.0 * radius, 2.0 * radius, length)
+
+
+SOLIDS: dict[str, Callable] = {
+    'box': lambda size: (BOX, tuple(size)),
+    'lamina': lambda width, height: (BOX, (width, height, THIN * max(width, height))),
+    'ellipsoid': lambda semi_axes: (SPHERE, tuple(2.0 * axis for axis in semi_axes)),
+    'solid_sphere': _sphere, 'spherical_shell': _sphere, 'cylinder': _cylinder,
+    'disk': lambda radius: _cylinder(radius, 2.0 * THIN * radius),
+    'rod': lambda length: _cylinder(THIN * length, length)}
+"""Kind and size of the shapes of a scene file that are solids; those drawn thin are as in drawing/."""
+
+
+def solids_of(scene) -> list[Solid] | None:
+    """Return the solids that a scene's body consists of; None where they do not make its true shape."""
+    mapping = yaml.safe_load(scene.text)['body']
+    if 'parts' in mapping:
+        found = [_solid(part.get('shape'), part.get('at', (0.0, 0.0, 0.0)),
+                        part.get('orientation', IDENTITY)) for part in mapping['parts']]
+    elif 'shape' in mapping:
+        found = [_solid(mapping['shape'], scene.body.center_of_mass, IDENTITY)]
+    elif scene.body.radius is not None:
+        found = [Solid(*_sphere(scene.body.radius), tuple(scene.body.center_of_mass))]
+    else:
+        return None
+    return found if all(found) else None
+
+
+def _solid(shape, at, orientation):
+    if not shape:
+        return None
+    [(name, dimensions)] = shape.items()
+    if name not in SOLIDS:
+        return None
+    return Solid(*SOLIDS[name](**dimensions), tuple(map(float, at)), tuple(orientation))
+
+
+def equal_box(scene, edges: tuple) -> Solid:
+    """Return a box of these edges at the centre of mass, along the body's principal axes."""
+    return Solid(BOX, tuple(edges), tuple(scene.body.center_of_mass),
+                 tuple(scene.body.about_center.axes))
