@@ -4,8 +4,10 @@
 ::
 
     made = TickMessages([OUTPUTS['pose']], scene, Frames())
-    with Writer('run', ticking=[(Topic('/pose', 'geometry_msgs/msg/PoseStamped'), made.sizes[0])], others=[Topic('/scene', 'std_msgs/msg/String')],
-                journal=journal_topic(), about={'scene': text}) as writer:
+    pose = Topic('/pose', 'geometry_msgs/msg/PoseStamped')
+    with Writer('run', ticking=[(pose, made.sizes[0])],
+                others=[Topic('/scene', 'std_msgs/msg/String')], journal=journal_topic(),
+                about={'scene': text}) as writer:
         writer.message('/scene', stamp, wall_clock, cdr.encode(...))
         writer.ticks(0, stamps, wall_clocks, made.columns(vectors, energies, squares, stamps))
 

@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.node.prediction import expectation
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.theory.prediction import expectation
 from rigid_body_sim.view.frames import Frame
 
 PERIOD = 1.0 / 60.0
