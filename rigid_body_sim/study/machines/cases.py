@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of cases: what must have the same bits on every machine.
+
+A case is a name and a function that returns arrays and texts; its digest is made of their bytes.
+A case whose name ends in ``(= ...)`` does in another way what the case of that name does, and
+must have the same digest: ticks in slices, other blocks of times, other numbers of threads.
+
+Durations are short and states few, so that plain Python takes minutes, not hours.
+"""
+
+import contextlib
+import os
+import typing
+import unittest.mock
+
+import numpy as np
+
+from rigid_body_sim.choice.choose import choose, methods_for
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_names
+from rigid_body_sim.scene.state import State
+from rigid_body_sim.simulation.ensemble import ensemble
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.study.machines import scenes
+
+EXCEPTED = ('lsoda', 'radau')
+"""Methods whose arithmetic is SciPy's: Fortran and LAPACK as they were compiled."""
+EXACT, STEPPED = (20.0, 60), (0.4, 5)
+"""Duration (s) and number of states of a closed form and of a method that steps."""
+PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_center': 0.05,
+        'billiard_follow': 0.05, 'billiard_low': 0.05, 'billiard_natural_roll': 0.05,
+        'ball_with_side_spin': 0.05, 'ball_struck_twice': 0.05, 'graded_tensor': 0.1}
+"""Scene -> factor of its durations, where it is not 1."""
+STEPS, ACCURACY = 40, 1e-9
+"""Steps of a method that does not control its error; accuracy (rad) of one that does."""
+ACCURACIES = (1e-6, 1e-12)
+FORCE, TORQUE = (0.03, -0.02, 0.0), (1e-3, 2e-3, 0.0)
+COMMANDED = ('tennis_racket', 'heavy_top', 'skew_hinge', 'skew_tensor', 'driven_body')
+"""Scenes that take commands."""
+STRETCHED = (('heavy_top', 'exact'), ('skew_hinge', 'exact'), ('ball_with_side_spin', 'exact'),
+             ('tennis_racket', 'exact'), ('skew_top', 'taylor'), ('driven_in_pieces', 'dop8'))
+"""Scenes and methods whose ticks and times are asked for in other portions."""
+ENSEMBLES = (('heavy_top', 'exact'), ('skew_top', 'taylor'), ('heavy_top', 'dop8'))
+BODIES, THREADS = (3, 8, 17), (1, 2)
+
+
+class Case(typing.NamedTuple):
+    """What to run: `of` returns arrays and texts; `same_as` names the case that has its digest."""
+
+    of: typing.Callable
+    same_as: str | None = None
+
+
+def scene_of(name):
+    """Return a scene that ships, or an awkward one."""
+    return parse_scene(scenes.text(name)) if name in scenes.AWKWARD else load_scene(name)
+
+
+def _times(name, method):
+    duration, count = EXACT if method == 'exact' else STEPPED
+    return np.linspace(0.0, duration * PACE.get(name, 1.0), count)
+
+
+def _simulation(name, method):
+    """Return the simulation of a scene by a method, with its accuracy or its step."""
+    if method != 'exact' and 'accuracy' not in METHODS[method].TAKES:
+        return Simulation(scene_of(name), method, step=float(_times(name, method)[-1]) / STEPS)
+    return Simulation(scene_of(name), method, accuracy=ACCURACY)
+
+
+def _seen(simulation, states):
+    """Return all that messages carry of states: they themselves, energies, L^2, reactions."""
+    found = [states.vector, *simulation.diagnose(states)]
+    if simulation.scene.constraint.kind != 'free':
+        found += [np.asarray(part, dtype=float) for part in simulation.reactions(states.time)]
+    return found
+
+
+def set_up(name):
+    """Return the numbers of a scene: mass, centre, moments and axes about both points, start."""
+    scene = scene_of(name)
+    body, held = scene.body, scene.constraint
+    return [np.array([body.mass, *body.center_of_mass]),
+            *(np.array([*one.moments, *one.axes]) for one in (body.about_center, body.about_origin)),
+            np.array([*held.axis, *held.through]), scene.initial.vector]
+
+
+def states(name, method):
+    """Return the states of a scene by a method, and what follows from them."""
+    simulation = _simulation(name, method)
+    found = _seen(simulation, simulation.states(_times(name, method)))
+    if method != 'exact':
+        return found
+    simulation.advance(500)
+    return [*found, simulation.vector, np.array([event.time for event in simulation.events])]
+
+
+def chosen(name):
+    """Return what `auto` chooses, as text."""
+    found = (choose(scene_of(name), accuracy=accuracy) for accuracy in ACCURACIES)
+    return ['; '.join(repr((one.method, one.tolerance, one.expected_error)) for one in found)]
+
+
+def commanded(name, frame):
+    """Return states and ledger under impulses, a held wrench and its release."""
+    simulation, seen = Simulation(scene_of(name), accuracy=ACCURACY), []
+    simulation.advance(7)
+    simulation.impulse(force=FORCE, torque=TORQUE, frame=frame)
+    simulation.impulse(torque=TORQUE, frame=frame)
+    seen.append(simulation.advance_through(9).vector)
+    simulation.hold(force=FORCE, torque=TORQUE, frame=frame)
+    seen.append(simulation.advance_through(30).vector)
+    seen += [*map(np.array, simulation.acceleration)]
+    simulation.release()
+    seen.append(simulation.advance_through(20).vector)
+    return [*seen, np.array(list(simulation.ledger().values()), dtype=float)]
+
+
+def ticks(name, method, way):
+    """Return 300 ticks: asked for one by one, in slices, foreseen, backwards or in one go."""
+    simulation = _simulation(name, method)
+    if way == 'one by one':
+        found = []
+        for _ in range(300):
+            simulation.advance()
+            found.append(simulation.vector.copy())
+        return [np.array(found)]
+    if way == 'foreseen':
+        found = []
+        while simulation.tick < 300:
+            foreseen = simulation.foresee(min(64, 300 - simulation.tick)).vector
+            found.append(foreseen)
+            simulation.advance(len(foreseen))
+            if not len(foreseen):
+                found.append(simulation.advance_through(1).vector)
+        return [np.concatenate(found)]
+    if way == 'backwards':
+        return [simulation.states(simulation.time_at(np.arange(300, 0, -1))).vector[::-1]]
+    sizes = {'in slices': (1, 7, 129, 2, 128, 33), 'in one go': (300,)}[way]
+    return [np.concatenate([simulation.advance_through(size).vector for size in sizes])]
+
+
+@contextlib.contextmanager
+def _cores(count):
+    with unittest.mock.patch.object(os, 'cpu_count', return_value=count):
+        yield
+
+
+def many(name, method, bodies, cores):
+    """Return the states of bodies that start apart, on so many threads."""
+    scene = scene_of(name)
+    starts = np.tile(scene.initial.vector, (bodies, 1))
+    starts[:, 5:8] += np.linspace(0.0, 0.25, bodies)[:, np.newaxis] * (0.125, -0.5, 1.0)
+    with _cores(cores):
+        return [ensemble(scene, list(map(State, starts)), np.linspace(0.0, 0.2, 4), method,
+                         ACCURACY).vector]
+
+
+def cases():
+    """Return the table: name -> Case."""
+    table = {}
+    names = [*scene_names(), *scenes.AWKWARD]
+    for name in names:
+        table[f'{name}: set-up'] = Case(lambda name=name: set_up(name))
+        able = [method for method in methods_for(scene_of(name)) if method not in EXCEPTED]
+        if name in scenes.AWKWARD:
+            able = [method for method in able if method in ('exact', 'dop8', 'taylor')]
+        for method in able:
+            table[f'{name} by {method}'] = Case(
+                lambda name=name, method=method: states(name, method))
+        if 'exact' not in able:
+            table[f'{name}: choice of auto'] = Case(lambda name=name: chosen(name))
+    for name in COMMANDED:
+        for frame in ('body', 'world'):
+            table[f'{name} commanded in {frame} axes'] = Case(
+                lambda name=name, frame=frame: commanded(name, frame))
+    for name, method in STRETCHED:
+        whole = f'{name} by {method}: ticks in one go'
+        table[whole] = Case(lambda n=name, m=method: ticks(n, m, 'in one go'))
+        for way in ('one by one', 'in slices', 'foreseen', 'backwards'):
+            table[f'{name} by {method}: ticks {way}'] = Case(
+                lambda n=name, m=method, w=way: ticks(n, m, w), whole)
+    for name, method in ENSEMBLES:
+        for bodies in BODIES:
+            first = None
+            for cores in THREADS:
+                label = f'{bodies} of {name} by {method}: {cores} threads'
+                table[label] = Case(lambda n=name, m=method, b=bodies, c=cores: many(n, m, b, c),
+                                    first)
+                first = first or label
+    return table
