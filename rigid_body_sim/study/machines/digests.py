@@ -23,24 +23,24 @@ KEPT = pathlib.Path(__file__).with_name('digests.json')
 
 
 def digest(found):
-    """Return the SHA-256 of arrays of doubles (their bytes) and texts."""
+    """Return the first 80 bits of the SHA-256 of arrays of doubles (their bytes) and texts."""
     total = hashlib.sha256()
     for part in found:
         total.update(part.encode() if isinstance(part, str)
                      else np.ascontiguousarray(part, dtype='<f8').tobytes())
-    return total.hexdigest()
+    return total.hexdigest()[:20]
 
 
 def compute(names=None, seconds=None):
-    """Return name -> digest of all cases, or of some; `seconds` is filled with their times."""
+    """Return case -> part -> digest of all cases, or of some; `seconds` is filled with times."""
     found = {}
     for name, case in cases().items():
         if names is None or name in names:
             begin = time.perf_counter()
             try:
-                found[name] = digest(case.of())
+                found[name] = {part: digest(arrays) for part, arrays in case.of().items()}
             except Exception as error:
-                found[name] = f'{type(error).__name__}: {error}'
+                found[name] = {'failed': f'{type(error).__name__}: {error}'}
             if seconds is not None:
                 seconds[name] = time.perf_counter() - begin
     return found
