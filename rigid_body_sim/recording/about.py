@@ -16,6 +16,7 @@ import numpy
 
 from rigid_body_sim.compilation import environment
 from rigid_body_sim.messages import cdr
+from rigid_body_sim.simulation import arithmetic
 
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
 OK, WARN, ERROR = 0, 1, 2
@@ -38,9 +39,9 @@ def version():
 
 
 def machine():
-    """Return all that the bits of a state depend on beside the scene, as a dict.
+    """Return what a run was made on, as a dict of texts: processor, system, versions.
 
-    Equal dicts promise equal bits.
+    States do not depend on it (see simulation/arithmetic.py), except by a method of SciPy's.
     """
     numba = environment.numba if environment.HAVE_NUMBA else None
     return {'processor': environment.processor(), 'system': platform.platform(),
@@ -64,11 +65,14 @@ def about(made_by, simulation, parameters):
     -------
     dict of str to str
         ``made_by``, ``version``, ``scene`` (YAML as it runs), and JSON: ``simulation`` (what it
-        was asked for, and the method it chose), ``parameters``, ``machine``.
+        was asked for, and the method it chose), ``parameters``, ``machine``. ``arithmetic`` is
+        the promise: a program of that version of the arithmetic makes the same bits of it on
+        every machine.
     """
     return {'made_by': made_by, 'version': version(), 'scene': simulation.scene.text,
             'simulation': json.dumps(run_of(simulation)),
-            'parameters': json.dumps(parameters), 'machine': json.dumps(machine())}
+            'parameters': json.dumps(parameters), 'machine': json.dumps(machine()),
+            'arithmetic': arithmetic.version()}
 
 
 def run_of(simulation):

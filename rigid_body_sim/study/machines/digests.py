@@ -1,52 +1,75 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of the cases: what has to be the same, bit for bit, in every process on every machine.
+"""Compute the digests of all cases and compare them with those kept, which hold on every machine.
 
 ::
 
-    python -m rigid_body_sim.study.machines.digests               # compare with those kept
-    python -m rigid_body_sim.study.machines.digests --write       # keep those of this machine
-    python -m rigid_body_sim.study.machines.digests --json        # print them
+    python -m rigid_body_sim.study.machines.digests           # 0: all are the same here; 1: not
+    python -m rigid_body_sim.study.machines.digests --json    # the digests of this machine
+    python -m rigid_body_sim.study.machines.digests --write   # keep them: another arithmetic
+
+Whoever changes the arithmetic on purpose writes the file anew and says so in CHANGELOG.rst:
+recordings made before then resimulate within a tolerance, no longer to the bit.
 """
 
-import argparse
 import hashlib
-import json
-import pathlib
 import sys
-import time
 
 import numpy as np
 
+from rigid_body_sim import command_line
+from rigid_body_sim.simulation import arithmetic
 from rigid_body_sim.study.machines.cases import cases
 
-KEPT = pathlib.Path(__file__).with_name('digests.json')
 
-
-def digest(found):
-    """Return the first 80 bits of the SHA-256 of arrays of doubles (their bytes) and texts."""
+def digest(parts):
+    """Return the first 80 bits of the SHA-256 of arrays of doubles and texts."""
     total = hashlib.sha256()
-    for part in found:
+    for part in parts:
         total.update(part.encode() if isinstance(part, str)
                      else np.ascontiguousarray(part, dtype='<f8').tobytes())
     return total.hexdigest()[:20]
 
 
-def compute(names=None, seconds=None):
-    """Return case -> part -> digest of all cases, or of some; `seconds` is filled with times."""
+def compute(wanted=lambda case: True):
+    """Return case -> part -> digest; what fails has the part `failed`, with the error's text."""
     found = {}
     for name, case in cases().items():
-        if names is None or name in names:
-            begin = time.perf_counter()
+        if wanted(case):
             try:
-                found[name] = {part: digest(arrays) for part, arrays in case.of().items()}
-            except Exception as error:
+                found[name] = {part: digest(of) for part, of in case.run().items()}
+            except Exception as error:    # one case that fails must not hide the others
                 found[name] = {'failed': f'{type(error).__name__}: {error}'}
-            if seconds is not None:
-                seconds[name] = time.perf_counter() - begin
     return found
 
 
+def different(found, kept):
+    """Return 'case: part' for each digest that is another one, or stands on one side only."""
+    pairs = ((name, part) for name in sorted({*found, *kept})
+             for part in sorted({*found.get(name, ()), *kept.get(name, ())}))
+    return [f'{name}: {part}' for name, part in pairs
+            if found.get(name, {}).get(part) != kept.get(name, {}).get(part)]
+
+
+def main(arguments=None):
+    """Run the command; return the exit status."""
+    parser = command_line.parser('digests', 'Compute the digests of all scenes and methods and '
+                                 'compare them with those kept, the same on every machine.',
+                                 'python -m rigid_body_sim.study.machines.digests')
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument('--json', action='store_true', help='print the digests of this machine')
+    way.add_argument('--write', action='store_true', help='keep the digests of this machine')
+    options = parser.parse_args(arguments)
+    found = compute()
+    if options.json:
+        command_line.print_json(found)
+        return command_line.GOOD
+    if options.write:
+        arithmetic.FILE.write_text(arithmetic.written(found), encoding='utf-8')
+        return command_line.GOOD
+    apart = different(found, arithmetic.digests())
+    print('\n'.join([*apart, f'{len(found)} cases, {len(apart)} digests differ']))
+    return command_line.CHECK_FAILED if apart else command_line.GOOD
+
+
 if __name__ == '__main__':
-    seconds={}
-    found = compute(None, seconds)
-    print(json.dumps({'digests':found,'seconds':seconds}, indent=1))
+    sys.exit(main())

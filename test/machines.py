@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Compute the digests as on other machines: processors, C libraries, BLAS cores, Pythons, ARM64.
+
+::
+
+    python test/machines.py                  # all; make test-machines
+    python test/machines.py ARM64 OpenBLAS   # those whose names begin with one of these words
+
+This machine stands for others by settings, which its libraries take from the environment; ARM64
+is emulated (Debian's qemu-user-static). On each one the digests are computed and compared with
+those kept in rigid_body_sim/simulation/digests.json, and a recording made here runs again to the
+bit; on some the numeric tests run as well. What a machine lacks is said, and is no failure.
+"""
+
+import json
+import os
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import time
+import typing
+
+from rigid_body_sim.compilation import environment
+from rigid_body_sim.simulation import arithmetic
+from rigid_body_sim.study.machines import digests, scenes
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+CACHE = ROOT / '.cache' / 'machines'
+AVX2 = '+sse3,+ssse3,+sse4.1,+sse4.2,+popcnt,+avx,+avx2,+fma,+f16c,+bmi,+bmi2,+lzcnt,+movbe'
+AVX512 = f'{AVX2},+avx512f,+avx512cd,+avx512bw,+avx512dq,+avx512vl'
+OLD_LIBC = ','.join(f'-{name}' for name in (
+    'FMA', 'FMA4', 'AVX', 'AVX2', 'AVX512F', 'AVX512CD', 'AVX512BW', 'AVX512DQ', 'AVX512VL'))
+OLD_NUMPY = ('X86_V3 X86_V4 AVX2 FMA3 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL '
+             'AVX512_ICL AVX512_SPR')
+PLAIN = {'NUMBA_DISABLE_JIT': '1'}
+TESTS = ('test/numerics', 'test/motions', 'test/integrators/test_taylor.py',
+         'test/integrators/test_batch.py', 'test/scene/test_bodies.py')
+PATIENCE = 3600.0    # s, for one run
+SHOWN = 10           # of what differs on one machine
+
+
+class Unavailable(Exception):
+    """What this machine lacks to stand for another one."""
+
+
+class Machine(typing.NamedTuple):
+    """A machine that this one stands for: settings, how Python is called, the tests that run."""
+
+    name: str
+    settings: dict
+    python: typing.Callable = lambda: [sys.executable]
+    tests: tuple = ()
+    needs: str = ''
+
+
+def _other_python(version):
+    """Return the call of a Python of another version, in an environment made for it."""
+    folder = CACHE / version
+    settings = {name: value for name, value in os.environ.items()
+                if name not in ('PYTHON', 'PYTHONPATH', 'PYTHONHOME')}
+    made = subprocess.run([ROOT / 'requirements' / 'make_venv.sh', folder,
+                           ROOT / 'requirements' / 'test.txt', version],
+                          env=settings, capture_output=True, text=True, cwd=ROOT)
+    if made.returncode:
+        raise Unavailable(made.stderr.strip().splitlines()[-1])
+    return [str(folder / 'bin' / 'python')]
+
+
+def _arm64():
+    """Return the call of Debian's Python for ARM64 under emulation, with wheels from PyPI."""
+    made = subprocess.run([ROOT / 'test' / 'make_arm64.sh', CACHE / 'arm64'],
+                          capture_output=True, text=True, cwd=ROOT)
+    if made.returncode:
+        raise Unavailable((made.stderr.strip().splitlines() or ['make_arm64.sh failed'])[-1])
+    root = CACHE / 'arm64' / 'root'
+    [python] = root.glob('usr/bin/python3.[0-9]*[0-9]')
+    return ['qemu-aarch64-static', '-L', str(root), str(python)]
+
+
+def machines():
+    """Return the table of machines."""
+    def target(name, features):
+        return {'NUMBA_CPU_NAME': name, 'NUMBA_CPU_FEATURES': features}
+    others = [version for version in ('3.11', '3.12', '3.13')
+              if version != '.'.join(platform.python_version_tuple()[:2])]
+    arm = {'PYTHONPATH': os.pathsep.join(map(str, (ROOT, CACHE / 'arm64' / 'packages'))),
+           'PYTHONDONTWRITEBYTECODE': '1'}
+    return [
+        Machine('this one', {}),
+        Machine('no numba', PLAIN, tests=TESTS),
+        *(Machine(f'OpenBLAS {core}', {'OPENBLAS_CORETYPE': core})
+          for core in ('Prescott', 'Nehalem', 'Haswell', 'Zen', 'SkylakeX')),
+        Machine('NumPy without dispatch', {'NPY_DISABLE_CPU_FEATURES': OLD_NUMPY}),
+        Machine('C library without FMA, AVX', {'GLIBC_TUNABLES': f'glibc.cpu.hwcaps={OLD_LIBC}'}),
+        Machine('C library without FMA, AVX; no numba', {'GLIBC_TUNABLES': f'glibc.cpu.hwcaps={OLD_LIBC}', **PLAIN}),
+        Machine('numba for generic x86-64', target('generic', ''), tests=TESTS),
+        Machine('numba for Haswell (AVX2)', target('haswell', AVX2), tests=TESTS, needs='avx2'),
+        Machine('numba for AVX-512', target('skylake-avx512', AVX512), tests=TESTS,
+                needs='avx512vl'),
+        *(Machine(f'Python {version}', {}, lambda version=version: _other_python(version), TESTS)
+          for version in others),
+        *(Machine(f'Python {version}, no numba', PLAIN,
+                  lambda version=version: _other_python(version)) for version in others),
+        Machine('ARM64 (emulated), no numba', arm, _arm64),
+    ]
+
+
+def _processor_has(flag):
+    try:
+        return not flag or re.search(rf'\b{flag}\b', pathlib.Path('/proc/cpuinfo').read_text())
+    except OSError:
+        return False
+
+
+def _record():
+    """Make a recording on this machine that runs again on the others; return its path."""
+    scene, path = CACHE / 'composite_top.yaml', CACHE / 'recording'
+    scene.write_text(scenes.text('composite_top'))
+    shutil.rmtree(path, ignore_errors=True)
+    subprocess.run([sys.executable, '-m', 'rigid_body_sim', 'simulate', '--scene', scene,
+                    '--duration', '2', '--output', path], cwd=ROOT, check=True,
+                   stdout=subprocess.DEVNULL)
+    return path
+
+
+def _run(call, settings):
+    return subprocess.run(call, env=os.environ | settings, cwd=ROOT, capture_output=True,
+                          text=True, timeout=PATIENCE)
+
+
+def visit(machine, recording):
+    """Run what is to be run on a machine; return (number of digests, what differs, tests)."""
+    if not _processor_has(machine.needs):
+        raise Unavailable(f'this processor has no {machine.needs}')
+    python = machine.python()
+    run = _run([*python, '-W', 'ignore', '-m', digests.__name__, '--json'], machine.settings)
+    if run.returncode:
+        lines = run.stderr.strip().splitlines() or ['no word']
+        return 0, [f'failed: {lines[-1]}'], ''
+    found, kept = json.loads(run.stdout), arithmetic.digests()
+    apart = digests.different(found, kept)
+    run = _run([*python, '-W', 'ignore', '-m', 'rigid_body_sim', 'resimulate', recording,
+                '--output', CACHE / 'differences'], machine.settings)
+    if not run.stdout.startswith('identical'):
+        apart.append('; '.join((run.stdout or run.stderr).strip().splitlines()[-3:]))
+    tests = ''
+    if machine.tests:
+        run = _run([*python, '-m', 'pytest', '-q', '--timeout', '1200', '-p', 'no:cacheprovider',
+                    *machine.tests], machine.settings)
+        tests = re.sub(r' in .*', '', (run.stdout.strip().splitlines() or ['failed'])[-1])
+        if run.returncode:
+            apart += [line for line in run.stdout.splitlines() if line.startswith('FAILED')]
+            apart = apart or [f'tests: {tests}']
+    return sum(map(len, kept.values())), apart, tests
+
+
+def _tell(machine, apart):
+    """Print the beginning of what differs on a machine, and write all of it into a file."""
+    path = CACHE / f'{machine.name}.txt'
+    path.write_text('\n'.join(apart))
+    for line in apart[:SHOWN]:
+        print(f'{machine.name}: {line}')
+    if len(apart) > SHOWN:
+        print(f'{machine.name}: ... all in {path}')
+
+
+def main(words):
+    """Visit the machines; print what differs on each one and a table; return the exit status."""
+    rows, bad = [], False
+    CACHE.mkdir(parents=True, exist_ok=True)
+    recording = _record()
+    for machine in machines():
+        if words and not machine.name.startswith(tuple(words)):
+            continue
+        begin, tests = time.monotonic(), ''
+        try:
+            count, apart, tests = visit(machine, recording)
+            verdict = f'{count - len(apart)} the same' + f', {len(apart)} differ' * bool(apart)
+            bad |= bool(apart)
+            _tell(machine, apart)
+        except (Unavailable, subprocess.TimeoutExpired) as lack:
+            verdict = f'not here: {lack}'
+        rows.append((machine.name, verdict, tests or '-', f'{time.monotonic() - begin:.0f} s'))
+        print(*rows[-1], sep=' | ', flush=True)
+    here = {'arithmetic': arithmetic.version(), 'processor': environment.processor().split()[0],
+            'cases': len(arithmetic.digests()), 'rows': rows}
+    if not words:
+        (CACHE / 'table.json').write_text(json.dumps(here))
+    print(f'\nArithmetic {here["arithmetic"]} on {here["processor"]}\n')
+    for row in [('machine', 'digests', 'tests', 'time'), ('---',) * 4, *rows]:
+        print('|', ' | '.join(row), '|')
+    return int(bad)
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

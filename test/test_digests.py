@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The bits of every scene and method are those kept in the repo, on whatever machine this runs.
+
+``make test-machines`` shows the same for machines that this one stands for.
+"""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from rigid_body_sim.choice.choose import methods_for
+from rigid_body_sim.scene.scene import load_scene, scene_names
+from rigid_body_sim.simulation import arithmetic
+from rigid_body_sim.study.machines import digests
+from rigid_body_sim.study.machines.cases import cases
+
+KEPT = arithmetic.digests()
+SCENES = sorted({case.scene for case in cases().values()})
+
+
+@pytest.mark.timeout(1200)    # a cold cache: each kind of scene is compiled for each method
+@pytest.mark.parametrize('scene', SCENES)
+def test_the_bits_of_a_scene_are_those_kept(scene):
+    mine = {name for name, case in cases().items() if case.scene == scene}
+    found = digests.compute(lambda case: case.scene == scene)
+    assert digests.different(found, {name: KEPT[name] for name in mine & set(KEPT)}) == []
+
+
+@pytest.mark.timeout(600)
+def test_without_numba_the_bits_are_the_same():
+    run = subprocess.run([sys.executable, '-W', 'ignore', '-m', digests.__name__, '--json'],
+                         env=os.environ | {'NUMBA_DISABLE_JIT': '1'}, capture_output=True,
+                         text=True, check=True, timeout=600)
+    assert digests.different(json.loads(run.stdout), KEPT) == []
+
+
+def test_every_scene_and_method_has_a_digest():
+    table = cases()
+    assert set(KEPT) == set(table)
+    expected = {f'{name} by {method}' for name in scene_names()
+                for method in methods_for(load_scene(name)) if method not in arithmetic.EXCEPTED}
+    assert expected <= set(KEPT)
+    assert len(KEPT) > 400
+
+
+def test_ways_to_ask_for_the_same_have_the_same_digests():
+    """Ticks one by one, in slices, foreseen, backwards; bodies on one, two and five threads."""
+    table = cases()
+    pairs = {name: case.same_as for name, case in table.items() if case.same_as}
+    assert len(pairs) > 40
+    assert [name for name, other in pairs.items() if KEPT[name] != KEPT[other]] == []
+
+
+def test_one_bit_in_one_number_is_another_digest():
+    assert digests.digest([[1.0, 2.0]]) != digests.digest([[1.0, 2.0000000000000004]])
+    assert digests.digest([[0.0]]) != digests.digest([[-0.0]])
+    assert digests.different({'a': {'x': '1', 'y': '2'}}, {'a': {'x': '1', 'y': '3'}, 'b': {'z': '1'}}) == ['a: y', 'b: z']
+
+
+def test_the_command_names_what_differs(monkeypatch, capsys):
+    case = 'tennis_racket: set-up'
+    monkeypatch.setattr(digests, 'cases', lambda: {case: cases()[case]})
+    monkeypatch.setattr(arithmetic, 'digests', lambda: {case: KEPT[case] | {'start': 'another'}})
+    assert digests.main([]) == 1
+    assert capsys.readouterr().out == f'{case}: start\n1 cases, 1 digests differ\n'
