@@ -32,7 +32,8 @@ PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_cente
 """Scene -> factor of its durations, where it is not 1."""
 STEPS, ACCURACY = 40, 1e-9
 """Steps of a method that does not control its error; accuracy (rad) of one that does."""
-ACCURACIES = (1e-6, 1e-12)
+ACCURACIES, HORIZON = (1e-6, 1e-12), 0.5
+"""Of what `auto` chooses: rad, s."""
 FORCE, TORQUE = (0.03, -0.02, 0.0), (1e-3, 2e-3, 0.0)
 ON_AWKWARD = ('exact', 'dop8', 'taylor')
 """Methods that run awkward scenes."""
@@ -116,14 +117,15 @@ def states(name, method):
 
 def chosen(name):
     """Return what `auto` chooses, as text."""
-    found = (choose(scene_of(name), accuracy=accuracy) for accuracy in ACCURACIES)
+    found = (choose(scene_of(name), accuracy=one, horizon=HORIZON) for one in ACCURACIES)
     return {f'{one.accuracy:g} rad': [repr((one.method, one.tolerance, one.expected_error))]
             for one in found}
 
 
 def commanded(name, frame):
     """Return states and ledger under impulses, a held wrench and its release."""
-    simulation, found = Simulation(scene_of(name), accuracy=ACCURACY), {}
+    simulation = Simulation(scene_of(name), accuracy=ACCURACY, horizon=HORIZON)
+    found = {}
     simulation.advance(7)
     simulation.impulse(force=FORCE, torque=TORQUE, frame=frame)
     simulation.impulse(torque=TORQUE, frame=frame)
