@@ -28,7 +28,7 @@ TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
 SETTLED = 1.0
 ROWS = ('floor', 'node', 'node, recording')
 PR_CAPBSET_DROP, CAP_SYS_NICE = 24, 23
-LATENESS = re.compile(r'lateness p50 (\d+), p99 (\d+), max (\d+) us')
+LATENESS = re.compile(r'p50 (\d+), p99 (\d+), max (\d+) us')
 ACHIEVED = re.compile(r'(\d+) ticks in ([\d.]+) s \(([\d.]+) Hz\)')
 
 

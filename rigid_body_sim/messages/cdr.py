@@ -1,8 +1,12 @@
-"""Messages as bytes: little-endian CDR (XCDR1), the wire form of ROS 2, packed by hand so that padding is zero and bytes are repeatable.
+# SPDX-License-Identifier: Apache-2.0
+"""Messages as bytes: little-endian CDR (XCDR1), the wire form of ROS 2.
 
-Four bytes of encapsulation (00 01 00 00), then the fields in order, each aligned to its size (counted after the encapsulation); a string is
-its length including the final zero byte, its UTF-8 text and that zero; a sequence is its length and its elements.
-(OMG DDS-RTPS 2.3, section 10; ROS 2 design, "Interface definition mapping".)
+It is packed by hand, so padding is zero and bytes are repeatable.
+
+Four bytes of encapsulation (00 01 00 00), then the fields in order, each aligned to its size
+(counted after the encapsulation); a string is its length including the final zero byte, its UTF-8
+text and that zero; a sequence is its length and its elements. (OMG DDS-RTPS 2.3, section 10; ROS 2
+design, "Interface definition mapping".)
 """
 
 import struct
@@ -11,12 +15,27 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import SEQUENCE, SIZES, schema
 
 ENCAPSULATION = b'\x00\x01\x00\x00'
-CODES = {'bool': '?', 'byte': 'B', 'char': 'B', 'int8': 'b', 'uint8': 'B', 'int16': 'h', 'uint16': 'H', 'int32': 'i', 'uint32': 'I',
-         'int64': 'q', 'uint64': 'Q', 'float32': 'f', 'float64': 'd'}
+CODES = {
+    'bool': '?',
+    'byte': 'B',
+    'char': 'B',
+    'int8': 'b',
+    'uint8': 'B',
+    'int16': 'h',
+    'uint16': 'H',
+    'int32': 'i',
+    'uint32': 'I',
+    'int64': 'q',
+    'uint64': 'Q',
+    'float32': 'f',
+    'float64': 'd',
+}
 
 
 def encode(type_name, values):
-    """Return the bytes of a message of a type we ship; `values` is a nested dict, and what it leaves out is zero, empty or "".
+    """Return the bytes of a message of a known type.
+
+    `values` is a nested dict; fields that it leaves out are zero, empty or "".
 
     BadInput for a field that does not exist or a value that does not fit.
     """
@@ -24,7 +43,11 @@ def encode(type_name, values):
     try:
         _encode_fields(schema(type_name), type_name, values, out)
     except (struct.error, TypeError, AttributeError, OverflowError) as error:
-        raise BadInput(type_name, f'a value does not fit its field ({error})', 'values of the types in the definition') from error
+        raise BadInput(
+            type_name,
+            f'a value does not fit its field ({error})',
+            'values of the types in the definition',
+        ) from error
     return bytes(out)
 
 
@@ -36,7 +59,11 @@ def _encode_fields(schemas, type_name, values, out):
     fields = schemas[type_name]
     unknown = set(values) - {field.name for field in fields}
     if unknown:
-        raise BadInput(type_name, f'no field {sorted(unknown)[0]!r}', f'one of {", ".join(field.name for field in fields)}')
+        raise BadInput(
+            type_name,
+            f'no field {sorted(unknown)[0]!r}',
+            f'one of {", ".join(field.name for field in fields)}',
+        )
     for field in fields:
         value = values.get(field.name)
         if field.array is None:
@@ -49,7 +76,11 @@ def _encode_fields(schemas, type_name, values, out):
         else:
             elements = (None,) * field.array if value is None else value
             if len(elements) != field.array:
-                raise BadInput(f'{type_name}: {field.name}', f'{len(elements)} elements', f'{field.array} elements')
+                raise BadInput(
+                    f'{type_name}: {field.name}',
+                    f'{len(elements)} elements',
+                    f'{field.array} elements',
+                )
             _encode_elements(schemas, field, elements, out)
 
 
@@ -58,7 +89,12 @@ def _encode_elements(schemas, field, elements, out):
     if base in SIZES:
         if len(elements):
             _align(out, SIZES[base])
-            out.extend(struct.pack(f'<{len(elements)}{CODES[base]}', *(0 if element is None else element for element in elements)))
+            out.extend(
+                struct.pack(
+                    f'<{len(elements)}{CODES[base]}',
+                    *(0 if element is None else element for element in elements),
+                )
+            )
     elif base == 'string':
         for element in elements:
             text = (element or '').encode() + b'\0'
@@ -72,12 +108,17 @@ def _encode_elements(schemas, field, elements, out):
 def decode(schemas, type_name, data, leaves=None):
     """Return a message as a nested dict; BadInput where the bytes are no such message.
 
-    `schemas` comes from :mod:`rigid_body_sim.messages.definitions`. If `leaves` is a list, what was met is appended in wire order as
-    (path, code, offset, count): `code` as in :mod:`struct`, ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a
-    string. Text that is not UTF-8 (ROS does not forbid it) gets replacement characters.
+    `schemas` comes from :mod:`rigid_body_sim.messages.definitions`. If `leaves` is a list, what
+    was met is appended in wire order as (path, code, offset, count): `code` as in :mod:`struct`,
+    ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a string. Text that is
+    not UTF-8 (ROS does not forbid it) gets replacement characters.
     """
     if bytes(data[:2]) != ENCAPSULATION[:2]:
-        raise BadInput(type_name, f'a message that starts with {bytes(data[:4]).hex()}', 'little-endian CDR (00 01)')
+        raise BadInput(
+            type_name,
+            f'a message that starts with {bytes(data[:4]).hex()}',
+            'little-endian CDR (00 01)',
+        )
     reader = _Reader(schemas, data, leaves)
     try:
         return reader.fields(type_name, '')
@@ -91,7 +132,9 @@ class _Reader:
         self.schemas, self.data, self.position, self.leaves = schemas, data, 4, leaves
 
     def fields(self, type_name, above):
-        return {field.name: self.field(field, above + field.name) for field in self.schemas[type_name]}
+        return {
+            field.name: self.field(field, above + field.name) for field in self.schemas[type_name]
+        }
 
     def field(self, field, path):
         if field.array is None:
@@ -99,7 +142,9 @@ class _Reader:
         count = self.length(path) if field.array == SEQUENCE else field.array
         if count > len(self.data) - self.position:
             raise struct.error(f'{path} claims {count} elements')
-        return self.elements(field.base, count, path, (f'{path}[{index}]' for index in range(count)))
+        return self.elements(
+            field.base, count, path, (f'{path}[{index}]' for index in range(count))
+        )
 
     def length(self, path):
         return self.numbers('I', 1, path, '#')[0]
@@ -128,7 +173,7 @@ class _Reader:
         count = self.length(path)
         if count > len(self.data) - self.position:
             raise struct.error(f'{path} claims {count} bytes')
-        text = bytes(self.data[self.position:self.position + max(0, count - 1)])
+        text = bytes(self.data[self.position : self.position + max(0, count - 1)])
         self.note(path, 's', max(0, count - 1))
         self.position += count
         return text.decode(errors='replace')

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The body as a marker for RViz: its true shape where the scene gives one.
 
-A body that is one box, ellipsoid or cylinder is that marker; any other shape is a list of triangles, in
-two colours so that a turn can be seen. Without a shape it is a box with the body's mass and moments.
+A body that is one box, ellipsoid or cylinder is that marker; any other shape is a list of
+triangles, in two colours so that a turn can be seen. Without a shape it is a box with the body's
+mass and moments.
 """
 
 import numpy as np
@@ -13,7 +14,10 @@ from rigid_body_sim.messages.shapes import BOX, CYLINDER, SPHERE, Solid, equal_b
 TYPES = {BOX: 1, SPHERE: 2, CYLINDER: 3}
 """Numbers of visualization_msgs/Marker."""
 TRIANGLE_LIST = 11
-COLOUR, ACCENT = ({'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}, {'r': 0.95, 'g': 0.9, 'b': 0.8, 'a': 1.0})
+COLOUR, ACCENT = (
+    {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0},
+    {'r': 0.95, 'g': 0.9, 'b': 0.8, 'a': 1.0},
+)
 
 
 def solid_of(scene) -> Solid | None:
@@ -34,15 +38,23 @@ def shape_fields(scene) -> dict:
     """Return the constant fields of the marker that say what is drawn."""
     solid = solid_of(scene)
     if solid:
-        return {'type': TYPES[solid.kind], 'scale': dict(zip('xyz', solid.size, strict=True)),
-                'color': COLOUR}
+        return {
+            'type': TYPES[solid.kind],
+            'scale': dict(zip('xyz', solid.size, strict=True)),
+            'color': COLOUR,
+        }
     points, colours = [], []
     for surface in drawing_of(scene).surfaces:
         corners = surface.vertices[surface.faces].reshape(-1, 3).tolist()
         points += [dict(zip('xyz', corner, strict=True)) for corner in corners]
         colours += [ACCENT if accent else COLOUR for accent in np.repeat(surface.accent, 3)]
-    return {'type': TRIANGLE_LIST, 'scale': {'x': 1.0, 'y': 1.0, 'z': 1.0}, 'color': COLOUR,
-            'points': points, 'colors': colours}
+    return {
+        'type': TRIANGLE_LIST,
+        'scale': {'x': 1.0, 'y': 1.0, 'z': 1.0},
+        'color': COLOUR,
+        'points': points,
+        'colors': colours,
+    }
 
 
 def place_of(scene) -> tuple[tuple, tuple]:

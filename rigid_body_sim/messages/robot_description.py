@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The body as a robot: a URDF text made from the scene, as RViz and robot_state_publisher read it.
 
-The links have the names of the frames. A hinge is a continuous joint with the name and the angle of
-``joint_states``; any other body has a floating joint, whose place ``tf`` tells.
+The links have the names of the frames. A hinge is a continuous joint with the name and the angle
+of ``joint_states``; any other body has a floating joint, whose place ``tf`` tells.
 """
 
 import xml.etree.ElementTree as ElementTree
@@ -43,8 +43,9 @@ def urdf(scene, frames) -> str:
         elif solid.kind == SPHERE:
             ElementTree.SubElement(geometry, 'sphere', radius=repr(0.5 * solid.size[0]))
         else:
-            ElementTree.SubElement(geometry, 'cylinder', radius=repr(0.5 * solid.size[0]),
-                                   length=repr(solid.size[2]))
+            ElementTree.SubElement(
+                geometry, 'cylinder', radius=repr(0.5 * solid.size[0]), length=repr(solid.size[2])
+            )
     ElementTree.indent(robot)
     return ElementTree.tostring(robot, encoding='unicode') + '\n'
 
@@ -70,8 +71,11 @@ def _hinge(robot, scene, frames):
     joint = _joint(robot, f'{frames.prefix}hinge', 'continuous', frames.world, turning)
     _origin(joint, place, unturned.as_quat())
     ElementTree.SubElement(joint, 'axis', xyz=_numbers(axis))
-    _origin(_joint(robot, f'{frames.body}_joint', 'fixed', turning, frames.body), -through,
-            (0.0, 0.0, 0.0, 1.0))
+    _origin(
+        _joint(robot, f'{frames.body}_joint', 'fixed', turning, frames.body),
+        -through,
+        (0.0, 0.0, 0.0, 1.0),
+    )
 
 
 def _joint(robot, name, kind, parent, child):
@@ -86,9 +90,17 @@ def _inertial(link, body):
     _origin(inertial, body.center_of_mass, (0.0, 0.0, 0.0, 1.0))
     ElementTree.SubElement(inertial, 'mass', value=repr(float(body.mass)))
     tensor = np.asarray(body.about_center.matrix, float)
-    names = {'ixx': (0, 0), 'ixy': (0, 1), 'ixz': (0, 2), 'iyy': (1, 1), 'iyz': (1, 2), 'izz': (2, 2)}
-    ElementTree.SubElement(inertial, 'inertia', {name: repr(float(tensor[place]))
-                                                 for name, place in names.items()})
+    names = {
+        'ixx': (0, 0),
+        'ixy': (0, 1),
+        'ixz': (0, 2),
+        'iyy': (1, 1),
+        'iyz': (1, 2),
+        'izz': (2, 2),
+    }
+    ElementTree.SubElement(
+        inertial, 'inertia', {name: repr(float(tensor[place])) for name, place in names.items()}
+    )
 
 
 def _origin(element, at, orientation):

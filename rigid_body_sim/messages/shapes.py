@@ -43,18 +43,27 @@ SOLIDS: dict[str, Callable] = {
     'box': lambda size: (BOX, tuple(size)),
     'lamina': lambda width, height: (BOX, (width, height, THIN * max(width, height))),
     'ellipsoid': lambda semi_axes: (SPHERE, tuple(2.0 * axis for axis in semi_axes)),
-    'solid_sphere': _sphere, 'spherical_shell': _sphere, 'cylinder': _cylinder,
+    'solid_sphere': _sphere,
+    'spherical_shell': _sphere,
+    'cylinder': _cylinder,
     'disk': lambda radius: _cylinder(radius, 2.0 * THIN * radius),
-    'rod': lambda length: _cylinder(THIN * length, length)}
-"""Kind and size of the shapes of a scene file that are solids; those drawn thin are as in drawing/."""
+    'rod': lambda length: _cylinder(THIN * length, length),
+}
+"""Kind and size of those shapes of a scene file that are solids; thin as in drawing/."""
 
 
 def solids_of(scene) -> list[Solid] | None:
-    """Return the solids that a scene's body consists of; None where they do not make its true shape."""
+    """Return the solids of a scene's body; None where they are not its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
     if 'parts' in mapping:
-        found = [_solid(part.get('shape'), part.get('at', (0.0, 0.0, 0.0)),
-                        part.get('orientation', IDENTITY)) for part in mapping['parts']]
+        found = [
+            _solid(
+                part.get('shape'),
+                part.get('at', (0.0, 0.0, 0.0)),
+                part.get('orientation', IDENTITY),
+            )
+            for part in mapping['parts']
+        ]
     elif 'shape' in mapping:
         found = [_solid(mapping['shape'], scene.body.center_of_mass, IDENTITY)]
     elif scene.body.radius is not None:
@@ -75,5 +84,6 @@ def _solid(shape, at, orientation):
 
 def equal_box(scene, edges: tuple) -> Solid:
     """Return a box of these edges at the centre of mass, along the body's principal axes."""
-    return Solid(BOX, tuple(edges), tuple(scene.body.center_of_mass),
-                 tuple(scene.body.about_center.axes))
+    return Solid(
+        BOX, tuple(edges), tuple(scene.body.center_of_mass), tuple(scene.body.about_center.axes)
+    )

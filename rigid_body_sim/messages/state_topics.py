@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The topics that a simulation fills: types, frames, and where the numbers of each message come from.
+"""The topics that a simulation fills: types, frames, and the sources of their numbers.
 
-The node publishes and records them, ``simulate`` records them: tick_messages.py makes the bytes for both.
+The node publishes and records them, ``simulate`` records them: tick_messages.py makes the bytes
+for both.
 """
 
 import dataclasses
@@ -31,7 +32,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, 
 
 
 class Frames(NamedTuple):
-    """Names of the fixed frame and of the frame that moves with the body, and their common prefix."""
+    """Names of the fixed frame and of the body's frame, and their common prefix."""
 
     world: str = 'world'
     body: str = 'body'
@@ -46,15 +47,15 @@ class Output:
     ----------
     name, type : str
     constants : callable
-        (scene, frames) -> the fields that never change, and the lengths of sequences; BadInput where the
-        topic has no meaning for a scene.
+        (scene, frames) -> the fields that never change, and the lengths of sequences; BadInput
+        where the topic has no meaning for a scene.
     variable : tuple of str
         Paths of the doubles that change, in wire order. The stamp, if there is one, always does.
     places : tuple of (int or slice)
         Where they are in the sample (tick_messages.py), in the same order.
     derive : callable, optional
-        scene -> function (samples, held wrench) that fills its part of samples, shape (n, SAMPLE_SIZE),
-        from their states.
+        scene -> function (samples, held wrench) that fills its part of samples, shape (n,
+        SAMPLE_SIZE), from their states.
     absolute : bool
         Whether the name is outside of the node's namespace.
     paced : bool
@@ -91,6 +92,7 @@ def _velocity_in_body(scene):
     def derive(samples, wrench):
         for sample in samples:
             sample[BODY_VELOCITY] = rotations.rotate_back(*sample[ORIENTATION], *sample[VELOCITY])
+
     return derive
 
 
@@ -104,12 +106,15 @@ def _proper_acceleration(scene):
         for sample in samples:
             felt = dynamics.balance(sample[VECTOR], wrench).acceleration + g
             sample[ACCELERATION] = rotations.rotate_back(*sample[ORIENTATION], *felt)
+
     return derive
 
 
 def _held(scene, frames):
     if scene.constraint.kind == 'free':
-        raise BadInput('parameter publish', 'got reaction with constraint free', 'nothing holds a free body')
+        raise BadInput(
+            'parameter publish', 'got reaction with constraint free', 'nothing holds a free body'
+        )
     return _in_world(scene, frames)
 
 
@@ -124,15 +129,23 @@ def _reaction(scene):
         for sample in samples:
             balance = dynamics.balance(sample[VECTOR], wrench)
             sample[REACTION] = *balance.force, *balance.torque
+
     return derive
 
 
 def _joint(scene, frames):
     if scene.constraint.kind != 'hinge':
-        raise BadInput('parameter publish', f'got joint_states with constraint {scene.constraint.kind!r}',
-                       'only a hinge is a joint')
-    return {**_in_world(scene, frames), 'name': [f'{frames.prefix}hinge'],
-            'position': [0.0], 'velocity': [0.0]}
+        raise BadInput(
+            'parameter publish',
+            f'got joint_states with constraint {scene.constraint.kind!r}',
+            'only a hinge is a joint',
+        )
+    return {
+        **_in_world(scene, frames),
+        'name': [f'{frames.prefix}hinge'],
+        'position': [0.0],
+        'velocity': [0.0],
+    }
 
 
 def _hinge(scene):
@@ -147,8 +160,11 @@ def _hinge(scene):
     def derive(samples, wrench):
         for sample in samples:
             *turn, cosine = rotations.multiply(-x, -y, -z, w, *sample[ORIENTATION])
-            sample[HINGE] = (start + 2.0 * math.atan2(axis @ turn, cosine),
-                             axis @ sample[ANGULAR_VELOCITY])
+            sample[HINGE] = (
+                start + 2.0 * math.atan2(axis @ turn, cosine),
+                axis @ sample[ANGULAR_VELOCITY],
+            )
+
     return derive
 
 
@@ -162,8 +178,11 @@ def _marker_pose(scene):
     def derive(samples, wrench):
         for sample in samples:
             q = sample[ORIENTATION]
-            sample[SHAPE] = (*(sample[POSITION] + rotations.rotate(*q, *center)),
-                             *rotations.multiply(*q, *axes))
+            sample[SHAPE] = (
+                *(sample[POSITION] + rotations.rotate(*q, *center)),
+                *rotations.multiply(*q, *axes),
+            )
+
     return derive
 
 
@@ -172,31 +191,67 @@ def _transform(scene, frames):
 
 
 EVERY_TICK = (
-    Output('pose', 'geometry_msgs/msg/PoseStamped', _in_world,
-           ('pose',), (POSITION, ORIENTATION)),
-    Output('angular_velocity', 'geometry_msgs/msg/Vector3Stamped', _in_body,
-           ('vector',), (ANGULAR_VELOCITY,)),
+    Output('pose', 'geometry_msgs/msg/PoseStamped', _in_world, ('pose',), (POSITION, ORIENTATION)),
+    Output(
+        'angular_velocity',
+        'geometry_msgs/msg/Vector3Stamped',
+        _in_body,
+        ('vector',),
+        (ANGULAR_VELOCITY,),
+    ),
     Output('energy', 'std_msgs/msg/Float64', _nothing, ('data',), (ENERGY,)),
     Output('angular_momentum_squared', 'std_msgs/msg/Float64', _nothing, ('data',), (SQUARE,)),
 )
 ON_REQUEST = (
-    Output('odom', 'nav_msgs/msg/Odometry', _odometry, ('pose.pose', 'twist.twist'),
-           (POSITION, ORIENTATION, BODY_VELOCITY, ANGULAR_VELOCITY), _velocity_in_body),
-    Output('imu', 'sensor_msgs/msg/Imu', _in_body,
-           ('orientation', 'angular_velocity', 'linear_acceleration'),
-           (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION), _proper_acceleration),
-    Output('joint_states', 'sensor_msgs/msg/JointState', _joint,
-           ('position', 'velocity'), (HINGE,), _hinge),
-    Output('reaction', 'geometry_msgs/msg/WrenchStamped', _held,
-           ('wrench',), (REACTION,), _reaction),
-    Output('marker', 'visualization_msgs/msg/Marker', _marker, ('pose',), (SHAPE,),
-           _marker_pose, paced=True),
-    Output('tf', 'tf2_msgs/msg/TFMessage', _transform,
-           ('transforms[0].transform',), (POSITION, ORIENTATION), absolute=True, paced=True),
+    Output(
+        'odom',
+        'nav_msgs/msg/Odometry',
+        _odometry,
+        ('pose.pose', 'twist.twist'),
+        (POSITION, ORIENTATION, BODY_VELOCITY, ANGULAR_VELOCITY),
+        _velocity_in_body,
+    ),
+    Output(
+        'imu',
+        'sensor_msgs/msg/Imu',
+        _in_body,
+        ('orientation', 'angular_velocity', 'linear_acceleration'),
+        (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION),
+        _proper_acceleration,
+    ),
+    Output(
+        'joint_states',
+        'sensor_msgs/msg/JointState',
+        _joint,
+        ('position', 'velocity'),
+        (HINGE,),
+        _hinge,
+    ),
+    Output(
+        'reaction', 'geometry_msgs/msg/WrenchStamped', _held, ('wrench',), (REACTION,), _reaction
+    ),
+    Output(
+        'marker',
+        'visualization_msgs/msg/Marker',
+        _marker,
+        ('pose',),
+        (SHAPE,),
+        _marker_pose,
+        paced=True,
+    ),
+    Output(
+        'tf',
+        'tf2_msgs/msg/TFMessage',
+        _transform,
+        ('transforms[0].transform',),
+        (POSITION, ORIENTATION),
+        absolute=True,
+        paced=True,
+    ),
     Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
 )
 DISPLAY_RATE = 30.0
-"""How often paced outputs are made by default (Hz of simulated time): for eyes, not for controllers."""
+"""Rate of paced outputs by default (Hz of simulated time): for eyes, not for controllers."""
 OUTPUTS = {output.name: output for output in EVERY_TICK + ON_REQUEST}
 
 
@@ -208,10 +263,12 @@ class Outputs(NamedTuple):
 
 
 def chosen(names) -> Outputs:
-    """Return the outputs of every tick, and those on request that are named, in the table's order."""
+    """Return the outputs of every tick, and those on request that are named."""
     named = [output for output in ON_REQUEST if output.name in names]
-    return Outputs([*EVERY_TICK, *(output for output in named if not output.paced)],
-                   [output for output in named if output.paced])
+    return Outputs(
+        [*EVERY_TICK, *(output for output in named if not output.paced)],
+        [output for output in named if output.paced],
+    )
 
 
 class SceneMessages(NamedTuple):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The serialisation of ticks: from states to the bytes of every topic, for the wire and for recordings.
+"""The serialisation of ticks: from states to the bytes of every topic.
 
-The node and ``simulate`` both use it, so a topic has the same bytes wherever it goes. The numbers of a
-tick, of all topics, come from one array of doubles, the *sample* (its places are named below); they are
-copied to their places in a buffer that holds the messages of the tick end to end.
+The node and ``simulate`` both use it, so a topic has the same bytes wherever it goes. The numbers
+of a tick, of all topics, come from one array of doubles, the *sample* (its places are named
+below); they are copied to their places in a buffer that holds the messages of the tick end to end.
 """
 
 import numpy as np
@@ -38,8 +38,8 @@ NO_WRENCH = Wrench()
 class TickMessages:
     """The messages of some topics for one scene, made for one tick or for many at once.
 
-    Each message lies in the buffer such that its doubles are at multiples of eight bytes (CDR aligns
-    them so, counted after its four bytes of encapsulation).
+    Each message lies in the buffer such that its doubles are at multiples of eight bytes (CDR
+    aligns them so, counted after its four bytes of encapsulation).
 
     Parameters
     ----------
@@ -72,14 +72,16 @@ class TickMessages:
             sources += [place for entry in output.places for place in _range(entry)]
         self._blank = np.frombuffer(buffer + bytes(-len(buffer) % 8), dtype=np.float64)
         self._targets, self._sources, self._seconds = (
-            np.array(places, dtype=np.intp) for places in (targets, sources, seconds))
+            np.array(places, dtype=np.intp) for places in (targets, sources, seconds)
+        )
         if len(self._targets) != len(self._sources):
             raise TypeError('an Output names more or fewer places than it has doubles')
         self.sizes = [part.stop - part.start for part in self._parts]
         self._derive = [output.derive(scene) for output in outputs if output.derive]
 
-    def messages(self, vectors: np.ndarray, energies, squares, stamps,
-                 wrench: Wrench = NO_WRENCH) -> list[list[bytes]]:
+    def messages(
+        self, vectors: np.ndarray, energies, squares, stamps, wrench: Wrench = NO_WRENCH
+    ) -> list[list[bytes]]:
         """Return the messages of each tick, a list in the order of the outputs.
 
         Parameters
@@ -95,12 +97,15 @@ class TickMessages:
         """
         words = self._words(vectors, energies, squares, stamps, wrench)
         data, size = words.tobytes(), words.itemsize * len(self._blank)
-        return [[data[start + part.start:start + part.stop] for part in self._parts]
-                for start in range(0, len(words) * size, size)]
+        return [
+            [data[start + part.start : start + part.stop] for part in self._parts]
+            for start in range(0, len(words) * size, size)
+        ]
 
-    def columns(self, vectors: np.ndarray, energies, squares, stamps,
-                wrench: Wrench = NO_WRENCH) -> list[np.ndarray]:
-        """Return the messages of each output, uint8 of shape (n, size); parameters of `messages`."""
+    def columns(
+        self, vectors: np.ndarray, energies, squares, stamps, wrench: Wrench = NO_WRENCH
+    ) -> list[np.ndarray]:
+        """Return the messages of each output, uint8 (n, size); parameters as of `messages`."""
         words = self._words(vectors, energies, squares, stamps, wrench)
         data = words.view(np.uint8).reshape(len(words), -1)
         return [data[:, part] for part in self._parts]
@@ -114,8 +119,15 @@ class TickMessages:
             derive(samples, wrench)
         words = np.empty((count, len(self._blank)))
         words[:] = self._blank
-        _fill(samples, self._sources, self._targets, np.array(stamps, dtype=np.int64),
-              self._seconds, words, words.view(np.uint32))
+        _fill(
+            samples,
+            self._sources,
+            self._targets,
+            np.array(stamps, dtype=np.int64),
+            self._seconds,
+            words,
+            words.view(np.uint32),
+        )
         return words
 
 
@@ -123,8 +135,8 @@ class TickMessages:
 def _fill(samples, sources, targets, stamps, seconds, words, halves):
     """Copy the doubles of samples and the stamps (ns) into messages.
 
-    `words` are the messages as doubles, `halves` the same bytes as 32-bit integers. Mostly there is one
-    tick: then a few calls of numpy would take longer than everything else.
+    `words` are the messages as doubles, `halves` the same bytes as 32-bit integers. Mostly there
+    is one tick: then a few calls of numpy would take longer than everything else.
     """
     for k in range(len(samples)):
         for j in range(len(targets)):
@@ -144,8 +156,9 @@ def _places(output, blank):
     doubles, stamps = [], []
     schema = definitions.schema(output.type)
     for path, code, offset, count in Layout(schema, output.type, blank).leaves:
-        below = any(path == name or path.startswith((f'{name}.', f'{name}['))
-                    for name in output.variable)
+        below = any(
+            path == name or path.startswith((f'{name}.', f'{name}[')) for name in output.variable
+        )
         if code == 'd' and below:
             doubles += range(offset, offset + 8 * count, 8)
         elif path in STAMPS:

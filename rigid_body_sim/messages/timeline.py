@@ -1,7 +1,9 @@
-"""Instants of ticks in integer nanoseconds: origin + ticks / rate, exact for any rate and any number of ticks.
+# SPDX-License-Identifier: Apache-2.0
+"""Instants of ticks in integer nanoseconds: origin + ticks / rate, exact for any number.
 
-A rate is a double, hence a ratio of integers; with integers throughout, nothing drifts: the instant of tick k does not depend on the way
-there. Stamps are such instants, and so are the deadlines of the tick thread.
+A rate is a double, hence a ratio of integers; with integers throughout, nothing drifts: the
+instant of tick k does not depend on the way there. Stamps are such instants, and so are the
+deadlines of the tick thread.
 """
 
 import math
@@ -33,7 +35,9 @@ class Timeline:
 
     def instant(self, tick):
         """Return the instant of a tick, ns, rounded to the nearest."""
-        return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (2 * self._rate_numerator)
+        return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (
+            2 * self._rate_numerator
+        )
 
     def instants(self, tick, count):
         """Return the instants of a tick and those after it, `count` in all, ns."""
@@ -42,7 +46,10 @@ class Timeline:
         return [origin + (k * period + half) // divisor for k in range(first, first + count)]
 
     def ticks_in(self, seconds):
-        """Return the number of ticks after which at least `seconds` have passed; 0.07 s at 100 Hz are 7, though the double is above 0.07."""
+        """Return the number of ticks after which at least `seconds` have passed.
+
+        Ticks of 100 Hz in 0.07 s are 7, though the double is above 0.07.
+        """
         exact = Fraction(seconds) * self.rate
         nearest = round(exact)
         return nearest if abs(exact - nearest) <= nearest * ROUND_OFF else math.ceil(exact)
@@ -53,12 +60,15 @@ class Timeline:
 
 
 class Pace:
-    """The ticks at which a topic with a rate of its own is due: the first at or after each instant.
+    """The ticks at which a topic with a rate of its own is due.
+
+    It is due at the first tick at or after each of its instants.
 
     Parameters
     ----------
     rate, tick_rate : float
-        How often it is due, and ticks, per second. It is due at every tick if `rate` is the larger.
+        How often it is due, and ticks, per second. It is due at every tick if `rate` is the
+        larger.
     """
 
     def __init__(self, rate: float, tick_rate: float):
@@ -67,5 +77,8 @@ class Pace:
     def due(self, tick: int, count: int) -> list[int]:
         """Return the ticks at which it is due, among `count` ticks from `tick` on."""
         numerator, denominator = self._ratio
-        return [k for k in range(tick, tick + count)
-                if k * numerator // denominator > (k - 1) * numerator // denominator]
+        return [
+            k
+            for k in range(tick, tick + count)
+            if k * numerator // denominator > (k - 1) * numerator // denominator
+        ]

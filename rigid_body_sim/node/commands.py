@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Commands from topics: the tick thread takes them itself and applies them at the next tick, in order.
+"""Commands from topics: the tick thread takes them itself and applies them at the next tick.
 
-``cmd_wrench`` is held until it is replaced or times out, ``cmd_impulse`` (N s and N m s) acts once. Both
-are geometry_msgs/WrenchStamped. The frame_id is the name of the body's frame or of the world's; an empty
-one means the world. The stamp is ignored. Messages become rows (simulation/command_rows.py) as soon as
-they are taken; whether the body takes the numbers is for the simulation to say, at the tick.
+``cmd_wrench`` is held until it is replaced or times out, ``cmd_impulse`` (N s and N m s) acts
+once. Both are geometry_msgs/WrenchStamped. The frame_id is the name of the body's frame or of the
+world's; an empty one means the world. The stamp is ignored. Messages become rows
+(simulation/command_rows.py) as soon as they are taken; whether the body takes the numbers is for
+the simulation to say, at the tick.
 """
 
 import collections
@@ -37,7 +38,7 @@ MOST_HEADS = 64
 
 
 class TakenElsewhere(CallbackGroup):
-    """A group of subscriptions that the executor leaves alone: the tick thread takes their messages."""
+    """A group of subscriptions whose messages the tick thread takes, not the executor."""
 
     def can_execute(self, entity):
         """Return that the executor does not serve an entity."""
@@ -66,7 +67,7 @@ def decode(data: bytes) -> tuple[bytes, int]:
     end = frame_end + (4 - frame_end) % 8 + _NUMBERS_SIZE
     if len(data) < end:
         raise ValueError('cut short')
-    return data[_FRAME_AT:max(frame_end - 1, _FRAME_AT)], end
+    return data[_FRAME_AT : max(frame_end - 1, _FRAME_AT)], end
 
 
 class Commands:
@@ -83,8 +84,8 @@ class Commands:
         To be set: called with (topic, reason, what was got, what would be right) for each refused
         command.
     received, accepted, applied, waiting : int
-        Messages so far: all, those that became a row, those that the body took; rows that wait for the
-        next tick.
+        Messages so far: all, those that became a row, those that the body took; rows that wait for
+        the next tick.
     refusals : collections.Counter
         Refused commands by reason.
     """
@@ -97,29 +98,41 @@ class Commands:
         self.refusals = collections.Counter()
         self._rows = []
         group = TakenElsewhere()
-        self._subscriptions = {kind: self._subscribe(node, TOPICS[kind], group)
-                               for kind in (HOLD, IMPULSE)}
-        self._mismatches = [qos.SubscriptionMismatch(node, TOPICS[kind], subscription.qos_profile)
-                            for kind, subscription in self._subscriptions.items()]
+        self._subscriptions = {
+            kind: self._subscribe(node, TOPICS[kind], group) for kind in (HOLD, IMPULSE)
+        }
+        self._mismatches = [
+            qos.SubscriptionMismatch(node, TOPICS[kind], subscription.qos_profile)
+            for kind, subscription in self._subscriptions.items()
+        ]
         self._bell = Doorbell(node, list(self._subscriptions.values()))
         self._takers = [
             (kind, functools.partial(subscription.handle.take_message, WrenchStamped, True))
-            for kind, subscription in self._subscriptions.items()]
-        self._gaps = {kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind]))
-                      for kind in (HOLD, IMPULSE)}
-        # the beginning of a row, by the bytes that a message has between its stamp and its numbers:
-        # senders hardly ever change them
+            for kind, subscription in self._subscriptions.items()
+        ]
+        self._gaps = {
+            kind: Gaps(functools.partial(qos.publishers_of, node, TOPICS[kind]))
+            for kind in (HOLD, IMPULSE)
+        }
+        # the beginning of a row, by the bytes that a message has between its stamp and its
+        # numbers: senders hardly ever change them
         self._heads = {HOLD: {}, IMPULSE: {}}
 
     @staticmethod
     def _subscribe(node, topic, group):
         return node.create_subscription(
-            WrenchStamped, topic, lambda _: None, QoSProfile(depth=DEPTH), callback_group=group,
-            raw=True, event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-            qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
+            WrenchStamped,
+            topic,
+            lambda _: None,
+            QoSProfile(depth=DEPTH),
+            callback_group=group,
+            raw=True,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            qos_overriding_options=QoSOverridingOptions(qos.POLICIES),
+        )
 
     def take(self):
-        """Take what has come, if the bell rang; only the tick thread calls this and :meth:`look`."""
+        """Take what has come if the bell rang; only the tick thread calls this and `look`."""
         if not self._bell.silent():
             self.look()
 
@@ -146,7 +159,7 @@ class Commands:
         return rows
 
     def look_for_mismatches(self):
-        """Warn of publishers whose commands do not arrive; another thread calls this now and then."""
+        """Warn of publishers whose commands do not arrive; called in another thread."""
         for mismatch in self._mismatches:
             mismatch.look()
 
@@ -167,8 +180,12 @@ class Commands:
         rows = np.frombuffer(bytearray().join(pieces)).reshape(-1, WIDTH)
         room = MOST_QUEUED - self.waiting
         for _ in range(room, len(rows)):
-            self.refuse(TOPICS[kind], 'too many wait for the next tick',
-                        f'one more than {MOST_QUEUED}', 'resume the node, or send fewer')
+            self.refuse(
+                TOPICS[kind],
+                'too many wait for the next tick',
+                f'one more than {MOST_QUEUED}',
+                'resume the node, or send fewer',
+            )
         rows = rows[:room]
         if len(rows):
             self._rows.append(rows)
@@ -184,8 +201,12 @@ class Commands:
         try:
             frame, end = decode(data)
         except ValueError as error:
-            self.refuse(topic, 'malformed', f'{len(data)} bytes, {error}',
-                        'a geometry_msgs/msg/WrenchStamped')
+            self.refuse(
+                topic,
+                'malformed',
+                f'{len(data)} bytes, {error}',
+                'a geometry_msgs/msg/WrenchStamped',
+            )
             return None, data
         axes = self._axes.get(frame)
         if axes is None:
@@ -206,5 +227,7 @@ class Commands:
 
     def _example(self, topic):
         full_name = self._subscriptions[TOPICS.index(topic)].topic_name
-        return (f'ros2 topic pub --once {full_name} geometry_msgs/msg/WrenchStamped "{{header: '
-                f'{{frame_id: {self._frames.body}}}, wrench: {{torque: {{x: 0.1}}}}}}"')
+        return (
+            f'ros2 topic pub --once {full_name} geometry_msgs/msg/WrenchStamped "{{header: '
+            f'{{frame_id: {self._frames.body}}}, wrench: {{torque: {{x: 0.1}}}}}}"'
+        )

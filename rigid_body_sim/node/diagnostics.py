@@ -1,6 +1,10 @@
-"""/diagnostics, once a second of real time whatever the simulated clock does: ledger, timing, commands, recording, prediction.
+# SPDX-License-Identifier: Apache-2.0
+"""The topic /diagnostics: ledger, timing, commands, recording and prediction.
 
-Numbers have the 17 digits that give the double back. OK, WARN and ERROR follow bounds that are parameters.
+It is published once a second of real time, whatever the simulated clock does.
+
+Numbers have the 17 digits that give the double back. OK, WARN and ERROR follow bounds that are
+parameters.
 """
 
 import dataclasses
@@ -35,20 +39,41 @@ class Diagnostics:
 
     def __init__(self, node, settings, session, ticker, command_queue, journal):
         self._node, self._settings = node, settings
-        self._session, self._ticker, self._commands, self._journal = session, ticker, command_queue, journal
+        self._session, self._ticker, self._commands, self._journal = (
+            session,
+            ticker,
+            command_queue,
+            journal,
+        )
         self._name = node.get_fully_qualified_name().lstrip('/')
-        self._before = {'ticks': 0, 'running': 0, 'overruns': 0, 'slipped': 0, 'refused': 0, 'lost': 0, 'dropped': 0}
+        self._before = {
+            'ticks': 0,
+            'running': 0,
+            'overruns': 0,
+            'slipped': 0,
+            'refused': 0,
+            'lost': 0,
+            'dropped': 0,
+        }
         self._same_name_checks = SAME_NAME_CHECKS
         self.rate = 0.0
         self.lateness = ticker.lateness.since_last()
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', QoSProfile(depth=10))
+        self._publisher = node.create_publisher(
+            DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
+        )
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(PERIOD, self.publish, clock=steady)
         node.create_timer(LOOK, journal.look, clock=steady)
 
     def publish(self):
         """Publish one array now, and ask the tick thread for a fresh balance for the next."""
-        statuses = [self._ledger(), self._timing(), self._command(), self._recording(), self._prediction()]
+        statuses = [
+            self._ledger(),
+            self._timing(),
+            self._command(),
+            self._recording(),
+            self._prediction(),
+        ]
         message = DiagnosticArray(status=statuses)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
@@ -58,9 +83,17 @@ class Diagnostics:
             self._look_for_same_name()
 
     def _status(self, name, level, message, values):
-        pairs = [KeyValue(key=key, value=f'{value:.17g}' if isinstance(value, float) else str(value)) for key, value in values.items()]
-        return DiagnosticStatus(level=bytes([level]), name=f'{self._name}: {name}', message=message,
-                                hardware_id=self._session.simulation.scene.name, values=pairs)
+        pairs = [
+            KeyValue(key=key, value=f'{value:.17g}' if isinstance(value, float) else str(value))
+            for key, value in values.items()
+        ]
+        return DiagnosticStatus(
+            level=bytes([level]),
+            name=f'{self._name}: {name}',
+            message=message,
+            hardware_id=self._session.simulation.scene.name,
+            values=pairs,
+        )
 
     def _since(self, name, value):
         """Return by how much a counter has grown since the last time."""
@@ -69,9 +102,20 @@ class Diagnostics:
 
     def _ledger(self):
         balance = self._session.balance
-        level, message = self._bounded({name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')})
-        method = {name: value for name, value in about.method_of(self._session.simulation.choice).items() if value is not None}
-        return self._status('ledger', level, message or 'energy and angular momentum balance', {**balance, **method})
+        level, message = self._bounded(
+            {name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')}
+        )
+        method = {
+            name: value
+            for name, value in about.method_of(self._session.simulation.choice).items()
+            if value is not None
+        }
+        return self._status(
+            'ledger',
+            level,
+            message or 'energy and angular momentum balance',
+            {**balance, **method},
+        )
 
     def _timing(self):
         ticker, settings = self._ticker, self._settings
@@ -81,28 +125,63 @@ class Diagnostics:
             new_ticks, new_running = self._since('ticks', ticks), self._since('running', running)
             self.rate = new_ticks / new_running * 1e9 if new_running > 0 else 0.0
         self.lateness = lateness = ticker.lateness.since_last()
-        slipped, overruns = self._since('slipped', ticker.slipped), self._since('overruns', ticker.overruns)
+        slipped, overruns = (
+            self._since('slipped', ticker.slipped),
+            self._since('overruns', ticker.overruns),
+        )
         level, message = OK, 'paused' if ticker.paused else 'on time'
         if overruns or lateness['p99'] > settings['diagnostics.lateness_warn']:
-            level, message = WARN, f'{overruns} overruns in the last second, lateness p99 {lateness["p99"] * 1e6:.0f} us'
+            level, message = (
+                WARN,
+                f'{overruns} overruns in the last second, '
+                f'lateness p99 {lateness["p99"] * 1e6:.0f} us',
+            )
         if slipped or lateness['p99'] > settings['diagnostics.lateness_error']:
-            level, message = ERROR, f'it does not keep up: {self.rate:.6g} of {settings.rate:.6g} Hz; lower rate, or publish and record less'
+            level, message = (
+                ERROR,
+                f'it does not keep up: {self.rate:.6g} of {settings.rate:.6g} Hz; '
+                'lower rate, or publish and record less',
+            )
         if ticker.waiting_for_clock:
             level, message = WARN, 'waiting for the first message on /clock'
-        return self._status('timing', level, message, {
-            'tick': self._session.next_tick - 1, 'rate': settings.rate, 'achieved_rate': self.rate,
-            'real_time_factor': settings.real_time_factor, 'lateness_p50': lateness['p50'], 'lateness_p99': lateness['p99'],
-            'lateness_max': lateness['max'], 'overruns': ticker.overruns, 'skipped': ticker.skipped,
-            'slipped': ticker.slipped * 1e-9, 'clock_jumps': ticker.clock_jumps, 'overrun': settings.overrun, 'paused': ticker.paused,
-            'scheduling': ticker.scheduling})
+        return self._status(
+            'timing',
+            level,
+            message,
+            {
+                'tick': self._session.next_tick - 1,
+                'rate': settings.rate,
+                'achieved_rate': self.rate,
+                'real_time_factor': settings.real_time_factor,
+                'lateness_p50': lateness['p50'],
+                'lateness_p99': lateness['p99'],
+                'lateness_max': lateness['max'],
+                'overruns': ticker.overruns,
+                'skipped': ticker.skipped,
+                'slipped': ticker.slipped * 1e-9,
+                'clock_jumps': ticker.clock_jumps,
+                'overrun': settings.overrun,
+                'paused': ticker.paused,
+                'scheduling': ticker.scheduling,
+            },
+        )
 
     def _command(self):
         queue = self._commands
         refused, lost = sum(queue.refusals.values()), queue.lost
         new_refused, new_lost = self._since('refused', refused), self._since('lost', lost)
-        values = {'received': queue.received, 'accepted': queue.accepted, 'applied': queue.applied, 'waiting': queue.waiting, 'lost': lost,
-                  'refused': refused, **{f'refused: {reason}': count for reason, count in queue.refusals.copy().items()}}
-        message = f'{new_refused or "none"} refused in the last second{": see events" if new_refused else ""}'
+        values = {
+            'received': queue.received,
+            'accepted': queue.accepted,
+            'applied': queue.applied,
+            'waiting': queue.waiting,
+            'lost': lost,
+            'refused': refused,
+            **{f'refused: {reason}': count for reason, count in queue.refusals.copy().items()},
+        }
+        message = f'{new_refused or "none"} refused in the last second'
+        if new_refused:
+            message += ': see events'
         if new_lost:
             message = f'{new_lost} lost on the way in the last second: send fewer; {message}'
         return self._status('commands', WARN if new_refused or new_lost else OK, message, values)
@@ -116,7 +195,9 @@ class Diagnostics:
             level, message = WARN, 'ticks were left out in the last second'
         if status.error:
             level, message = ERROR, status.error
-        return self._status('recording', level, message, {'path': self._journal.path, **dataclasses.asdict(status)})
+        return self._status(
+            'recording', level, message, {'path': self._journal.path, **dataclasses.asdict(status)}
+        )
 
     def _prediction(self):
         found = self._session.prediction.compared()
@@ -125,11 +206,17 @@ class Diagnostics:
         if level != OK:
             message = f'what was measured differs from what is predicted by {difference:.3g} of it'
         else:
-            message = 'as predicted' if 'relative_difference' in found else 'nothing measured yet' if found else 'theory has no prediction'
+            message = (
+                'as predicted'
+                if 'relative_difference' in found
+                else 'nothing measured yet'
+                if found
+                else 'theory has no prediction'
+            )
         return self._status('prediction', level, message, found)
 
     def _bounded(self, sizes):
-        """Return the level that quantities reach by their bounds, and a message that names the worst."""
+        """Return the level that some sizes reach, and a message that names the worst of them."""
         level, message = OK, ''
         for name, size in sizes.items():
             for reached, bound in ((WARN, 'warn'), (ERROR, 'error')):
@@ -138,10 +225,12 @@ class Diagnostics:
         return level, message
 
     def _look_for_same_name(self):
-        """Warn once if another node has this one's name: their services and parameters would be mixed up."""
+        """Warn once if another node has this name: services and parameters would be mixed up."""
         self._same_name_checks -= 1
         own = (self._node.get_name(), self._node.get_namespace())
         if self._node.get_node_names_and_namespaces().count(own) > 1:
             self._same_name_checks = 0
             self._node.get_logger().warning(
-                f'there is another node /{self._name}; give one of them another name: --ros-args -r __node:=NAME')
+                f'there is another node /{self._name}; give one of them another name: '
+                '--ros-args -r __node:=NAME'
+            )

@@ -1,7 +1,11 @@
-"""A doorbell: it tells the tick thread that messages wait in subscriptions, so that it need not look into them at every tick.
+# SPDX-License-Identifier: Apache-2.0
+"""A doorbell: it tells the tick thread that messages wait in its subscriptions.
 
-To look costs the tick thread as much as to publish a message. While nothing comes, the executor, which sleeps anyhow, waits for the first
-message and rings; the messages stay where they are. From then on the tick thread looks at every tick, until nothing has come for a while.
+So the tick thread need not look into them at every tick.
+
+To look costs the tick thread as much as to publish a message. While nothing comes, the executor,
+which sleeps anyhow, waits for the first message and rings; the messages stay where they are. From
+then on the tick thread looks at every tick, until nothing has come for a while.
 """
 
 import contextlib
@@ -12,7 +16,7 @@ from rclpy.waitable import NumberOfEntities, Waitable
 LOOKS = 100
 """So often nothing is found before the tick thread trusts the bell again."""
 GLANCE = 32
-"""Ticks after which the tick thread looks though the bell is silent: the executor may be busy with a service."""
+"""Ticks after which the tick thread looks anyway: a service may keep the executor busy."""
 
 
 class Doorbell(Waitable):
@@ -32,7 +36,7 @@ class Doorbell(Waitable):
         self._listening, self._places = False, []
         node.add_waitable(self)
 
-    # -- the tick thread ----------------------------------------------------------------------------------------------------------------
+    # -- the tick thread
 
     def silent(self):
         """Return whether a look can be spared at this tick."""
@@ -57,7 +61,7 @@ class Doorbell(Waitable):
         """Take it off the node."""
         self._node.remove_waitable(self)
 
-    # -- the executor: see rclpy.waitable.Waitable -----------------------------------------------------------------------------------------
+    # -- the executor: see rclpy.waitable.Waitable
 
     def __enter__(self):
         """Keep the subscriptions while they are waited for."""
@@ -77,7 +81,11 @@ class Doorbell(Waitable):
 
     def add_to_wait_set(self, wait_set):
         """Add the subscriptions."""
-        self._places = [wait_set.add_subscription(handle) for handle in self._handles] if self._listening else []
+        self._places = (
+            [wait_set.add_subscription(handle) for handle in self._handles]
+            if self._listening
+            else []
+        )
 
     def is_ready(self, wait_set):
         """Ring if there is a message; there is nothing for the executor to do."""

@@ -1,4 +1,8 @@
-"""The engine: all the parts of a running node, made from its parameters; the plain and the managed node are two ways to start it."""
+# SPDX-License-Identifier: Apache-2.0
+"""The engine: all parts of a running node, made from its parameters.
+
+The plain node and the managed node are two ways to start it.
+"""
 
 import concurrent.futures
 
@@ -22,7 +26,10 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 ANSWER_WITHIN = 0.2
-"""How long a service waits for the tick that does what it asks, s; later it answers what will happen."""
+"""Longest time that a service waits for the tick that does what it asks, s.
+
+After that it answers what will happen.
+"""
 STOP_WITHIN = 0.4
 
 
@@ -44,7 +51,11 @@ class Engine:
 
     def __init__(self, node, settings, at_end):
         if 'clock' in settings.publish and settings.use_sim_time:
-            raise BadInput('parameter publish', 'got clock together with use_sim_time', 'a node cannot follow the /clock that it publishes')
+            raise BadInput(
+                'parameter publish',
+                'got clock together with use_sim_time',
+                'a node cannot follow the /clock that it publishes',
+            )
         self._node, self._settings = node, settings
         self._entities_before = set(_entities(node))
         simulation = self._prepare({})
@@ -60,10 +71,21 @@ class Engine:
         self.publishing = Publishing(node, outputs, frames, messages, described)
         settings.refuse_unknown_qos()
         self.journal = open_journal(node, settings, simulation, self.publishing, frames)
-        self.session = Session(simulation, self.commands, self.publishing, self.journal, settings, self._epoch)
+        self.session = Session(
+            simulation, self.commands, self.publishing, self.journal, settings, self._epoch
+        )
         self._source = Followed(node.get_clock()) if settings.use_sim_time else Steady()
-        self.ticker = Ticker(self.session, self._source, settings.rate, settings.real_time_factor, settings.overrun == 'skip_publish', at_end)
-        self.diagnostics = Diagnostics(node, settings, self.session, self.ticker, self.commands, self.journal)
+        self.ticker = Ticker(
+            self.session,
+            self._source,
+            settings.rate,
+            settings.real_time_factor,
+            settings.overrun == 'skip_publish',
+            at_end,
+        )
+        self.diagnostics = Diagnostics(
+            node, settings, self.session, self.ticker, self.commands, self.journal
+        )
         node.create_service(Trigger, '~/reset', self._reset)
         node.create_service(SetBool, '~/pause', self._pause)
         node.create_service(Trigger, '~/step', self._step)
@@ -77,22 +99,39 @@ class Engine:
 
     def _epoch(self):
         """Return the stamp of tick 0, ns."""
-        return 0 if self._settings.stamp_origin == 'zero' else self._node.get_clock().now().nanoseconds
+        return (
+            0
+            if self._settings.stamp_origin == 'zero'
+            else self._node.get_clock().now().nanoseconds
+        )
 
     def _prepare(self, changes):
-        """Return a simulation as the parameters say, with changes; it may take a while, so it is done before the tick that needs it."""
+        """Return a simulation as the parameters say, with changes.
+
+        This may take a while, so it is done before the tick that needs it.
+        """
         wanted = {name: changes.get(name, self._settings[name]) for name in SIMULATION_PARAMETERS}
         scene = load_scene(wanted['scene'], wanted['scene_overrides'])
-        return Simulation(scene, wanted['integrator'], wanted['accuracy'], wanted['rate'], horizon=self._settings.duration or HORIZON)
+        return Simulation(
+            scene,
+            wanted['integrator'],
+            wanted['accuracy'],
+            wanted['rate'],
+            horizon=self._settings.duration or HORIZON,
+        )
 
-    # -- services -----------------------------------------------------------------------------------------------------------------------
+    # -- services
 
     def _reset(self, _, response):
         future = self.session.request(Session.reset)
         tick = _result_soon(future)
         response.success = True
-        response.message = f'the state went back at tick {tick}' if tick is not None else \
-            'the state goes back at the next tick' + (': resume or step' if self.ticker.paused else '')
+        response.message = (
+            f'the state went back at tick {tick}'
+            if tick is not None
+            else 'the state goes back at the next tick'
+            + (': resume or step' if self.ticker.paused else '')
+        )
         return response
 
     def _pause(self, request, response):
@@ -105,13 +144,20 @@ class Engine:
 
     def _step(self, _, response):
         if not self.ticker.paused:
-            response.success, response.message = False, 'the node is running: a step is for a paused one; call ~/pause with data: true first'
+            response.success, response.message = (
+                False,
+                'the node is running: a step is for a paused one; '
+                'call ~/pause with data: true first',
+            )
             return response
         tick = _result_soon(self.ticker.step())
-        response.success, response.message = True, f'tick {tick}' if tick is not None else 'the tick has not been run yet'
+        response.success, response.message = (
+            True,
+            f'tick {tick}' if tick is not None else 'the tick has not been run yet',
+        )
         return response
 
-    # -- parameters ---------------------------------------------------------------------------------------------------------------------
+    # -- parameters
 
     def _before_change(self, changes):
         """Refuse changes that cannot be; make ready what takes long."""
@@ -141,10 +187,13 @@ class Engine:
 
         self.session.request(change)
 
-    # -- the end ------------------------------------------------------------------------------------------------------------------------
+    # -- the end
 
     def close(self):
-        """End ticks and recording, and say how it went; return the exit status: 1 after one line if simulation or recording failed."""
+        """End ticks and recording, and report; return the exit status.
+
+        The status is 1, after one line, if the simulation or the recording failed.
+        """
         self._settings.on_change(lambda changes: None, lambda changes: None)
         if self.ticker.is_alive():
             self.ticker.stop()
@@ -156,7 +205,10 @@ class Engine:
         self._report()
         status, name = 0, self._node.get_name()
         if self.ticker.failure is not None:
-            say(f'{name}: tick {self.session.next_tick}: {type(self.ticker.failure).__name__}: {self.ticker.failure}')
+            say(
+                f'{name}: tick {self.session.next_tick}: '
+                f'{type(self.ticker.failure).__name__}: {self.ticker.failure}'
+            )
             status = 1
         if self.journal.status is not None and self.journal.status.error:
             say(f'{name}: recording: {self.journal.status.error}')
@@ -167,8 +219,12 @@ class Engine:
         """Take away from the node all that the engine gave it, after :meth:`close`."""
         self.commands.remove()
         for entity in set(_entities(self._node)) - self._entities_before:
-            for destroy in (self._node.destroy_publisher, self._node.destroy_subscription, self._node.destroy_service,
-                            self._node.destroy_timer):
+            for destroy in (
+                self._node.destroy_publisher,
+                self._node.destroy_subscription,
+                self._node.destroy_service,
+                self._node.destroy_timer,
+            ):
                 if destroy(entity):
                     break
 
@@ -177,15 +233,24 @@ class Engine:
         session, ticker, balance = self.session, self.ticker, self.session.balance
         ticks, running = ticker.latest
         late, recording = ticker.lateness.summary(), self.journal.status
-        events = ''.join(f', {count} x {name}' for name, count in sorted(session.event_counts.items()))
+        events = ''.join(
+            f', {count} x {name}' for name, count in sorted(session.event_counts.items())
+        )
         for line in (
-                f'{self._node.get_fully_qualified_name()}: {session.simulation.scene.name}, {ticks} ticks in {running * 1e-9:.3f} s'
-                f' ({(ticks - 1) / running * 1e9 if running else 0.0:.3f} Hz)',
-                f'  ticks began late by p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, max {late["max"] * 1e6:.0f} us; '
-                f'{ticker.overruns} overruns, {ticker.skipped} ticks not published, {ticker.slipped * 1e-9:.3f} s slipped',
-                f'  energy residual {balance["energy_residual"]:.2e}, angular momentum residual {balance["momentum_residual"]:.2e}{events}',
-                f'  recorded {recording.recorded} messages, {recording.dropped} ticks left out: {self.journal.path}' if recording else
-                '  not recorded'):
+            f'{self._node.get_fully_qualified_name()}: {session.simulation.scene.name}, '
+            f'{ticks} ticks in {running * 1e-9:.3f} s'
+            f' ({(ticks - 1) / running * 1e9 if running else 0.0:.3f} Hz)',
+            f'  ticks began late by p50 {late["p50"] * 1e6:.0f}, p99 {late["p99"] * 1e6:.0f}, '
+            f'max {late["max"] * 1e6:.0f} us; '
+            f'{ticker.overruns} overruns, {ticker.skipped} ticks not published, '
+            f'{ticker.slipped * 1e-9:.3f} s slipped',
+            f'  energy residual {balance["energy_residual"]:.2e}, '
+            f'angular momentum residual {balance["momentum_residual"]:.2e}{events}',
+            f'  recorded {recording.recorded} messages, {recording.dropped} ticks left out: '
+            f'{self.journal.path}'
+            if recording
+            else '  not recorded',
+        ):
             tell(line)
 
 

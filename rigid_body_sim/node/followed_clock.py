@@ -19,7 +19,9 @@ class Followed:
         self._moved = threading.Event()
         forward, backward = Duration(nanoseconds=1), Duration(nanoseconds=-1)
         threshold = JumpThreshold(min_forward=forward, min_backward=backward, on_clock_change=True)
-        self._handle = clock.create_jump_callback(threshold, post_callback=lambda _: self._moved.set())
+        self._handle = clock.create_jump_callback(
+            threshold, post_callback=lambda _: self._moved.set()
+        )
 
     def now(self):
         """Return what /clock said last, ns; 0 before it said anything."""

@@ -1,10 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages that never came, by the numbers that publishers give to theirs.
 
-What finds the queue of a subscription full drives out the oldest message there, in silence (the middleware's event for lost messages tells
-nothing of it). But each publisher numbers its messages from 1 on, and the number comes along with each; not so the publisher's name. So the
-numbers that are expected next are kept, one for each publisher. One that nobody expects is a gap, or a publisher that is new: who publishes
-is then looked up. If a gap is put down to the wrong one of several publishers, the next number of the other one makes up for it: what was
-lost of all together is right. What is lost in the moment in which a publisher comes or goes is not noticed.
+What finds the queue of a subscription full drives out the oldest message there, in silence (the
+middleware's event for lost messages tells nothing of it). But each publisher numbers its messages
+from 1 on, and the number comes along with each; not so the publisher's name. So the numbers that
+are expected next are kept, one for each publisher. One that nobody expects is a gap, or a
+publisher that is new: who publishes is then looked up. If a gap is put down to the wrong one of
+several publishers, the next number of the other one makes up for it: what was lost of all together
+is right. What is lost in the moment in which a publisher comes or goes is not noticed.
 """
 
 NUMBER = 'publication_sequence_number'
@@ -30,7 +33,10 @@ class Gaps:
         self.lost = 0
 
     def look(self, numbers):
-        """Look at the numbers of some messages, in the order in which they came; None where the middleware gives none."""
+        """Look at the numbers of some messages, in their order.
+
+        A number is None where the middleware gives none.
+        """
         expected = self._expected
         for number in numbers:
             if number in expected:

@@ -1,8 +1,11 @@
-"""What a node records: the bytes it publishes, every command with the tick at which it took effect, and all that a resimulation needs.
+# SPDX-License-Identifier: Apache-2.0
+"""The recording of a node: messages, commands with their ticks, and what a rerun needs.
 
-Entries of the journal topic, beside those of the recorder itself: ``state`` (see about.state_entry), ``commands`` (``tick``, and
-``commands``: in their order, with ``topic``, ``frame``, ``force``, ``torque``; a topic ``release`` ends the held wrench), ``reset``
-(``tick``), ``parameters`` (``tick``, ``changed``, and ``scene``, ``simulation``, ``keeps_state`` as they are from that tick on).
+Entries of the journal topic, beside those of the recorder itself: ``state`` (see
+about.state_entry), ``commands`` (``tick``, and ``commands``: in their order, with ``topic``,
+``frame``, ``force``, ``torque``; a topic ``release`` ends the held wrench), ``reset`` (``tick``),
+``parameters`` (``tick``, ``changed``, and ``scene``, ``simulation``, ``keeps_state`` as they are
+from that tick on).
 """
 
 import datetime
@@ -44,13 +47,25 @@ class Journal:
     def __init__(self, node, settings, simulation, publishing, frames):
         self._simulation = simulation
         journal = journal_topic(node.get_namespace())
-        command_topics = CommandTopics(tuple(node.resolve_topic_name(TOPICS[kind]) for kind in (IMPULSE, HOLD)), (frames.world, frames.body))
-        others = [*publishing.others(), *(Topic(name, WRENCH_TYPE) for name in reversed(command_topics.topics))]
-        ticking = list(zip(publishing.every_tick(), publishing.messages.ticking.sizes, strict=True))
+        command_topics = CommandTopics(
+            tuple(node.resolve_topic_name(TOPICS[kind]) for kind in (IMPULSE, HOLD)),
+            (frames.world, frames.body),
+        )
+        others = [
+            *publishing.others(),
+            *(Topic(name, WRENCH_TYPE) for name in reversed(command_topics.topics)),
+        ]
+        ticking = list(
+            zip(publishing.every_tick(), publishing.messages.ticking.sizes, strict=True)
+        )
         told = about.about('sim_node', simulation, settings.values)
         asked = settings['recording.compression']
-        options = (compression.DEFAULT if asked == 'auto' else asked, settings['recording.split_bytes'], settings['recording.split_seconds'],
-                   command_topics)
+        options = (
+            compression.DEFAULT if asked == 'auto' else asked,
+            settings['recording.split_bytes'],
+            settings['recording.split_seconds'],
+            command_topics,
+        )
         for attempt in range(ATTEMPTS):
             self.path = _free_path(node, settings, simulation.scene.name)
             try:
@@ -63,10 +78,10 @@ class Journal:
         self._record_tick = self._recorder.tick
         self.status = self._recorder.status()
 
-    # -- the tick thread ----------------------------------------------------------------------------------------------------------------
+    # -- the tick thread
 
     def tick(self, stamp, messages):
-        """Record the messages of a tick; return whether the full state (:meth:`state`) is wanted, as it is after a gap."""
+        """Record the messages of a tick; return whether the full state (`state`) is wanted."""
         return self._record_tick(stamp, time.time_ns(), messages)
 
     def paced(self, topic, stamp, data):
@@ -76,7 +91,9 @@ class Journal:
     def state(self, simulation, stamp):
         """Record the full state of a tick, after its messages."""
         self._recorder.state_wanted = False
-        self._recorder.journal('state', stamp, time.time_ns(), **about.state_entry(simulation.tick, simulation))
+        self._recorder.journal(
+            'state', stamp, time.time_ns(), **about.state_entry(simulation.tick, simulation)
+        )
 
     def message(self, topic, stamp, data):
         """Record a message on `events` or `scene`; it is never lost."""
@@ -90,7 +107,7 @@ class Journal:
         """Record the commands that took effect at a tick, in their order (command_rows.py)."""
         self._recorder.commands(tick, stamp, time.time_ns(), rows)
 
-    # -- the main thread ----------------------------------------------------------------------------------------------------------------
+    # -- the main thread
 
     def look(self):
         """Look after the recorder, a few times a second."""
@@ -119,15 +136,24 @@ class NoJournal:
 
 def open_journal(node, settings, simulation, publishing, frames):
     """Return the Journal of a node, or NoJournal where its parameters say so."""
-    return Journal(node, settings, simulation, publishing, frames) if settings.record else NoJournal()
+    return (
+        Journal(node, settings, simulation, publishing, frames) if settings.record else NoJournal()
+    )
 
 
 def _free_path(node, settings, scene):
-    """Return the folder of the recording, which does not exist yet; two nodes never get the same one by default."""
+    """Return the folder of the recording, which does not exist yet.
+
+    By default two nodes never get the same one.
+    """
     folder, name = pathlib.Path(settings['recording.directory']), settings['recording.name']
     if name:
         if pathlib.Path(name).name != name:
-            raise BadInput('parameter recording.name', f'got {name!r}', 'needs one name; the folder around it is recording.directory')
+            raise BadInput(
+                'parameter recording.name',
+                f'got {name!r}',
+                'needs one name; the folder around it is recording.directory',
+            )
         return folder / name
     who = node.get_fully_qualified_name().strip('/').replace('/', '_')
     stem = f'{who}_{scene}_{datetime.datetime.now():%Y-%m-%d_%H-%M-%S}'

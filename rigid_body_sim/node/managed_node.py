@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node whose life others manage (ROS 2 lifecycle).
 
-configure makes the scene, topics, services and recording; activate lets time pass, deactivate stops it (commands wait, as in a pause), cleanup
-closes the recording and takes everything away. Parameters that are fixed while the node runs can change before configure.
+configure makes the scene, topics, services and recording; activate lets time pass, deactivate
+stops it (commands wait, as in a pause), cleanup closes the recording and takes everything away.
+Parameters that are fixed while the node runs can change before configure.
 """
 
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
@@ -36,7 +38,7 @@ class ManagedNode(LifecycleNode):
             raise
 
     def on_configure(self, state):
-        """Make everything; a parameter that cannot be is told in one line, and the node stays unconfigured."""
+        """Make everything; after one line about a wrong parameter the node stays unconfigured."""
         try:
             self.engine = Engine(self, self.settings, self._stop.request)
         except BadInput as refusal:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The quality of service that a recording says its topics were offered with, as rclpy wants it."""
 
 import yaml
@@ -12,19 +13,28 @@ from rclpy.qos import (
 
 DEPTH = 10
 NANOSECONDS = 10**9
-_FOREVER = 2**63 // NANOSECONDS     # s, from here on a duration is none
-_POLICIES = {'history': HistoryPolicy, 'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'liveliness': LivelinessPolicy}
-_STRONGEST = {'reliability': ReliabilityPolicy.RELIABLE, 'durability': DurabilityPolicy.TRANSIENT_LOCAL}
+_FOREVER = 2**63 // NANOSECONDS  # s, from here on a duration is none
+_POLICIES = {
+    'history': HistoryPolicy,
+    'reliability': ReliabilityPolicy,
+    'durability': DurabilityPolicy,
+    'liveliness': LivelinessPolicy,
+}
+_STRONGEST = {
+    'reliability': ReliabilityPolicy.RELIABLE,
+    'durability': DurabilityPolicy.TRANSIENT_LOCAL,
+}
 
 
 def offered_qos(text):
-    """Return the QoSProfile that serves every subscriber whom one of the recorded publishers served.
+    """Return the QoSProfile that serves every subscriber that a recorded publisher served.
 
     Parameters
     ----------
     text : str
-        The channel's ``offered_qos_profiles``, as any rosbag2 wrote it: a YAML list, policies as words or as numbers; '' or what cannot be
-        understood: reliable, volatile, the last 10 messages.
+        The channel's ``offered_qos_profiles``, as any rosbag2 wrote it: a YAML list, policies as
+        words or as numbers; '' or what cannot be understood: reliable, volatile, the last 10
+        messages.
     """
     try:
         offers = [_profile(offer) for offer in yaml.safe_load(text) or ()]
@@ -44,17 +54,31 @@ def _profile(offer):
     """Return the arguments of a QoSProfile for one offer."""
     profile = {name: _policy(enumeration, offer[name]) for name, enumeration in _POLICIES.items()}
     profile['depth'] = int(offer['depth']) or DEPTH
-    profile |= {name: _duration(offer[name]) for name in ('deadline', 'lifespan', 'liveliness_lease_duration')}
+    profile |= {
+        name: _duration(offer[name])
+        for name in ('deadline', 'lifespan', 'liveliness_lease_duration')
+    }
     profile['avoid_ros_namespace_conventions'] = bool(offer['avoid_ros_namespace_conventions'])
     return profile
 
 
 def _policy(enumeration, value):
-    """Return a policy from its word or number; what the publisher left to the system, or is not known, is left to the system."""
-    known = [policy for policy in enumeration if policy.name.lower() == str(value).lower() or policy.value == value]
+    """Return a policy from its word or number.
+
+    A policy that the publisher left to the system, or that is unknown, is left to the system.
+    """
+    known = [
+        policy
+        for policy in enumeration
+        if policy.name.lower() == str(value).lower() or policy.value == value
+    ]
     return known[0] if known else enumeration.SYSTEM_DEFAULT
 
 
 def _duration(value):
     seconds, nanoseconds = int(value['sec']), int(value['nsec'])
-    return Duration(seconds=seconds, nanoseconds=nanoseconds) if 0 <= seconds < _FOREVER else Duration()
+    return (
+        Duration(seconds=seconds, nanoseconds=nanoseconds)
+        if 0 <= seconds < _FOREVER
+        else Duration()
+    )

@@ -1,8 +1,10 @@
-"""The parameters of the node: one table from which they are declared, checked, changed and documented.
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of the node: one table declares, checks, changes and documents them.
 
-rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let a deleted parameter go. So the overrides
-are read here, checked by the same rules that hold later for ``set_parameters``, and declared already converted. The README shows the table;
-``python -m rigid_body_sim.node.parameters`` prints it.
+rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let
+a deleted parameter go. So the overrides are read here, checked by the same rules that hold later
+for ``set_parameters``, and declared already converted. The README shows the table; ``python -m
+rigid_body_sim.node.parameters`` prints it.
 """
 
 import array
@@ -52,7 +54,9 @@ class Entry:
     @property
     def kind(self):
         """The ROS type in words."""
-        return {bool: 'bool', str: 'string', float: 'double', tuple: 'string array'}[type(self.default)]
+        return {bool: 'bool', str: 'string', float: 'double', tuple: 'string array'}[
+            type(self.default)
+        ]
 
     @property
     def limits(self):
@@ -73,85 +77,248 @@ class Entry:
         value = value.tolist() if isinstance(value, array.array) else value
         if isinstance(self.default, float):
             if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
+                raise BadInput(
+                    where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}'
+                )
             if not self.low <= value <= self.high:
-                raise BadInput(where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}')
+                raise BadInput(
+                    where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}'
+                )
             return float(value)
         if isinstance(self.default, tuple):
             # an empty list arrives without a type; one word alone is a list of one
-            words = [word for word in (value,) if word] if value is None or isinstance(value, str) else value
+            words = (
+                [word for word in (value,) if word]
+                if value is None or isinstance(value, str)
+                else value
+            )
             words = words if isinstance(words, (list, tuple)) else [None]
             if not all(isinstance(word, str) for word in words):
-                raise BadInput(where, f'got {value!r}', f'needs a list of words{f", each one of {self.limits}" if self.choices else ""}')
+                raise BadInput(
+                    where,
+                    f'got {value!r}',
+                    'needs a list of words'
+                    + (f', each one of {self.limits}' if self.choices else ''),
+                )
             for word in words:
                 self._refuse_unknown_word(word, where)
             return tuple(words)
         if not isinstance(value, type(self.default)):
-            raise BadInput(where, f'got {value!r}', 'needs true or false' if self.kind == 'bool' else 'needs a text')
+            raise BadInput(
+                where,
+                f'got {value!r}',
+                'needs true or false' if self.kind == 'bool' else 'needs a text',
+            )
         if isinstance(value, str):
             self._refuse_unknown_word(value, where)
         return value
 
     def _refuse_unknown_word(self, word, where):
         if self.choices and word not in self.choices:
-            near = difflib.get_close_matches(word, self.choices, 1) if len(self.choices) > 3 else ()
-            raise BadInput(where, f'got {word!r}', f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}')
+            near = (
+                difflib.get_close_matches(word, self.choices, 1) if len(self.choices) > 3 else ()
+            )
+            raise BadInput(
+                where,
+                f'got {word!r}',
+                f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}',
+            )
 
     def descriptor(self, fixed):
         """Return the ROS descriptor: type, range, whether it is fixed for good."""
-        # a list is declared before it has its value, so rclpy must not hold it fixed: Settings refuses the change itself
+        # a list is declared before it has its value, so rclpy must not hold it fixed: Settings
+        # refuses the change itself
         read_only = fixed and not self.changeable and not isinstance(self.default, tuple)
-        descriptor = ParameterDescriptor(description=self.about, additional_constraints=self.limits, read_only=read_only)
+        descriptor = ParameterDescriptor(
+            description=self.about, additional_constraints=self.limits, read_only=read_only
+        )
         if isinstance(self.default, float):
-            descriptor.floating_point_range = [FloatingPointRange(from_value=self.low, to_value=self.high)]
+            descriptor.floating_point_range = [
+                FloatingPointRange(from_value=self.low, to_value=self.high)
+            ]
         return descriptor
 
     def declare(self, node, value, fixed):
-        """Declare the parameter with a checked value; `fixed`: those that do not change while the node runs never change."""
+        """Declare the parameter with a checked value.
+
+        If `fixed`, those that cannot change while the node runs never change.
+        """
         if isinstance(value, tuple):
             # rclpy takes an empty list for one of bytes unless the type is said
-            node.declare_parameter(self.name, Parameter.Type.STRING_ARRAY, self.descriptor(fixed), ignore_override=True)
+            node.declare_parameter(
+                self.name,
+                Parameter.Type.STRING_ARRAY,
+                self.descriptor(fixed),
+                ignore_override=True,
+            )
             node.set_parameters([Parameter(self.name, Parameter.Type.STRING_ARRAY, list(value))])
         else:
             node.declare_parameter(self.name, value, self.descriptor(fixed), ignore_override=True)
 
 
 TABLE = (
-    Entry('scene', 'tennis_racket', 'name of a scene that ships, or path of a scene file', changeable=True),
+    Entry(
+        'scene',
+        'tennis_racket',
+        'name of a scene that ships, or path of a scene file',
+        changeable=True,
+    ),
     Entry('scene_overrides', (), 'changes of the scene, each key.path=value', changeable=True),
     Entry('rate', 1000.0, 'ticks per second of simulated time (Hz)', 1e-3, 1e5, changeable=True),
-    Entry('integrator', 'auto', 'method; auto: the exact one if there is, else the cheapest that meets accuracy', changeable=True),
-    Entry('accuracy', 1e-12, 'error of the attitude asked for, over duration or 100 s (rad)', 1e-15, 1e-1, changeable=True),
-    Entry('real_time_factor', 1.0, 'simulated seconds per second; 0: as fast as it goes', 0.0, 1e6, changeable=True),
-    Entry('duration', 0.0, 'simulated seconds after which the node ends (s); 0: endless', 0.0, 1e9),
-    Entry('overrun', 'slip', 'when it cannot keep up: slip (simulated time falls behind) or skip_publish (messages are left out first)',
-          choices=('slip', 'skip_publish'), changeable=True),
-    Entry('publish', (), f'topics beside {", ".join(STATE_TOPICS)}', choices=STATE_TOPICS + EXTRA_TOPICS),
-    Entry('display_rate', state_topics.DISPLAY_RATE, 'how often marker and tf are published (Hz of simulated time), at most at every tick',
-          1e-3, 1e5),
-    Entry('stamp_origin', 'clock', 'stamp of tick 0: the node clock at start, or zero', choices=('clock', 'zero')),
+    Entry(
+        'integrator',
+        'auto',
+        'method; auto: the exact one if there is, else the cheapest that meets accuracy',
+        changeable=True,
+    ),
+    Entry(
+        'accuracy',
+        1e-12,
+        'error of the attitude asked for, over duration or 100 s (rad)',
+        1e-15,
+        1e-1,
+        changeable=True,
+    ),
+    Entry(
+        'real_time_factor',
+        1.0,
+        'simulated seconds per second; 0: as fast as it goes',
+        0.0,
+        1e6,
+        changeable=True,
+    ),
+    Entry(
+        'duration', 0.0, 'simulated seconds after which the node ends (s); 0: endless', 0.0, 1e9
+    ),
+    Entry(
+        'overrun',
+        'slip',
+        'when it cannot keep up: slip (simulated time falls behind) or skip_publish (messages '
+        'are left out first)',
+        choices=('slip', 'skip_publish'),
+        changeable=True,
+    ),
+    Entry(
+        'publish',
+        (),
+        f'topics beside {", ".join(STATE_TOPICS)}',
+        choices=STATE_TOPICS + EXTRA_TOPICS,
+    ),
+    Entry(
+        'display_rate',
+        state_topics.DISPLAY_RATE,
+        'how often marker and tf are published (Hz of simulated time), at most at every tick',
+        1e-3,
+        1e5,
+    ),
+    Entry(
+        'stamp_origin',
+        'clock',
+        'stamp of tick 0: the node clock at start, or zero',
+        choices=('clock', 'zero'),
+    ),
     Entry('frame_prefix', 'auto', 'put before both frame names; auto: the namespace of the node'),
     Entry('world_frame', 'world', 'name of the fixed frame'),
     Entry('body_frame', 'body', 'name of the frame that moves with the body'),
-    Entry('command_timeout', 0.0, 'a held wrench ends this long after its last message (s); 0: it is held until replaced', 0.0, 1e6,
-          changeable=True),
+    Entry(
+        'command_timeout',
+        0.0,
+        'a held wrench ends this long after its last message (s); 0: it is held until replaced',
+        0.0,
+        1e6,
+        changeable=True,
+    ),
     Entry('record', True, 'record to MCAP'),
-    Entry('recording.directory', 'recordings', 'folder in which each run makes a recording of its own'),
+    Entry(
+        'recording.directory',
+        'recordings',
+        'folder in which each run makes a recording of its own',
+    ),
     Entry('recording.name', '', 'name of the recording; empty: node, scene, date and time'),
-    Entry('recording.compression', 'auto', 'of chunks; auto: zstd',
-          choices=('auto', *compression.NAMES)),
-    Entry('recording.split_bytes', 0.0, 'a new file begins after so many bytes; 0: after 4 GB', 0.0, 4e9),
-    Entry('recording.split_seconds', 0.0, 'a new file begins after so much time of stamps (s); 0: never', 0.0, 1e9),
-    Entry('diagnostics.energy_residual_warn', 1e-11, 'WARN above this relative energy residual', 0.0, 1e9, changeable=True),
-    Entry('diagnostics.energy_residual_error', 1e-6, 'ERROR above this relative energy residual', 0.0, 1e9, changeable=True),
-    Entry('diagnostics.momentum_residual_warn', 1e-11, 'WARN above this relative angular momentum residual', 0.0, 1e9, changeable=True),
-    Entry('diagnostics.momentum_residual_error', 1e-6, 'ERROR above this relative angular momentum residual', 0.0, 1e9, changeable=True),
-    Entry('diagnostics.prediction_warn', 1e-6, 'WARN above this relative difference of a measured interval from theory', 0.0, 1e9,
-          changeable=True),
-    Entry('diagnostics.prediction_error', 1e-2, 'ERROR above this relative difference of a measured interval from theory', 0.0, 1e9,
-          changeable=True),
-    Entry('diagnostics.lateness_warn', 0.002, 'WARN above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
-    Entry('diagnostics.lateness_error', 0.1, 'ERROR above this lateness of ticks, p99 of the last second (s)', 0.0, 1e9, changeable=True),
+    Entry(
+        'recording.compression',
+        'auto',
+        'of chunks; auto: zstd',
+        choices=('auto', *compression.NAMES),
+    ),
+    Entry(
+        'recording.split_bytes',
+        0.0,
+        'a new file begins after so many bytes; 0: after 4 GB',
+        0.0,
+        4e9,
+    ),
+    Entry(
+        'recording.split_seconds',
+        0.0,
+        'a new file begins after so much time of stamps (s); 0: never',
+        0.0,
+        1e9,
+    ),
+    Entry(
+        'diagnostics.energy_residual_warn',
+        1e-11,
+        'WARN above this relative energy residual',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.energy_residual_error',
+        1e-6,
+        'ERROR above this relative energy residual',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.momentum_residual_warn',
+        1e-11,
+        'WARN above this relative angular momentum residual',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.momentum_residual_error',
+        1e-6,
+        'ERROR above this relative angular momentum residual',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.prediction_warn',
+        1e-6,
+        'WARN above this relative difference of a measured interval from theory',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.prediction_error',
+        1e-2,
+        'ERROR above this relative difference of a measured interval from theory',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.lateness_warn',
+        0.002,
+        'WARN above this lateness of ticks, p99 of the last second (s)',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
+    Entry(
+        'diagnostics.lateness_error',
+        0.1,
+        'ERROR above this lateness of ticks, p99 of the last second (s)',
+        0.0,
+        1e9,
+        changeable=True,
+    ),
 )
 ENTRIES = {entry.name: entry for entry in TABLE}
 # declared by rclpy itself, or for each topic when its publisher or subscription is made
@@ -167,7 +334,8 @@ class Settings:
     node : rclpy.node.Node
         Its overrides are read and its parameters declared.
     running : bool
-        Whether the node runs from the start to the end; a managed node sets :attr:`running` itself.
+        Whether the node runs from the start to the end; a managed node sets :attr:`running`
+        itself.
 
     Attributes
     ----------
@@ -189,10 +357,16 @@ class Settings:
         for name, override in self._overrides.items():
             self._refuse_unknown(name, list(ENTRIES) + list(FOREIGN))
             if name == 'use_sim_time' and not isinstance(override.value, bool):
-                raise BadInput('parameter use_sim_time', f'got {override.value!r}', 'needs true or false')
+                raise BadInput(
+                    'parameter use_sim_time', f'got {override.value!r}', 'needs true or false'
+                )
         self.values = {}
         for entry in TABLE:
-            given = self._overrides[entry.name].value if entry.name in self._overrides else entry.default
+            given = (
+                self._overrides[entry.name].value
+                if entry.name in self._overrides
+                else entry.default
+            )
             self.values[entry.name] = value = entry.checked(given)
             entry.declare(node, value, running)
         node.add_pre_set_parameters_callback(self._with_types)
@@ -214,7 +388,10 @@ class Settings:
         return self._node.get_parameter('use_sim_time').value
 
     def refuse_unknown_qos(self):
-        """Refuse qos_overrides of topics or policies that do not exist; call it when all publishers and subscriptions are made."""
+        """Refuse qos_overrides of unknown topics or policies.
+
+        Call it when all publishers and subscriptions are made.
+        """
         declared = list(self._node.get_parameters_by_prefix(''))
         for name in self._overrides:
             if name.startswith(FOREIGN_PREFIX):
@@ -226,7 +403,8 @@ class Settings:
         Parameters
         ----------
         before : callable
-            Called with a dict of the changed values, before they hold; it raises BadInput to refuse them all.
+            Called with a dict of the changed values, before they hold; it raises BadInput to
+            refuse them all.
         after : callable
             Called with the same dict once they hold.
         """
@@ -235,20 +413,32 @@ class Settings:
     @staticmethod
     def _refuse_unknown(name, known, prefixes=(FOREIGN_PREFIX,)):
         if name not in known and not name.startswith(prefixes):
-            raise BadInput(f'parameter {name}', 'there is none of that name', _nearest(name, known))
+            raise BadInput(
+                f'parameter {name}', 'there is none of that name', _nearest(name, known)
+            )
 
     def _with_types(self, parameters):
-        """Return the parameters with integers made doubles, and lists without entries made lists of words, where such are meant."""
+        """Return the parameters with the types of the table: doubles, and lists of words."""
         typed = []
         for parameter in parameters:
             if not self._node.has_parameter(parameter.name):
                 # rclpy would leave out the name
-                raise ParameterNotDeclaredException(f'{parameter.name}; {_nearest(parameter.name, ENTRIES)}')
+                raise ParameterNotDeclaredException(
+                    f'{parameter.name}; {_nearest(parameter.name, ENTRIES)}'
+                )
             default = getattr(ENTRIES.get(parameter.name), 'default', None)
             if isinstance(default, float) and parameter.type_ == Parameter.Type.INTEGER:
-                parameter = Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
-            elif isinstance(default, tuple) and (parameter.value in (None, []) or isinstance(parameter.value, str)):
-                parameter = Parameter(parameter.name, Parameter.Type.STRING_ARRAY, [parameter.value] if parameter.value else [])
+                parameter = Parameter(
+                    parameter.name, Parameter.Type.DOUBLE, float(parameter.value)
+                )
+            elif isinstance(default, tuple) and (
+                parameter.value in (None, []) or isinstance(parameter.value, str)
+            ):
+                parameter = Parameter(
+                    parameter.name,
+                    Parameter.Type.STRING_ARRAY,
+                    [parameter.value] if parameter.value else [],
+                )
             typed.append(parameter)
         return typed
 
@@ -271,11 +461,17 @@ class Settings:
         for parameter in parameters:
             entry = ENTRIES.get(parameter.name)
             if parameter.type_ == Parameter.Type.NOT_SET:
-                raise BadInput(f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value')
+                raise BadInput(
+                    f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value'
+                )
             if entry is None:
                 continue
             if self.running and not entry.changeable:
-                raise BadInput(f'parameter {entry.name}', 'it cannot change while the node runs', 'give it at the start')
+                raise BadInput(
+                    f'parameter {entry.name}',
+                    'it cannot change while the node runs',
+                    'give it at the start',
+                )
             changes[entry.name] = entry.checked(parameter.value)
         return changes
 
@@ -288,11 +484,22 @@ def _nearest(name, known):
 
 def table():
     """Return the table of the parameters in Markdown, for the README."""
-    rows = ['| parameter | type | default | range | while running | meaning |', '|---|---|---|---|---|---|']
+    rows = [
+        '| parameter | type | default | range | while running | meaning |',
+        '|---|---|---|---|---|---|',
+    ]
     for entry in TABLE:
-        default = str(list(entry.default)) if isinstance(entry.default, tuple) else str(entry.default).lower() if entry.kind == 'bool' \
+        default = (
+            str(list(entry.default))
+            if isinstance(entry.default, tuple)
+            else str(entry.default).lower()
+            if entry.kind == 'bool'
             else f'{entry.default}' or "''"
-        rows.append(f'| {entry.name} | {entry.kind} | {default} | {entry.limits} | {"yes" if entry.changeable else "no"} | {entry.about} |')
+        )
+        rows.append(
+            f'| {entry.name} | {entry.kind} | {default} | {entry.limits} '
+            f'| {"yes" if entry.changeable else "no"} | {entry.about} |'
+        )
     return '\n'.join(rows)
 
 

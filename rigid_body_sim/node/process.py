@@ -1,4 +1,5 @@
-"""A node in a process of its own: rclpy up, the executor in the main thread, and everything down again in order."""
+# SPDX-License-Identifier: Apache-2.0
+"""A node in a process of its own: rclpy, the executor in the main thread, and the end."""
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
@@ -20,7 +21,8 @@ def run(make_node, arguments, stop):
     Parameters
     ----------
     make_node : callable
-        Called with `stop`; returns the node. The node has ``close()``, which ends it in order and returns an exit status.
+        Called with `stop`; returns the node. The node has ``close()``, which ends it in order and
+        returns an exit status.
     arguments : list of str
         The command line, with ``--ros-args``.
     stop : shutdown.Stop
@@ -28,14 +30,15 @@ def run(make_node, arguments, stop):
     Returns
     -------
     int
-        0, or 2 after one line about bad input or what ROS refuses, or 1 after one line about a failure.
+        0, or 2 after one line about bad input or what ROS refuses, or 1 after one line about a
+        failure.
     """
     # its complaint about arguments would come in two lines, and ours says the same
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         # the first argument is taken for the program's name
         rclpy.init(args=['', *arguments], signal_handler_options=SignalHandlerOptions.NO)
-    except Exception as error:   # rclpy has a class of its own for each fault of the command line
+    except Exception as error:  # rclpy has a class of its own for each fault of the command line
         say(f'ROS arguments: {_one_line(error)}; see --help')
         return BAD_INPUT
     set_logger_level('rcl', LoggingSeverity.UNSET)

@@ -30,8 +30,11 @@ def frames_of(node, settings) -> Frames:
         prefix = f'{namespace}/' if namespace else ''
     frames = Frames(prefix + settings.world_frame, prefix + settings.body_frame, prefix)
     if frames.world == frames.body or not settings.world_frame or not settings.body_frame:
-        raise BadInput('parameter body_frame', f'got the frames {frames.world!r} and {frames.body!r}',
-                       'needs two names that differ')
+        raise BadInput(
+            'parameter body_frame',
+            f'got the frames {frames.world!r} and {frames.body!r}',
+            'needs two names that differ',
+        )
     return frames
 
 
@@ -54,31 +57,41 @@ class Publishing:
         Of the present scene.
     """
 
-    def __init__(self, node, outputs: Outputs, frames: Frames, messages: SceneMessages,
-                 described: bool):
+    def __init__(
+        self, node, outputs: Outputs, frames: Frames, messages: SceneMessages, described: bool
+    ):
         self._node, self._frames, self._outputs = node, frames, outputs
         self._ticking = [self._output(output) for output in outputs.ticking]
         self._paced = [self._output(output) for output in outputs.paced]
         self._publish = [publisher.handle.publish_raw for publisher in self._ticking]
-        self._publish_paced = [(publisher.topic_name, publisher.handle.publish_raw)
-                               for publisher in self._paced]
+        self._publish_paced = [
+            (publisher.topic_name, publisher.handle.publish_raw) for publisher in self._paced
+        ]
         self._events = self._create(DiagnosticStatus, 'events', _latched(EVENTS_KEPT))
         self._latched = [(self._create(String, 'scene', _latched(1)), about.scene_message)]
         if described:
             publisher = self._create(String, robot_description.TOPIC, _latched(1))
             self._latched.append(
-                (publisher, lambda scene: robot_description.message(scene, frames)))
+                (publisher, lambda scene: robot_description.message(scene, frames))
+            )
         self.messages = messages
 
     def _output(self, output):
-        return self._create(_import_type(output.type, output.name), output.name,
-                            QoSProfile(depth=DEPTH), output.absolute)
+        return self._create(
+            _import_type(output.type, output.name),
+            output.name,
+            QoSProfile(depth=DEPTH),
+            output.absolute,
+        )
 
     def _create(self, message_type, topic, profile, absolute=False):
         return self._node.create_publisher(
-            message_type, f'/{topic}' if absolute else topic, profile,
+            message_type,
+            f'/{topic}' if absolute else topic,
+            profile,
             event_callbacks=qos.publisher_mismatch(self._node, topic),
-            qos_overriding_options=QoSOverridingOptions(qos.POLICIES))
+            qos_overriding_options=QoSOverridingOptions(qos.POLICIES),
+        )
 
     def messages_for(self, scene) -> SceneMessages:
         """Return the SceneMessages of a scene; BadInput where a topic has no meaning for it."""
@@ -112,15 +125,21 @@ class Publishing:
 
     def every_tick(self) -> list[Topic]:
         """Return the topics of every tick."""
-        return [_offer(publisher, output.type)
-                for publisher, output in zip(self._ticking, self._outputs.ticking, strict=True)]
+        return [
+            _offer(publisher, output.type)
+            for publisher, output in zip(self._ticking, self._outputs.ticking, strict=True)
+        ]
 
     def others(self) -> list[Topic]:
         """Return all other topics."""
-        return [_offer(self._events, about.STATUS_TYPE),
-                *(_offer(publisher, about.STRING_TYPE) for publisher, _ in self._latched),
-                *(_offer(publisher, output.type)
-                  for publisher, output in zip(self._paced, self._outputs.paced, strict=True))]
+        return [
+            _offer(self._events, about.STATUS_TYPE),
+            *(_offer(publisher, about.STRING_TYPE) for publisher, _ in self._latched),
+            *(
+                _offer(publisher, output.type)
+                for publisher, output in zip(self._paced, self._outputs.paced, strict=True)
+            ),
+        ]
 
 
 def _latched(depth):
@@ -129,8 +148,13 @@ def _latched(depth):
 
 def _offer(publisher, type_name):
     profile = publisher.qos_profile
-    return Topic(publisher.topic_name, type_name, profile.depth, profile.reliability.name.lower(),
-                 profile.durability.name.lower())
+    return Topic(
+        publisher.topic_name,
+        type_name,
+        profile.depth,
+        profile.reliability.name.lower(),
+        profile.durability.name.lower(),
+    )
 
 
 def _import_type(name, topic):
@@ -138,5 +162,8 @@ def _import_type(name, topic):
     try:
         return getattr(importlib.import_module(f'{package}.msg'), message)
     except ImportError:
-        raise BadInput('parameter publish', f'got {topic}, but {package} is not installed here',
-                       f'install {package}, or leave {topic} out') from None
+        raise BadInput(
+            'parameter publish',
+            f'got {topic}, but {package} is not installed here',
+            f'install {package}, or leave {topic} out',
+        ) from None

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quality of service: which policies parameters may change, and mismatches told in plain words."""
 
 import functools
@@ -5,27 +6,43 @@ import functools
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import DurabilityPolicy, QoSPolicyKind, ReliabilityPolicy
 
-POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)
+POLICIES = (
+    QoSPolicyKind.HISTORY,
+    QoSPolicyKind.DEPTH,
+    QoSPolicyKind.RELIABILITY,
+    QoSPolicyKind.DURABILITY,
+)
 WEAKEST = {'RELIABILITY': 'best_effort', 'DURABILITY': 'volatile'}
 STRONGEST = {'RELIABILITY': 'reliable', 'DURABILITY': 'transient_local'}
 
 
 def publishers_of(node, topic):
     """Return who publishes to a topic now, a set of identities."""
-    return {bytes(publisher.endpoint_gid) for publisher in node.get_publishers_info_by_topic(node.resolve_topic_name(topic))}
+    return {
+        bytes(publisher.endpoint_gid)
+        for publisher in node.get_publishers_info_by_topic(node.resolve_topic_name(topic))
+    }
 
 
 def publisher_mismatch(node, topic):
-    """Return event callbacks that say once a policy that a subscriber of the topic asks for more than this node offers."""
-    return PublisherEventCallbacks(incompatible_qos=_Mismatch(
-        node, topic, 'publisher', 'a subscriber asks for more {policy} than this node offers and gets no messages', STRONGEST,
-        'ask for {weakest} there'))
+    """Return event callbacks that report, once a policy, subscribers that ask for too much."""
+    return PublisherEventCallbacks(
+        incompatible_qos=_Mismatch(
+            node,
+            topic,
+            'publisher',
+            'a subscriber asks for more {policy} than this node offers and gets no messages',
+            STRONGEST,
+            'ask for {weakest} there',
+        )
+    )
 
 
 class SubscriptionMismatch:
     """Says once a policy of which a publisher to a topic offers less than this node asks for.
 
-    It looks at the publishers there are: an event of the subscription would wake the executor for every message that comes.
+    It looks at the publishers there are: an event of the subscription would wake the executor for
+    every message that comes.
 
     Parameters
     ----------
@@ -36,18 +53,35 @@ class SubscriptionMismatch:
     """
 
     def __init__(self, node, topic, profile):
-        self._publishers = functools.partial(node.get_publishers_info_by_topic, node.resolve_topic_name(topic))
+        self._publishers = functools.partial(
+            node.get_publishers_info_by_topic, node.resolve_topic_name(topic)
+        )
         self._profile = profile
         self._mismatch = _Mismatch(
-            node, topic, 'subscription', 'a publisher offers less {policy} than this node asks for and its messages do not arrive', WEAKEST,
-            'offer {strongest} there')
+            node,
+            topic,
+            'subscription',
+            'a publisher offers less {policy} than this node asks for '
+            'and its messages do not arrive',
+            WEAKEST,
+            'offer {strongest} there',
+        )
 
     def look(self):
         """Look at the publishers there are now."""
         for offered in (publisher.qos_profile for publisher in self._publishers()):
             for policy, weak, strong in (
-                    ('RELIABILITY', offered.reliability == ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE),
-                    ('DURABILITY', offered.durability == DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL)):
+                (
+                    'RELIABILITY',
+                    offered.reliability == ReliabilityPolicy.BEST_EFFORT,
+                    ReliabilityPolicy.RELIABLE,
+                ),
+                (
+                    'DURABILITY',
+                    offered.durability == DurabilityPolicy.VOLATILE,
+                    DurabilityPolicy.TRANSIENT_LOCAL,
+                ),
+            ):
                 if weak and getattr(self._profile, policy.lower()) == strong:
                     self._mismatch.say(policy)
 
@@ -70,5 +104,6 @@ class _Mismatch:
         line = f'{topic}: {self._problem.format(policy=name)}'
         if policy in WEAKEST:
             remedy = self._remedy.format(weakest=WEAKEST[policy], strongest=STRONGEST[policy])
-            line += f'; {remedy}, or start this node with -p qos_overrides.{topic}.{self._side}.{name}:={self._wanted_here[policy]}'
+            override = f'qos_overrides.{topic}.{self._side}.{name}:={self._wanted_here[policy]}'
+            line += f'; {remedy}, or start this node with -p {override}'
         self._node.get_logger().warning(line)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rehearsal of the ticks before the clock starts, so that no tick waits for anything that is done for the first time.
+"""A rehearsal before the clock starts: no tick then does anything for the first time.
 
-Kernels are compiled, or loaded from the cache, when they are first called, and modules are imported when
-they are first needed. The rehearsal therefore runs the session itself, with a simulation of its own and
-with outputs that lead nowhere: through ticks made one by one and ahead, commands, a reset, a balance.
+Kernels are compiled, or loaded from the cache, when they are first called, and modules are
+imported when they are first needed. The rehearsal therefore runs the session itself, with a
+simulation of its own and with outputs that lead nowhere: through ticks made one by one and ahead,
+commands, a reset, a balance.
 """
 
 import threading
@@ -21,9 +22,11 @@ from rigid_body_sim.simulation.simulation import Simulation
 PATIENCE = 4.0
 """After this time (s) the node says what it is doing."""
 FASTEST = 1000.0
-"""Least rate of the rehearsal (Hz): it covers a tenth of a second of the motion however slow the node ticks."""
+"""Least rate of the rehearsal (Hz), so that it covers a tenth of a second of the motion."""
 SMALL = (1e-9, 1e-9, 1e-9)
-COMMANDS = np.array([(kind, axes, *ZERO, *SMALL) for kind in (IMPULSE, HOLD) for axes in (BODY, WORLD)])
+COMMANDS = np.array(
+    [(kind, axes, *ZERO, *SMALL) for kind in (IMPULSE, HOLD) for axes in (BODY, WORLD)]
+)
 
 
 def rehearse(simulation, messages):
@@ -36,7 +39,11 @@ def rehearse(simulation, messages):
     messages : state_topics.SceneMessages
         Makes the messages of its scene.
     """
-    patience = threading.Timer(PATIENCE, say, ['compiling the kernels of this scene, once for this machine and version ...'])
+    patience = threading.Timer(
+        PATIENCE,
+        say,
+        ['compiling the kernels of this scene, once for this machine and version ...'],
+    )
     patience.daemon = True
     patience.start()
     try:
@@ -47,8 +54,14 @@ def rehearse(simulation, messages):
 
 def _rehearse(simulation, messages):
     choice = simulation.choice
-    trial = Simulation(simulation.scene, simulation.integrator, simulation.accuracy, max(simulation.rate, FASTEST),
-                       horizon=choice.horizon, settled=(choice.method, choice.tolerance, choice.expected_error))
+    trial = Simulation(
+        simulation.scene,
+        simulation.integrator,
+        simulation.accuracy,
+        max(simulation.rate, FASTEST),
+        horizon=choice.horizon,
+        settled=(choice.method, choice.tolerance, choice.expected_error),
+    )
     queue = _Queue()
     settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0, display_rate=FASTEST)
     session = Session(trial, queue, _Nowhere(messages), NoJournal(), settings, lambda: 0)

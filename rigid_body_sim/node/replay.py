@@ -1,4 +1,5 @@
-"""The command `replay`: a recording back onto its topics, at its own pace or another."""
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `replay`: publish a recording again, at its own pace or another."""
 
 import importlib
 import math
@@ -10,25 +11,48 @@ from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.realtime.shutdown import leave, say, signals
 from rigid_body_sim.recording.reader import Recording
 
-EXAMPLES = ('python -m rigid_body_sim replay recordings/racket --rate 0.5 --topics /pose /scene\n'
-            '  python -m rigid_body_sim replay recordings/racket --paused\n'
-            '  ros2 service call /replay/pause std_srvs/srv/SetBool "{data: false}"')
+EXAMPLES = (
+    'python -m rigid_body_sim replay recordings/racket --rate 0.5 --topics /pose /scene\n'
+    '  python -m rigid_body_sim replay recordings/racket --paused\n'
+    '  ros2 service call /replay/pause std_srvs/srv/SetBool "{data: false}"'
+)
 FASTEST = 1e6
 
 
 def main(arguments=None):
     """Run the command, and end the process with its exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    own = arguments[:arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
-    parser = command_line.parser('replay', 'Publish a recording again: its topics with their quality of service, /clock, and a service '
-                                 '~/pause.', EXAMPLES)
-    parser.add_argument('recording', help='folder of a recording, or .mcap file; also of `ros2 bag record`')
-    parser.add_argument('--rate', type=float, default=1.0, help='seconds of the recording per second (1)')
-    parser.add_argument('--start', type=float, default=0.0, metavar='SECONDS', help='where in the recording to begin (0)')
+    own = arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
+    parser = command_line.parser(
+        'replay',
+        'Publish a recording again: its topics with their quality of service, /clock, and a '
+        'service '
+        '~/pause.',
+        EXAMPLES,
+    )
+    parser.add_argument(
+        'recording', help='folder of a recording, or .mcap file; also of `ros2 bag record`'
+    )
+    parser.add_argument(
+        '--rate', type=float, default=1.0, help='seconds of the recording per second (1)'
+    )
+    parser.add_argument(
+        '--start',
+        type=float,
+        default=0.0,
+        metavar='SECONDS',
+        help='where in the recording to begin (0)',
+    )
     parser.add_argument('--loop', action='store_true', help='begin anew at the end, until Ctrl-C')
     parser.add_argument('--topics', nargs='+', metavar='TOPIC', help='only these topics')
-    parser.add_argument('--paused', action='store_true', help='wait for the service ~/pause before the first message')
-    parser.add_argument('--json', action='store_true', help='print counts and timing errors as JSON at the end')
+    parser.add_argument(
+        '--paused',
+        action='store_true',
+        help='wait for the service ~/pause before the first message',
+    )
+    parser.add_argument(
+        '--json', action='store_true', help='print counts and timing errors as JSON at the end'
+    )
     options = parser.parse_args(own)
     with signals() as stop:
         try:
@@ -38,7 +62,9 @@ def main(arguments=None):
             leave(command_line.BAD_INPUT)
         process = importlib.import_module('rigid_body_sim.node.process')
         node = importlib.import_module('rigid_body_sim.node.replay_node').ReplayNode
-        leave(process.run(lambda stop: node(stop, recording, options), arguments[len(own):], stop))
+        leave(
+            process.run(lambda stop: node(stop, recording, options), arguments[len(own) :], stop)
+        )
 
 
 def _opened(options):
@@ -52,9 +78,17 @@ def _opened(options):
     if not recording.message_count:
         raise BadInput(options.recording, 'holds no messages', 'a recording that does')
     if not (math.isfinite(options.start) and 0.0 <= options.start <= seconds):
-        raise BadInput('--start', f'got {options.start:g}', f'from 0 to {seconds:.9g}, the length of the recording (s)')
+        raise BadInput(
+            '--start',
+            f'got {options.start:g}',
+            f'from 0 to {seconds:.9g}, the length of the recording (s)',
+        )
     if options.loop and options.start == seconds:
-        raise BadInput('--loop', 'there is only one instant to play', 'a recording that lasts, an earlier --start')
+        raise BadInput(
+            '--loop',
+            'there is only one instant to play',
+            'a recording that lasts, an earlier --start',
+        )
     return recording
 
 

@@ -1,4 +1,5 @@
-"""The node that replays a recording: publishers as they were, /clock, a service to pause, progress."""
+# SPDX-License-Identifier: Apache-2.0
+"""The node that replays a recording: its publishers, /clock, a service to pause."""
 
 import collections
 import importlib
@@ -45,47 +46,70 @@ class ReplayNode(Node):
         names = options.topics or [name for name, topic in recording.topics.items() if topic.count]
         self._sending = {name: self._publisher(recording.topics[name]) for name in names}
         # a recorded clock is replayed like any other topic
-        clock = None if CLOCK_TOPIC in names else self.create_publisher(ClockMessage, CLOCK_TOPIC, QoSProfile(depth=1))
+        clock = (
+            None
+            if CLOCK_TOPIC in names
+            else self.create_publisher(ClockMessage, CLOCK_TOPIC, QoSProfile(depth=1))
+        )
         start = recording.start_time + round(options.start * NANOSECONDS)
         reading = Reading(recording, names, start, recording.end_time, options.loop)
         publish = {name: publisher.handle.publish_raw for name, publisher in self._sending.items()}
-        self._tell_clock = (lambda _: None) if clock is None else lambda now: clock.publish(_clock_message(now))
-        self.player = Player(reading, publish, self._tell_clock, options.rate, options.paused, stop.request)
+        self._tell_clock = (
+            (lambda _: None) if clock is None else lambda now: clock.publish(_clock_message(now))
+        )
+        self.player = Player(
+            reading, publish, self._tell_clock, options.rate, options.paused, stop.request
+        )
         self.create_service(SetBool, '~/pause', self._pause)
         seconds = (recording.end_time - start) / NANOSECONDS
-        self._progress = tqdm(total=None if options.loop else round(seconds, 3), unit=' s', disable=None, leave=False)
+        self._progress = tqdm(
+            total=None if options.loop else round(seconds, 3), unit=' s', disable=None, leave=False
+        )
         self._started = start
         # it also gives the executor, which a request to end does not wake, a reason to look
-        self.create_timer(PROGRESS_PERIOD, self._show, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_timer(
+            PROGRESS_PERIOD, self._show, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
         if options.start:
             self._publish_latched(names, start)
         quicken()
-        # this thread and the one that reads hold the interpreter at times: what delays them then delays messages
+        # this thread and the one that reads hold the interpreter at times: what delays them then
+        # delays messages
         ask_for_priority(options.rate <= MOST_REAL_TIME, PRIORITY - 1)
         self.player.start()
 
     def _publisher(self, topic):
-        package, _, name = topic.type.split('/') if topic.type.count('/') == 2 else ('', '', topic.type)
+        package, _, name = (
+            topic.type.split('/') if topic.type.count('/') == 2 else ('', '', topic.type)
+        )
         try:
             message_type = getattr(importlib.import_module(f'{package}.msg'), name)
         except (ImportError, ValueError, AttributeError):
-            raise BadInput(topic.name, f'has messages of {topic.type}, which is not installed here',
-                           f'install {package or "it"}, or name others by --topics') from None
+            raise BadInput(
+                topic.name,
+                f'has messages of {topic.type}, which is not installed here',
+                f'install {package or "it"}, or name others by --topics',
+            ) from None
         if not topic.name.startswith('/'):
             raise BadInput(topic.name, 'is no complete name of a topic', 'other --topics')
         return self.create_publisher(message_type, topic.name, offered_qos(topic.qos))
 
     def _publish_latched(self, names, start):
-        """Publish what a late subscriber would have got at the start: the last messages before it on latched topics."""
+        """Publish what a late subscriber to latched topics would have got at the start."""
         for name in names:
             profile = self._sending[name].qos_profile
             if profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-                for message in collections.deque(self._recording.messages([name], end=start - 1), maxlen=max(1, profile.depth)):
+                for message in collections.deque(
+                    self._recording.messages([name], end=start - 1), maxlen=max(1, profile.depth)
+                ):
                     self._sending[name].handle.publish_raw(message.data)
 
     def _pause(self, request, response):
         (self.player.pause if request.data else self.player.resume)()
-        response.success, response.message = True, f'{"paused" if request.data else "playing"} at {self._played():.9g} s'
+        response.success, response.message = (
+            True,
+            f'{"paused" if request.data else "playing"} at {self._played():.9g} s',
+        )
         return response
 
     def _played(self):
@@ -117,15 +141,27 @@ class ReplayNode(Node):
             return CHECK_FAILED
         late = player.lateness.summary()
         if options.json:
-            print_json({'recording': str(self._recording.path), 'topics': list(self._sending), 'messages': player.published, 'ended': ended,
-                        'rate': options.rate, 'loops': player.loops, 'seconds': player.seconds,
-                        'timing_error': {name: late[name] for name in ('p50', 'p99', 'max')}})
+            print_json(
+                {
+                    'recording': str(self._recording.path),
+                    'topics': list(self._sending),
+                    'messages': player.published,
+                    'ended': ended,
+                    'rate': options.rate,
+                    'loops': player.loops,
+                    'seconds': player.seconds,
+                    'timing_error': {name: late[name] for name in ('p50', 'p99', 'max')},
+                }
+            )
         else:
             p50, p99, worst = (late[name] * 1e6 for name in ('p50', 'p99', 'max'))
             where = '' if ended else f', ended at {self._played():.9g} s'
             loops = f' in {player.loops} loops' if options.loop else ''
-            tell(f'{player.published} messages on {len(self._sending)} topics{loops}, {player.seconds:.3f} s{where}; '
-                 f'timing error p50 {p50:.0f}, p99 {p99:.0f}, max {worst:.0f} us')
+            tell(
+                f'{player.published} messages on {len(self._sending)} topics{loops}, '
+                f'{player.seconds:.3f} s{where}; '
+                f'timing error p50 {p50:.0f}, p99 {p99:.0f}, max {worst:.0f} us'
+            )
         return GOOD
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node that runs from its start to its end."""
 
 from rclpy.node import Node

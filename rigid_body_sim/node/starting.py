@@ -1,4 +1,8 @@
-"""How the commands that are nodes start: help without ROS, signals in order before anything that takes long is imported."""
+# SPDX-License-Identifier: Apache-2.0
+"""The start of the subcommands that are nodes.
+
+Help works without ROS, and signals are handled before anything slow is imported.
+"""
 
 import importlib
 import sys
@@ -15,13 +19,18 @@ def start(name, about, examples, node_class, arguments):
     name, about, examples : str
         For ``--help``.
     node_class : str
-        ``package.module:Class``, imported when it is needed; see process.run for what it must have.
+        ``package.module:Class``, imported when it is needed; see process.run for what it must
+        have.
     arguments : list of str or None
         The command line; None: that of the process.
     """
     arguments = sys.argv[1:] if arguments is None else arguments
-    parser = command_line.parser(name, f'{about} Everything is a ROS parameter (README, section Parameters).', examples)
-    parser.parse_args(arguments[:arguments.index('--ros-args')] if '--ros-args' in arguments else arguments)
+    parser = command_line.parser(
+        name, f'{about} Everything is a ROS parameter (README, section Parameters).', examples
+    )
+    parser.parse_args(
+        arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
+    )
     with signals() as stop:
         run = importlib.import_module('rigid_body_sim.node.process').run
         module, _, class_name = node_class.partition(':')

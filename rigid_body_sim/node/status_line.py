@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One line on the terminal that tells how the node is doing, and the report at its end."""
 
 import contextlib
@@ -22,8 +23,12 @@ class StatusLine:
         engine = self._engine
         balance, diagnostics = engine.session.balance, engine.diagnostics
         recorded = engine.journal.status.recorded if engine.journal.status else 'nothing'
-        line = (f't {balance["time"]:10.3f} s   {diagnostics.rate:8.1f} Hz   late p99 {diagnostics.lateness["p99"] * 1e6:5.0f} us   '
-                f'energy {balance["energy_residual"]:8.1e}   L^2 {balance["momentum_residual"]:8.1e}   recorded {recorded}')
+        line = (
+            f't {balance["time"]:10.3f} s   {diagnostics.rate:8.1f} Hz   '
+            f'late p99 {diagnostics.lateness["p99"] * 1e6:5.0f} us   '
+            f'energy {balance["energy_residual"]:8.1e}   '
+            f'L^2 {balance["momentum_residual"]:8.1e}   recorded {recorded}'
+        )
         engine.session.want_balance()
         self._write('\r' + line.ljust(self._width))
         self._width = len(line)

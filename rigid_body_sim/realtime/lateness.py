@@ -1,4 +1,5 @@
-"""How late ticks were: exact counts in bins of one microsecond, cheap to add to and of constant size."""
+# SPDX-License-Identifier: Apache-2.0
+"""Lateness of ticks, counted exactly in bins of one microsecond; its size is constant."""
 
 import array
 
@@ -27,7 +28,9 @@ class Lateness:
 
     def summary(self):
         """Return count, p50, p99 and max (s) of the whole run."""
-        return self._summary(np.array(self._counts, dtype=np.uint64), max(self.worst, self._worst_since))
+        return self._summary(
+            np.array(self._counts, dtype=np.uint64), max(self.worst, self._worst_since)
+        )
 
     def since_last(self):
         """Return count, p50, p99 and max (s) since the last call; only one reader calls it."""
@@ -44,5 +47,8 @@ class Lateness:
             return {'count': 0, 'p50': 0.0, 'p99': 0.0, 'max': 0.0}
         ranks = np.cumsum(counts)
         # the upper edge of a bin: a percentile is never said to be smaller than it was
-        p50, p99 = (min((int(np.searchsorted(ranks, share * total)) + 1) * 1000, worst) for share in (0.5, 0.99))
+        p50, p99 = (
+            min((int(np.searchsorted(ranks, share * total)) + 1) * 1000, worst)
+            for share in (0.5, 0.99)
+        )
         return {'count': total, 'p50': p50 * 1e-9, 'p99': p99 * 1e-9, 'max': worst * 1e-9}

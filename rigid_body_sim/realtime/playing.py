@@ -1,7 +1,9 @@
-"""A recording played: a thread that reads ahead, and one that publishes each message at its instant.
+# SPDX-License-Identifier: Apache-2.0
+"""Playback of a recording: one thread reads ahead, one publishes each message when it is due.
 
-The instant of a message is that of the first one plus the difference of their log times over the rate, on the monotonic clock of the machine;
-it does not depend on when other messages went out, so nothing drifts, in no number of loops. A loop begins where the one before ended.
+The instant of a message is that of the first one plus the difference of their log times over the
+rate, on the monotonic clock of the machine; it does not depend on when other messages went out, so
+nothing drifts, in no number of loops. A loop begins where the one before ended.
 """
 
 import itertools
@@ -17,7 +19,8 @@ from rigid_body_sim.realtime.priority import ask_for_priority
 CLOCK_PERIOD = 10_000_000
 """From one message on /clock to the next, ns of the steady clock."""
 LONGEST_SLEEP = 10_000_000      # ns
-MOST_REAL_TIME = 20.0           # up to this rate the thread may ask for real-time scheduling: a faster one need never sleep
+MOST_REAL_TIME = 20.0
+"""Largest rate with real-time scheduling: a faster thread may never sleep."""
 BATCH, BATCH_BYTES, BATCHES = 256, 2**20, 32
 
 
@@ -63,7 +66,10 @@ class Reading(threading.Thread):
         self._batches.put(batch)
 
     def __iter__(self):
-        """Yield (position, Message): where each message stands from the start of the first loop, ns. What went wrong is raised here."""
+        """Yield (position, Message); the position counts from the start of the first loop, ns.
+
+        An error of the reading thread is raised here.
+        """
         while (batch := self._batches.get()) is not None:
             if isinstance(batch, Exception):
                 raise batch
@@ -105,7 +111,8 @@ class Player(threading.Thread):
 
     def __init__(self, reading, publish, tell_clock, rate, paused, at_end):
         super().__init__(name='replay', daemon=True)
-        self._reading, self._publish, self._tell_clock, self._at_end = reading, publish, tell_clock, at_end
+        self._reading, self._publish = reading, publish
+        self._tell_clock, self._at_end = tell_clock, at_end
         self._rate, self._ratio = rate, Fraction(rate).as_integer_ratio()
         self._paused, self._stopping = paused, False
         self._origin = self._next_clock = 0
@@ -153,7 +160,7 @@ class Player(threading.Thread):
         self._tell_clock(self._reading.end_time)
 
     def _wait(self, position, log_time):
-        """Wait for the instant of a position; return by how much it is over (ns), or None when it is time to end."""
+        """Wait until a position is due; return how late it is (ns), None at the end."""
         numerator, denominator = self._ratio
         ahead = position * denominator // numerator
         while not self._stopping:

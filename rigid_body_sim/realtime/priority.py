@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a thread that keeps deadlines asks of the system and of the interpreter."""
 
 import contextlib
@@ -11,9 +12,12 @@ import sys
 PRIORITY = 10
 PR_SET_TIMERSLACK = 29
 SLICE = 100_000
-"""How long the thread asks to run at a time, ns, the least there is: where real-time scheduling is not allowed, who asks for less comes first.
+"""Slice that the thread asks for, ns: the shortest there is.
 
-A thread that sleeps in time is then late by 0.1 to 0.7 ms where it was by 3 to 4 (p99, both processors busy with others).
+Without real-time scheduling the thread with the shorter slice runs first.
+
+A thread that sleeps in time is then late by 0.1 to 0.7 ms where it was by 3 to 4 (p99, both
+processors busy with others).
 """
 SCHED_SETATTR = {'x86_64': 314, 'aarch64': 274}
 """Number of the system call, which Python does not offer."""
@@ -22,7 +26,9 @@ SWITCH_INTERVAL = 1e-4
 
 
 def ask_for_priority(real_time, priority=PRIORITY):
-    """Ask for exact timers in this thread, and for real-time scheduling if wanted and allowed; return how the thread is scheduled.
+    """Ask for exact timers in this thread, and for real-time scheduling if wanted and allowed.
+
+    Return how the thread is scheduled, in words.
 
     Threads that this one starts inherit it.
     """
@@ -39,16 +45,24 @@ def ask_for_priority(real_time, priority=PRIORITY):
 
 
 def _ask_for_slice(nanoseconds):
-    """Ask for a slice of that length in normal scheduling, 0 for the usual one; anybody may. Linux before 6.12 takes no notice."""
+    """Ask for a slice of that length in normal scheduling, 0 for the usual one.
+
+    Anybody may ask. Linux before 6.12 ignores it.
+    """
     number = SCHED_SETATTR.get(platform.machine())
     if number is not None:
         # struct sched_attr, see sched_setattr(2): its sched_runtime is the slice
         nice = os.getpriority(os.PRIO_PROCESS, 0)
-        ctypes.CDLL(None).syscall(number, 0, struct.pack('=IIQiIQQQ', 48, os.SCHED_OTHER, 0, nice, 0, nanoseconds, 0, 0), 0)
+        ctypes.CDLL(None).syscall(
+            number,
+            0,
+            struct.pack('=IIQiIQQQ', 48, os.SCHED_OTHER, 0, nice, 0, nanoseconds, 0, 0),
+            0,
+        )
 
 
 def quicken():
-    """Keep pauses of the interpreter short from here on: called when all is made and the thread is about to start."""
+    """Keep pauses of the interpreter short, just before the thread that keeps deadlines starts."""
     # what is there now stays: the collector need not look at it again
     gc.collect()
     gc.freeze()

@@ -1,12 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
 """A session: one simulation, tick by tick, in the tick thread.
 
-At tick k, in this order: the state moves on to tick k; requests (reset, changes of parameters) take effect; then commands, in the order in
-which they came; then the state is published and recorded. So whatever reaches the node between two ticks takes effect at the next one, and is
+At tick k, in this order: the state moves on to tick k; requests (reset, changes of parameters)
+take effect; then commands, in the order in which they came; then the state is published and
+recorded. So whatever reaches the node between two ticks takes effect at the next one, and is
 recorded with its number.
 
-While the body is left to itself, states and messages of the ticks to come are made ahead, many at once, after a tick has been published: the
-next ones have only to send them. The simulation then stays behind; whatever needs it (a request, a command, an event, a balance) has it catch
-up with the present tick, and what was made ahead is dropped. The bits are the same either way.
+While the body is left to itself, states and messages of the ticks to come are made ahead, many at
+once, after a tick has been published: the next ones have only to send them. The simulation then
+stays behind; whatever needs it (a request, a command, an event, a balance) has it catch up with
+the present tick, and what was made ahead is dropped. The bits are the same either way.
 """
 
 import collections
@@ -29,7 +32,10 @@ from rigid_body_sim.theory.prediction import Prediction
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
 AHEAD = 64
-"""How many ticks are made ahead at 1 kHz or less; at higher rates fewer, so that making them fits between two ticks."""
+"""Number of ticks made ahead at 1 kHz or less.
+
+At higher rates it is smaller, so that making them fits between two ticks.
+"""
 WITH_EXAMPLE = (REASONS[NOT_FINITE], REASONS[TOO_MUCH_WORK])
 """Reasons of refusals that are reported with a command that would be right."""
 QUIET = 16
@@ -57,7 +63,8 @@ class Session:
         Stamps of the ticks; None before the first one.
     finished : bool
     balance : dict
-        The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and ``time``.
+        The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and
+        ``time``.
     event_counts : collections.Counter
         Events so far, by name.
     prediction : prediction.Prediction
@@ -67,7 +74,12 @@ class Session:
     def __init__(self, simulation, command_queue, publishing, journal, settings, epoch):
         self.simulation = simulation
         self.timeline = None
-        self._commands, self._publishing, self._journal, self._epoch = command_queue, publishing, journal, epoch
+        self._commands, self._publishing, self._journal, self._epoch = (
+            command_queue,
+            publishing,
+            journal,
+            epoch,
+        )
         command_queue.report = self._report_refusal
         self.command_timeout = settings.command_timeout
         self._duration, self._last_tick = settings.duration, None
@@ -85,7 +97,7 @@ class Session:
         self._disturbed()
         self.take_balance()
 
-    # -- from other threads -------------------------------------------------------------------------------------------------------------
+    # -- from other threads
 
     def request(self, act):
         """Have `act(session)` called at the next tick; return a Future of what it returns."""
@@ -97,7 +109,7 @@ class Session:
         """Ask for a fresh :attr:`balance`."""
         self._balance_wanted = True
 
-    # -- the tick thread ----------------------------------------------------------------------------------------------------------------
+    # -- the tick thread
 
     def begin(self):
         """Fix the stamps, just before the first tick, and publish the scene."""
@@ -137,7 +149,7 @@ class Session:
             self._look_ahead(tick)
 
     def _present(self, tick):
-        """Go to a tick that was not made ahead, tell of its events, return what `_messages` does."""
+        """Go to a tick that was not made ahead, report its events, return its entry."""
         self._catch_up()
         if self.simulation.events:
             self._report_events()
@@ -154,7 +166,9 @@ class Session:
         """Make the messages of the ticks after this one, up to the next event."""
         self._catch_up()
         try:
-            states = self.simulation.foresee(min(AHEAD, math.ceil(AHEAD * 1000.0 / self.simulation.rate)))
+            states = self.simulation.foresee(
+                min(AHEAD, math.ceil(AHEAD * 1000.0 / self.simulation.rate))
+            )
         except NotConverged:
             # said when its tick comes, if it comes
             states = ()
@@ -164,18 +178,29 @@ class Session:
             self._look_ahead_from = tick + QUIET
 
     def _messages(self, vectors, tick):
-        """Return of consecutive ticks from that one on the stamp, the messages, and those that are paced or None."""
+        """Return (stamp, messages, paced messages or None) of consecutive ticks."""
         energies, squares = self.simulation.diagnose(States(vectors))
         stamps = self.timeline.instants(tick, len(vectors))
-        made, wrench, paced = self._publishing.messages, self.simulation.wrench, [None] * len(vectors)
+        made, wrench, paced = (
+            self._publishing.messages,
+            self.simulation.wrench,
+            [None] * len(vectors),
+        )
         if made.paced:
             for k in self._pace.due(tick, len(vectors)):
                 one = slice(k - tick, k - tick + 1)
-                [paced[k - tick]] = made.paced.messages(vectors[one], energies[one], squares[one], stamps[one], wrench)
-        return zip(stamps, made.ticking.messages(vectors, energies, squares, stamps, wrench), paced, strict=True)
+                [paced[k - tick]] = made.paced.messages(
+                    vectors[one], energies[one], squares[one], stamps[one], wrench
+                )
+        return zip(
+            stamps,
+            made.ticking.messages(vectors, energies, squares, stamps, wrench),
+            paced,
+            strict=True,
+        )
 
     def between_ticks(self):
-        """Take commands into the queue while there is time, so that none is lost before a far-off tick."""
+        """Take commands into the queue while there is time, so that none is lost."""
         if self.timeline is None:
             return
         self._commands.look()
@@ -199,7 +224,7 @@ class Session:
         return self.next_tick
 
     def switch(self, simulation, messages, keep_state):
-        """Go on with another simulation, and its SceneMessages, from the present tick on; called at a tick."""
+        """Go on with another simulation and its SceneMessages from the present tick on."""
         self._report_events()
         simulation.follow(self.simulation, keep_state)
         if simulation.rate != self.simulation.rate:
@@ -221,8 +246,15 @@ class Session:
     def note_parameters(self, changed, keep_state):
         """Record and tell that parameters changed; called at the tick from which they hold."""
         simulation = self.simulation
-        self._journal.entry('parameters', self.stamp, tick=self.next_tick, changed=changed, scene=simulation.scene.text,
-                            simulation=about.run_of(simulation), keeps_state=keep_state)
+        self._journal.entry(
+            'parameters',
+            self.stamp,
+            tick=self.next_tick,
+            changed=changed,
+            scene=simulation.scene.text,
+            simulation=about.run_of(simulation),
+            keeps_state=keep_state,
+        )
         self.event(OK, 'parameters changed', ', '.join(changed), changed)
 
     def announce_scene(self):
@@ -238,7 +270,11 @@ class Session:
     def event(self, level, name, message, values=None):
         """Publish and record an event of the tick that is being run."""
         self.event_counts[name] += 1
-        values = {'tick': self.next_tick, 'time': self.simulation.time_at(self.next_tick), **(values or {})}
+        values = {
+            'tick': self.next_tick,
+            'time': self.simulation.time_at(self.next_tick),
+            **(values or {}),
+        }
         topic, data = self._publishing.event(level, name, message, values)
         self._journal.message(topic, self.stamp, data)
 
@@ -248,7 +284,7 @@ class Session:
             self.prediction.note(event.name, event.time)
             self.event(OK, event.name, *about.event_text(event))
 
-    # -- commands -----------------------------------------------------------------------------------------------------------------------
+    # -- commands
 
     def _command(self, tick):
         """Give the commands that wait to the simulation; let go of a wrench whose time is over."""
@@ -258,14 +294,22 @@ class Session:
         if self._release_tick is not None and tick >= self._release_tick:
             self._release_tick = None
             self._take_effect(tick, LET_GO)
-            self.event(WARN, 'command timed out', f'no cmd_wrench for {self.command_timeout:g} s: the held wrench ended')
+            self.event(
+                WARN,
+                'command timed out',
+                f'no cmd_wrench for {self.command_timeout:g} s: the held wrench ended',
+            )
 
     def _take_effect(self, tick, rows):
         refused = self.simulation.command(rows)
         for refusal in refused:
             remedy = '' if refusal.reason in WITH_EXAMPLE else refusal.error.remedy
-            self._commands.refuse(TOPICS[int(rows[refusal.place, KIND])], refusal.reason,
-                                  refusal.error.problem.removeprefix('got '), remedy)
+            self._commands.refuse(
+                TOPICS[int(rows[refusal.place, KIND])],
+                refusal.reason,
+                refusal.error.problem.removeprefix('got '),
+                remedy,
+            )
         if refused:
             rows = np.delete(rows, [refusal.place for refusal in refused], axis=0)
         if not len(rows):
@@ -282,7 +326,9 @@ class Session:
         """Compare theory with the motion from here on, and wait for quiet before looking ahead."""
         self._look_ahead_from = self._tick + QUIET
         simulation = self.simulation
-        self.prediction = Prediction(simulation.scene, None if simulation.wrench else simulation.state)
+        self.prediction = Prediction(
+            simulation.scene, None if simulation.wrench else simulation.state
+        )
 
     def _report_refusal(self, topic, reason, got, remedy):
         """Tell of a refused command, once a second for each topic and reason."""
@@ -292,12 +338,26 @@ class Session:
             self._reports[topic, reason] = told, silent + 1
             return
         self._reports[topic, reason] = now, 0
-        self.event(ERROR, 'command refused', f'{topic}: {reason}: got {got}; right would be: {remedy}',
-                   {'topic': topic, 'reason': reason, 'got': got, 'right': remedy, 'not_told_since': silent})
+        self.event(
+            ERROR,
+            'command refused',
+            f'{topic}: {reason}: got {got}; right would be: {remedy}',
+            {
+                'topic': topic,
+                'reason': reason,
+                'got': got,
+                'right': remedy,
+                'not_told_since': silent,
+            },
+        )
 
     def take_balance(self):
         """Take a fresh :attr:`balance`; while ticks run, only the tick thread may do so."""
         self._balance_wanted = False
         self._catch_up()
         self.prediction.look(self.simulation.state)
-        self.balance = {'tick': self.simulation.tick, 'time': self.simulation.time, **self.simulation.ledger()}
+        self.balance = {
+            'tick': self.simulation.tick,
+            'time': self.simulation.time,
+            **self.simulation.ledger(),
+        }

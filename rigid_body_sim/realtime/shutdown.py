@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a node's process ends: within a second of a signal, and losing nothing.
 
-Signals reach a thread of their own by way of a pipe, because Python runs signal handlers only between two bytecodes of the main thread, and
-that one waits in the executor. The first signal asks for the end; more of them change nothing. This module imports nothing that takes time,
-so that signals are in order before the rest is loaded.
+Signals reach a thread of their own by way of a pipe, because Python runs signal handlers only
+between two bytecodes of the main thread, and that one waits in the executor. The first signal asks
+for the end; more of them change nothing. This module imports nothing that takes time, so that
+signals are in order before the rest is loaded.
 """
 
 import contextlib
@@ -12,8 +14,10 @@ import sys
 import threading
 
 GRACE, LAST_GRACE = 0.7, 0.2
-"""Longest time from a signal to the last resort, and from there to the end of the process, s. The recorder, a process of its own, finishes its
-file anyway."""
+"""Longest time from a signal to the last resort, and from there to the end, s.
+
+The recorder is a process of its own and finishes its file in any case.
+"""
 
 
 class Stop:
@@ -24,7 +28,7 @@ class Stop:
         self._wake = lambda: None
         self.by_signal = False
         self.last_resort = lambda: None
-        """What to close if the process is still busy (compiling, say) when its time after a signal is over; called in another thread."""
+        """What to close, in another thread, if the process is still busy when its time is over."""
 
     @property
     def wanted(self):
@@ -43,7 +47,7 @@ class Stop:
         self._wake()
 
     def signalled(self):
-        """Ask for the end because of a signal; it comes soon, whatever the process is busy with."""
+        """Ask for the end because of a signal; it comes soon even if the process is busy."""
         if not self.by_signal:
             self.by_signal = True
             _later(GRACE, self._end)
@@ -65,8 +69,11 @@ def _later(seconds, function, *arguments):
 def signals():
     """Yield a Stop that SIGINT, SIGTERM and SIGHUP ask to end (SIGHUP not under ``nohup``)."""
     stop = Stop()
-    ours = [number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN]
+    ours = [
+        number
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+        if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN
+    ]
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
 
@@ -104,7 +111,10 @@ def tell(line):
 
 
 def leave(status):
-    """End the process at once: everything is closed, and Python's own way out takes up to a second where numba is loaded."""
+    """End the process at once, when everything is closed.
+
+    With numba loaded, the usual way out of Python takes up to a second.
+    """
     for stream in (sys.stdout, sys.stderr):
         # a closed terminal must not turn the end into a failure
         with contextlib.suppress(OSError, ValueError):

@@ -1,8 +1,13 @@
-"""The tick thread: one tick after the other on absolute deadlines, so that the mean rate is exact whatever single ticks do.
+# SPDX-License-Identifier: Apache-2.0
+"""The tick thread: it runs one tick after the other, each at an absolute deadline.
 
-Tick k is due at a fixed instant of the monotonic clock (or of /clock). A late tick is caught up with: the next ones follow at once. A tick
-that comes more than a whole period late is an overrun. ``skip_publish`` then leaves out messages until it has caught up; with either
-policy, when the backlog passes a tenth of a second, the schedule slips: simulated time falls behind, and this is counted.
+The mean rate is therefore exact, however late single ticks are.
+
+Tick k is due at a fixed instant of the monotonic clock (or of /clock). A late tick is caught up
+with: the next ones follow at once. A tick that comes more than a whole period late is an overrun.
+``skip_publish`` then leaves out messages until it has caught up; with either policy, when the
+backlog passes a tenth of a second, the schedule slips: simulated time falls behind, and this is
+counted.
 """
 
 import collections
@@ -19,7 +24,7 @@ from rigid_body_sim.realtime.priority import ask_for_priority
 LONGEST_SLEEP = 0.01
 """While it waits longer than this, the thread looks after commands and requests, s."""
 BACKLOG = 100_000_000
-"""How far behind its deadlines the thread may be before the schedule slips, ns (never less than two ticks)."""
+"""Backlog at which the schedule slips, ns; it is never less than two ticks."""
 CLOCK_JUMP = 10 * NANOSECONDS
 """A step of /clock forward by more than this is a jump, not the passing of time, ns."""
 
@@ -46,9 +51,10 @@ class Ticker(threading.Thread):
     Parameters
     ----------
     work : object
-        ``work.begin()`` is called once, just before the first tick; ``work.next_tick`` is the number of the tick to run,
-        ``work.run_tick(publish)`` runs it, ``work.between_ticks()`` looks after commands while there is time, ``work.finished`` says that
-        there are no more ticks to run.
+        ``work.begin()`` is called once, just before the first tick; ``work.next_tick`` is the
+        number of the tick to run, ``work.run_tick(publish)`` runs it, ``work.between_ticks()``
+        looks after commands while there is time, ``work.finished`` says that there are no more
+        ticks to run.
     time_source : Steady, or what stands for it
         With ``follows_clock_topic``, ``now()`` (ns), ``wait(nanoseconds)`` and ``close()``.
     rate, real_time_factor : float
@@ -70,7 +76,8 @@ class Ticker(threading.Thread):
     clock_jumps : int
         How often /clock jumped.
     latest : tuple of int
-        How many ticks were run, and for how long (ns) ticks have been running up to the last one, without pauses and jumps.
+        How many ticks were run, and for how long (ns) ticks have been running up to the last one,
+        without pauses and jumps.
     scheduling : str
         How the system schedules the thread.
     waiting_for_clock : bool
@@ -93,7 +100,7 @@ class Ticker(threading.Thread):
         self.scheduling = 'not started'
         self.waiting_for_clock = True
 
-    # -- from other threads -------------------------------------------------------------------------------------------------------------
+    # -- from other threads
 
     @property
     def paused(self):
@@ -109,7 +116,10 @@ class Ticker(threading.Thread):
         self._pauses -= {reason}
 
     def step(self):
-        """Run one tick while paused; return a Future of its number (None if the node is resumed before)."""
+        """Run one tick while paused; return a Future of its number.
+
+        The number is None if the node is resumed before.
+        """
         future = concurrent.futures.Future()
         self._steps.append(future)
         return future
@@ -118,10 +128,10 @@ class Ticker(threading.Thread):
         """End the thread after the tick it is in."""
         self._stopping = True
 
-    # -- the thread ---------------------------------------------------------------------------------------------------------------------
+    # -- the thread
 
     def pace(self, rate, real_time_factor):
-        """Change the rate or the real-time factor; called in ``run_tick``, it holds from that tick on."""
+        """Change the rate or the real-time factor from this tick on; call it in ``run_tick``."""
         self._rate, self._factor = rate, real_time_factor
         self._take_priority()
         self._schedule(self._due)
@@ -147,16 +157,22 @@ class Ticker(threading.Thread):
                 self._at_end()
 
     def _take_priority(self):
-        """Ask for exact timers, and for real-time scheduling where the thread sleeps between ticks."""
+        """Ask for exact timers, and for real-time scheduling if the thread ever sleeps."""
         self.scheduling = ask_for_priority(self._factor > 0.0)
 
     def _schedule(self, due):
         """Make the next tick due at that instant, and those after it follow at the pace wanted."""
         factor = 1.0 if self._source.follows_clock_topic else self._factor
         self._due = due
-        self._deadlines = Timeline(due, Fraction(self._rate) * Fraction(factor), self._work.next_tick) if factor else None
+        self._deadlines = (
+            Timeline(due, Fraction(self._rate) * Fraction(factor), self._work.next_tick)
+            if factor
+            else None
+        )
         self._period = math.ceil(NANOSECONDS / (self._rate * factor)) if factor else 0
-        self._backlog = 2 * self._period + (CLOCK_JUMP if self._source.follows_clock_topic else BACKLOG)
+        self._backlog = 2 * self._period + (
+            CLOCK_JUMP if self._source.follows_clock_topic else BACKLOG
+        )
 
     def _resume_at(self, due):
         """Go on at that instant as if no time had passed since the tick before."""

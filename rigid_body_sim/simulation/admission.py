@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Admission of commands: the one place that decides whether the body takes a command, and applies it.
+"""Admission of commands: the one place that decides if the body takes one, and applies it.
 
-The impulses of a tick are added before they act, so opposite ones cancel to the last bit. Each command is
-tried with the sum of those before it: the body's state after the sum is computed once for each command,
-and the state after the last impulse taken is the state from which the motion goes on.
+The impulses of a tick are added before they act, so opposite ones cancel to the last bit. Each
+command is tried with the sum of those before it: the body's state after the sum is computed once
+for each command, and the state after the last impulse taken is the state from which the motion
+goes on.
 """
 
 import math
@@ -29,9 +30,9 @@ from rigid_body_sim.simulation.command_rows import (
 )
 
 LARGEST_WORK = 1e250
-"""Largest work (J) of the impulses of a tick, and of a wrench within it, so that energies fit a double."""
+"""Largest work (J) of a tick's impulses, and of a wrench in a tick: energies are doubles."""
 LARGEST_TURN = 1e7
-"""Largest angle (rad) that a held wrench may turn the body within a tick: beyond, a tick takes minutes."""
+"""Largest angle (rad) of a held wrench within a tick: beyond it, a tick takes minutes."""
 
 TAKEN, NOT_FINITE, NOT_SOLVABLE, TOO_MUCH_WORK, TOO_FAST = range(5)
 """Verdicts on a command."""
@@ -65,7 +66,8 @@ class Given(NamedTuple):
     Attributes
     ----------
     start : array (14,)
-        The state at the tick before its first command. Commands in body axes turn with this attitude.
+        The state at the tick before its first command. Commands in body axes turn with this
+        attitude.
     sums : array (6,)
         Force (N s) and torque (N m s) of all impulses, world axes.
     after : array (14,)
@@ -110,7 +112,8 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
     Returns
     -------
     int, int
-        Row of the last command that holds or releases, -1 if there is none; number of refused commands.
+        Row of the last command that holds or releases, -1 if there is none; number of refused
+        commands.
     """
     last, taken = -1, 0
     alone, total = np.empty(6), np.empty(6)
@@ -126,7 +129,8 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
         _to_world(row, start, 1.0 if impulse else rate, alone)
         solvable = True
         if some_do_not_turn:
-            # asked of the command alone: in a sum that nearly cancels, rounding looks like a torque
+            # asked of the command alone: in a sum that nearly cancels, rounding looks like a
+            # torque
             solvable = _apply(p, start, alone, trial, trial_exchange)
         for j in range(6):
             total[j] = sums[j] + alone[j]
@@ -170,7 +174,7 @@ def _to_world(row, start, share, out):
 
 @compiled
 def _apply(p, start, given, after, exchange):
-    """Fill `after` and `exchange` with what an impulse (6,) does to a state; return if it can be."""
+    """Fill `after` and `exchange` with what an impulse (6,) does; return if it is possible."""
     some = False
     for j in range(len(start)):
         after[j] = start[j]
@@ -183,18 +187,27 @@ def _apply(p, start, given, after, exchange):
 
 def scene_refuses(scene_name: str, count: int) -> list[Refusal]:
     """Return the refusals of commands to a scene that takes none."""
-    error = BadInput('command', f'the scene {scene_name} refuses commands',
-                     'its key `commands` says so; set commands: accept')
+    error = BadInput(
+        'command',
+        f'the scene {scene_name} refuses commands',
+        'its key `commands` says so; set commands: accept',
+    )
     return [Refusal(place, SCENE_REFUSES, error) for place in range(count)]
 
 
-def refusals(verdicts: np.ndarray, amounts: np.ndarray, rows: np.ndarray,
-             start: np.ndarray) -> list[Refusal]:
+def refusals(
+    verdicts: np.ndarray, amounts: np.ndarray, rows: np.ndarray, start: np.ndarray
+) -> list[Refusal]:
     """Return the Refusal of each row that :func:`admit` did not take."""
     attitude = start[ORIENTATION].tolist()
-    return [Refusal(place, REASONS[verdicts[place]],
-                    _error(verdicts[place], amounts.item(place), rows[place], attitude))
-            for place in np.flatnonzero(verdicts).tolist()]
+    return [
+        Refusal(
+            place,
+            REASONS[verdicts[place]],
+            _error(verdicts[place], amounts.item(place), rows[place], attitude),
+        )
+        for place in np.flatnonzero(verdicts).tolist()
+    ]
 
 
 def _error(verdict, amount, row, attitude):
@@ -205,12 +218,19 @@ def _error(verdict, amount, row, attitude):
     if row[AXES] == BODY:
         force, torque = list(rotate(*attitude, *force)), list(rotate(*attitude, *torque))
     if verdict == NOT_SOLVABLE:
-        return BadInput(NAMES[kind], f'torque {torque} (world axes) about an axis of zero moment',
-                        'leave that component 0: an axis without moment takes no angular momentum')
+        return BadInput(
+            NAMES[kind],
+            f'torque {torque} (world axes) about an axis of zero moment',
+            'leave that component 0: an axis without moment takes no angular momentum',
+        )
     if verdict == TOO_MUCH_WORK:
-        return BadInput(NAMES[kind],
-                        f'force {force}, torque {torque} would do a work of {amount!r} J',
-                        f'at most {LARGEST_WORK:g} J in a tick: energies are doubles')
-    return BadInput(NAMES[kind],
-                    f'torque {torque} would turn the body by {amount:.3g} rad within a tick',
-                    f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse')
+        return BadInput(
+            NAMES[kind],
+            f'force {force}, torque {torque} would do a work of {amount!r} J',
+            f'at most {LARGEST_WORK:g} J in a tick: energies are doubles',
+        )
+    return BadInput(
+        NAMES[kind],
+        f'torque {torque} would turn the body by {amount:.3g} rad within a tick',
+        f'at most {LARGEST_TURN:g} rad: hold less, or give it as an impulse',
+    )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands as rows of doubles: one form from the topic to the body and to the recording.
 
-The node takes rows from its topics, a simulation applies them, a recording keeps them. One array holds
-the commands of a tick in their order.
+The node takes rows from its topics, a simulation applies them, a recording keeps them. One array
+holds the commands of a tick in their order.
 
 ====== ======= ==================================================================================
 column name    meaning
@@ -47,8 +47,8 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
     Raises
     ------
     BadInput
-        If these are not three numbers each, or the frame is unknown. Whether a body can take the numbers
-        is for the simulation to say (admission.py).
+        If these are not three numbers each, or the frame is unknown. Whether a body can take the
+        numbers is for the simulation to say (admission.py).
     """
     force, torque = tuple(map(float, force)), tuple(map(float, torque))
     if (len(force), len(torque)) != (3, 3):
@@ -60,8 +60,9 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
 
 def not_three_numbers(kind: int, force, torque) -> BadInput:
     """Return the error for a force and a torque that are not three finite numbers each."""
-    return BadInput(NAMES[kind], f'got force {list(force)}, torque {list(torque)}',
-                    'three finite numbers each')
+    return BadInput(
+        NAMES[kind], f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each'
+    )
 
 
 def wrench_of(row: np.ndarray) -> Wrench:
@@ -71,14 +72,22 @@ def wrench_of(row: np.ndarray) -> Wrench:
 
 
 def rows_of(commands) -> np.ndarray:
-    """Return the rows of commands as a journal has them: topic, frame, force and torque of each."""
-    rows = [(TOPICS.index(one['topic']), FRAMES.index(one['frame']), *one['force'], *one['torque'])
-            for one in commands]
+    """Return the rows of commands as a journal has them: topic, frame, force, torque."""
+    rows = [
+        (TOPICS.index(one['topic']), FRAMES.index(one['frame']), *one['force'], *one['torque'])
+        for one in commands
+    ]
     return np.array(rows, dtype=float).reshape(-1, WIDTH)
 
 
 def commands_of(rows: np.ndarray) -> list[dict]:
     """Return rows as the dicts that :func:`rows_of` takes."""
-    return [{'topic': TOPICS[int(kind)], 'frame': FRAMES[int(axes)],
-             'force': numbers[:3], 'torque': numbers[3:]}
-            for kind, axes, *numbers in rows.tolist()]
+    return [
+        {
+            'topic': TOPICS[int(kind)],
+            'frame': FRAMES[int(axes)],
+            'force': numbers[:3],
+            'torque': numbers[3:],
+        }
+        for kind, axes, *numbers in rows.tolist()
+    ]

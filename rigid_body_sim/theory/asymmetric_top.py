@@ -1,9 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free asymmetric top near one of its axes (notes, "Asymmetric Top", "Intermediate Axis Theorem").
 
-Symbols: rotation at omega0 (rad/s) about axis 3, which may have any of the three moments; I1, I2, I3 moments (kg m^2); eta = (eta1,
-eta2, eta3) small deviations of omega (rad/s).
+Symbols: rotation at omega0 (rad/s) about axis 3, which may have any of the three moments; I1, I2,
+I3 moments (kg m^2); eta = (eta1, eta2, eta3) small deviations of omega (rad/s).
 
-Errata: the notes carry I1 into the second and third linear equation; they are I2 and I3 (`linear_rates_as_written`). Omega^2 is right.
+Errata: the notes carry I1 into the second and third linear equation; they are I2 and I3
+(`linear_rates_as_written`). Omega^2 is right.
 """
 
 import math
@@ -50,16 +52,17 @@ def growing_ratio(I1, I2, I3):
 def time_between_flips(moments, omega):
     """Return the time between two changes of sign of omega2 of a free body with I1 < I2 < I3, 2 K(k)/lambda, s; every second one is a period.
 
-    Beyond the notes: Landau and Lifshitz, Mechanics, section 37. `omega` in principal axes (rad/s), at any time. Discriminants are sums of
-    like-signed terms, and the modulus is taken by 1 - k^2. None where there are no flips: moments not rising, or a steady rotation.
+    Beyond the notes: Landau and Lifshitz, Mechanics, section 37. `omega` in principal axes
+    (rad/s), at any time. Discriminants are sums of like-signed terms, and the modulus is taken by
+    1 - k^2. None where there are no flips: moments not rising, or a steady rotation.
     """
     I1, I2, I3 = moments
     if not 0.0 < I1 < I2 < I3:
         return None
     w1, w2, w3 = np.square(omega)
-    above_least = I2 * (I2 - I1) * w2 + I3 * (I3 - I1) * w3         # L^2 - 2 E I1
-    below_greatest = I1 * (I3 - I1) * w1 + I2 * (I3 - I2) * w2      # 2 E I3 - L^2
-    middle = I3 * (I3 - I2) * w3 - I1 * (I2 - I1) * w1              # L^2 - 2 E I2
+    above_least = I2 * (I2 - I1) * w2 + I3 * (I3 - I1) * w3  # L^2 - 2 E I1
+    below_greatest = I1 * (I3 - I1) * w1 + I2 * (I3 - I2) * w2  # 2 E I3 - L^2
+    middle = I3 * (I3 - I2) * w3 - I1 * (I2 - I1) * w1  # L^2 - 2 E I2
     around_third, around_first = (I3 - I2) * above_least, (I2 - I1) * below_greatest
     lead, side = (around_third, around_first) if middle > 0.0 else (around_first, around_third)
     complement = (I3 - I1) * abs(middle) / lead if lead > 0.0 else 0.0

@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sweet spot of a bat held at one end (notes, "Baseball bat sweet spot").
 
-Symbols: M mass (kg), l (`length`) distance from the hand to the centre of mass (m), a radius of gyration about the centre of mass (m),
-l' = l + a^2/l, d distance from the hand to where the ball hits (m), F force of the ball (N), F_R force of the hand (N), both across the
-bat and F_R positive against F. Over the short blow the same formulas hold for their impulses (N s).
+Symbols: M mass (kg), l (`length`) distance from the hand to the centre of mass (m), a radius of
+gyration about the centre of mass (m), l' = l + a^2/l, d distance from the hand to where the ball
+hits (m), F force of the ball (N), F_R force of the hand (N), both across the bat and F_R positive
+against F. Over the short blow the same formulas hold for their impulses (N s).
 
 Errata: the brace under the formula for phi'' reads l'^2 = l^2 + a^2; it is l l'.
 """

@@ -1,10 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """Billiard ball, from slipping to rolling (notes, "Billiard ball slipping -> rolling").
 
-Symbols: a radius (m), mu coefficient of friction, g gravity (m/s^2), h height of the cue above the middle of the ball (m, negative is
-below), v0 speed just after the strike (m/s), omega0 spin just after it (rad/s, positive rolls forward), t time since the strike (s).
-The ball is solid, I = (2/5) M a^2, and runs straight.
+Symbols: a radius (m), mu coefficient of friction, g gravity (m/s^2), h height of the cue above the
+middle of the ball (m, negative is below), v0 speed just after the strike (m/s), omega0 spin just
+after it (rad/s, positive rolls forward), t time since the strike (s). The ball is solid, I = (2/5)
+M a^2, and runs straight.
 
-Errata: above h = 2 a/5 the notes' time of sliding lacks a factor 1/7 (`onset_of_rolling_above_as_written`).
+Errata: above h = 2 a/5 the notes' time of sliding lacks a factor 1/7
+(`onset_of_rolling_above_as_written`).
 """
 
 import numpy as np
@@ -43,7 +46,8 @@ def sliding_time(slip, mu, g, share=2.0 / 5.0):
 def speed_when_rolling(speed, rim_speed, share=2.0 / 5.0):
     """Return the speed (m/s) of a ball that began with a speed and a rim speed a omega, (5/7) (speed + (2/5) rim_speed).
 
-    Friction does not enter: the angular momentum about a point of the table stays. share = I/(M a^2) of another ball.
+    Friction does not enter: the angular momentum about a point of the table stays. share = I/(M
+    a^2) of another ball.
     """
     return (speed + share * rim_speed) / (1.0 + share)
 
@@ -51,7 +55,8 @@ def speed_when_rolling(speed, rim_speed, share=2.0 / 5.0):
 def onset_of_rolling(v0, h, a, mu, g):
     """Return when rolling begins, on both sides of 2 a/5: t = 2 |v0 - a omega0|/(7 mu g), s.
 
-    For h = 0 it is 2 v0/(7 mu g), below 2 a/5 it is 2 v0/(7 mu g) (1 - 5 h/(2 a)): right in the notes.
+    For h = 0 it is 2 v0/(7 mu g), below 2 a/5 it is 2 v0/(7 mu g) (1 - 5 h/(2 a)): right in the
+    notes.
     """
     return sliding_time(np.abs(v0 - a * spin_after_strike(v0, h, a)), mu, g)
 

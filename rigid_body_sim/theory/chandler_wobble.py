@@ -1,12 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free precession of the Earth, were it rigid (notes, "Chandler wobble").
 
-Symbols: ellipticity (I3 - I1)/I1 = 1/305, omega = 2 pi per sidereal day, lambda angle between omega and the axis of figure.
+Symbols: ellipticity (I3 - I1)/I1 = 1/305, omega = 2 pi per sidereal day, lambda angle between
+omega and the axis of figure.
 """
 
-SIDEREAL_DAY = 86164.0905         # s
-SOLAR_DAY = 86400.0               # s
+SIDEREAL_DAY = 86164.0905  # s
+SOLAR_DAY = 86400.0  # s
 ELLIPTICITY = 1.0 / 305.0
-OBSERVED_PERIOD = 435.0           # days; the Earth is not rigid
+OBSERVED_PERIOD = 435.0  # days; the Earth is not rigid
 
 
 def period_in_sidereal_days(ellipticity=ELLIPTICITY):

@@ -1,7 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
 """Symmetric body driven by a constant torque about its axis: Euler's equations with Gamma in closed form (notes, "Euler's Equations").
 
-Symbols: I1 = I2 and I3 moments (kg m^2), Gamma3 torque about the symmetry axis (N m), omega angular velocity in body axes (rad/s), zero
-at the end of a name means at t = 0.
+Symbols: I1 = I2 and I3 moments (kg m^2), Gamma3 torque about the symmetry axis (N m), omega
+angular velocity in body axes (rad/s), zero at the end of a name means at t = 0.
 """
 
 import numpy as np
@@ -21,7 +22,14 @@ def angular_velocity(t, omega_0, Gamma3, I1, I3):
     """Return omega in body axes, shape (..., 3), rad/s: omega1 + i omega2 = (omega1(0) + i omega2(0)) exp(i phase)."""
     angle = phase(t, omega_0[2], Gamma3, I1, I3)
     c, s = np.cos(angle), np.sin(angle)
-    return np.stack([omega_0[0] * c - omega_0[1] * s, omega_0[0] * s + omega_0[1] * c, axial_rate(t, omega_0[2], Gamma3, I3)], axis=-1)
+    return np.stack(
+        [
+            omega_0[0] * c - omega_0[1] * s,
+            omega_0[0] * s + omega_0[1] * c,
+            axial_rate(t, omega_0[2], Gamma3, I3),
+        ],
+        axis=-1,
+    )
 
 
 def spin_reversal_time(omega3_0, Gamma3, I3):

@@ -1,7 +1,8 @@
-"""What theory expects of one motion, beside what is seen of it: by its events, or by looks at its state.
+# SPDX-License-Identifier: Apache-2.0
+"""What theory expects of a motion, beside what its events or its states show.
 
-Each has ``note(name, time)`` for events, ``look(state)`` for later states, and ``compared()``, which returns predicted and measured values and
-their relative difference as a dict.
+Each has ``note(name, time)`` for events, ``look(state)`` for later states, and ``compared()``,
+which returns predicted and measured values and their relative difference as a dict.
 """
 
 import math
@@ -18,12 +19,17 @@ def _comparison(name, predicted, measured, values):
     if measured is not None:
         difference = float(measured / predicted - 1.0) if predicted else float(measured)
         values[f'measured_{name}'] = float(measured)
-        values['relative_difference'] = max(difference, values.get('relative_difference', 0.0), key=abs)
+        values['relative_difference'] = max(
+            difference, values.get('relative_difference', 0.0), key=abs
+        )
     return values
 
 
 class Interval:
-    """The time between two events of one name, and as a frequency (rad/s): two intervals are one period."""
+    """The time between two events of one name, and as a frequency (rad/s).
+
+    Two intervals are one period.
+    """
 
     def __init__(self, event, seconds):
         self.event, self._seconds = event, seconds
@@ -41,11 +47,18 @@ class Interval:
     def compared(self):
         """Return the comparison, a dict."""
         found = _comparison('interval', self._seconds, self._measured, {'event': self.event})
-        return _comparison('frequency', math.pi / self._seconds, math.pi / self._measured if self._measured else None, found)
+        return _comparison(
+            'frequency',
+            math.pi / self._seconds,
+            math.pi / self._measured if self._measured else None,
+            found,
+        )
 
 
 class Turning:
-    """The mean rate (rad/s) at which omega goes round the axis of a symmetric body, in body axes, from the first look at the state on.
+    """The mean rate (rad/s) at which omega turns about the axis of a symmetric body.
+
+    It is taken in body axes, from the first look at the state on.
 
     Parameters
     ----------
@@ -68,7 +81,7 @@ class Turning:
         """Events say nothing new."""
 
     def look(self, state):
-        """Add the angle since the last look; how many whole turns it holds is what the prediction comes nearest to."""
+        """Add the angle since the last look; its whole turns are those nearest to theory."""
         elapsed, seen = state.time - self._began, self._direction(state)
         expected = self._angle(elapsed) - self._angle(self._elapsed)
         self._turned += expected + math.remainder(seen - self._seen - expected, 2.0 * math.pi)
@@ -79,7 +92,9 @@ class Turning:
         # before the first look: the rate in the next second
         seconds = self._elapsed or 1.0
         measured = self._turned / seconds if self._elapsed else None
-        return _comparison('rate', self._angle(seconds) / seconds, measured, {'quantity': 'omega round the axis'})
+        return _comparison(
+            'rate', self._angle(seconds) / seconds, measured, {'quantity': 'omega round the axis'}
+        )
 
 
 class Relaxing:
@@ -87,26 +102,46 @@ class Relaxing:
 
     def __init__(self, scene, state):
         self._inertia = scene.body.about_center
-        self._least = largest_axis.least_energy(self._inertia.moments, np.linalg.norm(self._momentum(state)))
+        self._least = largest_axis.least_energy(
+            self._inertia.moments, np.linalg.norm(self._momentum(state))
+        )
         self._energy, self._settled = None, None
 
     def _momentum(self, state):
-        return np.array(self._inertia.moments) * rotate_back(*self._inertia.axes, *state.angular_velocity)
+        return np.array(self._inertia.moments) * rotate_back(
+            *self._inertia.axes, *state.angular_velocity
+        )
 
     def note(self, name, time):
         """Events say nothing new."""
 
     def look(self, state):
-        """Take the energy; it has settled when it falls by less than a thousand millionth of it between two looks, the last wobble gone."""
-        energy = float(euler_equations.kinetic_energy(self._inertia.moments, rotate_back(*self._inertia.axes, *state.angular_velocity)))
+        """Take the energy; it has settled when it hardly falls between two looks.
+
+        It then falls by less than 1e-9 of itself, and the last wobble has gone.
+        """
+        energy = float(
+            euler_equations.kinetic_energy(
+                self._inertia.moments, rotate_back(*self._inertia.axes, *state.angular_velocity)
+            )
+        )
         across = np.delete(self._momentum(state), np.argmax(self._inertia.moments))
-        still = self._energy is not None and abs(energy - self._energy) < 1e-9 * energy and np.linalg.norm(across) < 1e-3 * math.sqrt(
-            2.0 * energy * max(self._inertia.moments))
+        still = (
+            self._energy is not None
+            and abs(energy - self._energy) < 1e-9 * energy
+            and np.linalg.norm(across)
+            < 1e-3 * math.sqrt(2.0 * energy * max(self._inertia.moments))
+        )
         self._energy, self._settled = energy, energy if still else None
 
     def compared(self):
         """Return the comparison, a dict."""
-        return _comparison('energy', self._least, self._settled, {'quantity': 'least energy at this angular momentum'})
+        return _comparison(
+            'energy',
+            self._least,
+            self._settled,
+            {'quantity': 'least energy at this angular momentum'},
+        )
 
 
 class Steady:
@@ -138,8 +173,14 @@ class Rolling:
         size = float(np.hypot(*slip))
         slipping = size > 1e-14 * (np.hypot(*state.velocity[:2]) + np.hypot(*ahead))
         grip = friction.mu * friction.g
-        self._time = (billiard.sliding_time(size, friction.mu, friction.g, share) if grip else math.inf) if slipping else 0.0
-        self._speed = float(np.hypot(*billiard.speed_when_rolling(state.velocity[:2], ahead, share)))
+        self._time = (
+            (billiard.sliding_time(size, friction.mu, friction.g, share) if grip else math.inf)
+            if slipping
+            else 0.0
+        )
+        self._speed = float(
+            np.hypot(*billiard.speed_when_rolling(state.velocity[:2], ahead, share))
+        )
         self._onset = None if slipping else 0.0
         self._rolls_at = None
         self.look(state)
@@ -163,7 +204,7 @@ class Rolling:
 
 
 def _slip(radius, state):
-    """Return the velocity of the lowest point, and a omega as a forward velocity: both in the plane, m/s."""
+    """Return slip of the lowest point and forward velocity of rolling, in the plane, m/s."""
     wx, wy, _ = rotate(*state.orientation, *state.angular_velocity)
     ahead = radius * np.array([wy, -wx])
     return state.velocity[:2] - ahead, ahead

@@ -1,11 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
 """Symmetric top with a fixed point in a uniform field (notes, "Symmetric Top" to "Small oscillations about equilibrium").
 
-Symbols: I1 = I2 and I3 moments about the pivot (kg m^2), M mass (kg), g gravity (m/s^2), l distance from the pivot to the centre of
-mass (m) along e3; `Mgl` their product (J). alpha, beta, gamma Euler's angles z-y-z (rad), beta from the upward vertical; P_alpha = L_z
-and P_gamma = L_3 their momenta (kg m^2/s), both constant. beta_0 the tilt of steady precession, eta = beta - beta_0.
+Symbols: I1 = I2 and I3 moments about the pivot (kg m^2), M mass (kg), g gravity (m/s^2), l
+distance from the pivot to the centre of mass (m) along e3; `Mgl` their product (J). alpha, beta,
+gamma Euler's angles z-y-z (rad), beta from the upward vertical; P_alpha = L_z and P_gamma = L_3
+their momenta (kg m^2/s), both constant. beta_0 the tilt of steady precession, eta = beta - beta_0.
 
-Errata: P_x, P_y of the scan are P_alpha, P_gamma; the prefactor in I1 beta'' reads cos(beta)/(I1 sin^3(beta)). Omega^2 holds at
-equilibrium only and is singular at beta_0 = 90 degrees (`curvature` holds everywhere).
+Errata: P_x, P_y of the scan are P_alpha, P_gamma; the prefactor in I1 beta'' reads cos(beta)/(I1
+sin^3(beta)). Omega^2 holds at equilibrium only and is singular at beta_0 = 90 degrees (`curvature`
+holds everywhere).
 """
 
 import math
@@ -35,15 +38,19 @@ def alpha_rate(beta, P_alpha, P_gamma, I1):
 
 def gamma_rate(beta, P_alpha, P_gamma, I1, I3):
     """Return the spin gamma' = p_gamma (1/(I1 tan^2(beta)) + 1/I3) - p_alpha cos(beta)/(I1 sin^2(beta)), rad/s."""
-    omega3 = P_gamma / I3 if P_gamma else 0.0       # also of a body without moment about its axis
-    return P_gamma / (I1 * np.tan(beta) ** 2) + omega3 - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha
+    omega3 = P_gamma / I3 if P_gamma else 0.0  # also of a body without moment about its axis
+    return (
+        P_gamma / (I1 * np.tan(beta) ** 2)
+        + omega3
+        - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha
+    )
 
 
 def beta_acceleration(beta, P_alpha, P_gamma, I1, Mgl):
     """Return beta'', rad/s^2.
 
-    I1 beta'' = cos(beta)/(I1 sin^3(beta)) (p_alpha^2 - 2 p_alpha p_gamma cos(beta) + p_gamma^2) - p_alpha p_gamma/(I1 sin(beta)) + M g
-    l sin(beta).
+    I1 beta'' = cos(beta)/(I1 sin^3(beta)) (p_alpha^2 - 2 p_alpha p_gamma cos(beta) + p_gamma^2) -
+    p_alpha p_gamma/(I1 sin(beta)) + M g l sin(beta).
     """
     c, s = np.cos(beta), np.sin(beta)
     turning = c / (I1 * s**3) * (P_alpha**2 - 2.0 * P_alpha * P_gamma * c + P_gamma**2)
@@ -79,10 +86,13 @@ def slope(beta, P_alpha, P_gamma, I1, Mgl):
 def curvature(beta, P_alpha, P_gamma, I1, Mgl):
     """Return d^2 V_eff/dbeta^2 at any tilt, J/rad^2.
 
-    ((P_alpha^2 + P_gamma^2) (1 + 2 c^2) - P_alpha P_gamma c (5 + c^2))/(I1 s^4) - M g l c, with c = cos(beta), s = sin(beta).
+    ((P_alpha^2 + P_gamma^2) (1 + 2 c^2) - P_alpha P_gamma c (5 + c^2))/(I1 s^4) - M g l c, with c
+    = cos(beta), s = sin(beta).
     """
     c, s = np.cos(beta), np.sin(beta)
-    return ((P_alpha**2 + P_gamma**2) * (1.0 + 2.0 * c**2) - P_alpha * P_gamma * c * (5.0 + c**2)) / (I1 * s**4) - Mgl * c
+    return (
+        (P_alpha**2 + P_gamma**2) * (1.0 + 2.0 * c**2) - P_alpha * P_gamma * c * (5.0 + c**2)
+    ) / (I1 * s**4) - Mgl * c
 
 
 def curvature_at_equilibrium(beta_0, P_alpha, P_gamma, I1, Mgl):
@@ -90,29 +100,36 @@ def curvature_at_equilibrium(beta_0, P_alpha, P_gamma, I1, Mgl):
 
     (P_alpha P_gamma - I1 M g l (4 - 3 sin^2(beta_0)))/(I1 cos(beta_0)).
     """
-    return (P_alpha * P_gamma - I1 * Mgl * (4.0 - 3.0 * np.sin(beta_0) ** 2)) / (I1 * np.cos(beta_0))
+    return (P_alpha * P_gamma - I1 * Mgl * (4.0 - 3.0 * np.sin(beta_0) ** 2)) / (
+        I1 * np.cos(beta_0)
+    )
 
 
 def equilibrium_residual(beta_0, P_alpha, P_gamma, I1, Mgl):
     """Return the notes' condition for beta_0, zero at equilibrium, (kg m^2/s)^2.
 
-    (P_gamma^2 - 2 P_alpha P_gamma cos(beta_0) + P_alpha^2) cos(beta_0) - (P_alpha P_gamma - I1 M g l sin^2(beta_0)) sin^2(beta_0).
+    (P_gamma^2 - 2 P_alpha P_gamma cos(beta_0) + P_alpha^2) cos(beta_0) - (P_alpha P_gamma - I1 M g
+    l sin^2(beta_0)) sin^2(beta_0).
     """
     c, s = np.cos(beta_0), np.sin(beta_0)
-    return (P_gamma**2 - 2.0 * P_alpha * P_gamma * c + P_alpha**2) * c - (P_alpha * P_gamma - I1 * Mgl * s**2) * s**2
+    return (P_gamma**2 - 2.0 * P_alpha * P_gamma * c + P_alpha**2) * c - (
+        P_alpha * P_gamma - I1 * Mgl * s**2
+    ) * s**2
 
 
 def equilibrium_quartic(P_alpha, P_gamma, I1, Mgl):
     """Return the coefficients of the condition as a quartic in cos(beta_0), highest power first."""
     K = I1 * Mgl
-    return np.array([K, 0.0, -(P_alpha * P_gamma + 2.0 * K), P_alpha**2 + P_gamma**2, K - P_alpha * P_gamma])
+    return np.array(
+        [K, 0.0, -(P_alpha * P_gamma + 2.0 * K), P_alpha**2 + P_gamma**2, K - P_alpha * P_gamma]
+    )
 
 
 def equilibrium_tilt(P_alpha, P_gamma, I1, Mgl):
     """Return beta_0, the tilt of steady precession between 0 and pi where V_eff is least, rad; for |P_alpha| != |P_gamma|.
 
-    There V_eff rises without bound towards both poles and is convex in cos(beta), so the quartic has one root between -1 and 1. It is
-    found by halving and polished by Newton's rule.
+    There V_eff rises without bound towards both poles and is convex in cos(beta), so the quartic
+    has one root between -1 and 1. It is found by halving and polished by Newton's rule.
     """
     low, high = -1.0, 1.0
     quartic = equilibrium_quartic(P_alpha, P_gamma, I1, Mgl)
@@ -150,8 +167,9 @@ def precession_variation(beta_0, P_alpha, P_gamma, I1):
 def steady_precession_rates(beta_0, omega3, I1, I3, Mgl):
     """Return the slow and the fast rate alpha' of steady precession at a tilt, rad/s.
 
-    They solve I1 cos(beta) alpha'^2 - I3 omega3 alpha' + M g l = 0 (beta'' = 0 with P_alpha from alpha'), written without cancellation.
-    Below the spin omega3^2 = 4 I1 M g l cos(beta)/I3^2 there are none (NaN).
+    They solve I1 cos(beta) alpha'^2 - I3 omega3 alpha' + M g l = 0 (beta'' = 0 with P_alpha from
+    alpha'), written without cancellation. Below the spin omega3^2 = 4 I1 M g l cos(beta)/I3^2
+    there are none (NaN).
     """
     b = I3 * omega3
     large = 0.5 * (b + np.copysign(np.sqrt(b**2 - 4.0 * I1 * Mgl * np.cos(beta_0)), b))
@@ -161,8 +179,8 @@ def steady_precession_rates(beta_0, omega3, I1, I3, Mgl):
 def turning_points(E, P_alpha, P_gamma, I1, I3, Mgl):
     """Return the least and the greatest tilt of the nutation, where V_eff(beta) = E, rad.
 
-    With u = cos(beta): 2 I1 (E - P_gamma^2/(2 I3) - M g l u) (1 - u^2) = (P_alpha - P_gamma u)^2, a cubic of which two roots lie in
-    [-1, 1].
+    With u = cos(beta): 2 I1 (E - P_gamma^2/(2 I3) - M g l u) (1 - u^2) = (P_alpha - P_gamma u)^2,
+    a cubic of which two roots lie in [-1, 1].
     """
     K, left = 2.0 * I1 * Mgl, 2.0 * I1 * (E - spin_energy(P_gamma, I3))
     roots = np.roots([K, -(left + P_gamma**2), 2.0 * P_alpha * P_gamma - K, left - P_alpha**2])
@@ -173,9 +191,10 @@ def turning_points(E, P_alpha, P_gamma, I1, I3, Mgl):
 def time_between_turning_points(omega, up, I1, I3, Mgl):
     """Return half the period of the nutation, s, from omega and the upward vertical in body axes at any time; None where there is none.
 
-    Beyond the notes: with w = 1 - cos(beta), (I1 w')^2 = K (w3 - w)(w - w1)(w - w2) or its like with K = 2 I1 M g l, so that the time is
-    I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3))); Whittaker and Watson, Modern Analysis, 22.7. The coefficients in w keep their
-    digits near the upright top.
+    Beyond the notes: with w = 1 - cos(beta), (I1 w')^2 = K (w3 - w)(w - w1)(w - w2) or its like
+    with K = 2 I1 M g l, so that the time is I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3)));
+    Whittaker and Watson, Modern Analysis, 22.7. The coefficients in w keep their digits near the
+    upright top.
     """
     heights = _turning_heights(omega, up, I1, I3, Mgl)
     if heights is None:
@@ -213,7 +232,8 @@ def _constants(omega, up, I1, I3, Mgl):
 def mean_precession(omega, up, I1, I3, Mgl):
     """Return the mean of alpha' over a nutation, rad/s, from omega and the upward vertical in body axes; None where it is not defined.
 
-    Beyond the notes: alpha' = (P_alpha - P_gamma + P_gamma w)/(I1 w (2 - w)) with w = 1 - cos(beta), averaged over time by w = (w1 + w2)/2
+    Beyond the notes: alpha' = (P_alpha - P_gamma + P_gamma w)/(I1 w (2 - w)) with w = 1 -
+    cos(beta), averaged over time by w = (w1 + w2)/2
     - (w2 - w1)/2 cos(theta), where dt is proportional to dtheta/sqrt(|w - w3|): the rule of midpoints then converges geometrically. None for
     a top that passes (nearly) through the vertical.
     """

@@ -1,8 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Moments of inertia of simple bodies (notes, "Some inertia tensors").
 
-Written as the notes have them, M times a length squared times numbers, and independent of rigid_body_sim/scene/bodies.py, which they confirm.
-Symbols: M mass (kg), L length, R radius (m); moments (I1, I2, I3) in kg m^2 about the centre of mass, axis 3 along z, unless a name says
-otherwise. Box, cylinder and ellipsoid are not in the notes: Landau and Lifshitz, Mechanics, section 32, problem 2.
+Written as the notes have them, M times a length squared times numbers, and independent of
+rigid_body_sim/scene/bodies.py, which they confirm. Symbols: M mass (kg), L length, R radius (m);
+moments (I1, I2, I3) in kg m^2 about the centre of mass, axis 3 along z, unless a name says
+otherwise. Box, cylinder and ellipsoid are not in the notes: Landau and Lifshitz, Mechanics,
+section 32, problem 2.
 """
 
 import numpy as np

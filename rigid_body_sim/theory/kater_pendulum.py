@@ -1,10 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reversible pendulum (notes, "Reversible (Kater's) Pendulum").
 
-Symbols: M mass (kg), l (`length`) distance from the suspension Q to the centre of mass (m), a radius of gyration about the centre of
-mass (m, I_com = M a^2), l' = l_conjugate distance from Q to the conjugate suspension P (m), g gravity (m/s^2), phi angle from the
-vertical (rad), Omega small-swing angular frequency (rad/s).
+Symbols: M mass (kg), l (`length`) distance from the suspension Q to the centre of mass (m), a
+radius of gyration about the centre of mass (m, I_com = M a^2), l' = l_conjugate distance from Q to
+the conjugate suspension P (m), g gravity (m/s^2), phi angle from the vertical (rad), Omega
+small-swing angular frequency (rad/s).
 
-Errata: the notes call a~^2 both l^2 + a^2 (in I_Q = M a~^2) and l + a^2/l (a length). Here l' = l + a^2/l and a~^2 = l l' = l^2 + a^2.
+Errata: the notes call a~^2 both l^2 + a^2 (in I_Q = M a~^2) and l + a^2/l (a length). Here l' = l
++ a^2/l and a~^2 = l l' = l^2 + a^2.
 """
 
 import numpy as np

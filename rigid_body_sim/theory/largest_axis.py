@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dissipation turns a free body to its largest axis (notes, "Is the Earth's rotation axis unstable?").
 
-Symbols: I = (I1, I2, I3) = `moments` (kg m^2), m = I omega angular momentum in body axes, shape (..., 3), and L = |m| (kg m^2/s), T
-kinetic energy (J). L is conserved while T falls and heat grows: T + heat = constant.
+Symbols: I = (I1, I2, I3) = `moments` (kg m^2), m = I omega angular momentum in body axes, shape
+(..., 3), and L = |m| (kg m^2/s), T kinetic energy (J). L is conserved while T falls and heat
+grows: T + heat = constant.
 """
 
 import numpy as np

@@ -1,19 +1,22 @@
-"""What theory says will be seen of an undisturbed motion, beside what was seen.
+# SPDX-License-Identifier: Apache-2.0
+"""What theory predicts of an undisturbed motion, beside what was measured.
 
-=================== ============================================= ==================================================================
-scene               predicted and measured                        theory
-=================== ============================================= ==================================================================
-free body           interval between two flips                    asymmetric_top.time_between_flips
-free symmetric body rate at which omega goes round the axis       symmetric_top.precession_rate
-same, axial torque  the same, on average                          driven_body.phase
-body that makes heat least energy, once it is reached             largest_axis.least_energy
-hinged with gravity interval between two turning points           kater_pendulum.period
-bat that is hit     rate after the blow                           baseball_bat.angular_acceleration
-heavy symmetric top interval between two turning points           heavy_top.time_between_turning_points
-ball on the table   when rolling begins, the speed it rolls at    billiard.sliding_time, billiard.speed_when_rolling
-=================== ============================================= ==================================================================
+==================== ======================================= =====================================
+scene                predicted and measured                  theory
+==================== ======================================= =====================================
+free body            interval between two flips              asymmetric_top.time_between_flips
+free symmetric body  rate of omega about the axis            symmetric_top.precession_rate
+same, axial torque   the same, on average                    driven_body.phase
+body with heat       least energy, once it is reached        largest_axis.least_energy
+hinged with gravity  interval between two turning points     kater_pendulum.period
+bat that is hit      rate after the blow                     baseball_bat.angular_acceleration
+heavy symmetric top  interval between two turning points     heavy_top.time_between_turning_points
+ball on the table    time and speed when rolling begins      billiard.sliding_time and
+                                                             billiard.speed_when_rolling
+==================== ======================================= =====================================
 
-The formulas share nothing with the simulation. They start from the state after the last disturbance.
+The formulas share nothing with the simulation. They start from the state after the last
+disturbance. The node and the page in the browser ask here.
 """
 
 import math
@@ -35,7 +38,10 @@ from rigid_body_sim.theory.expectations import Interval, Relaxing, Rolling, Stea
 
 
 def expectation(scene, state):
-    """Return what theory expects of a scene from a state on, an object with note, look and compared, or None where it is silent."""
+    """Return what theory expects of a scene from a state on; None where it is silent.
+
+    The object has ``note``, ``look`` and ``compared`` (expectations.py).
+    """
     names = {effect.name for effect in scene.effects if effect.name != 'strike'}
     if any(effect.name == 'strike' and effect.time > state.time for effect in scene.effects):
         return None
@@ -58,7 +64,9 @@ def expectation(scene, state):
 def _in_order(inertia, state):
     """Return the moments in rising order and omega along their axes."""
     order = np.argsort(inertia.moments)
-    return np.array(inertia.moments)[order], np.array(rotate_back(*inertia.axes, *state.angular_velocity))[order]
+    return np.array(inertia.moments)[order], np.array(
+        rotate_back(*inertia.axes, *state.angular_velocity)
+    )[order]
 
 
 def _flips(scene, state):
@@ -67,7 +75,7 @@ def _flips(scene, state):
 
 
 def _round_the_axis(scene, state):
-    """Omega round the axis of a body with two equal moments, left alone or driven about that axis."""
+    """Return what is expected of omega about the axis of a body with two equal moments."""
     inertia = scene.body.about_center
     I = inertia.moments
     axes = [axis for axis in range(3) if I[(axis + 1) % 3] == I[(axis + 2) % 3] != I[axis]]
@@ -83,39 +91,71 @@ def _round_the_axis(scene, state):
 
     if torque is None or not (spin or torque) or not any(across(state)):
         return None
-    return Turning(lambda time: float(driven_body.phase(time, spin, torque, I1, I3) if torque else
-                                      symmetric_top.precession_rate(spin, I1, I3) * time), across, state)
+    return Turning(
+        lambda time: float(
+            driven_body.phase(time, spin, torque, I1, I3)
+            if torque
+            else symmetric_top.precession_rate(spin, I1, I3) * time
+        ),
+        across,
+        state,
+    )
 
 
 def _axial_torque(scene, inertia, axis):
-    """Return the constant torque about a principal axis, N m; None where the torque is another one."""
+    """Return the constant torque about a principal axis, N m; None for any other torque."""
     torques = [effect for effect in scene.effects if effect.name == 'torque']
     along = 0.0
     for torque in torques:
         value = rotate_back(*inertia.axes, *torque.values[0])
-        if torque.frame != 'body' or torque.times != (0.0,) or any(value[k] for k in range(3) if k != axis):
+        if (
+            torque.frame != 'body'
+            or torque.times != (0.0,)
+            or any(value[k] for k in range(3) if k != axis)
+        ):
             return None
         along += value[axis]
     return along
 
 
 def _after_a_blow(scene, state):
-    """Rate of a hinged body at rest that was hit at time 0, while nothing else has disturbed it."""
+    """Return the expected rate of a hinged body that was hit at rest at time 0."""
     strikes = [effect for effect in scene.effects if effect.name == 'strike']
     n, body = np.array(scene.constraint.axis), scene.body
     arm = np.subtract(body.center_of_mass, scene.constraint.through)
     length = np.linalg.norm(arm - n * (n @ arm))
-    if len(strikes) != 1 or strikes[0].time or strikes[0].point is None or state.time or scene.initial.angular_velocity.any() or not length:
+    if (
+        len(strikes) != 1
+        or strikes[0].time
+        or strikes[0].point is None
+        or state.time
+        or scene.initial.angular_velocity.any()
+        or not length
+    ):
         return None
-    impulse = np.array(strikes[0].impulse if strikes[0].frame == 'body' else rotate_back(*scene.initial.orientation, *strikes[0].impulse))
+    impulse = np.array(
+        strikes[0].impulse
+        if strikes[0].frame == 'body'
+        else rotate_back(*scene.initial.orientation, *strikes[0].impulse)
+    )
     lever = np.subtract(strikes[0].point, scene.constraint.through)
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
     # the moment of the blow about the hinge, F d, by its lever
-    return Steady(float(baseball_bat.angular_acceleration(n @ np.cross(lever, impulse), 1.0, body.mass, length, a)), n)
+    return Steady(
+        float(
+            baseball_bat.angular_acceleration(
+                n @ np.cross(lever, impulse), 1.0, body.mass, length, a
+            )
+        ),
+        n,
+    )
 
 
 def _swing(scene, state):
-    """Half the period at the amplitude that the state's energy reaches; None for a pendulum that turns over or stands still."""
+    """Return the expected half period at the amplitude that the energy reaches.
+
+    It is None for a pendulum that turns over or stands still.
+    """
     n, body = np.array(scene.constraint.axis), scene.body
     arm = np.subtract(body.center_of_mass, scene.constraint.through)
     across = arm - n * (n @ arm)
@@ -131,7 +171,9 @@ def _swing(scene, state):
     reach = half_sine_squared + (n @ state.angular_velocity / (2.0 * frequency)) ** 2
     if not 0.0 < reach < 1.0:
         return None
-    return Interval('turning point', kater_pendulum.period(frequency, 2.0 * math.asin(math.sqrt(reach))) / 2.0)
+    return Interval(
+        'turning point', kater_pendulum.period(frequency, 2.0 * math.asin(math.sqrt(reach))) / 2.0
+    )
 
 
 def _nutation(scene, state):
@@ -142,14 +184,17 @@ def _nutation(scene, state):
     if I1 != I2 or x or y or body.about_origin.axes != IDENTITY:
         return None
     up = rotate_back(*state.orientation, 0.0, 0.0, 1.0)
-    seconds = heavy_top.time_between_turning_points(state.angular_velocity, up, I1, I3, body.mass * scene.effect('gravity').g * length)
+    seconds = heavy_top.time_between_turning_points(
+        state.angular_velocity, up, I1, I3, body.mass * scene.effect('gravity').g * length
+    )
     return Interval('turning point', seconds) if seconds else None
 
 
 class Prediction:
     """Follows one undisturbed motion: its prediction, and what was seen of it.
 
-    The prediction is made when it is first wanted: under a stream of commands most motions end before. Any thread may want it.
+    The prediction is made when it is first wanted: under a stream of commands most motions end
+    before. Any thread may want it.
 
     Parameters
     ----------
@@ -180,5 +225,5 @@ class Prediction:
             self._expected.look(state)
 
     def compared(self):
-        """Return what is predicted and what was measured last, as a dict; empty where there is no prediction."""
+        """Return what is predicted and what was measured last; empty without a prediction."""
         return self._expected.compared() if self._expected else {}

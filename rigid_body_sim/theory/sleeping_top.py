@@ -1,9 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """Upright top (notes, "Sleeping top").
 
-Symbols as in rigid_body_sim/theory/heavy_top.py; upright P_alpha = P_gamma is forced. V_eff = const + stiffness beta^2/2 + ...
+Symbols as in rigid_body_sim/theory/heavy_top.py; upright P_alpha = P_gamma is forced. V_eff =
+const + stiffness beta^2/2 + ...
 
-Errata: none; equality in the condition is stable too, for the quartic term of V_eff is +M g l beta^4/8 there. Below it the top does not
-fall over but nods to `nodding_tilt` and comes back; exactly upright it never leaves.
+Errata: none; equality in the condition is stable too, for the quartic term of V_eff is +M g l
+beta^4/8 there. Below it the top does not fall over but nods to `nodding_tilt` and comes back;
+exactly upright it never leaves.
 """
 
 import numpy as np

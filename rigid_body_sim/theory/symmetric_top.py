@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free symmetric top (notes, "Symmetric top (no gravity)").
 
-Symbols: I1 = I2 and I3 moments (kg m^2), e3 the symmetry axis, omega the angular velocity (rad/s) with omega3 along e3, lambda its
-angle to e3 (rad, `lambda_`), Omega the rate at which omega goes round e3 in the body (rad/s).
+Symbols: I1 = I2 and I3 moments (kg m^2), e3 the symmetry axis, omega the angular velocity (rad/s)
+with omega3 along e3, lambda its angle to e3 (rad, `lambda_`), Omega the rate at which omega goes
+round e3 in the body (rad/s).
 
 Errata: the notes divide by I3 in Omega; it is I1 (`precession_rate_as_written`).
 """
@@ -23,7 +25,12 @@ def angular_velocity(t, omega, lambda_, I1, I3):
     """Return (omega sin(lambda) cos(Omega t), omega sin(lambda) sin(Omega t), omega cos(lambda)) in body axes, shape (..., 3), rad/s."""
     angle = precession_rate(omega * np.cos(lambda_), I1, I3) * t
     across = omega * np.sin(lambda_)
-    return np.stack(np.broadcast_arrays(across * np.cos(angle), across * np.sin(angle), omega * np.cos(lambda_)), axis=-1)
+    return np.stack(
+        np.broadcast_arrays(
+            across * np.cos(angle), across * np.sin(angle), omega * np.cos(lambda_)
+        ),
+        axis=-1,
+    )
 
 
 def body_cone(omega_across, omega3):
