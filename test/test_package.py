@@ -26,8 +26,8 @@ KEYS = {
 }
 OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly', 'pyarrow', 'rosbags', 'viser',
             'websockets', 'xarray', 'zstandard'}
-# numba brings the first; the others give a user's own tables, who has them installed
-NOT_PINNED = {'llvmlite', 'pandas', 'xarray'}
+# numba and viser bring the first two; the others are for those who have them installed
+NOT_PINNED = {'llvmlite', 'websockets', 'pandas', 'xarray'}
 # what work_precision --peers and hard_cases --peers measure, by import name; requirements/peers.in has them
 PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
 
