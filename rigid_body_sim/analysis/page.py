@@ -54,7 +54,8 @@ def write_page(path, bodies):
              f'<style>{(HERE / "page.css").read_text()}</style></head><body>', *sections,
              _carried('data', json.dumps(packed, separators=(',', ':'))),
              _carried('plotly', get_plotlyjs()),
-             *(f'<script>{(HERE / name).read_text()}</script>' for name in ('body.js', 'page.js')),
+             *(f'<script>{(HERE / name).read_text()}</script>'
+               for name in ('body.js', 'player.js', 'page.js')),
              '</body></html>']
     path.write_text('\n'.join(parts), encoding='utf-8')
 
@@ -72,7 +73,7 @@ def _section(number, packed, name, measured, found, spectrum, balance):
     moves = moving(measured)
     if moves:
         packed['bodies'][number] = moves.data()
-        yield from _player(number, moves)
+        yield f'<h2>{html.escape(heading_of(moves))}</h2>{player(number, moves)}'
     kept = [panel for panel in panels.overview(measured) if panel.name != 'lateness']
     first = [*kept[:1], *panels.travel(measured), *kept[1:]]
     yield ('<h2>Over time</h2><p>Move the mouse over the curves: the body follows. Drag to zoom, '
@@ -135,28 +136,23 @@ def _verdict(found):
     return f'<p class="verdict{"" if good else " bad"}">{text}</p>'
 
 
-def _player(number, moves):
-    """Yield the HTML of the moving body."""
-    times = moves.times
-    legend = [(name, color) for name, color in ARROWS.items()]
-    legend.append(('trace of an axis', (0.0, 0.45, 0.7)))
-    shown = ''.join(
-        f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
-        f'</i>{html.escape(name)}</span>'
-        for name, color in legend
-    )
-    yield (
-        f'<h2>The body from {times[0]:.6g} to {times[-1]:.6g} s: '
-        f'{html.escape(moves.drawing.about)}</h2><canvas class="body" id="body{number}"></canvas>'
-    )
-    speeds = ''.join(
-        f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
-        for value, name in SPEEDS.items()
-    )
-    yield (f'<p class="playback" id="controls{number}"><button>play</button> '
-           f'<input type="range" aria-label="time" min="0" max="{len(times) - 1}" value="0"> '
-           f'<select aria-label="speed">{speeds}</select> <output></output></p>'
-           f'<p class="legend">{shown}</p>')
+def heading_of(moves):
+    """Return a line that says what of a Moving is shown."""
+    return f'The body from {moves.times[0]:.6g} to {moves.times[-1]:.6g} s: {moves.drawing.about}'
+
+
+def player(number, moves):
+    """Return the HTML of a moving body, which body.js and player.js fill."""
+    legend = {**ARROWS, 'trace of an axis': (0.0, 0.45, 0.7)}
+    shown = ''.join(f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
+                    f'</i>{html.escape(name)}</span>' for name, color in legend.items())
+    speeds = ''.join(f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
+                     for value, name in SPEEDS.items())
+    return (f'<canvas class="body" id="body{number}"></canvas>'
+            f'<p class="playback" id="controls{number}"><button>play</button> '
+            f'<input type="range" aria-label="time" min="0" max="{len(moves.times) - 1}" value="0"> '
+            f'<select aria-label="speed">{speeds}</select> <output></output></p>'
+            f'<p class="legend">{shown}</p>')
 
 
 def _folded(heading, content):

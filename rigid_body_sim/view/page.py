@@ -6,6 +6,7 @@ import io
 import time
 
 import numpy as np
+import viser
 
 from rigid_body_sim.drawing.setting import follows
 from rigid_body_sim.errors import BadInput
@@ -22,12 +23,7 @@ NUMBERS_EVERY = 0.2
 
 
 def serve(access, port):
-    """Return a viser server; BadInput where viser is not installed."""
-    try:
-        import viser
-    except ImportError:
-        raise BadInput('view', 'the package viser is not installed',
-                       'pip install viser==1.1.1') from None
+    """Return a viser server."""
     # it prints an address that lacks our token
     with access.guarding(), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=access.host, port=port, label='rigid_body_sim',

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The source that is a recording: its states at any time, with marks where something happened."""
 
+import contextlib
 import math
 import time
 
 import numpy as np
 
 from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE
@@ -41,9 +43,7 @@ class Player:
     pushes, edits, plays, paces = False, False, True, True
 
     def __init__(self, path):
-        with Recording(path) as recording:
-            source = sources(recording)[0]
-            self._times, self._vectors, self._energies = _states(recording, source)
+        self._times, self._vectors, self._energies, source = states_of(path)
         self.scene, self.generation = source.scene, 1
         self.method = source.run.get('method', 'a recording')
         self.marks = [((mark.stamp - source.start) / NANOSECONDS,
@@ -102,6 +102,21 @@ class Player:
 
     def close(self):
         """There is nothing to end."""
+
+
+def states_of(path):
+    """Return times (s), states (n, 14), energies (J) and the Source of a recording's first body.
+
+    `path` may also be an open Recording. Of more than MOST_STATES states every so manieth is kept.
+    """
+    opened = contextlib.nullcontext(path) if hasattr(path, 'topics') else Recording(path)
+    with opened as recording:
+        source = sources(recording)[0]
+        for topic in ('pose', 'angular_velocity'):
+            if topic not in source.topics:
+                raise BadInput(str(recording.path), f'has no topic {topic}',
+                               'a recording with pose and angular_velocity')
+        return *_states(recording, source), source
 
 
 def _states(recording, source):
