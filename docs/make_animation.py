@@ -1,79 +1,66 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make docs/images/view.webp, the picture that opens the README: ``python docs/make_animation.py``.
 
-It opens the page of ``view`` in a headless Chromium and takes a picture after each step. It needs
-playwright, Pillow and Debian's or Ubuntu's package chromium.
+A T-handle is simulated, and the body that reports and notebooks show is drawn frame by frame in a
+headless Chromium. It needs playwright, Pillow and Debian's or Ubuntu's package chromium.
 """
 
+import base64
 import io
 import pathlib
 import shutil
 import sys
-import time
+import tempfile
 
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
-from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.view.live import Live
-from rigid_body_sim.view.page import Page
+from rigid_body_sim import Simulation
 
 HERE = pathlib.Path(__file__).resolve().parent
-PICTURES, SLOWER, BETWEEN = 84, 2.0, 66
-"""Number of pictures, how much slower than real time they play, ms between two of them."""
-WINDOW, WIDTH = (1000, 600), 760
-START = 120.0
-FLAGS = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--no-first-run',
-         '--disable-background-networking', '--disable-component-update', '--disable-sync']
+SECONDS, SLOWER, BETWEEN = 4.0, 2.0, 66
+"""Simulated time (s), how much slower than real time it plays, ms between two pictures."""
+SIZE = (640, 360)
+BACKGROUND = (243, 244, 246)
+DRAW = """k => {
+    const slider = document.querySelector('input');
+    slider.value = k;
+    slider.oninput();
+    return document.querySelector('canvas').toDataURL();
+}"""
 
 
-def until(page, condition):
-    """Turn the loop of a page until a condition holds."""
-    deadline = time.monotonic() + START
-    while not condition():
-        if time.monotonic() > deadline:
-            sys.exit('the page did not get ready')
-        page.turn()
-        time.sleep(0.005)
-
-
-def pictures(page, tab):
-    """Yield the pictures of the page, one a step."""
-    page.panel.requests.put(('speed', BETWEEN * 1e-3 / SLOWER * 60.0))
-    for _ in range(PICTURES):
-        before = page.frame.time
-        page.panel.requests.put(('run', 'step'))
-        until(page, lambda before=before: page.frame.time > before)
-        drawn = time.monotonic() + 0.35    # the browser draws by software here
-        until(page, lambda drawn=drawn: time.monotonic() > drawn)
-        picture = Image.open(io.BytesIO(tab.screenshot()))
-        yield picture.convert('RGB').resize((WIDTH, WIDTH * picture.height // picture.width),
-                                            Image.Resampling.LANCZOS)
+def pictures(tab):
+    """Yield the pictures of the page of a View."""
+    count = int(tab.evaluate("document.querySelector('input').max")) + 1
+    wanted = int(SECONDS * SLOWER * 1000.0 / BETWEEN)
+    for k in range(wanted):
+        data = tab.evaluate(DRAW, k * count // wanted).partition(',')[2]
+        drawn = Image.open(io.BytesIO(base64.b64decode(data))).convert('RGBA')
+        page = Image.new('RGBA', drawn.size, (*BACKGROUND, 255))
+        yield Image.alpha_composite(page, drawn).convert('RGB').resize(
+            SIZE, Image.Resampling.LANCZOS)
 
 
 def main():
     """Make the animation."""
     chromium = shutil.which('chromium') or sys.exit('needs chromium: apt install chromium')
-    scene = load_scene(HERE / 'figures' / 't_handle.yaml')
-    page = Page(Live(scene.text, {'rate': 1000.0}), port=0)
-    page.panel.requests.put(('run', 'pause'))
-    until(page, lambda: page.frame)
-    page.panel.requests.put(('run', 'reset'))
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
-        tab = browser.new_page(viewport=dict(zip(('width', 'height'), WINDOW)))
-        tab.goto(page.address)
-        until(page, page.server.get_clients)
-        settled = time.monotonic() + 5.0
-        until(page, lambda: time.monotonic() > settled)
-        tab.add_style_tag(content='.mantine-Notification-root { display: none; }')
-        made = list(pictures(page, tab))
+    simulation = Simulation(HERE / 'figures' / 't_handle.yaml')
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        page = pathlib.Path(folder) / 'page.html'
+        simulation.view(SECONDS).save(page)
+        browser = playwright.chromium.launch(
+            executable_path=chromium,
+            args=['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader'])
+        tab = browser.new_page(viewport={'width': 1000, 'height': 800}, device_scale_factor=2)
+        tab.goto(page.as_uri())
+        tab.add_style_tag(content=f'.body {{ width: {SIZE[0]}px; height: {SIZE[1]}px; }}')
+        made = list(pictures(tab))
         browser.close()
-    page.close()
     path = HERE / 'images' / 'view.webp'
     made[0].save(path, save_all=True, append_images=made[1:], duration=BETWEEN, loop=0,
-                 quality=55, method=6)
-    print(f'{path.relative_to(HERE.parent)}: {path.stat().st_size // 1000} kB')
+                 quality=50, method=3)
+    print(f'{path.relative_to(HERE.parent)}: {len(made)} pictures, {path.stat().st_size // 1000} kB')
 
 
 if __name__ == '__main__':
