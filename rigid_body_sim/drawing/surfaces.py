@@ -41,7 +41,7 @@ class Surface(NamedTuple):
 
 
 def box(size):
-    """Return a box with edges `size` = (x, y, z); its faces +x, +y and +z have the second colour."""
+    """Return a box with edges `size` = (x, y, z); the faces +x, +y, +z have the second colour."""
     corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     squares = ((0, 1, 3, 2), (0, 4, 5, 1), (0, 2, 6, 4), (4, 6, 7, 5), (2, 3, 7, 6), (1, 5, 7, 3))
     vertices = np.concatenate([corners[list(square)] for square in squares]) * size
@@ -106,7 +106,7 @@ SURFACES = {
 
 
 def _lathe(radii, heights):
-    """Return the solid of a profile with sharp edges: each of its lines gets vertices of its own."""
+    """Return the solid of a profile with sharp edges: each line gets vertices of its own."""
     pieces = [_turned(np.array(radii[k:k + 2]), np.array(heights[k:k + 2]))
               for k in range(len(radii) - 1)]
     return joined(pieces)
@@ -121,7 +121,7 @@ def joined(surfaces):
 
 
 def _turned(radii, heights, scale=(1.0, 1.0, 1.0)):
-    """Return the surface that a profile of radii and heights, from the top down, sweeps around z."""
+    """Return the surface that a profile, given from the top down, sweeps around z."""
     angles = np.linspace(0.0, 2.0 * np.pi, AROUND + 1)
     rows = len(radii)
     net = np.stack([np.outer(radii, np.cos(angles)), np.outer(radii, np.sin(angles)),

@@ -58,7 +58,8 @@ def _source(options):
     recordings = [one for one in options.what if _is_recording(one)]
     if options.node:
         if options.what:
-            raise BadInput('--node', f'got {options.what[0]!r} beside it', 'a node, or something else')
+            raise BadInput('--node', f'got {options.what[0]!r} beside it',
+                           'a node, or something else')
         from rigid_body_sim.view.node_source import NodeSource
         return NodeSource(options.node)
     if recordings:

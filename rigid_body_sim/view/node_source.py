@@ -70,7 +70,8 @@ class NodeSource:
                   'energy': (Float64, latest)}
         self._types = {topic: kind for topic, (kind, _) in topics.items()}
         self._subscriptions = {
-            topic: self._node.create_subscription(kind, f'{namespace}/{topic}', lambda _: None, qos)
+            topic: self._node.create_subscription(kind, f'{namespace}/{topic}', lambda _: None,
+                                                  qos)
             for topic, (kind, qos) in topics.items()}
         self._types['diagnostics'] = DiagnosticArray
         self._subscriptions['diagnostics'] = self._node.create_subscription(

@@ -183,8 +183,8 @@ class Page:
             except BadInput as error:
                 self.panel.say(str(error))
         elif name == 'run':
-            request = {'pause': ('pause', True), 'go on': ('pause', False)}.get(value, (value, None))
-            source.tell(*request)
+            pauses = {'pause': True, 'go on': False}
+            source.tell('pause' if value in pauses else value, pauses.get(value))
         elif name == 'speed':
             source.set_speed(value)
         elif name == 'seek':

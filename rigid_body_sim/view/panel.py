@@ -128,7 +128,8 @@ class Panel:
         self._title.content = (
             f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {html.escape(self._source.method)}'
             f'<div style="font-size:0.85em">{html.escape(scene.about)}</div>'
-            f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground has a line every {cell:g} m.</div></div>')
+            f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground '
+            f'has a line every {cell:g} m.</div></div>')
         self._events.clear()
         self._event_list.content = ''
         self._expected.content = ''
@@ -192,7 +193,8 @@ class Panel:
         """Show the numbers of a Frame; a few times a second is enough."""
         rows = [('t', f'{frame.time:.3f} s'), ('E', f'{frame.energy:.9g} J')]
         if arrows:
-            for name, value, unit in (('ω', arrows.omega, 'rad/s'), ('L', arrows.momentum, 'N m s'),
+            for name, value, unit in (('ω', arrows.omega, 'rad/s'),
+                                      ('L', arrows.momentum, 'N m s'),
                                       ('net force', arrows.force, 'N'),
                                       ('net torque', arrows.torque, 'N m')):
                 rows.append((name, f'{math.hypot(*value):.5g} {unit}'))
@@ -205,7 +207,8 @@ class Panel:
         self._event_list.content = (f'<div style="padding:0 1em;font-size:0.85em">'
                                     f'{"<br>".join(lines) or "none yet"}</div>')
         if expected:
-            self._expected.content = _table([('theory', 'predicted, measured'), *_compared(expected)])
+            self._expected.content = _table([('theory', 'predicted, measured'),
+                                             *_compared(expected)])
 
 
 def _compared(expected):
