@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run view test lint package unit test-noble test-kilted soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
+.PHONY: help run view test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -48,6 +48,15 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py test/node/test_long_run.py test/node/test_cold_start.py
+
+test-machines: .venv/test.stamp ## the bits as on other machines: processors, C library, BLAS, NumPy, Pythons, ARM64 emulated; docs/machines.md anew
+	.venv/bin/python test/machines.py; good=$$?; .venv/bin/python docs/make_machines.py && exit $$good
+
+test-orders: .venv/test.stamp ## pytest in three random orders
+	for seed in 1 2 3; do .venv/bin/$(PYTEST) --random-order --random-order-seed=$$seed || exit 1; done
+
+test-cold: .venv/test.stamp ## each test file alone, with an empty cache of compiled kernels: hours
+	.venv/bin/python test/cold.py
 
 test-noble: .venv-noble/stamp .venv-noble-numba/stamp ## pytest on Python 3.12 with the versions of Ubuntu 24.04, with and without numba
 	AMENT_PREFIX_PATH=$(CURDIR)/.venv-noble-numba .venv-noble-numba/bin/$(PYTEST)

@@ -17,9 +17,9 @@ import os
 import pathlib
 import platform
 import re
-import shutil
 import subprocess
 import sys
+import tempfile
 import time
 import typing
 
@@ -117,9 +117,9 @@ def _processor_has(flag):
 
 def _record():
     """Make a recording on this machine that runs again on the others; return its path."""
-    scene, path = CACHE / 'composite_top.yaml', CACHE / 'recording'
+    folder = pathlib.Path(tempfile.mkdtemp(dir=CACHE))
+    scene, path = folder / 'composite_top.yaml', folder / 'recording'
     scene.write_text(scenes.text('composite_top'))
-    shutil.rmtree(path, ignore_errors=True)
     subprocess.run([sys.executable, '-m', 'rigid_body_sim', 'simulate', '--scene', scene,
                     '--duration', '2', '--output', path], cwd=ROOT, check=True,
                    stdout=subprocess.DEVNULL)
