@@ -1,6 +1,8 @@
-"""Write NAME.txt with the versions of all packages that NAME.in needs, found by this Python's pip: ``python requirements/pin.py NAME``.
+# SPDX-License-Identifier: Apache-2.0
+"""Write NAME.txt with the versions of all packages that NAME.in needs: ``pin.py NAME``.
 
-Run it with the oldest Python that is to use the file: new versions of packages drop old Pythons.
+The pip of the running Python finds them. Run it with the oldest Python that is to use the file:
+new versions of packages drop old Pythons.
 """
 
 import json
@@ -13,10 +15,14 @@ import sys
 def main(name):
     """Pin one file."""
     folder = pathlib.Path(__file__).resolve().parent
-    pip = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run', '--ignore-installed', '--report', '-']
-    report = subprocess.run([*pip, '-r', folder / f'{name}.in'], stdout=subprocess.PIPE, check=True).stdout
-    packages = sorted((package['metadata'] for package in json.loads(report)['install']), key=lambda package: package['name'].lower())
-    lines = [f'# Made by requirements/pin.py from {name}.in with Python {platform.python_version()}.']
+    pip = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run', '--ignore-installed',
+           '--report', '-']
+    report = subprocess.run([*pip, '-r', folder / f'{name}.in'], stdout=subprocess.PIPE,
+                            check=True).stdout
+    packages = sorted((package['metadata'] for package in json.loads(report)['install']),
+                      key=lambda package: package['name'].lower())
+    lines = [f'# Made by requirements/pin.py from {name}.in with Python '
+             f'{platform.python_version()}.']
     lines += [f'{package["name"]}=={package["version"]}' for package in packages]
     (folder / f'{name}.txt').write_text('\n'.join(lines) + '\n')
 

@@ -4,14 +4,17 @@
 rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let
 a deleted parameter go. So the overrides are read here, checked by the same rules that hold later
 for ``set_parameters``, and declared already converted. The README shows the table; ``python -m
-rigid_body_sim.node.parameters`` prints it.
+rigid_body_sim.node.parameters`` prints it, and ``... parameters yaml`` the parameter file.
 """
 
 import array
 import dataclasses
 import difflib
 import math
+import sys
+import textwrap
 
+import yaml
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
@@ -503,5 +506,33 @@ def table():
     return '\n'.join(rows)
 
 
+def parameter_file():
+    """Return config/sim_node.yaml: every parameter with its default, its meaning and range."""
+    lines = ['# SPDX-License-Identifier: Apache-2.0',
+             '# Made by: python -m rigid_body_sim.node.parameters yaml > config/sim_node.yaml',
+             '# The parameters of sim_node with their defaults.',
+             '# Copy the file, keep the lines that you change, and run one of',
+             '#   ros2 run rigid_body_sim sim_node --ros-args --params-file FILE',
+             '#   ros2 launch rigid_body_sim sim.launch.py params_file:=FILE',
+             '/**:', '  ros__parameters:']
+    group = ''
+    for entry in TABLE:
+        before, _, name = entry.name.rpartition('.')
+        if before and before != group:
+            lines.append(f'    {before}:')
+        group, indent = before, ' ' * (6 if before else 4)
+        about = f'{entry.about} [{entry.limits}]' if entry.limits else entry.about
+        lines += textwrap.wrap(about, 97, initial_indent=f'{indent}# ',
+                               subsequent_indent=f'{indent}#   ', break_long_words=False)
+        lines.append(f'{indent}{name}: {_as_yaml(entry.default)}')
+    return '\n'.join(lines)
+
+
+def _as_yaml(value):
+    """Return a default as YAML 1.1 reads it: a float needs a point and a signed exponent."""
+    return yaml.safe_dump(list(value) if isinstance(value, tuple) else value,
+                          default_flow_style=True).removesuffix('\n').removesuffix('\n...')
+
+
 if __name__ == '__main__':
-    print(table())
+    print(parameter_file() if sys.argv[1:] == ['yaml'] else table())
