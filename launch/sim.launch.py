@@ -23,7 +23,8 @@ def nodes(context):
     """Return the node; an argument that is not given leaves the value of the parameter file."""
     # rate without a type: the node refuses what is no number, and says what would be right
     arguments = {'scene': ParameterValue(LaunchConfiguration('scene'), value_type=str),
-                 **{name: LaunchConfiguration(name) for name in ('rate', 'record', 'use_sim_time')}}
+                 **{name: LaunchConfiguration(name)
+                    for name in ('rate', 'record', 'use_sim_time')}}
     given = {name: value for name, value in arguments.items()
              if context.launch_configurations[name]}
     if context.launch_configurations['rviz'] == 'true':

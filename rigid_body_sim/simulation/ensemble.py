@@ -124,7 +124,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
     shape = (len(starts), len(times), sum(map(_width, names)))
     out = _result(shape, out, memory)
     # one method for all bodies, or one for each body where their scenes differ
-    groups = [(choose(one, integrator, accuracy), bodies) for one, bodies in _alike(scenes, starts)]
+    groups = [(choose(one, integrator, accuracy), bodies)
+              for one, bodies in _alike(scenes, starts)]
     with tqdm(total=len(starts), unit=' bodies', disable=not progress, leave=False) as bar:
         if len(groups) == 1:
             _fill(groups[0][0], starts, times, names, out, bar.update)
@@ -154,7 +155,8 @@ def _scenes(scene, overrides):
     values = {key: list(given) for key, given in overrides.items()}
     sizes = {key: len(given) for key, given in values.items()}
     if len(set(sizes.values())) != 1:
-        raise BadInput('overrides', f'got {sizes}', 'as many values of each key: one for each body')
+        raise BadInput('overrides', f'got {sizes}',
+                       'as many values of each key: one for each body')
     [count] = set(sizes.values())
     made, scenes = {}, []
     for body in range(count):
@@ -180,7 +182,8 @@ def _starts(starts, scene, scenes):
         starts = [getattr(start, 'vector', start) for start in starts]
     starts = np.ascontiguousarray(starts, dtype=float)
     if starts.ndim != 2 or starts.shape[1] != STATE_SIZE:
-        raise BadInput('ensemble', f'got starts of shape {starts.shape}', f'(bodies, {STATE_SIZE})')
+        raise BadInput('ensemble', f'got starts of shape {starts.shape}',
+                       f'(bodies, {STATE_SIZE})')
     if len(scenes) > 1 and len(scenes) != len(starts):
         raise BadInput('ensemble', f'got {len(starts)} starts and overrides of {len(scenes)}',
                        'one of each for a body')
