@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is installed, and what it needs, agrees with what is written: package.xml, setup.py, requirements/, config/, launch/."""
 
 import ast
@@ -26,8 +27,7 @@ KEYS = {
 }
 OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly', 'pyarrow', 'rosbags', 'viser',
             'websockets', 'xarray', 'zstandard'}
-# numba and viser bring the first two; the others are for those who have them installed
-NOT_PINNED = {'llvmlite', 'websockets', 'pandas', 'xarray'}
+COMES_WITH = {'llvmlite': 'numba', 'websockets': 'viser'}
 # what work_precision --peers and hard_cases --peers measure, by import name; requirements/peers.in has them
 PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
 
@@ -63,8 +63,7 @@ def test_requirements_name_what_is_imported():
     named = ''.join((ROOT / 'requirements' / f'{name}.in').read_text().lower()
                     for name in ('run', 'test'))
     for name in used - set(KEYS) | {name for name in used if KEYS.get(name, '').startswith('python3-')}:
-        pinned = re.search(rf'^(py)?{name}==', named, re.MULTILINE)
-        assert pinned or name in NOT_PINNED, name
+        assert re.search(rf'^(py)?{COMES_WITH.get(name, name)}==', named, re.MULTILINE), name
 
 
 def test_requirements_name_the_peers():

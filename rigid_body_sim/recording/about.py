@@ -123,4 +123,3 @@ def event_text(event):
     """Return (message, values) of what a Simulation noted."""
     values = {'tick': event.tick, 'time': event.time, **event.values}
     return f'{event.name} at t = {event.time:.9g} s', values
-
