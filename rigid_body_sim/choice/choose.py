@@ -4,9 +4,12 @@ The measurements are those of rigid_body_sim/choice/measured.py, and are tried o
 """
 
 import difflib
+import functools
+import logging
 from dataclasses import dataclass
 
 from rigid_body_sim.choice import measured, trial
+from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.solver import Stepped
@@ -20,6 +23,15 @@ STIFF = 10.0    # rates of dissipation beyond so many times that of the rotation
 ENDING = 1e-9   # of a stiff one the tolerance, at most: a coarser one keeps a wobble above its end, and the steps at 1/rate for ever
 HORIZON = 100.0
 """Over which an accuracy holds where no duration is given, s."""
+
+
+@functools.cache
+def _say_what_is_slow():
+    """Say once, in one line on stderr, what a missing numba costs."""
+    if jit.numba is None:
+        logging.getLogger('rigid_body_sim').warning(
+            'numba is not installed: the same bits, about a hundred times slower; '
+            'pip install numba')
 
 
 def methods_for(scene):
@@ -97,6 +109,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
         An unknown integrator, one that cannot run the scene (those that can are named), an accuracy below what doubles carry, a step that
         is not positive.
     """
+    _say_what_is_slow()
     if not FINEST_ACCURACY <= accuracy <= 1.0:
         raise BadInput('accuracy', f'got {accuracy!r}', f'from {FINEST_ACCURACY} (doubles carry no more) to 1')
     if step is not None and not 0.0 < step < float('inf'):

@@ -8,6 +8,7 @@ import pytest
 from data import choice_cases
 
 from rigid_body_sim.analysis import resimulate
+from rigid_body_sim.choice import choose as choose_module
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.cli import simulate
@@ -100,3 +101,13 @@ def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch)
     monkeypatch.setattr(trial, 'settle', lambda *_: ('rk4', None, 1.0))
     assert resimulate.main([str(tmp_path / 'run')]) == 0
     assert 'identical' in capsys.readouterr().out
+
+
+def test_a_missing_numba_is_said_once(monkeypatch, caplog):
+    monkeypatch.setattr(choose_module.jit, 'numba', None)
+    choose_module._say_what_is_slow.cache_clear()
+    for _ in range(3):
+        choose_module._say_what_is_slow()
+    [line] = [record.getMessage() for record in caplog.records]
+    assert 'numba is not installed' in line and 'pip install numba' in line
+    choose_module._say_what_is_slow.cache_clear()
