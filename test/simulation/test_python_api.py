@@ -3,7 +3,9 @@
 
 import copy
 import inspect
+import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import typing
@@ -170,6 +172,19 @@ def test_states_plot():
     pyplot.close('all')
     with pytest.raises(ValueError, match=r"no part 'speed'; the parts are orientation"):
         some.plot('speed')
+
+
+def test_the_code_of_the_readme_runs():
+    matplotlib = pytest.importorskip('matplotlib')
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+    text = (pathlib.Path(__file__).resolve().parents[2] / 'README.md').read_text()
+    [code] = re.findall(r'```python\n(.*?)```', text, re.DOTALL)
+    names = {}
+    exec(code, names)
+    assert names['other'].vector.tobytes() == names['simulation'].vector.tobytes()
+    assert len(names['speeds']) == 3
+    pyplot.close('all')
 
 
 def test_notebooks_show_tables():
