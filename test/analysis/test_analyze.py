@@ -1,6 +1,7 @@
 """The command `analyze` on recordings whose content is known, of ours and of strangers."""
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -159,3 +160,14 @@ def test_bad_input_is_one_line(tmp_path, capsys):
         assert main([str(argument) for argument in arguments]) == 2
         error = capsys.readouterr().err
         assert said in error and error.count('\n') == 1
+
+
+def test_a_folder_of_recordings_stands_for_the_newest(eventful, tmp_path, capsys):
+    for number, name in enumerate(('b', 'a')):
+        shutil.copytree(eventful, tmp_path / name)
+        for file in (tmp_path / name).iterdir():
+            os.utime(file, (number, number))
+    assert main([str(tmp_path)]) == 0
+    assert f'{tmp_path / "a"}: the newest of 2 recordings\n' in capsys.readouterr().err
+    assert (tmp_path / 'a_report' / 'report.json').is_file()
+    assert not (tmp_path / 'b_report').exists()

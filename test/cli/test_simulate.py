@@ -1,11 +1,17 @@
 """The command `simulate`: its recording is read by rosbags, which nobody here wrote; its numbers are those of Simulation."""
 
+import contextlib
+import fcntl
 import json
+import os
 import pathlib
+import pty
 import resource
 import signal
+import struct
 import subprocess
 import sys
+import termios
 import time
 
 import numpy as np
@@ -217,3 +223,23 @@ def test_files_are_split_and_compressed_as_asked(tmp_path, capsys):
     with rosbags.AnyReader([tmp_path / 'run']) as reader:
         assert sum(connection.msgcount for connection in reader.connections if connection.topic == '/pose') == 301
     assert len([entry for entry in Recording(tmp_path / 'run').journal() if entry['kind'] == 'state']) == len(names)
+
+
+def test_a_terminal_sees_from_the_first_moment_what_is_done(tmp_path):
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
+    command = [sys.executable, '-m', 'rigid_body_sim', 'simulate', '--duration', '5', '--output',
+               str(tmp_path / 'run')]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=theirs) as process:
+        os.close(theirs)
+        shown = b''
+        with contextlib.suppress(OSError):      # Linux: the other end is closed
+            while part := os.read(ours, 4096):
+                shown += part
+        process.communicate(timeout=60)
+    os.close(ours)
+    assert process.returncode == 0
+    first, *_ = [text for text in shown.decode().split('\r') if text.strip()]
+    assert first.startswith('setting up: 0')
+    assert 'tennis_racket: ' in shown.decode()
+    assert '/5.00k' in shown.decode()
