@@ -1,6 +1,7 @@
 """Nodes beside each other: in namespaces they share nothing but /diagnostics; with one name they are told of it."""
 
 import contextlib
+import select
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -42,7 +43,8 @@ def test_two_namespaced_nodes_share_nothing_but_diagnostics(ros_domain, new_clie
 def test_second_node_of_the_same_name_is_warned_of(ros_domain, new_client, tmp_path):
     with nodes(ros_domain, tmp_path, '__node:=twin', '__node:=twin') as twins, new_client(ros_domain) as client:
         client.until(lambda: client.node.count_publishers('/pose') == 2, 60.0, 'both nodes')
-        client.spin(3.0)
+        # they look once a second, ten times
+        client.until(lambda: select.select([one.stderr for one in twins], [], [], 0.0)[0], 30.0, 'a warning')
         said = []
         for process in twins:
             process.terminate()

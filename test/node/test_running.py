@@ -18,7 +18,10 @@ from rigid_body_sim.theory import asymmetric_top
 
 RATE = 250
 PERIOD = 10**9 // RATE
-ARGUMENTS = ('-p', f'rate:={RATE}', '-p', 'scene:=free_body', '-p', 'publish:=[odom, imu, marker]')
+# a second of messages may wait on both sides: a client that is kept from running loses none
+DEPTHS = [word for topic in ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
+          for word in ('-p', f'qos_overrides./{topic}.publisher.depth:=1000')]
+ARGUMENTS = ('-p', f'rate:={RATE}', '-p', 'scene:=free_body', '-p', 'publish:=[odom, imu, marker]', *DEPTHS)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 # two momenta of size 10 (kg m^2/s), each turned to the world by a rounded quaternion: 8 roundings of each; measured up to 1.2e-14
 TURNED = 16 * np.finfo(float).eps * 10.0
@@ -70,7 +73,7 @@ INERTIA = np.array([1.0, 2.0, 2.5])
 
 
 def test_every_tick_reaches_a_plain_subscriber_with_exact_stamps(client):
-    poses, spins = client.collect(PoseStamped, 'pose'), client.collect(Vector3Stamped, 'angular_velocity')
+    poses, spins = client.collect(PoseStamped, 'pose', 1000), client.collect(Vector3Stamped, 'angular_velocity', 1000)
     energies, squares = client.collect(Float64, 'energy'), client.collect(Float64, 'angular_momentum_squared')
     client.until(lambda: min(map(len, (poses, spins, energies, squares))) >= 100, what='100 ticks')
     stamps = [nanoseconds(pose) for pose in poses]
@@ -242,7 +245,7 @@ def test_wrong_parameter_is_refused_with_the_reason(client, name, value, reason)
 
 
 def test_rate_changes_at_a_tick_and_an_integer_will_do(client):
-    poses = client.collect(PoseStamped, 'pose')
+    poses = client.collect(PoseStamped, 'pose', 1000)
     client.until(lambda: len(poses) > 10, what='ticks before')
     assert set_parameter(client, 'rate', integer_value=100).successful
     client.until(lambda: len(poses) > 60, what='ticks after')
@@ -256,7 +259,7 @@ def test_rate_changes_at_a_tick_and_an_integer_will_do(client):
 
 
 def test_scene_changes_at_a_tick(client):
-    poses, scenes, events = client.collect(PoseStamped, 'pose'), client.collect(String, 'scene'), client.collect(DiagnosticStatus, 'events')
+    poses, scenes, events = client.collect(PoseStamped, 'pose', 1000), client.collect(String, 'scene'), client.collect(DiagnosticStatus, 'events')
     client.until(lambda: len(poses) > 10, what='ticks before')
     assert set_parameter(client, 'scene', string_value='sphere').successful
     client.until(lambda: scenes and events, what='the new scene')
