@@ -116,9 +116,9 @@ def states(name, method):
 
 
 def chosen(name):
-    """Return what `auto` chooses, as text."""
+    """Return what `auto` chooses: method, tolerance, expected error."""
     found = (choose(scene_of(name), accuracy=one, horizon=HORIZON) for one in ACCURACIES)
-    return {f'{one.accuracy:g} rad': [repr((one.method, one.tolerance, one.expected_error))]
+    return {f'{one.accuracy:g} rad': [one.method, [one.tolerance, one.expected_error]]
             for one in found}
 
 
