@@ -39,8 +39,21 @@ def __getattr__(name):
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
+    if name in ('Simulation', 'Recording'):
+        # The rooms of these classes lie below the one that draws, so they get their method here.
+        value.view = _view
     globals()[name] = value
     return value
+
+
+def _view(self, duration: float = 10.0):
+    """Return `duration` seconds of motion as a picture that a notebook plays.
+
+    A simulation is shown from now on and stays where it is; a recording from its start on. See
+    `view.notebook.View`: ``.save(path)`` writes a page.
+    """
+    from rigid_body_sim.view.notebook import view
+    return view(self, duration)
 
 
 def __dir__():

@@ -209,15 +209,6 @@ class Simulation:
         energy.diagnose_many(self._mechanics, states.vector, out)
         return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[:, energy.MOMENTUM_SQUARED].copy()
 
-    def view(self, duration: float = 10.0):
-        """Return the motion of the next `duration` seconds as a picture that a notebook plays.
-
-        The simulation stays where it is. See `view.notebook.View`: ``.save(path)`` writes a page.
-        """
-        # the rooms above are loaded only for whoever looks
-        from rigid_body_sim.view.notebook import view
-        return view(self, duration)
-
     def states(self, times) -> States:
         """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
 

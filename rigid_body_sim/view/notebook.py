@@ -17,6 +17,7 @@ import numpy as np
 from rigid_body_sim.analysis import page
 from rigid_body_sim.analysis.moving import Moving
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.player import states_of
 
 FRAMES_A_SECOND, MOST_FRAMES = 120, 6000
@@ -73,7 +74,7 @@ def view(what, duration=10.0):
     if not 0.0 < duration < np.inf:
         raise BadInput('view', f'got a duration of {duration!r} s', 'a positive number of seconds')
     count = min(int(duration * FRAMES_A_SECOND) + 1, MOST_FRAMES)
-    if hasattr(what, 'states'):
+    if isinstance(what, Simulation):
         times = np.linspace(what.time, what.time + duration, count)
         vectors, scene = what.states(times).vector, what.scene
     else:

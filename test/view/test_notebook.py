@@ -8,9 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from rigid_body_sim import BadInput, Simulation
+from rigid_body_sim import BadInput, Recording, Simulation
 from rigid_body_sim.cli.simulate import main as simulate
-from rigid_body_sim.view.notebook import view
 
 NOTEBOOKS = sorted((pathlib.Path(__file__).resolve().parents[2] / 'docs/notebooks').glob('*.ipynb'))
 
@@ -37,7 +36,8 @@ def test_a_simulation_is_shown_from_now_on_and_stays_where_it_is():
 def test_a_recording_is_shown_and_saved(tmp_path):
     assert simulate(['--scene', 'heavy_top', '--duration', '1', '--output',
                      str(tmp_path / 'run')]) == 0
-    view(tmp_path / 'run', 0.5).save(tmp_path / 'top.html')
+    with Recording(tmp_path / 'run') as recording:
+        recording.view(0.5).save(tmp_path / 'top.html')
     data = shown((tmp_path / 'top.html').read_text())
     assert data['times'][-1] == pytest.approx(0.5, abs=2e-3)
     assert len(data['holder']) == 1 and not data['follow']
