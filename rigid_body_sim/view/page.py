@@ -13,7 +13,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.view import hand, mouse
 from rigid_body_sim.view.access import Access
-from rigid_body_sim.view.panel import PRESETS, Panel
+from rigid_body_sim.view.panel import PRESETS, Panel, look
 from rigid_body_sim.view.stage import Stage
 
 PERIOD = 1.0 / 60.0
@@ -58,6 +58,8 @@ class Page:
         self.server.initial_camera.position = PRESETS['3/4']
         self.server.initial_camera.look_at = (0.0, 0.0, 0.0)
         self.server.initial_camera.fov = FIELD_OF_VIEW
+        self.server.on_client_connect(lambda client: look(client, '3/4'))
+        self.server.gui.main_panel.dock_right()
         self.panel = Panel(self.server, source, self._shown)
         self.mouse = mouse.Mouse()
         self._generation, self._stages, self._hand = None, [], None
@@ -71,7 +73,7 @@ class Page:
 
     def _theme(self, dark):
         self.server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False,
-                                        control_width='medium', brand_color=(0, 114, 178))
+                                        control_width='small', brand_color=(0, 114, 178))
 
     def run(self, until=lambda: False):
         """Serve until `until` returns true or an interrupt comes."""
@@ -183,7 +185,7 @@ class Page:
             except BadInput as error:
                 self.panel.say(str(error))
         elif name == 'run':
-            pauses = {'pause': True, 'go on': False}
+            pauses = {'pause': True, 'play': False}
             source.tell('pause' if value in pauses else value, pauses.get(value))
         elif name == 'speed':
             source.set_speed(value)

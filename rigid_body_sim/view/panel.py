@@ -10,6 +10,8 @@ import math
 import queue
 import time
 
+import numpy as np
+
 from rigid_body_sim.scene.scene import scene_names
 from rigid_body_sim.view import parameters
 from rigid_body_sim.view.curves import Curves
@@ -21,6 +23,14 @@ PRESETS = {'3/4': (2.2, -3.2, 1.7), 'front': (0.0, -4.2, 0.3), 'side': (4.2, 0.0
 EVENTS = 8
 EDIT_AFTER = 0.4
 """A changed number is taken when nothing has changed for so long, s."""
+
+
+def look(client, preset):
+    """Put the camera of a client to a preset, farther off where its window is narrow."""
+    with client.atomic():
+        client.camera.position = np.array(PRESETS[preset]) / min(1.0, client.camera.aspect)
+        client.camera.look_at = (0.0, 0.0, 0.0)
+        client.camera.up_direction = (0.0, 0.0, 1.0)
 
 
 class Panel:
@@ -80,7 +90,7 @@ class Panel:
             names = sorted({*scene_names(), source.scene.name})
             choice = gui.add_dropdown('scene', names, initial_value=source.scene.name)
             choice.on_update(lambda event: self._ask('choose', event.target.value))
-        buttons = gui.add_button_group('run', ('pause', 'go on', 'step', 'reset'))
+        buttons = gui.add_button_group('run', ('pause', 'play', 'step', 'reset'))
         buttons.on_click(lambda event: self._ask('run', event.target.value))
         if source.paces:
             self._speed = gui.add_slider(
@@ -103,10 +113,7 @@ class Panel:
         clients = self._server.get_clients()
         client = clients.get(event.client_id) if event.client_id is not None else None
         for one in [client] if client else clients.values():
-            with one.atomic():
-                one.camera.position = PRESETS[event.target.value]
-                one.camera.look_at = (0.0, 0.0, 0.0)
-                one.camera.up_direction = (0.0, 0.0, 1.0)
+            look(one, event.target.value)
 
     def _add_shown(self, gui):
         labels = {'omega': 'angular velocity ω', 'momentum': 'angular momentum L',
@@ -125,8 +132,9 @@ class Panel:
         `about` says in words what is drawn, `cell` how far the lines of the ground are apart (m).
         """
         name = html.escape(scene.name.replace('_', ' '))
+        method = html.escape(self._source.method or 'being prepared ...')
         self._title.content = (
-            f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {html.escape(self._source.method)}'
+            f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {method}'
             f'<div style="font-size:0.85em">{html.escape(scene.about)}</div>'
             f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground '
             f'has a line every {cell:g} m.</div></div>')
