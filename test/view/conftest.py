@@ -13,7 +13,8 @@ START = 120.0
 FLAGS = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
          '--no-first-run', '--disable-background-networking', '--disable-component-update',
          '--disable-sync']
-WIDTH, HEIGHT = 800, 600
+WIDTH, HEIGHT = 800, 400
+"""A small window: it may be drawn by software. The panel is docked on its right half."""
 
 
 @pytest.fixture(scope='session')
@@ -51,9 +52,9 @@ class Tab:
         self.page.mouse.move(*begin)
         time.sleep(0.3)
         self.page.mouse.down()
-        for k in range(1, 11):
-            self.page.mouse.move(*(a + (b - a) * k / 10 for a, b in zip(begin, end)))
-            time.sleep(0.05)
+        for k in range(1, 6):
+            self.page.mouse.move(*(a + (b - a) * k / 5 for a, b in zip(begin, end)))
+            time.sleep(0.1)
         time.sleep(hold)
         self.page.mouse.up()
 

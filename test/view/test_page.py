@@ -59,7 +59,7 @@ def test_a_drag_in_a_browser_moves_the_body_and_nothing_outside_is_asked(
             tab.see('still ball')
             tab.see('rad/s')
             assert tab.page.get_by_role('cell', name='0 rad/s', exact=True).count() == 1
-            tab.drag((270, 290), (340, 240))
+            tab.drag((270, 250), (340, 215))
             tab.page.get_by_role('cell', name='0 rad/s', exact=True).wait_for(
                 state='detached', timeout=1000 * PATIENCE)
             assert tab.page.get_by_label('Share').count() == 0

@@ -39,7 +39,7 @@ def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
         tab = open_tab(address_of(view))
         tab.see('still ball')
         tab.see('rad/s')       # frames have come
-        tab.drag((270, 290), (340, 240))
+        tab.drag((270, 250), (340, 215))
         time.sleep(1.0)
         view.send_signal(signal.SIGINT)
         assert view.wait(30) == 0, view.stderr.read()
