@@ -189,7 +189,7 @@ def test_a_signal_ends_it_with_a_whole_recording(tmp_path, number):
         process.send_signal(number)
         _, error = process.communicate(timeout=30)
     assert process.returncode == 128 + number
-    [line] = error.splitlines()
+    [line] = [line for line in error.splitlines() if not line.startswith('numba is not')]
     assert line.startswith('interrupted at t = ') and line.endswith('is whole up to there')
     pose = Recording(path).read('/pose', ['pose.orientation'])
     assert np.diff(pose['log_time']).tolist() == [1_000_000] * (len(pose['log_time']) - 1)
@@ -205,7 +205,7 @@ def test_a_full_disk_loses_nothing_recorded(tmp_path):
     with start('--duration', '1000', '--output', path, preexec_fn=small_disk) as process:
         _, error = process.communicate(timeout=60)
     assert process.returncode == 1
-    [line] = error.splitlines()
+    [line] = [line for line in error.splitlines() if not line.startswith('numba is not')]
     assert line.startswith(f'{path}: the disk refuses (File too large) at t = ') and 'recover' in line
     recover(path)
     count = Recording(path).topics['/pose'].count
