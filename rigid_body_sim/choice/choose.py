@@ -1,6 +1,8 @@
-"""Which method runs a scene: the exact one if a motion absorbs the scene, else the cheapest that was measured to meet the accuracy.
+# SPDX-License-Identifier: Apache-2.0
+"""The choice of the method that runs a scene.
 
-The measurements are those of rigid_body_sim/choice/measured.py, and are tried on the scene (rigid_body_sim/choice/trial.py).
+A motion that absorbs the scene solves it exactly. Otherwise `auto` takes the cheapest method that
+was measured to meet the accuracy (measured.py), after a trial run on the scene itself (trial.py).
 """
 
 import difflib
@@ -11,7 +13,8 @@ from dataclasses import dataclass
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators import METHODS, runnable
+from rigid_body_sim.integrators import GENERAL, METHODS, runnable
+from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
@@ -19,10 +22,10 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
 
 FINEST_ACCURACY = 1e-15
-STIFF = 10.0    # rates of dissipation beyond so many times that of the rotation
-ENDING = 1e-9   # of a stiff one the tolerance, at most: a coarser one keeps a wobble above its end, and the steps at 1/rate for ever
+STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
+ENDING = 1e-9   # largest tolerance for stiff dissipation; a coarser one keeps a residual wobble
 HORIZON = 100.0
-"""Over which an accuracy holds where no duration is given, s."""
+"""Time over which an accuracy holds where no duration is given, s."""
 
 
 @functools.cache
@@ -48,13 +51,13 @@ class Choice:
     method : str
         ``exact`` or a name of METHODS.
     accuracy, step : float or None
-        What was asked for.
+        The settings that the caller asked for, rad and s.
     horizon : float
-        Over which the accuracy holds, s.
+        Time over which the accuracy holds, s.
     tolerance : float or None
-        The accuracy that the method itself is told: what `auto` found to be enough, else `accuracy`.
+        The accuracy that the method is given: what `auto` found sufficient, else `accuracy`.
     expected_error : float or None
-        Of the attitude at the end of the horizon (rad), where `auto` chose.
+        Error of the attitude at the end of the horizon (rad), where `auto` chose.
     """
 
     scene: object
@@ -64,26 +67,39 @@ class Choice:
     horizon: float
     tolerance: float | None
     expected_error: float | None
-    _prototype: object
+    _prototype: Solver
 
     def solver(self, start, wrench):
-        """Return a solver from a state on, under a held wrench."""
+        """Return a Solver from a state on, shape (14,), under a held wrench.
+
+        A motion takes no wrench, nor do methods whose family does not account for one: the
+        general method solves the hold.
+        """
         if not wrench:
             return self._prototype.start(start)
-        method = 'dop8' if self.method in ('exact', 'taylor') else self.method
-        return Stepped(self.scene, method, self.tolerance, self.step, wrench, self.horizon).start(start)
+        method = METHODS.get(self.method, GENERAL)    # GENERAL in place of `exact`
+        name = method.NAME if method.FAMILY.ACCOUNTS else GENERAL.NAME
+        held = Stepped(self.scene, name, self.tolerance, self.step, wrench, self.horizon)
+        return held.start(start)
 
     def many(self, starts, times, out):
-        """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores."""
+        """Fill out, shape (bodies, n, 14), with the states of many bodies at n times (s).
+
+        The bodies start from `starts`, shape (bodies, 14); all cores take part.
+        """
         self._prototype.many(starts, times, out)
 
 
 def _stiff(scene):
-    """Return whether internal dissipation is: its rate c L^2/I is c L times that of the rotation, L/I."""
+    """Return whether internal dissipation is stiff.
+
+    Its rate c L^2/I is c L times the rate of the rotation, L/I.
+    """
     inner = scene.effect('internal_dissipation')
     if inner is None:
         return False
-    momentum = apply(scene.body.about_center.matrix.tolist(), scene.initial.angular_velocity.tolist())
+    inertia = scene.body.about_center.matrix.tolist()
+    momentum = apply(inertia, scene.initial.angular_velocity.tolist())
     return inner.coefficient * hypot3(*momentum) > STIFF
 
 
@@ -94,6 +110,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     ----------
     scene : Scene
     integrator : str
+        ``auto``, ``exact`` or a name of METHODS.
     accuracy : float
         rad.
     step : float, optional
@@ -101,39 +118,50 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     horizon : float
         s.
     settled : tuple, optional
-        (method, tolerance, expected error) that `auto` once chose: then they are taken, whatever the table says now.
+        (method, tolerance, expected error) of an earlier choice by `auto`, which is taken again
+        whatever the table says now.
 
     Raises
     ------
     BadInput
-        An unknown integrator, one that cannot run the scene (those that can are named), an accuracy below what doubles carry, a step that
-        is not positive.
+        An unknown integrator, one that cannot run the scene (the message names those that can),
+        an accuracy below what doubles carry, a step that is not positive.
     """
     _say_what_is_slow()
+    _check(integrator, accuracy, step, horizon)
+    motion = absorbing_motion(scene)
+    if integrator in ('auto', 'exact') and motion and step is None:
+        floor = measured.floor(scene, horizon)
+        prototype = Exact(scene, motion)
+        return Choice(scene, 'exact', accuracy, None, horizon, accuracy, floor, prototype)
+    able, stiff = runnable(scene), _stiff(scene)
+    method, tolerance, expected = integrator, accuracy, None
+    if integrator == 'auto':
+        fit = [name for name in able if METHODS[name].STIFF] if stiff else able
+        # a trial run of a stiff scene could take coarse tolerances, whose steps never grow
+        pick = measured.pick if stiff else trial.settle
+        method, tolerance, expected = settled or pick(scene, fit, accuracy, horizon)
+    if method not in able:
+        possible = ', '.join(methods_for(scene)) or 'none'
+        raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',
+                       f'those that can: {possible}')
+    if stiff:
+        tolerance = min(tolerance, ENDING)
+    prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
+    return Choice(scene, method, accuracy, step, horizon, tolerance, expected, prototype)
+
+
+def _check(integrator, accuracy, step, horizon):
+    """Raise BadInput unless each setting by itself is one that a scene could have."""
     if not FINEST_ACCURACY <= accuracy <= 1.0:
-        raise BadInput('accuracy', f'got {accuracy!r}', f'from {FINEST_ACCURACY} (doubles carry no more) to 1')
+        raise BadInput('accuracy', f'got {accuracy!r}',
+                       f'from {FINEST_ACCURACY} (doubles carry no more) to 1')
     if step is not None and not 0.0 < step < float('inf'):
         raise BadInput('step', f'got {step!r}', 'a positive number of seconds')
     if integrator not in ('auto', 'exact') and integrator not in METHODS:
         near = difflib.get_close_matches(integrator, ['auto', 'exact', *METHODS], 1)
-        raise BadInput('integrator', f'got {integrator!r}',
-                       f'did you mean {near[0]!r}?' if near else f'one of auto, exact, {", ".join(METHODS)}')
+        advice = f'did you mean {near[0]!r}?' if near else (
+            f'one of auto, exact, {", ".join(METHODS)}')
+        raise BadInput('integrator', f'got {integrator!r}', advice)
     if not 0.0 < horizon < float('inf'):
         raise BadInput('horizon', f'got {horizon!r}', 'a positive number of seconds')
-    motion = absorbing_motion(scene)
-    if integrator in ('auto', 'exact') and motion and step is None:
-        return Choice(scene, 'exact', accuracy, None, horizon, accuracy, measured.floor(scene, horizon), Exact(scene, motion))
-    able = runnable(scene)
-    stiff = _stiff(scene)
-    # the iteration of gauss16 does not converge where dissipation is stiff; dop8 steps to its end
-    fit = [name for name in able if name != 'gauss16'] if stiff else able
-    method, tolerance, expected = integrator, accuracy, None
-    if integrator == 'auto':
-        # a trial of a stiff scene could take coarse tolerances, which never come to an end
-        method, tolerance, expected = settled or (measured.pick if stiff else trial.settle)(scene, fit, accuracy, horizon)
-    if method not in able:
-        possible = ', '.join(methods_for(scene)) or 'none'
-        raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}', f'those that can: {possible}')
-    if stiff:
-        tolerance = min(tolerance, ENDING)
-    return Choice(scene, method, accuracy, step, horizon, tolerance, expected, Stepped(scene, method, tolerance, step, horizon=horizon))

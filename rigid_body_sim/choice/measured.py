@@ -1,8 +1,10 @@
-"""What the methods cost and how accurate they are, as measured, and the choice that follows from it.
+# SPDX-License-Identifier: Apache-2.0
+"""The measured cost and accuracy of the methods, and the choice that follows from them.
 
-measured.json is made by ``python -m rigid_body_sim.study.precision.make_measured``; it names its machine. For each kind of scene and each
-method that controls its error it has, for tolerances from coarse to fine, the largest error of the attitude along the training problems (rad)
-and the CPU time for each radian that the body may turn (s).
+``python -m rigid_body_sim.study.precision.make_measured`` makes measured.json, which names its
+machine. For each kind of scene, each method that controls its error, and tolerances from coarse to
+fine, it has the largest error of the attitude along the training problems (rad) and the CPU time
+for each radian that the body may turn (s).
 """
 
 import functools
@@ -11,6 +13,7 @@ import pathlib
 
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.effects.views import Frame
 
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
@@ -23,30 +26,42 @@ def table():
 
 
 def kind(scene):
-    """Return the kind of a scene: its constraint, and what makes heat."""
-    if scene.effect('internal_dissipation'):
+    """Return the kind of a scene in the table: its constraint, and how it makes heat.
+
+    Heat at a constant angular momentum (`turning`) is internal dissipation; other heat is damping.
+    """
+    frame = Frame.of(scene.body, scene.constraint)
+    acting = [one for effect in scene.effects if hasattr(effect, 'acting')
+              for one in effect.acting(frame, 0.0)]
+    hot = [one for one in acting if one.books == 'heat']
+    if any(one.gives == 'turning' for one in hot):
         return f'{scene.constraint.kind}, dissipating'
-    return f'{scene.constraint.kind}, damped' if scene.effect('drag') else scene.constraint.kind
+    return f'{scene.constraint.kind}, damped' if hot else scene.constraint.kind
 
 
 def pace(scene):
-    """Return how fast a body may turn (rad/s): its rate at the start, and what its weight can add."""
+    """Return a bound of the rate of a body (rad/s): that at the start and what weight adds."""
     return hypot3(*scene.initial.angular_velocity) + swing_rate(scene)
 
 
 def floor(scene, horizon):
-    """Return what rounding alone is expected to do to the attitude (rad): half an ulp of all the angle gone through."""
+    """Return the error of the attitude (rad) by rounding: half an ulp of all the angle turned."""
     return HALF_ULP * (4.0 + pace(scene) * horizon)
 
 
 def rows(scene):
-    """Return the measurements for a scene's kind: method -> list of dicts with tolerance, error, cost, from coarse to fine."""
+    """Return the measurements for a scene's kind.
+
+    A dict: method -> list of dicts with tolerance, error (rad) and cost (s), from coarse to fine.
+    """
     kinds = table()['kinds']
     return kinds.get(kind(scene)) or kinds[scene.constraint.kind]
 
 
 def pick(scene, able, accuracy, horizon):
-    """Return (method, tolerance, expected error in rad) of the cheapest method measured to meet an accuracy, else of the most accurate one.
+    """Return (method, tolerance, expected error in rad) of the cheapest good method.
+
+    Where no method was measured to meet it, the most accurate one is taken.
 
     Parameters
     ----------
@@ -56,7 +71,7 @@ def pick(scene, able, accuracy, horizon):
     accuracy : float
         Error of the attitude that is asked for, rad.
     horizon : float
-        Over which it is asked for, s.
+        Time over which the accuracy is asked for, s.
     """
     good, rest = [], []
     for method in able:

@@ -1,7 +1,9 @@
-"""What the table of measurements promises, tried on the scene itself: a motion may magnify errors, which no table knows.
+# SPDX-License-Identifier: Apache-2.0
+"""Trial runs of a choice on the scene itself: a motion may magnify errors, which no table knows.
 
-The choice is run from the scene's start, and so is the same method with a tolerance a thousand times finer; what lies between the two is the
-error of the choice. Where it is too large, the tolerance is made finer by as much, until that helps no more.
+The chosen method runs from the scene's start, and again with a tolerance a thousand times finer;
+the difference is the error of the choice. Where the error is too large, the tolerance is made
+finer by as much, until that helps no more.
 """
 
 import math
@@ -16,15 +18,18 @@ from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE
 
 RADIANS = 2e4
-"""Turned over in a run of a trial, at most: some 10 ms."""
-FINER, TRIES, HELPS = 1e-3, 5, 0.7
+"""Largest angle that a trial run turns over, rad: some 10 ms."""
+FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
+TRIES = 5       # largest number of tolerances
+HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 
 
 def settle(scene, able, accuracy, horizon):
-    """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene, else the most accurate one of the table.
+    """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene.
 
-    Parameters as of :func:`rigid_body_sim.choice.measured.pick`; of a long horizon the trial runs a part, and errors are taken to grow
-    with time.
+    Where none does, the most accurate method of the table is taken. The parameters are those of
+    :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a long horizon, and errors
+    are taken to grow in proportion to time.
     """
     method, tolerance, promised = measured.pick(scene, able, accuracy, horizon)
     part, ends = min(1.0, _span(scene) / horizon), {}
@@ -32,32 +37,33 @@ def settle(scene, able, accuracy, horizon):
         return method, tolerance, promised
 
     def end(tolerance):
-        """Return where it gets to."""
+        """Return the attitude at the end of a trial run."""
         if tolerance not in ends:
             out = np.empty(STATE_SIZE)
             try:
-                Stepped(scene, method, tolerance, horizon=horizon).start(scene.initial.vector).state(part * horizon, out)
+                solver = Stepped(scene, method, tolerance, horizon=horizon)
+                solver.start(scene.initial.vector).state(part * horizon, out)
             except NotConverged:
                 out[:] = math.nan
             ends[tolerance] = out[ORIENTATION]
         return ends[tolerance]
 
     def at_most(tolerance):
-        """Return the coarsest tolerance of the table that is at most so much, or its finest."""
+        """Return the coarsest tolerance of the table up to a bound, else its finest."""
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         return max((one for one in known if one <= tolerance * (1.0 + 1e-9)), default=min(known))
 
     floor, before = measured.floor(scene, horizon), (tolerance, math.inf)
     for _ in range(TRIES):
         finer = at_most(FINER * tolerance)
-        if finer == tolerance:    # nothing to hold it against: at least it is better than the one before
+        if finer == tolerance:    # no finer run to compare with: the error is below the last one
             error = before[1]
             break
         error = angle_between(*end(tolerance), *end(finer)) / part
         error = math.inf if math.isnan(error) else error
         if error <= accuracy:
             break
-        if before[1] < math.inf and error > HELPS * before[1]:    # it is round-off that is magnified
+        if before[1] < math.inf and error > HELPS * before[1]:    # the motion magnifies round-off
             tolerance, error = before
             break
         before = tolerance, error
@@ -66,7 +72,7 @@ def settle(scene, able, accuracy, horizon):
 
 
 def _span(scene):
-    """Return how long the body takes at least to turn by RADIANS (s): rate and acceleration are bounds."""
+    """Return the shortest time (s) in which the body could turn by RADIANS."""
     rate, acceleration = measured.pace(scene), drive(scene, None)
     if acceleration:
         return 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))

@@ -1,6 +1,10 @@
-"""Events of scenes that are followed step by step: zero crossings of a watched quantity, bracketed and refined on the solver itself.
+# SPDX-License-Identifier: Apache-2.0
+"""Events of scenes that are followed step by step.
 
-Motions in closed form know the times of their events (their kernel `next_event`); these are the same events for all other solvers.
+They are zero crossings of a watched quantity, bracketed and refined on the solver itself.
+
+Motions in closed form know the times of their events (their kernel `next_event`); these are the
+same events for all other solvers.
 """
 
 import math
@@ -27,9 +31,11 @@ class Watch:
     value : callable
         State vector -> float, relative to its natural size.
     share : float
-        Hysteresis: a change of sign counts if the value has been at least this large since the one before.
+        Hysteresis: a change of sign counts if the value has been at least this large since the one
+        before.
     largest : callable
-        State vector -> float: how large the value becomes from there if nothing but the free motion acts; stands for the past of a start.
+        State vector -> float: how large the value becomes from there if nothing but the free
+        motion acts; stands for the past of a start.
     """
 
     name: str
@@ -41,8 +47,9 @@ class Watch:
 def watches(scene):
     """Return what is watched in a scene.
 
-    Free body with three different moments: `flip`, the momentum along the middle axis changes its sign. Pivot: `turning point`, the height
-    of the third body axis turns (nutation). Hinge: `turning point`, the rate changes its sign.
+    Free body with three different moments: `flip`, the momentum along the middle axis changes its
+    sign. Pivot: `turning point`, the height of the third body axis turns (nutation). Hinge:
+    `turning point`, the rate changes its sign.
     """
     kind, body = scene.constraint.kind, scene.body
     if kind == 'free' and len(set(body.about_center.moments)) == 3:
@@ -56,7 +63,10 @@ def watches(scene):
 
 
 def _momentum_along_middle_axis(inertia):
-    """Return the share of the momentum that lies along the middle axis, the share that makes a flip, and the largest it becomes."""
+    """Return what a Watch takes for flips: value, share, largest.
+
+    The value is the share of the momentum that lies along the middle axis.
+    """
     order = np.argsort(inertia.moments)
 
     def components(vector):
@@ -69,7 +79,8 @@ def _momentum_along_middle_axis(inertia):
         return m[1] / size if size > 0.0 else 0.0
 
     def largest(vector):
-        # where the motion crosses the plane of omega1 = 0 or omega3 = 0, whichever comes first, by the constancy of E and L^2
+        # where the motion crosses the plane of omega1 = 0 or omega3 = 0, whichever comes first, by
+        # the constancy of E and L^2
         (I1, w1), (I2, w2), (I3, w3) = components(vector)
         size = hypot3(I1 * w1, I2 * w2, I3 * w3)
         by_first = w2 * w2 + I1 * (I3 - I1) / (I2 * (I3 - I2)) * w1 * w1
@@ -115,7 +126,9 @@ class Watcher:
         self._vector = np.empty(STATE_SIZE)
         self._time = start
         self._values = self._look(start)
-        self._strong = [abs(watch.largest(self._vector.tolist())) >= watch.share for watch in watched]
+        self._strong = [
+            abs(watch.largest(self._vector.tolist())) >= watch.share for watch in watched
+        ]
 
     def _look(self, time):
         self._solver.state(time, self._vector)
@@ -127,12 +140,17 @@ class Watcher:
         return [watch.value(vector) for watch in self._watched]
 
     def events(self, until):
-        """Return the (time, name, values) of the events since the last call and not later than `until`, in order."""
+        """Return the (time, name, values) of the events since the last call, in order.
+
+        None is later than `until`.
+        """
         found = []
         while self._watched and self._time < until:
             time = min(until, self._time + self._spacing)
             values = self._look(time)
-            for k, (watch, before, after) in enumerate(zip(self._watched, self._values, values, strict=True)):
+            for k, (watch, before, after) in enumerate(
+                zip(self._watched, self._values, values, strict=True)
+            ):
                 if (before < 0.0) != (after < 0.0):
                     if self._strong[k]:
                         found.append((self._crossing(watch, self._time, time), watch.name, {}))

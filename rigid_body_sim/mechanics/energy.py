@@ -1,68 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
 """Energy and angular momentum of a state.
 
-The point of reference is the centre of mass of a free body and of a sphere on a table, the fixed
-point of a pivoted body, and the axis of a hinged one. Symbols: M mass, c centre of mass from the
-body's origin (body axes), omega angular velocity (body axes), L angular momentum about the point of
-reference (world axes), g acceleration of gravity (along -z of the world).
+Symbols: M mass, c centre of mass from the body's origin (body axes), omega angular velocity (body
+axes), I inertia tensor and L angular momentum about the point of reference (parameters.py), R
+rotation from body to world, g acceleration of gravity (along -z of the world).
 """
 
-from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.mechanics.parameters import (
-    AXES,
-    CENTER,
-    FREE,
-    GRAVITY,
-    HINGE,
-    HINGE_AXIS,
-    HINGE_MOMENT,
-    KIND,
-    MASS,
-    MOMENTS,
-    TABLE,
-)
-from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from typing import NamedTuple
 
-# layout of what `diagnose` fills
-KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = 0, 1, 2, 3
-DIAGNOSIS_SIZE = 6
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.mechanics.parameters import FREE, HINGE, SCENE, TABLE
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.vectors import cross, dot, plus, product, scaled
+from rigid_body_sim.scene.state import STATE
+
+
+class Diagnosis(NamedTuple):
+    """What `diagnose` finds.
+
+    Attributes
+    ----------
+    kinetic, potential : float
+        J.
+    momentum_squared : float
+        L^2, (kg m^2/s)^2.
+    momentum : Vector
+        L about the point of reference, world axes, kg m^2/s.
+    """
+
+    kinetic: float
+    potential: float
+    momentum_squared: float
+    momentum: Vector
+
+
+DIAGNOSIS = layout(Diagnosis)
+DIAGNOSIS_SIZE = DIAGNOSIS.size
+KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = (
+    DIAGNOSIS.part(name).first for name in Diagnosis._fields)
+load_scene, load_state, store_diagnosis = SCENE.load, STATE.load, DIAGNOSIS.store
 
 
 @compiled
-def angular_momentum(p, omega_x, omega_y, omega_z):
+def angular_momentum(scene, omega):
     """Return I omega in body axes, I about the point of reference."""
-    if p[KIND] == HINGE:
-        along = p[HINGE_MOMENT] * (p[HINGE_AXIS] * omega_x + p[HINGE_AXIS + 1] * omega_y + p[HINGE_AXIS + 2] * omega_z)
-        return along * p[HINGE_AXIS], along * p[HINGE_AXIS + 1], along * p[HINGE_AXIS + 2]
-    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
-    x, y, z = rotate_back(ax, ay, az, aw, omega_x, omega_y, omega_z)
-    return rotate(ax, ay, az, aw, p[MOMENTS] * x, p[MOMENTS + 1] * y, p[MOMENTS + 2] * z)
+    if scene.kind == HINGE:
+        along = scene.hinge_moment * dot(scene.hinge_axis, omega)
+        return scaled(along, scene.hinge_axis)
+    principal = product(scene.moments, rotate_back(*scene.axes, *omega))
+    return rotate(*scene.axes, *principal)
 
 
 @compiled
 def diagnose(p, state, out):
-    """Fill out with kinetic and potential energy (J), L^2 and L (world axes, kg m^2/s) of a state."""
-    qx, qy, qz, qw = state[1], state[2], state[3], state[4]
-    wx, wy, wz = state[5], state[6], state[7]
-    mx, my, mz = angular_momentum(p, wx, wy, wz)
-    kinetic = 0.5 * (mx * wx + my * wy + mz * wz)
-    cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
-    if p[KIND] == FREE or p[KIND] == TABLE:
-        ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
-        vx, vy, vz = state[11] + ux, state[12] + uy, state[13] + uz
-        kinetic += 0.5 * p[MASS] * (vx * vx + vy * vy + vz * vz)
+    """Fill `out` with the Diagnosis of a state.
+
+        kinetic     omega . I omega/2, and M V^2/2 with V = v + R (omega x c) of a body that moves
+        potential   M g (z + (R c)_z)
+        L           R I omega
+
+    Parameters
+    ----------
+    p : array
+        SceneParameters.
+    state : array (14,)
+        StateView.
+    out : array (6,)
+        Diagnosis.
+    """
+    scene, now = load_scene(p), load_state(state)
+    q, omega = now.orientation, now.angular_velocity
+    momentum = angular_momentum(scene, omega)
+    kinetic = 0.5 * dot(momentum, omega)
+    if scene.kind == FREE or scene.kind == TABLE:
+        of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
+        kinetic += 0.5 * scene.mass * dot(of_center, of_center)
     potential = 0.0
-    if p[GRAVITY] != 0.0:
-        _, _, height = rotate(qx, qy, qz, qw, cx, cy, cz)
-        potential = p[MASS] * p[GRAVITY] * (state[10] + height)
-    out[KINETIC] = kinetic
-    out[POTENTIAL] = potential
-    # of the body components: the turn to the world would only add its rounding
-    out[MOMENTUM_SQUARED] = mx * mx + my * my + mz * mz
-    out[MOMENTUM], out[MOMENTUM + 1], out[MOMENTUM + 2] = rotate(qx, qy, qz, qw, mx, my, mz)
+    if scene.gravity != 0.0:
+        _, _, height = rotate(*q, *scene.center)
+        potential = scene.mass * scene.gravity * (now.position[2] + height)
+    # L^2 of the body components: the rotation to the world would only add its rounding
+    store_diagnosis(out, Diagnosis(kinetic, potential, dot(momentum, momentum),
+                                   rotate(*q, *momentum)))
 
 
 @compiled
 def diagnose_many(p, states, out):
-    """Fill out, shape (n, 6), for states of shape (n, 14)."""
+    """Fill `out`, shape (n, 6), for states of shape (n, 14)."""
     for k in range(len(states)):
         diagnose(p, states[k], out[k])

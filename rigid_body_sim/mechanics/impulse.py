@@ -1,148 +1,198 @@
-"""What an impulse does to a state: only the free directions move, the rest is reaction.
+# SPDX-License-Identifier: Apache-2.0
+"""The response of a body to an impulse: the free directions move, the rest is reaction.
 
-The point of reference is the centre of mass of a free body and of a sphere on a table, the fixed
-point of a pivoted body, and the axis of a hinged one. Symbols: M mass, c centre of mass from the
-body's origin (body axes), omega angular velocity (body axes), L angular momentum about the point of
-reference (world axes), g acceleration of gravity (along -z of the world).
+Symbols: M mass, c centre of mass from the body's origin, I inertia tensor about the point of
+reference P (parameters.py), r arm from P to the centre of mass, n unit vector along a hinge, R
+rotation from body to world; J impulse of force at the centre of mass and K impulse of torque
+(world axes), G = R^T K + r x R^T J their moment about P. The jump d of the angular velocity, the
+work W and the reaction (force A, couple B) under each constraint:
+
+    free     d = I^-1 G,  M dV = J                              A = 0
+    table    d = I^-1 G,  M dV = J without its z component      A = -J_z
+    pivot    d = I^-1 G                                         A = M R (d x r) - J
+    hinge    d = n (n . G)/(n . I n)                            A = M R (d x r) - J,
+                                                                B = R (I d - G)
+
+with V the velocity of the centre of mass, r = 0 for a free body and on the table, and I about the
+hinge's point in the formula of B. Vectors that are turned by R are written in body axes.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
-from rigid_body_sim.mechanics import exchange as ledger
-from rigid_body_sim.mechanics.parameters import (
-    AXES,
-    CENTER,
-    FREE,
-    HINGE,
-    HINGE_AXIS,
-    HINGE_MOMENT,
-    KIND,
-    MASS,
-    MOMENTS,
-    PIVOT,
-    TABLE,
-    THROUGH,
-)
+from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.mechanics.ledger import ENTRIES, Entries
+from rigid_body_sim.mechanics.parameters import FREE, HINGE, PIVOT, SCENE, TABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, product, scaled
+from rigid_body_sim.scene.state import STATE
 
-# layout of what `apply_impulse` fills beside the state
-WORK, ANGULAR_IMPULSE, REACTION_FORCE, REACTION_COUPLE = 0, 1, 4, 7
-EXCHANGE_SIZE = 10
-GIVEN_WORK, GIVEN_IMPULSE = ledger.WORK, ledger.ANGULAR_IMPULSE.start    # of what `push` adds to
+ZERO = (0.0, 0.0, 0.0)
+
+
+class Response(NamedTuple):
+    """What an impulse does besides changing the state.
+
+    Attributes
+    ----------
+    work : float
+        J.
+    angular_impulse : Vector
+        About the point of reference, world axes, N m s.
+    reaction_force, reaction_couple : Vector
+        Impulse of the reaction (N s, N m s), world axes: at the fixed point, at `through` of a
+        hinge, at the contact with the table.
+    """
+
+    work: float
+    angular_impulse: Vector
+    reaction_force: Vector
+    reaction_couple: Vector
+
+
+RESPONSE = layout(Response)
+RESPONSE_SIZE = RESPONSE.size
+WORK = RESPONSE.part('work').first
+load_scene, load_state = SCENE.load, STATE.load
+load_response, store_response = RESPONSE.load, RESPONSE.store
+load_entries, store_entries = ENTRIES.load, ENTRIES.store
+store_omega = STATE.part('angular_velocity').store
+store_velocity = STATE.part('velocity').store
 
 
 @compiled
-def apply_impulse(p, state, force, couple, exchange):
-    """Change a state by an impulse: only the free directions move, the rest is reaction.
+def apply_impulse(p, state, force, couple, out):
+    """Change a state by an impulse.
 
     Parameters
     ----------
+    p : array
+        SceneParameters.
     state : array (14,)
-        Changed in place.
+        StateView, changed in place.
     force : array (3,)
-        Impulse of force (N s) at the centre of mass, world axes.
+        Impulse of force J (N s) at the centre of mass, world axes.
     couple : array (3,)
-        Impulse of torque (N m s), world axes.
-    exchange : array (10,)
-        Filled with the work done (J), the angular impulse about the point of reference (world axes), and the impulse of the reaction:
-        force (N s) and couple (N m s) at the fixed point, at `through` of a hinge, at the contact with the table.
+        Impulse of torque K (N m s), world axes.
+    out : array (10,)
+        Filled with the Response.
 
     Returns
     -------
     bool
-        False if there is a torque about an axis of zero moment, beyond its rounding; nothing comes of that part.
+        False if G has a part along an axis of zero moment, beyond its rounding; the body does not
+        respond to that part.
     """
-    kind = p[KIND]
-    qx, qy, qz, qw = state[1], state[2], state[3], state[4]
-    fx, fy, fz = rotate_back(qx, qy, qz, qw, force[0], force[1], force[2])
-    tx, ty, tz = rotate_back(qx, qy, qz, qw, couple[0], couple[1], couple[2])
-    rx, ry, rz = 0.0, 0.0, 0.0
-    if kind == PIVOT:
-        rx, ry, rz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
-    elif kind == HINGE:
-        rx, ry, rz = p[CENTER] - p[THROUGH], p[CENTER + 1] - p[THROUGH + 1], p[CENTER + 2] - p[THROUGH + 2]
-    tx, ty, tz = tx + ry * fz - rz * fy, ty + rz * fx - rx * fz, tz + rx * fy - ry * fx
-    solvable = True
-    if kind == HINGE:
-        nx, ny, nz = p[HINGE_AXIS], p[HINGE_AXIS + 1], p[HINGE_AXIS + 2]
-        free = nx * tx + ny * ty + nz * tz
-        dx, dy, dz = free / p[HINGE_MOMENT] * nx, free / p[HINGE_MOMENT] * ny, free / p[HINGE_MOMENT] * nz
-        gx, gy, gz = free * nx, free * ny, free * nz
+    scene, now = load_scene(p), load_state(state)
+    q, omega = now.orientation, now.angular_velocity
+    J = (force[0], force[1], force[2])
+    arm = _arm(scene)
+    G = _with_moment(rotate_back(*q, couple[0], couple[1], couple[2]), arm, rotate_back(*q, *J))
+    solvable, turns = True, G
+    if scene.kind == HINGE:
+        along = dot(scene.hinge_axis, G)
+        d = scaled(along / scene.hinge_moment, scene.hinge_axis)
+        turns = scaled(along, scene.hinge_axis)
     else:
-        solvable, dx, dy, dz = _rate_of(p, tx, ty, tz)
-        gx, gy, gz = tx, ty, tz
-    cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
-    ox, oy, oz = state[5], state[6], state[7]
+        solvable, d = _jump(scene, G)
     # the work of an impulse goes with the mean of the velocities before and after
-    wx, wy, wz = ox + 0.5 * dx, oy + 0.5 * dy, oz + 0.5 * dz
-    exchange[WORK] = gx * wx + gy * wy + gz * wz
-    for k in range(6):
-        exchange[REACTION_FORCE + k] = 0.0
-    state[5], state[6], state[7] = ox + dx, oy + dy, oz + dz
-    if kind in (FREE, TABLE):
-        jz = force[2] if kind == FREE else 0.0
-        ux, uy, uz = rotate(qx, qy, qz, qw, oy * cz - oz * cy, oz * cx - ox * cz, ox * cy - oy * cx)
-        half = 0.5 / p[MASS]
-        exchange[WORK] += (force[0] * (state[11] + ux + half * force[0]) + force[1] * (state[12] + uy + half * force[1])
-                           + jz * (state[13] + uz + half * jz))
-        # the origin moves with the centre of mass, less what the change of rotation adds between them
-        ux, uy, uz = rotate(qx, qy, qz, qw, dy * cz - dz * cy, dz * cx - dx * cz, dx * cy - dy * cx)
-        state[11] += force[0] / p[MASS] - ux
-        state[12] += force[1] / p[MASS] - uy
-        state[13] += jz / p[MASS] - uz
-        exchange[REACTION_FORCE + 2] = jz - force[2]
+    work = dot(turns, plus(omega, scaled(0.5, d)))
+    store_omega(state, plus(omega, d))
+    reaction, bearing = ZERO, ZERO
+    if scene.kind == FREE or scene.kind == TABLE:
+        along_table = (J[0], J[1], J[2] if scene.kind == FREE else 0.0)
+        work += _push_center(scene, now, state, along_table, d)
+        reaction = (0.0, 0.0, along_table[2] - J[2])
     else:
-        # the centre of mass gains dw x r: what the impulse does not supply of that comes from the bearing
-        ax, ay, az = rotate(qx, qy, qz, qw, dy * rz - dz * ry, dz * rx - dx * rz, dx * ry - dy * rx)
-        exchange[REACTION_FORCE] = p[MASS] * ax - force[0]
-        exchange[REACTION_FORCE + 1] = p[MASS] * ay - force[1]
-        exchange[REACTION_FORCE + 2] = p[MASS] * az - force[2]
-        if kind == HINGE:
-            _hinge_couple(p, state, dx, dy, dz, tx, ty, tz, rx, ry, rz, exchange)
-            hx, hy, hz = p[THROUGH], p[THROUGH + 1], p[THROUGH + 2]
-            ux, uy, uz = rotate(qx, qy, qz, qw, dy * hz - dz * hy, dz * hx - dx * hz, dx * hy - dy * hx)
-            state[11], state[12], state[13] = state[11] - ux, state[12] - uy, state[13] - uz
-    exchange[ANGULAR_IMPULSE], exchange[ANGULAR_IMPULSE + 1], exchange[ANGULAR_IMPULSE + 2] = rotate(qx, qy, qz, qw, gx, gy, gz)
+        # M dV of the centre of mass: the bearing supplies what J does not
+        reaction = minus(scaled(scene.mass, rotate(*q, *cross(d, arm))), J)
+    if scene.kind == HINGE:
+        bearing = rotate(*q, *minus(_momentum_at_hinge(scene, d, arm), G))
+        # the body's origin moves about the hinge
+        store_velocity(state, minus(now.velocity, rotate(*q, *cross(d, scene.through))))
+    store_response(out, Response(work, rotate(*q, *turns), reaction, bearing))
     return solvable
 
 
 @compiled_allocating
-def push(p, state, force, couple, given):
-    """Change a state by an impulse as `apply_impulse` does, and what was exchanged with the body so far, `given` (exchange.py), by it.
+def push(p, state, force, couple, entries):
+    """Change a state by an impulse as `apply_impulse` does, and add to the entries of the ledger.
+
+    Parameters
+    ----------
+    p, state, force, couple : array
+        See `apply_impulse`.
+    entries : array (5,)
+        Entries of ledger.py, changed in place.
 
     Returns
     -------
     bool, float
         What `apply_impulse` returned, and the work (J).
     """
-    if not (force[0] != 0.0 or force[1] != 0.0 or force[2] != 0.0 or couple[0] != 0.0 or couple[1] != 0.0 or couple[2] != 0.0):
+    if not (force[0] != 0.0 or force[1] != 0.0 or force[2] != 0.0
+            or couple[0] != 0.0 or couple[1] != 0.0 or couple[2] != 0.0):
         return True, 0.0
-    exchange = np.empty(EXCHANGE_SIZE)
-    solvable = apply_impulse(p, state, force, couple, exchange)
-    add_exchange(exchange, given)
-    return solvable, exchange[WORK]
+    out = np.empty(RESPONSE_SIZE)
+    solvable = apply_impulse(p, state, force, couple, out)
+    add_entries(out, entries)
+    return solvable, out[WORK]
 
 
 @compiled
-def add_exchange(exchange, given):
-    """Add the work and the angular impulse of an impulse to what was exchanged with the body so far."""
-    given[GIVEN_WORK] += exchange[WORK]
-    for k in range(3):
-        given[GIVEN_IMPULSE + k] += exchange[ANGULAR_IMPULSE + k]
+def add_entries(response, entries):
+    """Add the Response to an impulse, shape (10,), to the entries of the ledger, shape (5,)."""
+    before, added = load_entries(entries), load_response(response)
+    store_entries(entries, Entries(
+        before.work + added.work, before.dissipated,
+        plus(before.angular_impulse, added.angular_impulse)))
 
 
 @compiled
-def _rate_of(p, mx, my, mz):
-    """Return whether m has no part along an axis of zero moment, and I^-1 m of the rest in body axes."""
-    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
-    along = rotate_back(ax, ay, az, aw, mx, my, mz)
-    # what turning to the world and back leaves along the axis: 1e-15 of it, 3e-15 of the moment of a force (300,000 random ones)
-    slack = 1e-14 * (abs(mx) + abs(my) + abs(mz))
-    solvable = (_turns(p[MOMENTS], along[0], slack) and _turns(p[MOMENTS + 1], along[1], slack)
-                and _turns(p[MOMENTS + 2], along[2], slack))
-    x, y, z = rotate(ax, ay, az, aw, _quotient(along[0], p[MOMENTS]), _quotient(along[1], p[MOMENTS + 1]), _quotient(along[2], p[MOMENTS + 2]))
-    return solvable, x, y, z
+def _arm(scene):
+    """Return r, from the point of reference to the centre of mass."""
+    if scene.kind == PIVOT:
+        return scene.center
+    if scene.kind == HINGE:
+        return minus(scene.center, scene.through)
+    return ZERO
+
+
+@compiled
+def _with_moment(torque, r, f):
+    """Return torque + r x f, summed from the left."""
+    return (torque[0] + r[1] * f[2] - r[2] * f[1], torque[1] + r[2] * f[0] - r[0] * f[2],
+            torque[2] + r[0] * f[1] - r[1] * f[0])
+
+
+@compiled
+def _push_center(scene, now, state, J, d):
+    """Change the velocity of a body that moves by M dV = J; return the work of J.
+
+    The origin moves with the centre of mass, less the change of omega x c between them.
+    """
+    q, half = now.orientation, 0.5 / scene.mass
+    of_center = plus(now.velocity, rotate(*q, *cross(now.angular_velocity, scene.center)))
+    between = rotate(*q, *cross(d, scene.center))
+    gained = (J[0] / scene.mass, J[1] / scene.mass, J[2] / scene.mass)
+    store_velocity(state, plus(now.velocity, minus(gained, between)))
+    return dot(J, plus(of_center, scaled(half, J)))
+
+
+@compiled
+def _jump(scene, G):
+    """Return (whether G has no part along an axis of zero moment, I^-1 G of the rest)."""
+    along = rotate_back(*scene.axes, *G)
+    # what turning to the world and back leaves along an axis: 1e-15 of G, 3e-15 of the moment of a
+    # force (300,000 random ones)
+    slack = 1e-14 * (abs(G[0]) + abs(G[1]) + abs(G[2]))
+    I1, I2, I3 = scene.moments
+    solvable = (_turns(I1, along[0], slack) and _turns(I2, along[1], slack)
+                and _turns(I3, along[2], slack))
+    principal = _quotient(along[0], I1), _quotient(along[1], I2), _quotient(along[2], I3)
+    return solvable, rotate(*scene.axes, *principal)
 
 
 @compiled
@@ -157,14 +207,7 @@ def _quotient(m, moment):
 
 
 @compiled
-def _hinge_couple(p, state, dx, dy, dz, tx, ty, tz, rx, ry, rz, exchange):
-    """Fill the impulse of the bearing's couple at `through`: change of the whole angular momentum there less the torque given."""
-    ax, ay, az, aw = p[AXES], p[AXES + 1], p[AXES + 2], p[AXES + 3]
-    x, y, z = rotate_back(ax, ay, az, aw, dx, dy, dz)
-    lx, ly, lz = rotate(ax, ay, az, aw, p[MOMENTS] * x, p[MOMENTS + 1] * y, p[MOMENTS + 2] * z)
-    ux, uy, uz = dy * rz - dz * ry, dz * rx - dx * rz, dx * ry - dy * rx
-    lx += p[MASS] * (ry * uz - rz * uy)
-    ly += p[MASS] * (rz * ux - rx * uz)
-    lz += p[MASS] * (rx * uy - ry * ux)
-    cx, cy, cz = rotate(state[1], state[2], state[3], state[4], lx - tx, ly - ty, lz - tz)
-    exchange[REACTION_COUPLE], exchange[REACTION_COUPLE + 1], exchange[REACTION_COUPLE + 2] = cx, cy, cz
+def _momentum_at_hinge(scene, d, r):
+    """Return I d about the hinge's point: that about the centre of mass, and M r x (d x r)."""
+    principal = product(scene.moments, rotate_back(*scene.axes, *d))
+    return plus(rotate(*scene.axes, *principal), scaled(scene.mass, cross(r, cross(d, r))))

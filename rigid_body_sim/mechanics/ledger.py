@@ -1,31 +1,64 @@
-"""The ledger: what a body has now, what it had at the start, and what was given to it and taken from it in between must balance."""
+# SPDX-License-Identifier: Apache-2.0
+"""The ledger of a body: energy and angular momentum now, at the start, and exchanged in between.
+
+The entries of the ledger are what commands, strikes and effects have exchanged with the body.
+"""
 
 import math
+from typing import NamedTuple
 
-from rigid_body_sim.mechanics.energy import KINETIC, MOMENTUM, MOMENTUM_SQUARED, POTENTIAL
-from rigid_body_sim.mechanics.exchange import ANGULAR_IMPULSE, DISSIPATED, WORK
+from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import minus
 
 
-def balance(start, now, given):
-    """Return the balance of energy (J) and angular momentum, as a dict of floats.
+class Entries(NamedTuple):
+    """The entries of the ledger since a start.
 
-    ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|, |potential|, |work|; ``momentum_residual`` is
-    |L - L(0) - angular impulse| relative to the largest of the three.
+    Attributes
+    ----------
+    work : float
+        Done on the body, J.
+    dissipated : float
+        Energy turned into heat, J.
+    angular_impulse : Vector
+        About the point of reference (parameters.py), world axes, N m s.
+    """
+
+    work: float
+    dissipated: float
+    angular_impulse: Vector
+
+
+ENTRIES = layout(Entries)
+ENTRIES_SIZE = ENTRIES.size
+WORK, DISSIPATED = ENTRIES.part('work').first, ENTRIES.part('dissipated').first
+ANGULAR_IMPULSE = ENTRIES.part('angular_impulse').places
+
+
+def balance(start, now, entries):
+    """Return the balance of energy (J) and angular momentum (kg m^2/s), as a dict of floats.
+
+    ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|,
+    |potential|, |work|; ``momentum_residual`` is |L - L(0) - angular impulse| relative to the
+    largest of the three.
 
     Parameters
     ----------
     start, now : array (6,)
-        See energy.diagnose.
-    given : array
-        What was exchanged between the two (exchange.py).
+        Diagnosis.
+    entries : array (5,)
+        The Entries from start to now.
     """
-    work, dissipated, impulse = given[WORK], given[DISSIPATED], given[ANGULAR_IMPULSE]
-    left = math.fsum((now[KINETIC], now[POTENTIAL], dissipated, -start[KINETIC], -start[POTENTIAL], -work))
-    scale = max(now[KINETIC], abs(now[POTENTIAL]), abs(work), start[KINETIC], abs(start[POTENTIAL]))
-    missing = hypot3(*(now[MOMENTUM:] - start[MOMENTUM:] - impulse))
-    size = max(hypot3(*vector) for vector in (now[MOMENTUM:], start[MOMENTUM:], impulse))
-    return {'kinetic': float(now[KINETIC]), 'potential': float(now[POTENTIAL]), 'dissipated': float(dissipated), 'work': float(work),
-            'energy_residual': float(left / scale) if scale > 0.0 else 0.0,
-            'angular_momentum_squared': float(now[MOMENTUM_SQUARED]),
-            'momentum_residual': float(missing / size) if size > 0.0 else 0.0}
+    start, now = DIAGNOSIS.load(start.tolist()), DIAGNOSIS.load(now.tolist())
+    work, dissipated, impulse = ENTRIES.load(entries.tolist())
+    left = math.fsum((now.kinetic, now.potential, dissipated,
+                      -start.kinetic, -start.potential, -work))
+    scale = max(now.kinetic, abs(now.potential), abs(work), start.kinetic, abs(start.potential))
+    missing = hypot3(*minus(minus(now.momentum, start.momentum), impulse))
+    size = max(hypot3(*vector) for vector in (now.momentum, start.momentum, impulse))
+    return {'kinetic': now.kinetic, 'potential': now.potential, 'dissipated': dissipated,
+            'work': work, 'energy_residual': left / scale if scale > 0.0 else 0.0,
+            'angular_momentum_squared': now.momentum_squared,
+            'momentum_residual': missing / size if size > 0.0 else 0.0}

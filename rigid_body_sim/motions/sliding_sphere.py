@@ -23,7 +23,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.mechanics.exchange import DISSIPATED, EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import cos, hypot, sin
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
@@ -235,11 +235,11 @@ def reaction(anchor, time):
 
 @compiled
 def exchanged(anchor, time, out):
-    """Fill out (rigid_body_sim/mechanics/exchange.py) with what friction did since the anchor.
+    """Fill out (mechanics/ledger.py) with what friction did since the anchor.
 
     Heat: mu M g times the distance slid. Angular impulse about the centre: a mu M g z x e times the time slid.
     """
-    for n in range(EXCHANGE_SIZE):
+    for n in range(ENTRIES_SIZE):
         out[n] = 0.0
     if anchor[SLIP] == 0.0 or anchor[DECELERATION] == 0.0:
         return

@@ -6,7 +6,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import on_all_cores
-from rigid_body_sim.mechanics.exchange import ANGULAR_IMPULSE, EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
 from rigid_body_sim.motions.weight import WeightImpulse
 
@@ -67,8 +67,8 @@ class Exact:
                      AT_ONCE // max(1, len(times)))
 
     def exchanged(self, time):
-        """Return what effects exchanged with the body from the anchor to a time, shape (5,): rigid_body_sim/mechanics/exchange.py."""
-        out = np.zeros(EXCHANGE_SIZE)
+        """Return what effects exchanged with the body from the anchor to a time, shape (5,): mechanics/ledger.py."""
+        out = np.zeros(ENTRIES_SIZE)
         if hasattr(self.motion, 'exchanged'):
             self.motion.exchanged(self.anchor, time, out)
         elif self._scene.constraint.kind in ('pivot', 'hinge') and self._scene.effect('gravity'):

@@ -14,8 +14,11 @@ slice    name                  meaning                                          
 
 import html
 import typing
+from typing import NamedTuple
 
 import numpy as np
+
+from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
 
 if typing.TYPE_CHECKING:
     import pandas
@@ -34,6 +37,19 @@ AXES = {'orientation': 'xyzw', 'angular_velocity': 'xyz', 'position': 'xyz', 've
 UNITS = {'time': 's', 'orientation': '1', 'angular_velocity': 'rad/s', 'position': 'm',
          'velocity': 'm/s'}
 SHOWN = 10    # states of a long series that a notebook shows
+
+
+class StateView(NamedTuple):
+    """The state in kernels (layout above)."""
+
+    time: float
+    orientation: Quaternion
+    angular_velocity: Vector
+    position: Vector
+    velocity: Vector
+
+
+STATE = layout(StateView)
 
 
 class State:

@@ -14,8 +14,8 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.mechanics.impulse import EXCHANGE_SIZE, WORK, apply_impulse
-from rigid_body_sim.mechanics.parameters import MOMENTS
+from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, WORK, apply_impulse
+from rigid_body_sim.mechanics.parameters import SCENE
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 from rigid_body_sim.simulation.command_rows import (
@@ -40,6 +40,7 @@ SCENE_REFUSES = 'the scene refuses commands'
 REASONS = ('', 'not finite', 'the body cannot take it', 'too large', 'the body cannot take it')
 """The reason of each verdict, as events and diagnostics name it."""
 _F, _T, _Q, _W = FORCE.start, TORQUE.start, ORIENTATION.start, ANGULAR_VELOCITY.start
+load_moments = SCENE.part('moments').load
 
 
 class Refusal(NamedTuple):
@@ -84,7 +85,7 @@ class Given(NamedTuple):
     @classmethod
     def at(cls, vector: np.ndarray) -> 'Given':
         """Return that of no commands at a state (14,)."""
-        return cls(vector.copy(), np.zeros(6), vector.copy(), np.zeros(EXCHANGE_SIZE))
+        return cls(vector.copy(), np.zeros(6), vector.copy(), np.zeros(RESPONSE_SIZE))
 
     @property
     def any_impulse(self) -> bool:
@@ -117,8 +118,9 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
     """
     last, taken = -1, 0
     alone, total = np.empty(6), np.empty(6)
-    trial, trial_exchange = np.empty(STATE_SIZE), np.empty(EXCHANGE_SIZE)
-    some_do_not_turn = p[MOMENTS] == 0.0 or p[MOMENTS + 1] == 0.0 or p[MOMENTS + 2] == 0.0
+    trial, trial_exchange = np.empty(STATE_SIZE), np.empty(RESPONSE_SIZE)
+    I1, I2, I3 = load_moments(p)
+    some_do_not_turn = I1 == 0.0 or I2 == 0.0 or I3 == 0.0
     for k in range(len(rows)):
         row = rows[k]
         impulse = row[KIND] == IMPULSE
@@ -150,7 +152,7 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
                 sums[j] = total[j]
             for j in range(STATE_SIZE):
                 after[j] = trial[j]
-            for j in range(EXCHANGE_SIZE):
+            for j in range(RESPONSE_SIZE):
                 exchange[j] = trial_exchange[j]
         elif acts and turn > LARGEST_TURN:
             verdicts[k], amounts[k] = TOO_FAST, turn

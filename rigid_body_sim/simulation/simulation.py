@@ -20,8 +20,7 @@ from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
-from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
-from rigid_body_sim.mechanics.ledger import balance
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, balance
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State, States
@@ -127,7 +126,7 @@ class Simulation:
             raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
                            'a smaller angular velocity, velocity or height')
         self._initial = self._diagnosis.copy()
-        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(EXCHANGE_SIZE))]
+        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(ENTRIES_SIZE))]
         self._commands = None
         self._foreseen = _Foreseen(None, 0, ())
         self._arrive()
@@ -425,7 +424,7 @@ class Simulation:
         if given.any_impulse or commands.wrench != last.wrench:
             exchanged = last.given + last.solver.exchanged(time)
             if given.any_impulse:
-                impulse.add_exchange(given.exchange, exchanged)
+                impulse.add_entries(given.exchange, exchanged)
             kept = [*kept, self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged)]
         self._spans = kept
         self._arrive()

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.mechanics.impulse import EXCHANGE_SIZE, apply_impulse
+from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, apply_impulse
 from rigid_body_sim.scene.state import ORIENTATION
 from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, WIDTH, WORLD
 
@@ -72,7 +72,7 @@ class Hand:
         """Return the mass (kg) that a push along a unit vector at a point feels, or None."""
         force, couple = self._at_center(vector, point, np.asarray(direction, float))
         after = vector.copy()
-        apply_impulse(self._mechanics.packed, after, force, couple, np.empty(EXCHANGE_SIZE))
+        apply_impulse(self._mechanics.packed, after, force, couple, np.empty(RESPONSE_SIZE))
         change = (self._mechanics.velocity_at(after, point)
                   - self._mechanics.velocity_at(vector, point)) @ direction
         return 1.0 / float(change) if change > 1e-300 and math.isfinite(change) else None

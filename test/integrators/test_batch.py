@@ -155,7 +155,7 @@ def test_a_step_is_the_same_in_plain_python():
         q /= np.linalg.norm(q)
         table[series.QUATERNION:series.SERIES, lane] = q
         table[series.SERIES:series.OMEGA, lane] = *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)
-        table[series.OMEGA:series.NODE_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
+        table[series.OMEGA:series.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
     table[series.END] = 1e3
 
     @compiled
@@ -165,10 +165,10 @@ def test_a_step_is_the_same_in_plain_python():
     series._advance(Plain(), plain, 1e-20)
     advance(written)
     plain, written = plain.reshape(table.shape), written.reshape(table.shape)
-    orders, end = slice(series.SERIES, series.FOLLOWING), slice(series.FOLLOWING, series.FOLLOWING + series.NODE_SIZE)
+    orders, end = slice(series.SERIES, series.FOLLOWING), slice(series.FOLLOWING, series.FOLLOWING + series.POINT_SIZE)
     assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()    # 1
     assert written[end][series.STEP] == near(plain[end][series.STEP], 1e-14)    # the same
-    for rows in (slice(series.QUATERNION, series.SERIES), slice(series.SERIES, series.NODE_SIZE)):
+    for rows in (slice(series.QUATERNION, series.SERIES), slice(series.SERIES, series.POINT_SIZE)):
         assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
     # the quaternion turns with the directions
     for q, e in zip(written[end][series.QUATERNION:series.SERIES].T, written[end][series.SERIES:series.OMEGA].T, strict=True):

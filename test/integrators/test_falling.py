@@ -24,11 +24,12 @@ def test_functions_of_the_decay_are_right_to_rounding(z):
 
 def test_fall_beyond_what_is_left_of_its_speed_goes_on_at_the_final_one():
     # c t/M = 1e4: v = a M/c, x = v (t - M/c) + v0 M/c
-    x, y, z, *velocity = fallen(1.0, 2.0, 3.0, 5.0, 0.0, 0.0, 0.0, 0.0, -9.81, 10.0, 1e3)
-    assert velocity == [0.0, 0.0, near(-0.981, 4.0 * EPS)]
+    (x, y, z), velocity = fallen((1.0, 2.0, 3.0), (5.0, 0.0, 0.0), (0.0, 0.0, -9.81), 10.0, 1e3)
+    assert velocity == (0.0, 0.0, near(-0.981, 4.0 * EPS))
     assert (x, y) == (1.5, 2.0)
     assert z == near(3.0 - 0.981 * (1e3 - 0.1), 4.0 * EPS)
 
 
 def test_fall_without_drag_is_a_parabola():
-    assert fallen(1.0, 2.0, 3.0, 5.0, -1.0, 2.0, 0.0, 0.0, -8.0, 0.0, 0.5) == (3.5, 1.5, 3.0, 5.0, -1.0, -2.0)
+    place, velocity = fallen((1.0, 2.0, 3.0), (5.0, -1.0, 2.0), (0.0, 0.0, -8.0), 0.0, 0.5)
+    assert (place, velocity) == ((3.5, 1.5, 3.0), (5.0, -1.0, -2.0))

@@ -8,7 +8,7 @@ import pytest
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
-from rigid_body_sim.mechanics.impulse import EXCHANGE_SIZE, REACTION_COUPLE, REACTION_FORCE
+from rigid_body_sim.mechanics.impulse import RESPONSE, RESPONSE_SIZE
 from rigid_body_sim.motions.lagrange_top import lagrange_top
 from rigid_body_sim.motions.pendulum import pendulum
 from rigid_body_sim.numerics.rotations import from_rotation_vector, multiply, rotate
@@ -130,12 +130,13 @@ def test_blow_is_the_limit_of_a_strong_short_push():
     """The impulsive reaction is the integral of the continuous one: both from the same Newton and Euler, by different code."""
     made, vector = scene(HINGE, '[]'), state(HINGE).vector
     vector[5:8] = vector[11:14] = 0.0
-    exchange = np.empty(EXCHANGE_SIZE)
+    out = np.empty(RESPONSE_SIZE)
     force, couple = np.array([0.3, -0.2, 0.1]), np.array([0.01, 0.02, -0.03])
-    impulse.apply_impulse(parameters.parameters(made), vector.copy(), force, couple, exchange)
+    impulse.apply_impulse(parameters.parameters(made), vector.copy(), force, couple, out)
+    response = RESPONSE.load(out)
     balance = Dynamics(made).balance(vector, Wrench(tuple(force), tuple(couple)))
-    np.testing.assert_allclose(balance.force, exchange[REACTION_FORCE:REACTION_FORCE + 3], atol=1e-15)
-    np.testing.assert_allclose(balance.torque, exchange[REACTION_COUPLE:REACTION_COUPLE + 3], atol=1e-15)
+    np.testing.assert_allclose(balance.force, response.reaction_force, atol=1e-15)
+    np.testing.assert_allclose(balance.torque, response.reaction_couple, atol=1e-15)
 
 
 def test_acceleration_of_a_simulation_is_the_slope_of_its_velocity():

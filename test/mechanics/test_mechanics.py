@@ -6,14 +6,7 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose
-from rigid_body_sim.mechanics.impulse import (
-    ANGULAR_IMPULSE,
-    EXCHANGE_SIZE,
-    REACTION_COUPLE,
-    REACTION_FORCE,
-    WORK,
-    apply_impulse,
-)
+from rigid_body_sim.mechanics.impulse import RESPONSE, RESPONSE_SIZE, apply_impulse
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
@@ -66,15 +59,15 @@ def test_potential_energy_is_weight_times_height(kind):
 @pytest.mark.parametrize('kind', SCENES)
 def test_impulse_work_is_the_gain_of_kinetic_energy(kind):
     scene = parse_scene(SCENES[kind])
-    vector, exchange = scene.initial.vector.copy(), np.empty(EXCHANGE_SIZE)
+    vector, out = scene.initial.vector.copy(), np.empty(RESPONSE_SIZE)
     before = diagnosed(scene, vector)
-    assert apply_impulse(parameters(scene), vector, FORCE, COUPLE, exchange)
+    assert apply_impulse(parameters(scene), vector, FORCE, COUPLE, out)
     after = diagnosed(scene, vector)
     gained = after[KINETIC] - before[KINETIC]
     # rounding of the two energies: measured 2e-15 of about 80 J
-    assert exchange[WORK] == pytest.approx(gained, abs=8 * EPS * after[KINETIC])
+    assert RESPONSE.load(out).work == pytest.approx(gained, abs=8 * EPS * after[KINETIC])
     change = after[MOMENTUM:] - before[MOMENTUM:]
-    impulse = exchange[ANGULAR_IMPULSE:ANGULAR_IMPULSE + 3]
+    impulse = np.array(RESPONSE.load(out).angular_impulse)
     assert impulse == pytest.approx(change, abs=16 * EPS * np.abs(after[MOMENTUM:]).max())
 
 
@@ -82,11 +75,11 @@ def test_impulse_work_is_the_gain_of_kinetic_energy(kind):
 def test_impulse_and_reaction_move_the_centre_of_mass(kind):
     """Newton: M dv of the centre of mass is the impulse plus that of the reaction, under every constraint."""
     scene = parse_scene(SCENES[kind])
-    vector, exchange = scene.initial.vector.copy(), np.empty(EXCHANGE_SIZE)
+    vector, out = scene.initial.vector.copy(), np.empty(RESPONSE_SIZE)
     before = center_velocity(scene, vector)
-    apply_impulse(parameters(scene), vector, FORCE, COUPLE, exchange)
+    apply_impulse(parameters(scene), vector, FORCE, COUPLE, out)
     gained = scene.body.mass * (center_velocity(scene, vector) - before)
-    reaction = exchange[REACTION_FORCE:REACTION_FORCE + 3]
+    reaction = np.array(RESPONSE.load(out).reaction_force)
     assert gained == pytest.approx(FORCE + reaction, abs=1e-14)    # measured 2e-15
 
 
@@ -94,15 +87,15 @@ def test_impulse_and_reaction_move_the_centre_of_mass(kind):
 def test_impulse_and_reaction_turn_the_body(kind):
     """Euler: the spin momentum about the centre of mass gains the couples and the moments of the reaction about it."""
     scene = parse_scene(SCENES[kind])
-    vector, exchange = scene.initial.vector.copy(), np.empty(EXCHANGE_SIZE)
+    vector, out = scene.initial.vector.copy(), np.empty(RESPONSE_SIZE)
     turn = Rotation.from_quat(vector[ORIENTATION])
     before = vector[ANGULAR_VELOCITY].copy()
-    apply_impulse(parameters(scene), vector, FORCE, COUPLE, exchange)
+    apply_impulse(parameters(scene), vector, FORCE, COUPLE, out)
     gained = turn.apply(scene.body.about_center.matrix @ (vector[ANGULAR_VELOCITY] - before))
     point = {'free': scene.body.center_of_mass, 'pivot': (0.0, 0.0, 0.0), 'hinge': scene.constraint.through,
              'table': (0.0, 0.0, 0.0)}[kind]
     lever = turn.apply(np.subtract(point, scene.body.center_of_mass))
-    force, couple = exchange[REACTION_FORCE:][:3], exchange[REACTION_COUPLE:][:3]
+    force, couple = map(np.array, RESPONSE.load(out)[2:])
     if kind == 'table':
         force = force * [0.0, 0.0, 1.0]
     assert gained == pytest.approx(COUPLE + couple + np.cross(lever, force), abs=1e-14)    # measured 1e-15
@@ -121,21 +114,21 @@ effects: []
 initial: {{}}
 """)
     for d in (0.2, length, length + a2 / length):
-        vector, exchange = scene.initial.vector.copy(), np.empty(EXCHANGE_SIZE)
+        vector, out = scene.initial.vector.copy(), np.empty(RESPONSE_SIZE)
         # a force at depth d is one at the centre of mass and a couple about it
         force = np.array([3.0, 0.0, 0.0])
         couple = np.cross([0.0, 0.0, length - d], force)
-        apply_impulse(parameters(scene), vector, force, couple, exchange)
+        apply_impulse(parameters(scene), vector, force, couple, out)
         # the hand pushes back on the bat: F + reaction = M dv, so the reaction on the bat is -F_R
-        assert exchange[REACTION_FORCE] == pytest.approx(-3.0 * (1.0 - d / (length + a2 / length)), abs=4e-15)
+        assert RESPONSE.load(out).reaction_force[0] == pytest.approx(-3.0 * (1.0 - d / (length + a2 / length)), abs=4e-15)
 
 
 def test_opposite_impulses_restore_the_state_of_a_simple_body():
     scene = parse_scene(SCENES['table'])
-    p, exchange = parameters(scene), np.empty(EXCHANGE_SIZE)
+    p, out = parameters(scene), np.empty(RESPONSE_SIZE)
     vector = scene.initial.vector.copy()
-    apply_impulse(p, vector, FORCE, COUPLE, exchange)
-    apply_impulse(p, vector, -FORCE, -COUPLE, exchange)
+    apply_impulse(p, vector, FORCE, COUPLE, out)
+    apply_impulse(p, vector, -FORCE, -COUPLE, out)
     assert vector == near(scene.initial.vector, 4 * EPS)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.mechanics.exchange import ANGULAR_IMPULSE, DISSIPATED, EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.motions import sliding_sphere as motion
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.state import STATE_SIZE
@@ -39,7 +39,7 @@ def at(anchor, time):
 
 
 def exchanged(anchor, time):
-    out = np.empty(EXCHANGE_SIZE)
+    out = np.empty(ENTRIES_SIZE)
     motion.exchanged(anchor, time, out)
     return out
 

@@ -1,4 +1,5 @@
-"""The equations of motion of one scene: a template of this folder bound to the sums of what acts, and its numbers.
+# SPDX-License-Identifier: Apache-2.0
+"""The equations of motion of one scene: a template bound to the sums of what acts, and numbers.
 
 What the scene does not list is not in the code.
 """
@@ -10,7 +11,7 @@ import numpy as np
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import euler, flying, hinged, turning
-from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.scene.effects.views import Frame
 from rigid_body_sim.scene.state import TIME
@@ -26,17 +27,17 @@ class Equations:
     scene : Scene
     wrench : effects.wrench.Wrench, optional
         Held command.
-    books : bool
-        Add the quadratures of the ledger: work of torques, forces and commands, heat, angular impulse about the point of reference (world
-        axes).
+    ledger : bool
+        Add the quadratures of the ledger: work of torques, forces and commands, heat, angular
+        impulse about the point of reference (world axes).
 
     Attributes
     ----------
     kind : module
         turning, flying or hinged: which unknowns there are.
     kernels : module
-        `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, node, at)``,
-        ``write(p, time, y, out)``.
+        `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, point,
+        at)``, ``write(p, time, y, out)``.
     write : str
         Where the last of them is: for :func:`rigid_body_sim.compilation.templates.specialise`.
     breakpoints : tuple of floats
@@ -51,23 +52,27 @@ class Equations:
         Whether anything is booked as heat: it depends on velocities.
     """
 
-    def __init__(self, scene, wrench=None, books=False):
+    def __init__(self, scene, wrench=None, ledger=False):
         self.frame = Frame.of(scene.body, scene.constraint)
         self._axis = scene.constraint.axis
-        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')] + ([wrench] if wrench else [])
-        self.breakpoints = tuple(sorted({time for actor in self._actors for time in getattr(actor, 'breakpoints', ())}))
+        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')] + (
+            [wrench] if wrench else []
+        )
+        self.breakpoints = tuple(
+            sorted({time for actor in self._actors for time in getattr(actor, 'breakpoints', ())})
+        )
         acting = self._acting(-np.inf)
         self.acts = bool(acting)
-        self.extra = EXCHANGE_SIZE if books else 0
+        self.extra = ENTRIES_SIZE if ledger else 0
         if self.frame.kind == 'hinge':
             self.kind, self._moment = hinged, moment_on_hinge(scene)
         else:
             self.kind = flying if any(one.gives == 'force' for one in acting) else turning
-        fixed = hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED
+        fixed = hinged.PARAMETERS.size if self.kind is hinged else euler.FIXED
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
         self.makes_heat = any(one.books == 'heat' for one in acting)
-        sources = {'booked': _booked(calls if books else None)}
+        sources = {'booked': _booked(calls if ledger else None)}
         if self.kind is hinged:
             sources['torque'] = torque_source(calls)
         else:
@@ -84,21 +89,27 @@ class Equations:
 
     def _constants(self):
         """Return the fixed parameters, without those that a start decides."""
-        frame, fixed = self.frame, np.zeros(hinged.ATTITUDE + 4 if self.kind is hinged else euler.FIXED)
-        fixed[euler.AXES:euler.AXES + 4], fixed[euler.POINT:euler.POINT + 3] = frame.axes, frame.from_body(frame.point)
-        fixed[euler.MASS], fixed[euler.MOVES] = frame.mass, float(frame.kind == 'free')
-        if self.kind is hinged:
-            fixed[euler.INVERSE], fixed[hinged.AXIS:hinged.AXIS + 3] = 1.0 / self._moment, self._axis
-            return fixed
-        moments = np.array(frame.moments)
-        fixed[euler.MOMENTS:euler.MOMENTS + 3] = moments
-        fixed[euler.INVERSE:euler.INVERSE + 3] = inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
+        frame, hinge = self.frame, self.kind is hinged
+        moments = np.zeros(3) if hinge else np.array(frame.moments)
+        inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
+        if hinge:
+            inverse[0] = 1.0 / self._moment
         differences = np.roll(moments, -1) - np.roll(moments, -2)
-        fixed[euler.EULER:euler.EULER + 3] = np.divide(differences, moments, out=np.zeros(3), where=inverse > 0.0)
+        share = np.divide(differences, moments, out=np.zeros(3), where=moments > 0.0)
+        fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
+        euler.EQUATION.store(fixed, euler.EquationParameters(
+            euler=share, inverse=inverse, moments=moments, axes=frame.axes,
+            point=frame.from_body(frame.point), start=euler.NO_START, mass=frame.mass,
+            moves=float(frame.kind == 'free')))
+        if hinge:
+            hinged.PARAMETERS.part('axis').store(fixed, self._axis)
         return fixed
 
     def held(self, time):
-        """Return the parameters that hold just after a time, as an array of the caller's own; those of the start are to be set."""
+        """Return the parameters that hold just after a time, as an array of the caller's own.
+
+        Those of the start are to be set.
+        """
         k = bisect.bisect_right(self.breakpoints, time)
         if k not in self._held:
             self._held[k] = self.parameters(self._fixed, time)
@@ -111,13 +122,16 @@ class Equations:
         return held
 
     def start(self, vector):
-        """Return (parameters, unknowns with the books) of a start, a state vector (14)."""
+        """Return (parameters, unknowns with the ledger) of a start, a state vector (14)."""
         p, y = self.held(float(vector[TIME])), np.zeros(self.kind.UNKNOWNS + self.extra)
         self.kernels.start(p, vector, y, 0)
         return p, y
 
     def parameters(self, fixed, time):
-        """Return the parameters that hold just after a time: the fixed ones, then the values of all that acts."""
+        """Return the parameters that hold just after a time.
+
+        The fixed ones, then the values of all that acts.
+        """
         return np.array([*fixed, *(value for one in self._acting(time) for value in one.values)])
 
 
@@ -125,12 +139,19 @@ def moment_on_hinge(scene):
     """Return the moment of inertia about the hinge (kg m^2); BadInput if it is zero."""
     moment = moment_about_hinge(scene.body, scene.constraint)
     if not moment > 0.0:
-        raise BadInput(f'{scene.name}: constraint.hinge', 'the moment of inertia about the axis is zero', 'move the axis')
+        raise BadInput(
+            f'{scene.name}: constraint.hinge',
+            'the moment of inertia about the axis is zero',
+            'move the axis',
+        )
     return moment
 
 
 class _Call:
-    """One thing that acts, as text: the line that calls its kernel, and the names of its three components."""
+    """One thing that acts, as text.
+
+    The line that calls its kernel, and the names of its three components.
+    """
 
     def __init__(self, acting, number, at):
         module, _, self.function = acting.kernel.partition(':')
@@ -144,8 +165,13 @@ class _Call:
             m = euler.MOMENTS
             turns = self.x, self.y, self.z
             self.x, self.y, self.z = (f'inner{number}_{axis}' for axis in 'xyz')
-            self.lines += [f'    m1, m2, m3 = p[{m}] * wx, p[{m + 1}] * wy, p[{m + 2}] * wz', f'    ux, uy, uz = {", ".join(turns)}',
-                           f'    {self.x}, {self.y}, {self.z} = m2 * uz - m3 * uy, m3 * ux - m1 * uz, m1 * uy - m2 * ux']
+            self.lines += [
+                f'    m1, m2, m3 = p[{m}] * wx, p[{m + 1}] * wy, p[{m + 2}] * wz',
+                f'    ux, uy, uz = {", ".join(turns)}',
+                f'    {self.x} = m2 * uz - m3 * uy',
+                f'    {self.y} = m3 * ux - m1 * uz',
+                f'    {self.z} = m1 * uy - m2 * ux',
+            ]
 
 
 def _calls(acting, at):
@@ -156,8 +182,18 @@ def _calls(acting, at):
 
 def _kernel(name, calls, results):
     """Return the source of a kernel that makes the calls and returns the results (expressions)."""
-    return '\n'.join([*sorted({call.imported for call in calls}), '', '', '@compiled', f'def {name}(p, {STATE}):',
-                      *(line for call in calls for line in call.lines), f'    return ({"".join(f"{result}, " for result in results)})', ''])
+    return '\n'.join(
+        [
+            *sorted({call.imported for call in calls}),
+            '',
+            '',
+            '@compiled',
+            f'def {name}(p, {STATE}):',
+            *(line for call in calls for line in call.lines),
+            f'    return ({"".join(f"{result}, " for result in results)})',
+            '',
+        ]
+    )
 
 
 def _sums(calls):
@@ -185,27 +221,49 @@ def turning_source(calls):
 def _omega_rate(calls):
     """Euler's terms, with the torques' where there are any."""
     calls = [call for call in calls if call.gives != 'force']
-    terms = [f'p[{euler.EULER + k}] * ({product})' for k, product in enumerate(('wy * wz', 'wz * wx', 'wx * wy'))]
+    terms = [
+        f'p[{euler.EULER + k}] * ({product})'
+        for k, product in enumerate(('wy * wz', 'wz * wx', 'wx * wy'))
+    ]
     if calls:
-        terms = [f'{term} + p[{euler.INVERSE + k}] * ({total})' for k, (term, total) in enumerate(zip(terms, _sums(calls), strict=True))]
+        terms = [
+            f'{term} + p[{euler.INVERSE + k}] * ({total})'
+            for k, (term, total) in enumerate(zip(terms, _sums(calls), strict=True))
+        ]
     return _kernel('omega_rate', calls, terms)
 
 
 def _axes_rate(calls):
     """omega, with the extra turning rate of internal dissipation where there is one."""
     calls = [call for call in calls if call.gives == 'turning']
-    return _kernel('axes_rate', calls, ('wx + ux', 'wy + uy', 'wz + uz') if calls else ('wx', 'wy', 'wz'))
+    return _kernel(
+        'axes_rate', calls, ('wx + ux', 'wy + uy', 'wz + uz') if calls else ('wx', 'wy', 'wz')
+    )
 
 
 def _booked(calls):
-    """Power of what does work, minus the power of what makes heat, torque in world axes; nothing if the books are not kept."""
+    """Power of what does work, minus the power of what makes heat, torque in world axes.
+
+    Nothing if the books are not kept.
+    """
     if calls is None:
         return _kernel('booked', [], ())
     power = {'work': [], 'heat': [], 'potential': []}
     for call in calls:
         velocity = ('vx', 'vy', 'vz') if call.gives == 'force' else ('wx', 'wy', 'wz')
-        power[call.books].append(' + '.join(f'{component} * {rate}' for component, rate in zip((call.x, call.y, call.z), velocity,
-        strict=True)))
+        power[call.books].append(
+            ' + '.join(
+                f'{component} * {rate}'
+                for component, rate in zip((call.x, call.y, call.z), velocity, strict=True)
+            )
+        )
     torques = [call for call in calls if call.gives == 'torque']
-    return _kernel('booked', calls, (' + '.join(power['work']) or '0.0', f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0',
-                                     f'*rotate(qx, qy, qz, qw, *taken(p, {", ".join(_sums(torques))}))'))
+    return _kernel(
+        'booked',
+        calls,
+        (
+            ' + '.join(power['work']) or '0.0',
+            f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0',
+            f'*rotate(qx, qy, qz, qw, *taken(p, {", ".join(_sums(torques))}))',
+        ),
+    )

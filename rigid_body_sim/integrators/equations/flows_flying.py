@@ -1,7 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: the two flows of a free body on which a force acts; unknowns as in flying.py.
 
-The rotation is that of flows_turning.py. In a drift the centre of mass goes on in a straight line, in a kick the force changes its velocity;
-both sums carry what they lose (Kahan).
+The rotation is that of flows_turning.py. In a drift the centre of mass goes on in a straight line,
+in a kick the force changes its velocity; both sums carry what they lose (Kahan).
 """
 
 from rigid_body_sim.compilation.jit import compiled
@@ -21,7 +22,11 @@ force = UNBOUND
 def drift(p, y, c, h):
     """Return (y, c) after the body has moved freely for a time h."""
     z, lost = rotation_drift(p, y[:7], c[:7], h)
-    (x1, l1), (x2, l2), (x3, l3) = add_double(y[7], c[7], h * y[10]), add_double(y[8], c[8], h * y[11]), add_double(y[9], c[9], h * y[12])
+    (x1, l1), (x2, l2), (x3, l3) = (
+        add_double(y[7], c[7], h * y[10]),
+        add_double(y[8], c[8], h * y[11]),
+        add_double(y[9], c[9], h * y[12]),
+    )
     return (*z, x1, x2, x3, y[10], y[11], y[12]), (*lost, l1, l2, l3, c[10], c[11], c[12])
 
 
@@ -36,14 +41,21 @@ def kick(p, y, c, h):
 
 @compiled
 def kick_with_heat(p, y, c, h):
-    """Return (y, c) after all that acts has acted alone for a time h, by the explicit midpoint rule."""
+    """Return (y, c) after all that acts has acted alone for a time h.
+
+    By the explicit midpoint rule.
+    """
     q1, q2, q3, q4, w1, w2, w3, _, _, _, v1, v2, v3 = y
     half = 0.5 * h
     tx, ty, tz = torque(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     fx, fy, fz = force(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     q1, q2, q3, q4 = rotation_turned(y, half * ux, half * uy, half * uz)
-    w1, w2, w3 = w1 + half * p[INVERSE] * tx, w2 + half * p[INVERSE + 1] * ty, w3 + half * p[INVERSE + 2] * tz
+    w1, w2, w3 = (
+        w1 + half * p[INVERSE] * tx,
+        w2 + half * p[INVERSE + 1] * ty,
+        w3 + half * p[INVERSE + 2] * tz,
+    )
     v1, v2, v3 = v1 + half * fx / p[MASS], v2 + half * fy / p[MASS], v3 + half * fz / p[MASS]
     tx, ty, tz = torque(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     fx, fy, fz = force(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
@@ -55,7 +67,10 @@ def kick_with_heat(p, y, c, h):
 
 @compiled
 def _added(p, y, c, h, tx, ty, tz, fx, fy, fz):
-    """Return (y, c) after a torque (frame) and a force (world) for a time h."""
+    """Return (y, c) after a torque (frame) and a force (world) for a time h.
+
+    More than eight arguments: torque and force stay scalars in registers.
+    """
     z, lost = rotation_added(p, y[:7], c[:7], h, tx, ty, tz)
     mass = p[MASS]
     v1, l1 = add_double(y[10], c[10], h * fx / mass)

@@ -1,4 +1,8 @@
-"""Template: the two flows of a body on a hinge; unknowns as in hinged.py. A drift goes on with the rate, a kick changes the rate."""
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the two flows of a body on a hinge.
+
+Unknowns as in hinged.py. A drift goes on with the rate, a kick changes the rate.
+"""
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
@@ -23,6 +27,9 @@ def kick(p, y, c, h):
 
 @compiled
 def kick_with_heat(p, y, c, h):
-    """Return (y, c) after the torque, which depends on the rate, has acted alone for a time h, by the explicit midpoint rule."""
+    """Return (y, c) after a torque that depends on the rate has acted alone for a time h.
+
+    By the explicit midpoint rule.
+    """
     speed, lost = add_double(y[1], c[1], h * rate(p, (y[0], y[1] + 0.5 * h * rate(p, y)[1]))[1])
     return (y[0], speed), (c[0], lost)

@@ -1,8 +1,14 @@
-"""Template: the two flows of a pivoted body, or of a free one on which no force acts; unknowns as in turning.py.
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the two flows of a pivoted body, or of a free one on which no force acts.
 
-drift            the free rotation about the point of reference, by its series to round-off: free_turn.py
-kick             what acts changes omega while the attitude stands: exact if torques depend on the attitude alone
-kick_with_heat   the same where they depend on omega too (drag), or turn the axes (internal dissipation): the explicit midpoint rule, order 2
+Unknowns as in turning.py.
+
+drift            the free rotation about the point of reference, by its series to round-off:
+                 free_turn.py
+kick             what acts changes omega while the attitude stands: exact if torques depend on
+                 the attitude alone
+kick_with_heat   the same where they depend on omega too (drag), or turn the axes (internal
+                 dissipation): the explicit midpoint rule, order 2
 
 c carries what the sums of q and omega have lost (Kahan) from flow to flow.
 """
@@ -34,13 +40,20 @@ def kick(p, y, c, h):
 
 @compiled
 def kick_with_heat(p, y, c, h):
-    """Return (y, c) after all that acts has acted alone for a time h, by the explicit midpoint rule."""
+    """Return (y, c) after all that acts has acted alone for a time h.
+
+    By the explicit midpoint rule.
+    """
     q1, q2, q3, q4, w1, w2, w3 = y
     half = 0.5 * h
     tx, ty, tz = torque(p, q1, q2, q3, q4, w1, w2, w3, 0.0, 0.0, 0.0)
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, 0.0, 0.0, 0.0)
     a1, a2, a3, a4 = turned(y, half * ux, half * uy, half * uz)
-    w1, w2, w3 = w1 + half * p[INVERSE] * tx, w2 + half * p[INVERSE + 1] * ty, w3 + half * p[INVERSE + 2] * tz
+    w1, w2, w3 = (
+        w1 + half * p[INVERSE] * tx,
+        w2 + half * p[INVERSE + 1] * ty,
+        w3 + half * p[INVERSE + 2] * tz,
+    )
     tx, ty, tz = torque(p, a1, a2, a3, a4, w1, w2, w3, 0.0, 0.0, 0.0)
     ux, uy, uz = turning(p, a1, a2, a3, a4, w1, w2, w3, 0.0, 0.0, 0.0)
     z, c = added(p, y, c, h, tx, ty, tz)

@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: the equations of a free body on which a force acts.
 
-Unknowns are q (4) and omega (3) of the frame, position x and velocity v of the centre of mass (world). Rotation as in
-rigid_body_sim/integrators/equations/turning.py, about the centre of mass; x' = v, M v' = F.
+Unknowns are q (4) and omega (3) of the frame, position x and velocity v of the centre of mass
+(world). Rotation as in rigid_body_sim/integrators/equations/turning.py, about the centre of mass;
+x' = v, M v' = F.
 """
 
 from rigid_body_sim.compilation.jit import compiled
@@ -27,22 +29,42 @@ GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
 
 
 @compiled
-def start(p, vector, node, at):
-    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+def start(p, vector, point, at):
+    """Set the parameters that a start decides, and fill `point` from `at` on with its unknowns."""
     q, omega, place, drift = read_state(p, vector)
     y = (*q, *omega, *place, *drift)
     for u in range(UNKNOWNS):
-        node[at + u] = y[u]
+        point[at + u] = y[u]
 
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the books."""
-    qx, qy, qz, qw, wx, wy, wz, vx, vy, vz = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[10], y[11], y[12]
+    """Return the rates of the unknowns, then of the ledger."""
+    qx, qy, qz, qw, wx, wy, wz, vx, vy, vz = (
+        y[0],
+        y[1],
+        y[2],
+        y[3],
+        y[4],
+        y[5],
+        y[6],
+        y[10],
+        y[11],
+        y[12],
+    )
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
     fx, fy, fz = force(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
-    return (*attitude_rate(qx, qy, qz, qw, ax, ay, az), *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz),
-            vx, vy, vz, fx / p[MASS], fy / p[MASS], fz / p[MASS], *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz))
+    return (
+        *attitude_rate(qx, qy, qz, qw, ax, ay, az),
+        *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz),
+        vx,
+        vy,
+        vz,
+        fx / p[MASS],
+        fy / p[MASS],
+        fz / p[MASS],
+        *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz),
+    )
 
 
 @compiled
@@ -54,5 +76,5 @@ def settled(y, c):
 
 @compiled
 def write(p, time, y, out):
-    """Fill out, the state vector."""
-    write_state(p, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], y[10], y[11], y[12], out)
+    """Fill `out`, the state vector."""
+    write_state(p, time, y[:4], y[4:7], y[7:10], y[10:13], out)

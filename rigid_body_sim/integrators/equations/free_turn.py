@@ -1,13 +1,20 @@
-"""The free rotation over one drift as increments: a closed form gives the new state, rounded to the size of the state and not of the change.
+# SPDX-License-Identifier: Apache-2.0
+"""The free rotation over one drift, as increments.
 
-    omega1' = ((I2 - I3)/I1) omega2 omega3 and so on in turn,    q(t) = q(0) Delta(t),    Delta' = Delta omega/2,  Delta(0) = 1
+A closed form would give the new state, rounded to the size of the state and not of the change.
 
-Both are power series about the start of a span h, of omega h and Delta in t/h, summed down to round-off. With M the largest |omega_i h|, the
-coefficients of omega_i h are not above M^(k + 1), for Euler's are between -1 and 1; so M = REACH needs fewer than TERMS terms, and a longer
-drift is cut into spans. The sums begin with t/h, so that increments of omega and Delta - 1 err by a rounding of themselves.
+    omega1' = ((I2 - I3)/I1) omega2 omega3 and so on in turn
+    q(t) = q(0) Delta(t),    Delta' = Delta omega/2,    Delta(0) = 1
 
-Kinetic energy is held: what the increments change of it, formed with 32 digits from omega and what its sums have lost, is taken back along
-the new omega. That corrects their rounding, 1e-16 of them and less.
+Both are power series about the start of a span h, of omega h and Delta in t/h, summed down to
+round-off. With M the largest |omega_i h|, the coefficients of omega_i h are not above M^(k + 1),
+for Euler's are between -1 and 1; so M = REACH needs fewer than TERMS terms, and a longer drift is
+cut into spans. The sums begin with t/h, so that increments of omega and Delta - 1 err by a
+rounding of themselves.
+
+Kinetic energy is held: what the increments change of it, formed with 32 digits from omega and what
+its sums have lost, is taken back along the new omega. That corrects their rounding, 1e-16 of them
+and less.
 """
 
 import math
@@ -33,7 +40,10 @@ LEAST = 1e-250                 # of I omega^2: below it the 32 digits of product
 
 @compiled_allocating
 def turned_freely(p, y, c, h):
-    """Return (q and omega, what their sums have lost), 7 each, after a free rotation for a time h; NaN if it takes more than MOST_SPANS."""
+    """Return (q and omega, what their sums have lost), 7 each, after a free rotation.
+
+    The time is h; NaN if it takes more than MOST_SPANS spans.
+    """
     S, left = np.empty((7, TERMS)), h
     for _ in range(MOST_SPANS):
         fastest = max(abs(y[4]), abs(y[5]), abs(y[6]))
@@ -68,7 +78,10 @@ def _span(p, y, c, h, S):
 
 @compiled
 def _fill(p, a1, a2, a3, S):
-    """Fill S with the terms of omega h (3 rows, from its start on) and Delta (4 rows) at t = h; return how many count."""
+    """Fill S with the terms of omega h (3 rows, from its start on) and Delta (4 rows) at t = h.
+
+    Return how many count.
+    """
     S[0, 0], S[1, 0], S[2, 0], S[3, 0], S[4, 0], S[5, 0], S[6, 0] = a1, a2, a3, 0.0, 0.0, 0.0, 1.0
     largest_turn, largest_change, small = 0.0, 0.0, 0
     for n in range(1, TERMS):
@@ -80,12 +93,20 @@ def _fill(p, a1, a2, a3, S):
             x, y = x + (r4 * u1 + (r2 * u3 - r3 * u2)), y + (r4 * u2 + (r3 * u1 - r1 * u3))
             z, w = z + (r4 * u3 + (r1 * u2 - r2 * u1)), w - (r1 * u1 + (r2 * u2 + r3 * u3))
         part, half = 1.0 / n, 0.5 / n
-        S[0, n], S[1, n], S[2, n] = part * p[EULER] * s1, part * p[EULER + 1] * s2, part * p[EULER + 2] * s3
+        S[0, n], S[1, n], S[2, n] = (
+            part * p[EULER] * s1,
+            part * p[EULER + 1] * s2,
+            part * p[EULER + 2] * s3,
+        )
         S[3, n], S[4, n], S[5, n], S[6, n] = half * x, half * y, half * z, half * w
         change = max(abs(S[0, n]), abs(S[1, n]), abs(S[2, n]))
         turn = max(abs(S[3, n]), abs(S[4, n]), abs(S[5, n]), abs(S[6, n]))
         largest_change, largest_turn = max(largest_change, change), max(largest_turn, turn)
-        small = small + 1 if change <= ROUNDING * largest_change and turn <= ROUNDING * largest_turn else 0
+        small = (
+            small + 1
+            if change <= ROUNDING * largest_change and turn <= ROUNDING * largest_turn
+            else 0
+        )
         if small == 2:    # one may vanish by symmetry
             return n
     return TERMS
@@ -93,7 +114,10 @@ def _fill(p, a1, a2, a3, S):
 
 @compiled
 def _gained(p, y, c, d1, d2, d3):
-    """Return what the increments d add to the kinetic energy, as a share of twice all of it: sum I d (2 omega + d)/(2 sum I omega^2)."""
+    """Return what the increments d add to the kinetic energy, as a share of twice all of it.
+
+    sum I d (2 omega + d)/(2 sum I omega^2).
+    """
     gain, low, twice = 0.0, 0.0, 0.0
     for k in range(3):
         moment, omega, d = p[MOMENTS + k], y[4 + k], d1 if k == 0 else d2 if k == 1 else d3

@@ -1,44 +1,75 @@
-"""Template: the equations of a body on a hinge: the angle phi (rad) since the start about the axis n (frame components), and phi'.
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the equations of a body on a hinge, in the angle phi and its rate.
+
+phi (rad) is the angle since the start about the axis n (frame components).
 
     I phi'' = n . Gamma,    q = q0 (n sin(phi/2), cos(phi/2)),    omega = phi' n
 
-I is the moment about the axis, Gamma the torque about the hinge point; the rest of Gamma is the bearing's.
+I is the moment about the axis, Gamma the torque about the hinge point; the rest of Gamma is the
+bearing's.
 """
 
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import (
-    FIXED,
     INVERSE,
-    PLACE,
+    EquationParameters,
+    load_start,
     read_state,
     write_state,
 )
 from rigid_body_sim.numerics.functions import cos, sin
-from rigid_body_sim.numerics.rotations import multiply, rotate  # noqa: F401 (rotate: for the bound sums)
+from rigid_body_sim.numerics.rotations import multiply, rotate  # noqa: F401
+from rigid_body_sim.numerics.vectors import dot
+from rigid_body_sim.scene.state import STATE
 
+# `rotate` is for the bound sums
 torque = UNBOUND
 booked = UNBOUND
 
 UNKNOWNS = 2
 GROUPS = ((0, 1, True), (1, 2, False))
-AXIS, ATTITUDE = FIXED, FIXED + 3    # n; q0
+
+
+class HingedParameters(NamedTuple):
+    """The parameters of a body on a hinge."""
+
+    equation: EquationParameters
+    axis: Vector              # n, frame components
+    attitude: Quaternion      # q0, at the start
+
+
+PARAMETERS = layout(HingedParameters)
+AXIS, ATTITUDE = PARAMETERS.part('axis').first, PARAMETERS.part('attitude').first
+load_omega = STATE.part('angular_velocity').load
+load_axis, store_attitude = PARAMETERS.part('axis').load, PARAMETERS.part('attitude').store
 
 
 @compiled
-def start(p, vector, node, at):
-    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
+def start(p, vector, point, at):
+    """Set the parameters that a start decides, and fill `point` from `at` on with its unknowns."""
     q, _, _, _ = read_state(p, vector)
-    p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3] = q
-    node[at], node[at + 1] = 0.0, p[AXIS] * vector[5] + p[AXIS + 1] * vector[6] + p[AXIS + 2] * vector[7]
+    store_attitude(p, q)
+    point[at], point[at + 1] = 0.0, dot(load_axis(p), load_omega(vector))
 
 
 @compiled
 def attitude(p, phi):
     """Return q at an angle."""
     s, c = sin(0.5 * phi), cos(0.5 * phi)
-    return multiply(p[ATTITUDE], p[ATTITUDE + 1], p[ATTITUDE + 2], p[ATTITUDE + 3], s * p[AXIS], s * p[AXIS + 1], s * p[AXIS + 2], c)
+    return multiply(
+        p[ATTITUDE],
+        p[ATTITUDE + 1],
+        p[ATTITUDE + 2],
+        p[ATTITUDE + 3],
+        s * p[AXIS],
+        s * p[AXIS + 1],
+        s * p[AXIS + 2],
+        c,
+    )
 
 
 @compiled
@@ -50,7 +81,7 @@ def taken(p, tx, ty, tz):
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the books."""
+    """Return the rates of the unknowns, then of the ledger."""
     phi, speed = y[0], y[1]
     nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
     qx, qy, qz, qw = attitude(p, phi)
@@ -67,8 +98,7 @@ def settled(y, c):
 
 @compiled
 def write(p, time, y, out):
-    """Fill out, the state vector."""
-    phi, speed = y[0], y[1]
-    qx, qy, qz, qw = attitude(p, phi)
-    write_state(p, time, qx, qy, qz, qw, speed * p[AXIS], speed * p[AXIS + 1], speed * p[AXIS + 2], p[PLACE], p[PLACE + 1], p[PLACE + 2],
-                0.0, 0.0, 0.0, out)
+    """Fill `out`, the state vector."""
+    nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
+    omega = (y[1] * nx, y[1] * ny, y[1] * nz)
+    write_state(p, time, attitude(p, y[0]), omega, load_start(p).place, (0.0, 0.0, 0.0), out)

@@ -1,16 +1,22 @@
-"""The equations of a sphere on a table under a held force F and couple T, with Coulomb friction f at the lowest point.
+# SPDX-License-Identifier: Apache-2.0
+"""The equations of a sphere on a table under a held force F and couple T.
 
-Symbols as in rigid_body_sim/motions/sliding_sphere.py: a radius, M mass, k = I/(M a^2), mu, g, z up, u = v - a omega x z the slip. The
-normal force is N = M g - F_z (none if that is negative: the ball stays on the table). With e = a omega x z and p = v + k e, which friction
-does not change,
+Coulomb friction f acts at the lowest point.
 
-    u' = G + (1 + 1/k) f/M,  G = F/M - (T x z)/(k M a),    p' = F/M + (T x z)/(M a),    I omega_z' = T_z,
+Symbols as in rigid_body_sim/motions/sliding_sphere.py: a radius, M mass, k = I/(M a^2), mu, g, z
+up, u = v - a omega x z the slip. The normal force is N = M g - F_z (none if that is negative: the
+ball stays on the table). With e = a omega x z and p = v + k e, which friction does not change,
+
+    u' = G + (1 + 1/k) f/M,    G = F/M - (T x z)/(k M a),
+    p' = F/M + (T x z)/(M a),    I omega_z' = T_z,
     v = (p + k u)/(1 + k),   e = (p - u)/(1 + k).
 
-SLIDING: f = -mu N u/|u|. Where u dies its direction may turn ever faster, so there time is an unknown too and the independent variable is s
-with dt = |u| ds: everything is smooth in s, and |u| dies like an exponential. ROLLING: u = 0, f = -M G k/(1 + k), as long as |f| <= mu N.
-GLIDING: no friction. CREEPING: slip that has just begun. It is so small that it follows G, whose direction turns with the body at a rate below
-|omega|, with a lag of u |omega|/G at most: u' = (1 - c/G) G with c = (1 + 1/k) mu N/M. All but SLIDING have t for their independent variable.
+SLIDING: f = -mu N u/|u|. Where u dies its direction may turn ever faster, so there time is an
+unknown too and the independent variable is s with dt = |u| ds: everything is smooth in s, and |u|
+dies like an exponential. ROLLING: u = 0, f = -M G k/(1 + k), as long as |f| <= mu N. GLIDING: no
+friction. CREEPING: slip that has just begun. It is so small that it follows G, whose direction
+turns with the body at a rate below |omega|, with a lag of u |omega|/G at most: u' = (1 - c/G) G
+with c = (1 + 1/k) mu N/M. All but SLIDING have t for their independent variable.
 """
 
 
@@ -23,10 +29,17 @@ MODE, WORLD_FORCE, WORLD_COUPLE, BODY_FORCE, BODY_COUPLE = 5, 6, 9, 12, 15
 PARAMETERS = 18
 SLIDING, ROLLING, GLIDING, CREEPING = range(4)
 
-# unknowns: attitude, slip u, p, omega_z, place since the start, time since the start; then the books
+# unknowns: attitude, slip u, p, omega_z, place since the start, time since the start; then the
+# ledger
 Q, U, P, SPIN, PLACE, TIME = 0, 4, 6, 8, 9, 11
 UNKNOWNS = 12
-GROUPS = ((Q, U, True), (U, SPIN, False), (SPIN, PLACE, False), (PLACE, TIME, False), (TIME, UNKNOWNS, False))
+GROUPS = (
+    (Q, U, True),
+    (U, SPIN, False),
+    (SPIN, PLACE, False),
+    (PLACE, TIME, False),
+    (TIME, UNKNOWNS, False),
+)
 
 
 @compiled
@@ -40,10 +53,17 @@ def wrench(p, qx, qy, qz, qw):
 
 @compiled
 def drive(p, y):
-    """Return G (x, y) and the largest deceleration of the slip that friction can give, c = (1 + 1/k) mu N/M."""
+    """Return G (x, y) and c = (1 + 1/k) mu N/M.
+
+    c is the largest deceleration of the slip that friction can give.
+    """
     fx, fy, fz, tx, ty, _ = wrench(p, y[0], y[1], y[2], y[3])
     a, k, M = p[RADIUS], p[RATIO], p[MASS]
-    return (fx / M - ty / (k * M * a), fy / M + tx / (k * M * a), (1.0 + 1.0 / k) * p[FRICTION] * max(0.0, p[GRAVITY] - fz / M))
+    return (
+        fx / M - ty / (k * M * a),
+        fy / M + tx / (k * M * a),
+        (1.0 + 1.0 / k) * p[FRICTION] * max(0.0, p[GRAVITY] - fz / M),
+    )
 
 
 @compiled
@@ -56,7 +76,10 @@ def motion(p, y):
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the books, per unit of the independent variable."""
+    """Return the rates of the unknowns, then of the ledger.
+
+    Per unit of the independent variable.
+    """
     a, k, M = p[RADIUS], p[RATIO], p[MASS]
     fx, fy, _, tx, ty, tz = wrench(p, y[0], y[1], y[2], y[3])
     gx, gy, c = drive(p, y)
@@ -76,7 +99,22 @@ def rate(p, y):
     rubx, ruby = share * (ux - pace * gx), share * (uy - pace * gy)
     half = 0.5 * pace
     qx, qy, qz, qw = multiply(half * wx, half * wy, half * wz, 0.0, y[0], y[1], y[2], y[3])
-    return (qx, qy, qz, qw, ux, uy, pace * (fx / M + ty / (M * a)), pace * (fy / M - tx / (M * a)), pace * tz / (k * M * a * a),
-            pace * vx, pace * vy, pace,
-            pace * (fx * vx + fy * vy + tx * wx + ty * wy + tz * wz), -(rubx * y[4] + ruby * y[5]),
-            pace * tx + a * ruby, pace * ty - a * rubx, pace * tz)
+    return (
+        qx,
+        qy,
+        qz,
+        qw,
+        ux,
+        uy,
+        pace * (fx / M + ty / (M * a)),
+        pace * (fy / M - tx / (M * a)),
+        pace * tz / (k * M * a * a),
+        pace * vx,
+        pace * vy,
+        pace,
+        pace * (fx * vx + fy * vy + tx * wx + ty * wy + tz * wz),
+        -(rubx * y[4] + ruby * y[5]),
+        pace * tx + a * ruby,
+        pace * ty - a * rubx,
+        pace * tz,
+    )

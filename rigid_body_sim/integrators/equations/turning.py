@@ -1,24 +1,28 @@
-"""Template: the equations of a pivoted body, or of a free one on which no force acts: q (4) and omega (3) of the frame.
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the equations of a pivoted body, or of a free one on which no force acts.
 
-    q' = q (omega + u)/2,    omega1' = ((I2 - I3)/I1) omega2 omega3 + (Gamma + m x u)_1/I1 and so on in turn,  m = I omega
+The unknowns are q (4) and omega (3) of the frame.
 
-Gamma is the torque about the point of reference, u the extra turning rate of internal dissipation. The coefficients of Euler's terms are
-between -1 and 1 for every body, needles included. The point of reference moves in a straight line.
+    q' = q (omega + u)/2,    m = I omega
+    omega1' = ((I2 - I3)/I1) omega2 omega3 + (Gamma + m x u)_1/I1 and so on in turn
+
+Gamma is the torque about the point of reference, u the extra turning rate of internal dissipation.
+The coefficients of Euler's terms are between -1 and 1 for every body, needles included. The point
+of reference moves in a straight line.
 """
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
-    DRIFT,
-    PLACE,
-    START,
     attitude_rate,
+    load_start,
     read_state,
     taken,
     unit,
     write_state,
 )
 from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
+from rigid_body_sim.numerics.vectors import plus, scaled
 
 # `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
@@ -30,18 +34,24 @@ GROUPS = ((0, 4, True), (4, 7, False))
 
 
 @compiled
-def start(p, vector, node, at):
-    """Set the parameters that a start decides, and fill `node` from `at` on with its unknowns."""
-    (node[at], node[at + 1], node[at + 2], node[at + 3]), (node[at + 4], node[at + 5], node[at + 6]), _, _ = read_state(p, vector)
+def start(p, vector, point, at):
+    """Set the parameters that a start decides, and fill `point` from `at` on with its unknowns."""
+    q, omega, _, _ = read_state(p, vector)
+    y = (*q, *omega)
+    for u in range(UNKNOWNS):
+        point[at + u] = y[u]
 
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the books."""
+    """Return the rates of the unknowns, then of the ledger."""
     qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0)
-    return (*attitude_rate(qx, qy, qz, qw, ax, ay, az), *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
-            *booked(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0))
+    return (
+        *attitude_rate(qx, qy, qz, qw, ax, ay, az),
+        *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
+        *booked(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
+    )
 
 
 @compiled
@@ -53,7 +63,7 @@ def settled(y, c):
 
 @compiled
 def write(p, time, y, out):
-    """Fill out, the state vector."""
-    dt = time - p[START]
-    write_state(p, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], p[PLACE] + dt * p[DRIFT], p[PLACE + 1] + dt * p[DRIFT + 1],
-                p[PLACE + 2] + dt * p[DRIFT + 2], p[DRIFT], p[DRIFT + 1], p[DRIFT + 2], out)
+    """Fill `out`, the state vector."""
+    begin = load_start(p)
+    place = plus(begin.place, scaled(time - begin.time, begin.drift))
+    write_state(p, time, y[:4], y[4:7], place, begin.drift, out)

@@ -1,26 +1,47 @@
-"""What the families of methods with a kernel ``step`` share: marching, adaptive where the method estimates its error, or by fixed steps."""
+# SPDX-License-Identifier: Apache-2.0
+"""What the families of methods with a kernel ``step`` share: adaptive and fixed-step marches.
+
+A method with an error estimate is marched by adaptive.py, every other one by fixed.py.
+"""
 
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
-from rigid_body_sim.integrators.marching import adaptive, fixed, unroll
+from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
+from rigid_body_sim.integrators.marching.points import VALUES
 
 
-def march(method, bound, adapts):
-    """Return the module that marches: adaptive.py or fixed.py bound to equations and to the step of the method."""
-    size, groups, kernels = bound.kind.UNKNOWNS + bound.extra, bound.kind.GROUPS, bound.kernels.__name__
-    bindings = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled', 'SIZE': f'SIZE = {size}\n',
+def equations_of(scene, wrench, ledger):
+    """Return the equations of a scene that `march` is for."""
+    return Equations(scene, wrench, ledger)
+
+
+def bind(method, stepped, ledger):
+    """Return the method's kernels on the equations of a scene."""
+    return course.Bound(method, stepped, ledger)
+
+
+def march(method, equations, adapts):
+    """Return the module that marches: adaptive.py or fixed.py bound to equations and step."""
+    groups, kernels = equations.kind.GROUPS, equations.kernels.__name__
+    size = equations.kind.UNKNOWNS + equations.extra
+    bindings = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled',
+                'SIZE': f'SIZE = {size}\n',
                 'load': unroll.load_source('load', size), 'put': unroll.put_source('put', size)}
     if not adapts:
-        return specialise(fixed, step=method.FAMILY.step_source(method, bound), **bindings)
+        return specialise(fixed, step=method.FAMILY.step_source(method, equations), **bindings)
     relative = sum(not absolute for _, _, absolute in groups)
     return specialise(
         adaptive, fastest=unroll.fastest_source(groups), ORDER=f'ORDER = {method.ORDER}\n',
-        trial=unroll.trial_source(method, bound.kind.UNKNOWNS, bound.extra, groups),
-        load_scales=unroll.load_source('load_scales', relative), put_scales=unroll.put_source('put_scales', relative), **bindings)
+        trial=unroll.trial_source(method, equations.kind.UNKNOWNS, equations.extra, groups),
+        load_scales=unroll.load_source('load_scales', relative),
+        put_scales=unroll.put_source('put_scales', relative), **bindings)
 
 
-def begin(stepped, kernels):
-    """Return (control, node) of a march, to be copied for each start."""
-    node = np.zeros(adaptive.VALUES + 2 * kernels.SIZE)
-    return np.array([stepped.accuracy / stepped.horizon] if stepped.step is None else [stepped.step, 0.0]), node
+def begin(stepped, march):
+    """Return (control, point) of a march, to be copied for each start."""
+    point = np.zeros(VALUES + 2 * march.SIZE)
+    if stepped.step is None:
+        return np.array([stepped.accuracy / stepped.horizon]), point
+    return np.array([stepped.step, 0.0]), point

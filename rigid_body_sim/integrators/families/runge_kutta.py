@@ -1,15 +1,26 @@
-"""Family of the Runge-Kutta methods: modules with a table of coefficients A, B, and E3, E5 if they estimate their error (dop8.py)."""
+# SPDX-License-Identifier: Apache-2.0
+"""Family of the Runge-Kutta methods.
 
-from rigid_body_sim.integrators.equations.equations import Equations
-from rigid_body_sim.integrators.families.one_step import begin, march  # noqa: F401
-from rigid_body_sim.integrators.marching import unroll
+A method is a module with a table of coefficients A, B, and E3, E5 if it estimates its error
+(dop8.py).
+"""
+
+from rigid_body_sim.integrators.families import one_step
+from rigid_body_sim.integrators.families.one_step import begin, equations_of, march  # noqa: F401
+from rigid_body_sim.integrators.marching import table, unroll
+
+ACCOUNTS = True
+SHARED = True
+LANES = False
 
 
-def equations(scene, wrench, books):
-    """Return the equations of a scene that `step_source` is for."""
-    return Equations(scene, wrench, books)
+def bind(method, stepped, ledger):
+    """Return the method's kernels on the equations of a scene."""
+    if stepped.scene.constraint.kind == 'table':
+        return table.OnTable(stepped.scene, method, stepped.wrench, stepped.step)
+    return one_step.bind(method, stepped, ledger)
 
 
-def step_source(method, bound):
-    """Return the source of ``step(p, y, c, k0, h) -> (y, c)`` for equations: rigid_body_sim/integrators/marching/unroll.py."""
-    return unroll.step_source(method, bound.kind.UNKNOWNS, bound.extra)
+def step_source(method, equations):
+    """Return the source of ``step(p, y, c, k0, h) -> (y, c)``: marching/unroll.py."""
+    return unroll.step_source(method, equations.kind.UNKNOWNS, equations.extra)

@@ -1,9 +1,13 @@
-"""Family of SciPy's solvers, on the scene's own compiled rates: a method is a module with SOLVER, a ``scipy.integrate.OdeSolver``.
+# SPDX-License-Identifier: Apache-2.0
+"""Family of SciPy's solvers, on the scene's own compiled rates.
 
-They run forward as far as they were asked and keep the interpolant of each step (about 1 kB a step); states come from these, so a state
-does not depend on which other times were asked. `accuracy` is what SciPy is asked for at each step: rtol = accuracy, atol = accuracy times
-the size of the unknown at the start, at least 1 of its unit. Errors of steps add up beyond it. Below 100 ulp (2.2e-14) it is 100 ulp,
-SciPy's own limit.
+A method is a module with SOLVER, a ``scipy.integrate.OdeSolver``.
+
+They run forward as far as they were asked and keep the interpolant of each step (about 1 kB a
+step); states come from these, so a state does not depend on which other times were asked.
+`accuracy` is what SciPy is asked for at each step: rtol = accuracy, atol = accuracy times the size
+of the unknown at the start, at least 1 of its unit. Errors of steps add up beyond it. Below 100
+ulp (2.2e-14) it is 100 ulp, SciPy's own limit.
 """
 
 import bisect
@@ -15,14 +19,22 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.scene.state import STATE_SIZE, TIME
 
+ACCOUNTS = True
+SHARED = False    # the quadratures take part in the step control of SciPy
+LANES = False
 FINEST = 100.0 * np.finfo(float).eps
+
+
+def bind(method, stepped, ledger):
+    """Return the rates of a scene for one solver."""
+    return Bound(stepped, ledger)
 
 
 class Bound:
     """The rates of one scene for one solver."""
 
-    def __init__(self, stepped, books):
-        self.equations = Equations(stepped.scene, stepped.wrench, books)
+    def __init__(self, stepped, ledger):
+        self.equations = Equations(stepped.scene, stepped.wrench, ledger)
         self.acts = self.equations.acts
 
     def course(self, stepped):
@@ -31,7 +43,12 @@ class Bound:
 
 
 class _Course:
-    """One run from a start: interpolants of the steps so far, one solver for each stretch between breakpoints."""
+    """One run from a start: interpolants of the steps so far.
+
+    There is one solver for each stretch between breakpoints.
+    """
+
+    TELLS_EVENTS = False
 
     def __init__(self, stepped, equations):
         self._equations, self._method, self._scene = equations, stepped.method, stepped.scene
@@ -53,14 +70,22 @@ class _Course:
         rate = self._equations.kernels.rate
         self._p = p
         end = next(time for time in self._ends if time > begin)
-        self._solver = self._method.SOLVER(lambda time, y: np.array(rate(p, tuple(y.tolist()))), begin, y, end, rtol=self._accuracy,
-                                           atol=self._accuracy * self._scales)
+        self._solver = self._method.SOLVER(
+            lambda time, y: np.array(rate(p, tuple(y.tolist()))),
+            begin,
+            y,
+            end,
+            rtol=self._accuracy,
+            atol=self._accuracy * self._scales,
+        )
 
     def _advance(self):
         message = self._solver.step()
         if self._solver.status == 'failed' or not np.isfinite(self._solver.y).all():
-            raise NotConverged(f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
-                               f'{message or "the state is no longer finite"}')
+            raise NotConverged(
+                f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
+                f'{message or "the state is no longer finite"}'
+            )
         self._reached.append(self._solver.t)
         self._steps.append(self._solver.dense_output())
         self._parameters.append(self._p)

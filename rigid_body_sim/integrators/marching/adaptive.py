@@ -1,14 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: march with a Runge-Kutta method that chooses its own steps.
 
-A node is one point of the march: [time, next step, squared scales (3), unknowns, what their sums lost]. A step is accepted when its
-estimated error per second is below the tolerance, so that errors add up in proportion to time and not to the number of steps.
+A point of the march holds [time, next step, squared scales (3), unknowns, what their sums lost]. A
+step is accepted when its estimated error per second is below the tolerance, so that errors add up
+in proportion to time and not to the number of steps.
 """
 
 import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import onward
+from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES, onward
 from rigid_body_sim.numerics.functions import power
 
 rate = UNBOUND
@@ -22,39 +24,41 @@ put_scales = UNBOUND
 SIZE = UNBOUND
 ORDER = UNBOUND
 
-TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
 TRIALS = 60                # of one step: after so many refusals it is given up
 
 
 @compiled
-def begin(p, control, node):
-    """Choose the first step from a node whose time and unknowns are set."""
-    y = load(node, VALUES)
+def begin(p, control, point):
+    """Choose the first step from a point whose time and unknowns are set."""
+    y = load(point, VALUES)
     speed = fastest(y, rate(p, y))
-    node[STEP] = power(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+    point[STEP] = power(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
 
 @compiled
-def march(p, control, node, following, target, end, limit):
-    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+def march(p, control, point, following, target, end, limit):
+    """Move `point` on until the step from it holds the time `target`, at most `limit` steps.
+
+    Return (steps moved, whether it went well).
 
     Parameters
     ----------
     control : array
         [tolerance per second].
-    node, following : array
-        The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed.
+    point, following : array
+        The step from `point` ends at `following`, which is not known yet if its time is not later.
+        Both are changed.
     end : float
-        The last node stands there exactly.
+        The last point stands there exactly.
     """
     tolerance = control[0]
-    moved = onward(node, following, target)
+    moved = onward(point, following, target)
     if moved < 0:
         return 0, True
-    t, planned = node[TIME], node[STEP]
-    scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
+    t, planned = point[TIME], point[STEP]
+    scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
     good = True
     while t < end:
         k0 = rate(p, y)
@@ -66,7 +70,9 @@ def march(p, control, node, following, target, end, limit):
             allowed = tolerance * (t1 - t)
             good = error <= allowed and t1 > t
             if error > 1e-9 * allowed and error < math.inf:
-                h = (t1 - t) * min(GROWTH, max(SHRINK, SAFETY * power(allowed / error, 1.0 / (ORDER - 1))))
+                h = (t1 - t) * min(
+                    GROWTH, max(SHRINK, SAFETY * power(allowed / error, 1.0 / (ORDER - 1)))
+                )
             else:    # nothing to be seen of the error, or not a number
                 h = (t1 - t) * (GROWTH if good else SHRINK)
             if good:
@@ -80,18 +86,24 @@ def march(p, control, node, following, target, end, limit):
             break
         t, planned, y, c, scales = t1, h, y1, c1, scales1
         moved += 1
-    node[TIME], node[STEP] = t, planned
-    put_scales(scales, node, SCALES)
-    put(y, node, VALUES)
-    put(c, node, VALUES + SIZE)
+    point[TIME], point[STEP] = t, planned
+    put_scales(scales, point, SCALES)
+    put(y, point, VALUES)
+    put(c, point, VALUES + SIZE)
     return moved, good
 
 
 @compiled
-def between(p, control, node, following, dt):
-    """Return the unknowns a time dt after a node and within the step from it: one step of the method."""
-    y = load(node, VALUES)
+def between(p, control, point, following, dt):
+    """Return the unknowns a time dt after a point, within the step from it.
+
+    One step of the method.
+    """
+    y = load(point, VALUES)
     if dt > 0.0:
-        # the same step as in the march, so that there is one to compile; its error is not looked at
-        y, _, _, _ = trial(p, y, load(node, VALUES + SIZE), rate(p, y), dt, load_scales(node, SCALES))
+        # the same step as in the march, so that there is one to compile; its error is not looked
+        # at
+        y, _, _, _ = trial(
+            p, y, load(point, VALUES + SIZE), rate(p, y), dt, load_scales(point, SCALES)
+        )
     return y

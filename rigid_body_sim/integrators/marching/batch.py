@@ -1,6 +1,10 @@
-"""Many bodies of a scene by Taylor series, eight at once in the vector unit (batch_series.py, batch_march.py): taylor's mode for ensembles.
+# SPDX-License-Identifier: Apache-2.0
+"""Many bodies of a scene by Taylor series, eight at once: taylor's mode for ensembles.
 
-The states are those of the method to the accuracy asked, not to the bit: order and steps are others.
+batch_series.py has a step in the vector unit, batch_march.py the march.
+
+The states are those of the method to the accuracy asked, not to the bit: order and steps are
+others.
 """
 
 import math
@@ -8,8 +12,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.lanes import LANES
-from rigid_body_sim.integrators.equations import euler
-from rigid_body_sim.integrators.families import power_series
+from rigid_body_sim.integrators.equations import euler, series
 from rigid_body_sim.integrators.marching import batch_series
 from rigid_body_sim.integrators.marching.batch_march import NOBODY, march
 from rigid_body_sim.numerics.functions import hypot3
@@ -26,7 +29,10 @@ def unit(vector):
 
 
 def directions(force, couple):
-    """Return the unit vectors along a force and, in the plane of it and a couple, across it, and a third one, as rows of a rotation."""
+    """Return three unit vectors as rows of a rotation.
+
+    The first is along a force, the second across it in the plane of force and couple.
+    """
     first = force if any(force) else couple
     first = unit(first) if any(first) else (1.0, 0.0, 0.0)
     least = min(range(3), key=lambda k: abs(first[k]))
@@ -39,15 +45,27 @@ def directions(force, couple):
 
 
 def rows_for(p):
-    """Return the directions, and the rows of lanes with the numbers of the equations that parameters p (power_series.py) stand for."""
-    inverse, force, couple = (p[at:at + 3].tolist() for at in (euler.INVERSE, power_series.FORCE, power_series.COUPLE))
-    rows, u, table = directions(force, couple), p[power_series.PULL:power_series.PULL + 6], np.zeros((batch_series.ROWS, LANES))
+    """Return the directions, and the rows of lanes with the numbers of the equations.
+
+    p holds the parameters of equations/series.py.
+    """
+    inverse, force, couple = (
+        p[at : at + 3].tolist() for at in (euler.INVERSE, series.FORCE, series.COUPLE)
+    )
+    rows, u, table = (
+        directions(force, couple),
+        p[series.PULL : series.PULL + 6],
+        np.zeros((batch_series.ROWS, LANES)),
+    )
     along, aside, _ = apply(rows, couple)
     pull = hypot3(*force) * np.array(((0.0, u[0], u[1]), (u[3], 0.0, u[2]), (u[4], u[5], 0.0)))
-    for at, values in ((batch_series.EULER, p[euler.EULER:euler.EULER + 3]),
-                       (batch_series.CONSTANT, p[power_series.CONSTANT:power_series.CONSTANT + 3]),
-                       (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
-                       (batch_series.V, scaled(aside, inverse)), (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0))):
+    for at, values in (
+        (batch_series.EULER, p[euler.EULER : euler.EULER + 3]),
+        (batch_series.CONSTANT, p[series.CONSTANT : series.CONSTANT + 3]),
+        (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
+        (batch_series.V, scaled(aside, inverse)),
+        (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0)),
+    ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
     return rows, table
 
@@ -57,7 +75,7 @@ class Batch:
 
     Parameters
     ----------
-    equations : power_series.Series
+    equations : series.Series
     tolerance : float
         For a second.
     times : array (n,)
@@ -68,23 +86,44 @@ class Batch:
         self._tolerance, self._times, self._stretches = tolerance, times, []
         self._order = np.argsort(times, kind='stable')
         rising, begin = times[self._order], -math.inf
-        # between two breakpoints the equations hold, and what they give at the end is the start behind it
+        # between two breakpoints the equations hold, and what they give at the end is the start
+        # behind it
         for end in (*(time for time in equations.breakpoints if time <= rising[-1]), math.inf):
-            p, (first, last) = equations.held(begin), np.searchsorted(rising, (begin, end)).tolist()
+            p, (first, last) = (
+                equations.held(begin),
+                np.searchsorted(rising, (begin, end)).tolist(),
+            )
             rows, table = rows_for(p)
             turn = from_matrix(tuple(zip(*rows, strict=True)))
             self._stretches.append((table, np.tile(p, (LANES, 1)), turn, first, last, end))
             begin = end
 
     def run(self, starts, out):
-        """Fill out, shape (bodies, n, 14), with the states of many starts, shape (bodies, 14), none later than a time.
+        """Fill out, shape (bodies, n, 14), with the states of bodies.
 
-        Return (number of a body whose state is no longer finite or whose step fell below what the clock resolves, its time), or None.
+        They start from `starts`, shape (bodies, 14).
+
+        No start is later than a time.
+
+        Return (number of a body whose state is no longer finite or whose step fell below what the
+        clock resolves, its time), or None.
         """
         states, seats = starts.copy(), np.empty(2 * LANES, dtype=np.int64)
         for table, p, turn, first, last, end in self._stretches:
-            body, time = march(_on_lines(table), p.copy(), turn, self._tolerance, seats, states, self._times, self._order, first, last, end,
-                               out)
+            body, time = march(
+                _on_lines(table),
+                p.copy(),
+                turn,
+                self._tolerance,
+                seats,
+                states,
+                self._times,
+                self._order,
+                first,
+                last,
+                end,
+                out,
+            )
             if body != NOBODY:
                 return body, time
         return None

@@ -1,4 +1,5 @@
-"""March of many bodies, eight at a time: a body that has arrived gives its lane to the next one."""
+# SPDX-License-Identifier: Apache-2.0
+"""March of many bodies, eight at a time: a body that arrives gives its lane to the next one."""
 
 import math
 
@@ -10,8 +11,8 @@ from rigid_body_sim.integrators.marching.batch_series import (
     END,
     FOLLOWING,
     FOUND,
-    NODE_SIZE,
     OMEGA,
+    POINT_SIZE,
     QUATERNION,
     SERIES,
     SINCE,
@@ -23,12 +24,16 @@ from rigid_body_sim.integrators.marching.batch_series import (
 from rigid_body_sim.numerics.rotations import multiply, rotate_back
 
 NOBODY = -1
-BODY, NEXT = 0, LANES        # in `seats`: which body sits in a lane, and the place of its next time
+# in `seats`: which body sits in a lane, and the place of its next time
+BODY, NEXT = 0, LANES
 
 
 @compiled
 def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, out):
-    """Fill out with the states at times[order[first]] ... times[order[last - 1]], rising; return (NOBODY, 0.0) or who failed, and when.
+    """Fill out with the states at times[order[first]] ... times[order[last - 1]], rising.
+
+    Return (NOBODY, 0.0) or who failed, and when. More than eight arguments: compiled code is
+    handed arrays and scalars, and one call marches all bodies.
 
     Parameters
     ----------
@@ -42,7 +47,8 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         For a second.
     seats : int array (2 LANES,)
     states : array (bodies, 14)
-        Where the bodies are. With a finite `end` they are brought there, those that are not beyond it.
+        Where the bodies are. With a finite `end` they are brought there, those that are not beyond
+        it.
     out : array (bodies, n, 14)
     """
     target, following, busy, free = (end if end < math.inf else times[order[last - 1]]), 0, 0, True
@@ -63,7 +69,11 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         advance(W, (tolerance * tolerance,))
         free = due = False
         for lane in range(lanes):
-            body, t, t1 = seats[BODY + lane], W[LANES * TIME + lane], W[LANES * (FOLLOWING + TIME) + lane]
+            body, t, t1 = (
+                seats[BODY + lane],
+                W[LANES * TIME + lane],
+                W[LANES * (FOLLOWING + TIME) + lane],
+            )
             if body != NOBODY:
                 if not ((t1 > t or t >= target) and W[LANES * SOUND + lane] < math.inf):
                     return body, t
@@ -71,7 +81,7 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
                 due |= seats[NEXT + lane] < last and times[order[seats[NEXT + lane]]] <= t1
         if due:
             _give(W, p, turn, seats, times, order, last, out)
-        for k in range(LANES * NODE_SIZE):
+        for k in range(LANES * POINT_SIZE):
             W[k] = W[LANES * FOLLOWING + k]
         if free:
             for lane in range(lanes):
@@ -85,11 +95,15 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
 @compiled
 def _seat(W, p, turn, lane, state, target):
     """Put a body into a lane."""
-    for place in range(NODE_SIZE):
+    for place in range(POINT_SIZE):
         W[LANES * place + lane] = 0.0
     q, w, _, _ = read_state(p, state)
     q = multiply(-turn[0], -turn[1], -turn[2], turn[3], q[0], q[1], q[2], q[3])
-    y = (*rotate_back(q[0], q[1], q[2], q[3], 1.0, 0.0, 0.0), *rotate_back(q[0], q[1], q[2], q[3], 0.0, 1.0, 0.0), *w)
+    y = (
+        *rotate_back(q[0], q[1], q[2], q[3], 1.0, 0.0, 0.0),
+        *rotate_back(q[0], q[1], q[2], q[3], 0.0, 1.0, 0.0),
+        *w,
+    )
     W[LANES * TIME + lane], W[LANES * END + lane] = state[0], target
     for k in range(4):
         W[LANES * (QUATERNION + k) + lane] = q[k]
@@ -99,9 +113,11 @@ def _seat(W, p, turn, lane, state, target):
 
 @compiled
 def _write(W, p, turn, lane, quaternion, omega, time, out):
-    """Write the state at a time whose quaternion and omega stand in the rows from two places on."""
+    """Write the state at a time; its quaternion and omega stand in the rows from two places on."""
     a, b = LANES * quaternion + lane, LANES * omega + lane
-    q = multiply(turn[0], turn[1], turn[2], turn[3], W[a], W[a + LANES], W[a + 2 * LANES], W[a + 3 * LANES])
+    q = multiply(
+        turn[0], turn[1], turn[2], turn[3], W[a], W[a + LANES], W[a + 2 * LANES], W[a + 3 * LANES]
+    )
     write(p, time, (*q, W[b], W[b + LANES], W[b + 2 * LANES]), out)
 
 
@@ -123,5 +139,14 @@ def _give(W, p, turn, seats, times, order, last, out):
                 if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
                     k = order[seats[NEXT + lane]]
                     if times[k] <= W[LANES * (FOLLOWING + TIME) + lane]:
-                        _write(W, p[lane], turn, lane, FOUND, FOUND + 4, times[k], out[seats[BODY + lane], k])
+                        _write(
+                            W,
+                            p[lane],
+                            turn,
+                            lane,
+                            FOUND,
+                            FOUND + 4,
+                            times[k],
+                            out[seats[BODY + lane], k],
+                        )
                         seats[NEXT + lane] += 1

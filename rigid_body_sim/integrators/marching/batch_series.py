@@ -1,15 +1,20 @@
-"""A step of eight bodies at once by their Taylor series: each lane (lanes.py) is a body with its own time and step.
+# SPDX-License-Identifier: Apache-2.0
+"""A step of eight bodies at once by their Taylor series.
+
+Each lane (lanes.py) is a body with its own time and step.
 
 The unknowns are two directions of the world seen in the body, e1 and e2, and omega:
 
-    e' = e x omega,     omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2)_1   and so on in turn,
+    e' = e x omega,
+    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2)_1   and so on in turn,
 
-where e1 lies along a force and e2 in the plane of it and a couple, both fixed in the world; so one form serves all scenes of the method, by
-15 products of two series for each order. Their Cauchy sums run over a loop: two of its terms, those with the newest coefficients, stand
-behind it, so that it need not wait for them.
+where e1 lies along a force and e2 in the plane of it and a couple, both fixed in the world; so one
+form serves all scenes of the method, by 15 products of two series for each order. Their Cauchy
+sums run over a loop: two of its terms, those with the newest coefficients, stand behind it, so
+that it need not wait for them.
 
-The quaternion follows from e1 and e2 up to its sign, which the way decides: of the two the one nearer to where the integral of omega alone
-would have led.
+The quaternion follows from e1 and e2 up to its sign, which the way decides: of the two the one
+nearer to where the integral of omega alone would have led.
 """
 
 from functools import partial
@@ -21,16 +26,18 @@ ORDER = 18
 UNKNOWNS = 9        # e1, e2, omega
 LOW = 8             # orders of omega that decide a sign
 
-# Layout, in rows of eight numbers. A node: time, step that led here, squared scale of omega, what the sums of the unknowns lost, quaternion,
-# unknowns; behind it the coefficients of higher orders, the node that follows, where the march ends, squared norm of the unknowns there; the
-# time since the node that `between` takes, the quaternion and omega that it gives; the numbers of the equations
+# Layout, in rows of eight numbers. A point: time, step that led here, squared scale of omega, what
+# the sums of the unknowns lost, quaternion, unknowns; behind it the coefficients of higher orders,
+# the point that follows, where the march ends, squared norm of the unknowns there; the time since
+# the point that `between` takes, the quaternion and omega that it gives; the numbers of the
+# equations
 TIME, STEP, SCALE, LOST = 0, 1, 2, 3
 QUATERNION = LOST + UNKNOWNS
 SERIES = QUATERNION + 4
 OMEGA = SERIES + 6
-NODE_SIZE = SERIES + UNKNOWNS
+POINT_SIZE = SERIES + UNKNOWNS
 FOLLOWING = SERIES + UNKNOWNS * (ORDER + 1)
-END = FOLLOWING + NODE_SIZE
+END = FOLLOWING + POINT_SIZE
 SOUND, SINCE, FOUND = END + 1, END + 2, END + 3
 EULER = FOUND + 7                       # then constant (3), U (9), V (3)
 CONSTANT, U, V = EULER + 3, EULER + 6, EULER + 15
@@ -39,7 +46,10 @@ ROWS = INVERSES + ORDER
 
 
 def _products(o, sums, e, w, others):
-    """Return the 15 sums, those of e x omega by sign, with the products of one pair of orders added: e and w of one, omega of the other."""
+    """Return the 15 sums, those of e x omega by sign, with one more pair of orders.
+
+    Added are the products of e and w of one order with omega of the other.
+    """
     made = list(sums)
     for d in (0, 1):
         for i in range(3):
@@ -57,20 +67,31 @@ def _series(o, W):
         return o.load(W, LANES * place)
 
     def rows(order, first, count):
-        return [o.load(W, o.place(LANES * (SERIES + first + k), LANES * UNKNOWNS, order)) for k in range(count)]
+        return [
+            o.load(W, o.place(LANES * (SERIES + first + k), LANES * UNKNOWNS, order))
+            for k in range(count)
+        ]
 
     def next_order(k, sums, constant):
         e = rows(k, 0, 6)
         changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
         for i in range(3):
             # what is known first comes first
-            rate = o.gather(row(V + i), e[3 + i], row(CONSTANT + i)) if constant else o.times(row(V + i), e[3 + i])
+            rate = (
+                o.gather(row(V + i), e[3 + i], row(CONSTANT + i))
+                if constant
+                else o.times(row(V + i), e[3 + i])
+            )
             for j in range(3):
                 rate = o.gather(row(U + 3 * i + j), e[j], rate)
             changes.append(o.gather(row(EULER + i), sums[12 + i], rate))
         share = o.load(W, o.place(LANES * INVERSES, LANES, k))
         for i, change in enumerate(changes):
-            o.put(o.times(share, change), W, o.place(LANES * (SERIES + UNKNOWNS + i), LANES * UNKNOWNS, k))
+            o.put(
+                o.times(share, change),
+                W,
+                o.place(LANES * (SERIES + UNKNOWNS + i), LANES * UNKNOWNS, k),
+            )
 
     none = [o.none()] * 15
     first, first_rates = rows(0, 0, 6), rows(0, 6, 3)
@@ -89,7 +110,7 @@ def _series(o, W):
 
 
 def _longest(o, W, row, tolerance2, scale):
-    """Return the step at which the larger of the last two terms is what the tolerance allows in that time.
+    """Return the step at which the larger of the last two terms is what the tolerance allows.
 
     The lower one counts as it would at the step before; a step grows by GROWTH at most.
     """
@@ -105,10 +126,18 @@ def _longest(o, W, row, tolerance2, scale):
     nothing, last = o.everywhere(o.number(NOTHING)), row(STEP)
     weight = o.where_less(nothing, scale, o.divided(o.everywhere(o.number(1.0)), scale), o.none())
     # the first step: a radian
-    last = o.where_less(o.none(), last, last, o.where_less(nothing, scale, o.root(weight), o.everywhere(o.number(UNMOVED))))
+    last = o.where_less(
+        o.none(),
+        last,
+        last,
+        o.where_less(nothing, scale, o.root(weight), o.everywhere(o.number(UNMOVED))),
+    )
     final, before = o.times(square(ORDER, weight), o.times(last, last)), square(ORDER - 1, weight)
     larger = o.where_less(final, before, before, final)
-    step = o.power(o.divided(o.everywhere(tolerance2), o.where_less(larger, nothing, nothing, larger)), 0.5 / (ORDER - 2))
+    step = o.power(
+        o.divided(o.everywhere(tolerance2), o.where_less(larger, nothing, nothing, larger)),
+        0.5 / (ORDER - 2),
+    )
     most = o.times(o.everywhere(o.number(GROWTH)), last)
     return o.where_less(step, most, step, most)
 
@@ -118,8 +147,17 @@ def _turned(o, q, angle):
     half = [o.times(o.everywhere(o.number(0.5)), component) for component in angle]
     square = o.gather(half[0], half[0], o.gather(half[1], half[1], o.times(half[2], half[2])))
     cosine, sine = o.none(), o.none()
-    for c, s in ((1 / 40320, 1 / 362880), (-1 / 720, -1 / 5040), (1 / 24, 1 / 120), (-1 / 2, -1 / 6), (1.0, 1.0)):
-        cosine, sine = o.gather(cosine, square, o.everywhere(o.number(c))), o.gather(sine, square, o.everywhere(o.number(s)))
+    for c, s in (
+        (1 / 40320, 1 / 362880),
+        (-1 / 720, -1 / 5040),
+        (1 / 24, 1 / 120),
+        (-1 / 2, -1 / 6),
+        (1.0, 1.0),
+    ):
+        cosine, sine = (
+            o.gather(cosine, square, o.everywhere(o.number(c))),
+            o.gather(sine, square, o.everywhere(o.number(s))),
+        )
     return _quaternion_product(o, q, [*(o.times(sine, component) for component in half), cosine])
 
 
@@ -137,7 +175,9 @@ def _quaternion_product(o, p, q):
 
 
 def _attitude(o, e, guess):
-    """Return the quaternion of the rotation whose matrix has the rows e1, e2, e1 x e2, of its two signs the one nearer to a guess.
+    """Return the quaternion of the rotation whose matrix has the rows e1, e2, e1 x e2.
+
+    Of its two signs the one nearer to a guess.
 
     4 q q^T is linear in the matrix.
     """
@@ -147,18 +187,39 @@ def _attitude(o, e, guess):
     together, apart = o.plus(b[1], c[2]), o.plus(b[1], o.minus(c[2]))
     up, down = o.plus(one, a[0]), o.plus(one, o.minus(a[0]))
     xy, xz, yz = o.plus(a[1], b[0]), o.plus(a[2], c[0]), o.plus(b[2], c[1])
-    xw, yw, zw = o.plus(c[1], o.minus(b[2])), o.plus(a[2], o.minus(c[0])), o.plus(b[0], o.minus(a[1]))
-    table = ((o.plus(up, o.minus(together)), xy, xz, xw), (xy, o.plus(down, apart), yz, yw), (xz, yz, o.plus(down, o.minus(apart)), zw),
-             (xw, yw, zw, o.plus(up, together)))
-    found = [o.gather(line[0], guess[0], o.gather(line[1], guess[1], o.gather(line[2], guess[2], o.times(line[3], guess[3]))))
-             for line in table]
-    square = o.gather(found[0], found[0], o.gather(found[1], found[1], o.gather(found[2], found[2], o.times(found[3], found[3]))))
+    xw, yw, zw = (
+        o.plus(c[1], o.minus(b[2])),
+        o.plus(a[2], o.minus(c[0])),
+        o.plus(b[0], o.minus(a[1])),
+    )
+    table = (
+        (o.plus(up, o.minus(together)), xy, xz, xw),
+        (xy, o.plus(down, apart), yz, yw),
+        (xz, yz, o.plus(down, o.minus(apart)), zw),
+        (xw, yw, zw, o.plus(up, together)),
+    )
+    found = [
+        o.gather(
+            line[0],
+            guess[0],
+            o.gather(line[1], guess[1], o.gather(line[2], guess[2], o.times(line[3], guess[3]))),
+        )
+        for line in table
+    ]
+    square = o.gather(
+        found[0],
+        found[0],
+        o.gather(found[1], found[1], o.gather(found[2], found[2], o.times(found[3], found[3]))),
+    )
     scale = o.divided(one, o.root(square))
     return [o.times(scale, component) for component in found]
 
 
 def _moved(o, coefficient, h):
-    """Return by how much the unknowns change in a time h, and the integral of omega over it, from ``coefficient(order, unknown)``."""
+    """Return the change of the unknowns in a time h, and the integral of omega over it.
+
+    The series are those of ``coefficient(order, unknown)``.
+    """
     changes = []
     for i in range(UNKNOWNS):
         change = coefficient(ORDER, i)
@@ -169,7 +230,9 @@ def _moved(o, coefficient, h):
     for i in range(6, UNKNOWNS):
         turn = o.times(coefficient(LOW, i), o.everywhere(o.number(1.0 / (LOW + 1))))
         for k in range(LOW - 1, -1, -1):
-            turn = o.gather(turn, h, o.times(coefficient(k, i), o.everywhere(o.number(1.0 / (k + 1)))))
+            turn = o.gather(
+                turn, h, o.times(coefficient(k, i), o.everywhere(o.number(1.0 / (k + 1))))
+            )
         angle.append(o.times(turn, h))
     return changes, angle
 
@@ -183,7 +246,11 @@ def _coefficient(o, W, order, i):
 
 
 def _advance(o, W, tolerance2):
-    """Make the series of the node and from them the node that follows it; the square of the tolerance is for a second."""
+    """Make the series of the point and from them the point that follows it.
+
+    The square of the tolerance is for a second. More than forty lines: one straight recipe for the
+    vector unit, in which every value is named once.
+    """
     row, coefficient = partial(_row, o, W), partial(_coefficient, o, W)
 
     def put(value, place):
@@ -191,8 +258,12 @@ def _advance(o, W, tolerance2):
     _series(o, W)
     w, pull, scale = o.none(), o.none(), row(SCALE)
     for i in range(6, UNKNOWNS):
-        w, pull = o.gather(coefficient(0, i), coefficient(0, i), w), o.gather(coefficient(1, i), coefficient(1, i), pull)
-    pull = o.root(pull)    # a body that hardly turns yet is measured by the rate that omega' gives it
+        w, pull = (
+            o.gather(coefficient(0, i), coefficient(0, i), w),
+            o.gather(coefficient(1, i), coefficient(1, i), pull),
+        )
+    # a body that hardly turns yet is measured by the rate that omega' gives it
+    pull = o.root(pull)
     for other in (w, pull):
         scale = o.where_less(scale, other, other, scale)
     t, end, step = row(TIME), row(END), _longest(o, W, row, tolerance2, scale)
@@ -202,14 +273,23 @@ def _advance(o, W, tolerance2):
     y = [coefficient(0, i) for i in range(UNKNOWNS)]
     d = [o.plus(change, row(LOST + i)) for i, change in enumerate(changes)]
     y1 = [o.plus(a, b) for a, b in zip(y, d, strict=True)]
-    lost = [o.plus(b, o.minus(o.plus(after, o.minus(a)))) for a, b, after in zip(y, d, y1, strict=True)]
+    lost = [
+        o.plus(b, o.minus(o.plus(after, o.minus(a)))) for a, b, after in zip(y, d, y1, strict=True)
+    ]
     # e1 and e2 are brought back to length 1 and to a right angle
     half, e = o.everywhere(o.number(-0.5)), y1[:6]
 
     def product(a, b, start):
         return o.gather(a[0], b[0], o.gather(a[1], b[1], o.gather(a[2], b[2], start)))
     one = o.everywhere(o.number(-1.0))
-    n1, n2, s = (o.times(half, x) for x in (product(e[:3], e[:3], one), product(e[3:], e[3:], one), product(e[:3], e[3:], o.none())))
+    n1, n2, s = (
+        o.times(half, x)
+        for x in (
+            product(e[:3], e[:3], one),
+            product(e[3:], e[3:], one),
+            product(e[:3], e[3:], o.none()),
+        )
+    )
     for i in range(6):
         back = o.gather(n1 if i < 3 else n2, e[i], o.gather(s, e[i - 3], lost[i]))
         y1[i] = o.plus(e[i], back)
@@ -219,14 +299,20 @@ def _advance(o, W, tolerance2):
     for value in y1:
         sound = o.gather(value, value, sound)
     put(sound, SOUND)
-    for place, value in ((TIME, t1), (STEP, h), (SCALE, scale), *((LOST + i, value) for i, value in enumerate(lost)),
-                         *((QUATERNION + i, value) for i, value in enumerate(q)), *((SERIES + i, value) for i, value in enumerate(y1))):
+    for place, value in (
+        (TIME, t1),
+        (STEP, h),
+        (SCALE, scale),
+        *((LOST + i, value) for i, value in enumerate(lost)),
+        *((QUATERNION + i, value) for i, value in enumerate(q)),
+        *((SERIES + i, value) for i, value in enumerate(y1)),
+    ):
         put(value, FOLLOWING + place)
     return []
 
 
 def _between(o, W):
-    """Find quaternion and omega of each lane at its own time since the node, by the series there."""
+    """Find quaternion and omega of each lane at its own time since the point, by its series."""
     row, coefficient = partial(_row, o, W), partial(_coefficient, o, W)
     changes, angle = _moved(o, coefficient, row(SINCE))
     y = [o.plus(coefficient(0, i), change) for i, change in enumerate(changes)]

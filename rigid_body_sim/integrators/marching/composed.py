@@ -1,4 +1,8 @@
-"""Template: one step of a composition, kick, drift, kick, ..., drift, kick; a kick of length 0 is left out."""
+# SPDX-License-Identifier: Apache-2.0
+"""Template: one step of a composition, kick, drift, kick, ..., drift, kick.
+
+A kick of length 0 is left out.
+"""
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND

@@ -1,11 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: march with steps of one size.
 
-A node is one point of the march: [time, steps so far, unused (3), unknowns, what their sums lost]. The k-th node stands at origin + k h,
-formed anew each time; the last one stands at the end.
+A point of the march holds [time, steps so far, unused (3), unknowns, what their sums lost]. The
+k-th point stands at origin + k h, formed anew each time; the last one stands at the end.
 """
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.marching.points import STEP, TIME, VALUES
 
 rate = UNBOUND
 settled = UNBOUND
@@ -14,32 +16,34 @@ load = UNBOUND
 put = UNBOUND
 SIZE = UNBOUND
 
-TIME, COUNT, VALUES = 0, 1, 5
-NEARLY = 1e-9    # of a step: an end that close to a node is that node
+COUNT = STEP    # in the place of the planned step: the number of the point
+NEARLY = 1e-9    # of a step: an end that close to a point is that point
 
 
 @compiled
-def begin(p, control, node):
-    """Take the time of a node as the origin of all times."""
-    control[1] = node[TIME]
+def begin(p, control, point):
+    """Take the time of a point as the origin of all times."""
+    control[1] = point[TIME]
 
 
 @compiled
-def march(p, control, node, following, target, end, limit):
-    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+def march(p, control, point, following, target, end, limit):
+    """Move `point` on until the step from it holds the time `target`, at most `limit` steps.
+
+    Return (steps moved, whether it went well).
 
     Parameters
     ----------
     control : array
         [h, origin].
-    node : array
+    point : array
         Changed; `following` is not needed.
     end : float
-        The last node stands there exactly.
+        The last point stands there exactly.
     """
     h, origin = control[0], control[1]
-    t, count = node[TIME], node[COUNT]
-    y, c = load(node, VALUES), load(node, VALUES + SIZE)
+    t, count = point[TIME], point[COUNT]
+    y, c = load(point, VALUES), load(point, VALUES + SIZE)
     moved = 0
     while t < end and moved < limit:
         t1, size = origin + (count + 1.0) * h, h
@@ -51,16 +55,19 @@ def march(p, control, node, following, target, end, limit):
         y, c = settled(y, c)
         t, count = t1, count + 1.0
         moved += 1
-    node[TIME], node[COUNT] = t, count
-    put(y, node, VALUES)
-    put(c, node, VALUES + SIZE)
+    point[TIME], point[COUNT] = t, count
+    put(y, point, VALUES)
+    put(c, point, VALUES + SIZE)
     return moved, y[0] == y[0]
 
 
 @compiled
-def between(p, control, node, following, dt):
-    """Return the unknowns a time dt after a node and within the step from it: one step of the method."""
-    y = load(node, VALUES)
+def between(p, control, point, following, dt):
+    """Return the unknowns a time dt after a point, within the step from it.
+
+    One step of the method.
+    """
+    y = load(point, VALUES)
     if dt > 0.0:
-        y, _ = step(p, y, load(node, VALUES + SIZE), rate(p, y), dt)
+        y, _ = step(p, y, load(point, VALUES + SIZE), rate(p, y), dt)
     return y

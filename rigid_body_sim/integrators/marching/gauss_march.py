@@ -1,12 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: march by Gauss collocation with eight stages (gauss16.py).
 
-A node is one point of the march: [time, next step or number of the node, squared scales (3), unknowns, what their sums lost]; before KEPT
-the size of the step that led here (0: none) and the sweeps it was given, from KEPT on its rates at the stages.
+A point holds, behind its Head (points.py), the unknowns and what their sums lost; in LAST the size
+of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
+at the stages.
 
-`control` holds [tolerance per second, fixed step or 0, origin] and from WORK on a workspace S: the stages (unknown by unknown, eight each),
-from RATES on their rates (books too), from MATRIX on h a_ij (at 8 j + i) for one h, from PREDICTOR on the same from the rates of the step
-before, for one pair of steps; from FOR on these steps, the time of the node whose step has its curve kept and the size of its last
-coefficients, and from CURVE on that curve: coefficients of P_0 ... P_16, unknown by unknown.
+`control` holds [tolerance per second, fixed step or 0, origin] and from WORK on a workspace S:
+
+    0           stages, unknown by unknown, eight each
+    RATES       their rates, those of the ledger included
+    MATRIX      h a_ij (at 8 j + i) for one h
+    PREDICTOR   the same from the rates of the step before, for one pair of steps
+    FOR         the step of the matrix; FOR_STEP, FOR_BEFORE: the two steps of the predictor
+    FOR_POINT   the time of the point whose step has its curve kept
+    TAIL        the size of the curve's last coefficients
+    CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown
 """
 
 import math
@@ -14,7 +22,14 @@ import math
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
-from rigid_body_sim.integrators.marching.points import onward
+from rigid_body_sim.integrators.marching.points import (
+    SCALES,
+    STEP,
+    TIME,
+    VALUES,
+    Standing,
+    onward,
+)
 from rigid_body_sim.numerics.functions import power
 
 rate = UNBOUND
@@ -34,58 +49,100 @@ fastest = UNBOUND
 first_scales = UNBOUND
 along = UNBOUND
 end_of_curve = UNBOUND
-# counts of the unknowns, with books and without, and places that follow from them
+# counts of the unknowns, with those of the ledger and without
 SIZE = UNBOUND
 UNKNOWNS = UNBOUND
-RATES = UNBOUND
+# places in a point
+LAST = UNBOUND
+SWEEPS = UNBOUND
 KEPT = UNBOUND
+# places in S
+RATES = UNBOUND
 MATRIX = UNBOUND
 PREDICTOR = UNBOUND
 FOR = UNBOUND
+FOR_STEP = UNBOUND
+FOR_BEFORE = UNBOUND
+FOR_POINT = UNBOUND
+TAIL = UNBOUND
 CURVE = UNBOUND
 
-TIME, STEP, SCALES, VALUES = 0, 1, 2, 5
-TOLERANCE, FIXED, ORIGIN, WORK = 0, 1, 2, 3
+TOLERANCE, FIXED, ORIGIN, WORK = 0, 1, 2, 3      # in control
 
-NEARLY = 1e-9            # of a fixed step: an end that close to a node is that node
+NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
 GROWTH, SHRINK, SAFETY = 1.5, 0.3, 0.9
-WORTH = 1.05             # change of step below which the step stays: another predictor costs half a sweep
-TRIALS = 60              # of one step
-MOST_SWEEPS = 45         # of one trial: slower convergence asks for a smaller step
-COMFORTABLE = 13         # beyond it longer steps cost more than they save
-FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, where nothing moves yet
+# a step stays unless it changes by more: another predictor costs half a sweep
+WORTH = 1.05
+TRIALS = 60              # largest number of attempts at a step
+MOST_SWEEPS = 45         # of one attempt: slower convergence asks for a smaller step
+COMFORTABLE = 13         # beyond so many sweeps longer steps cost more than they save
+FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, where nothing moves
 FIRST_SWEEPS = 4         # of a step without one before it
-ROUNDING = 2.0 ** -60    # of an increment: nothing to it
-NOISE = 2.0 ** -44       # of an increment: changes so small that no longer fall are rounding
-# The rates of y' = i nu y with x = nu h have Legendre coefficients c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!) for large n: c_(n + 1)/c_n is
-# x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by (8!)^2/(16! 17!) x^17: that is UNSEEN x^9 times the 7th.
+ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
+NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
+# The rates of y' = i nu y with x = nu h have Legendre coefficients
+#     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
+# c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by
+# (8!)^2/(16! 17!) x^17: that is UNSEEN x^9 times the 7th.
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
-LONGEST = 3.5            # of x, which is half the angle that a body turns: beyond it substitution takes more sweeps than are given
-ENOUGH = 0.03            # of what is allowed: a change so small says that one sweep less would do
+# of x, half the angle of a step: beyond it substitution takes too many sweeps
+LONGEST = 3.5
+ENOUGH = 0.03            # of what is allowed: after a change so small one sweep less would do
 
 
 @compiled
-def begin(p, control, node):
-    """Choose the first step from a node whose time and unknowns are set, and the scales."""
-    control[ORIGIN], control[WORK + FOR + 3] = node[TIME], math.nan    # no curve yet
-    y = load(node, VALUES)
+def _load_point(point):
+    """Return the Standing of a point."""
+    return Standing(point[TIME], point[STEP], load_scales(point, SCALES), load(point, VALUES),
+                    load(point, VALUES + SIZE), point[LAST], int(point[SWEEPS]))
+
+
+@compiled
+def _store_point(standing, point):
+    """Write the Standing of a point; the rates at its stages stay."""
+    point[TIME], point[STEP] = standing.time, standing.step
+    point[LAST], point[SWEEPS] = standing.last, standing.sweeps
+    put_scales(standing.scales, point, SCALES)
+    put(standing.y, point, VALUES)
+    put(standing.lost, point, VALUES + SIZE)
+
+
+@compiled
+def _take_rates(point, S):
+    """Copy the rates that a point keeps into S."""
+    for k in range(STAGES * SIZE):
+        S[RATES + k] = point[KEPT + k]
+
+
+@compiled
+def _keep_rates(S, point):
+    """Copy the rates in S into a point."""
+    for k in range(STAGES * SIZE):
+        point[KEPT + k] = S[RATES + k]
+
+
+@compiled
+def begin(p, control, point):
+    """Choose the first step from a point whose time and unknowns are set, and the scales."""
+    control[ORIGIN], control[WORK + FOR_POINT] = point[TIME], math.nan    # no curve yet
+    y = load(point, VALUES)
     k = rate(p, y)
     speed = fastest(y, k)
     h = FIRST / speed if speed > 0.0 else UNMOVED
-    node[STEP], node[KEPT - 1] = 0.0 if control[FIXED] > 0.0 else h, 1.0
-    put_scales(first_scales(y, k, h), node, SCALES)
+    point[STEP], point[SWEEPS] = 0.0 if control[FIXED] > 0.0 else h, 1.0
+    put_scales(first_scales(y, k, h), point, SCALES)
 
 
 @compiled
 def _prepare(S, h, last):
-    """Fill the matrix for a step h, and the predictor from a step of size `last` (if there was one), unless they are there."""
+    """Fill the matrix for a step h, and the predictor from a step `last` > 0, if needed."""
     if S[FOR] != h:
         S[FOR] = h
         for j in range(STAGES):
             for i in range(STAGES):
                 S[MATRIX + STAGES * j + i] = h * A[i, j]
-    if last > 0.0 and (S[FOR + 1] != h or S[FOR + 2] != last):
-        S[FOR + 1], S[FOR + 2] = h, last
+    if last > 0.0 and (S[FOR_STEP] != h or S[FOR_BEFORE] != last):
+        S[FOR_STEP], S[FOR_BEFORE] = h, last
         for i in range(STAGES):
             x = C[i] * h / last
             for j in range(STAGES):
@@ -96,31 +153,44 @@ def _prepare(S, h, last):
 
 
 @compiled
+def _predict(p, S, y, last):
+    """Fill the stages by the curve of the step before, of size `last`; 0: by the rates at y."""
+    if last > 0.0:
+        spread(S, y, PREDICTOR)
+        return
+    first = rate(p, y)
+    for u in range(UNKNOWNS):
+        for i in range(STAGES):
+            S[RATES + STAGES * u + i] = first[u]
+    spread(S, y, MATRIX)
+
+
+@compiled
 def solve(p, S, y, h, last, sweeps, allowed, scales):
-    """Solve the equations of the stages of a step.
+    """Solve the equations of the stages of a step by substitution.
 
     Parameters
     ----------
+    h : float
+        Size of the step, s.
     last : float
         Size of the step before, whose rates stand in S; 0 if there was none.
     sweeps : int
-        How many before the first look at the change that the next one makes.
+        How many sweeps before the first look at the change that the next one makes.
     allowed : float
         Change at which it is enough.
+    scales : tuple of floats
+        Squared scales.
 
     Returns
     -------
-    (mean rates of the step, sweeps that were needed before the last one, whether one less would do, whether it converged)
+    tuple of floats, int, bool, bool
+        Mean rates of the step, the sweeps that were needed before the last one, whether one less
+        would do, whether it converged.
     """
     _prepare(S, h, last)
-    if last > 0.0:
-        spread(S, y, PREDICTOR)
-    else:
-        first = rate(p, y)
-        for u in range(UNKNOWNS):
-            for i in range(STAGES):
-                S[RATES + STAGES * u + i] = first[u]
-        spread(S, y, MATRIX)
+    _predict(p, S, y, last)
+    if not last > 0.0:
         sweeps = max(sweeps, FIRST_SWEEPS)
     for _ in range(sweeps - 1):
         stage_rates(p, S)
@@ -144,14 +214,16 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
 
 @compiled
 def _judged(S, h, mean, scales):
-    """Return (estimated error of a step, its length in radians of its largest motion); (0, 0) where coefficients are but rounding.
+    """Return the estimated error of a step, and its length in radians of its largest motion.
 
-    Each group of unknowns errs by its own fastest motion: the torque of the weight turns in body axes twice as fast as q does, so omega may
-    err most where its changes are small.
+    (0, 0) where the coefficients are but rounding. Each group of unknowns errs by its own fastest
+    motion: the torque of the weight turns in body axes twice as fast as q does, so omega may err
+    most where its changes are small.
     """
-    rows = combined(S, TAILS[0]), combined(S, TAILS[1]), combined(S, TAILS[2]), combined(S, TAILS[3])
-    c7, c6 = by_group(rows[0], scales), by_group(rows[1], scales)
-    c5, c4 = by_group(rows[2], scales), by_group(rows[3], scales)
+    c7 = by_group(combined(S, TAILS[0]), scales)
+    c6 = by_group(combined(S, TAILS[1]), scales)
+    c5 = by_group(combined(S, TAILS[2]), scales)
+    c4 = by_group(combined(S, TAILS[3]), scales)
     noise = NOISE * NOISE * measure(mean, mean, 0.0, scales)
     error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(c7)):
@@ -159,7 +231,8 @@ def _judged(S, h, mean, scales):
         if c5[k] + c4[k] > noise:
             square = _fastest_square(c7[k], c6[k], c5[k], c4[k], noise)
             seventh = math.sqrt(max(c7[k], square * c6[k] / (FALL_7 * FALL_7)))
-            error += UNSEEN * h * seventh * square * square * square * square * math.sqrt(square)
+            fourth = UNSEEN * h * seventh * square * square * square * square
+            error += fourth * math.sqrt(square)
     if s5 + s4 <= noise:
         return error, 0.0
     return error, math.sqrt(_fastest_square(s7, s6, s5, s4, noise))
@@ -167,110 +240,148 @@ def _judged(S, h, mean, scales):
 
 @compiled
 def _fastest_square(c7, c6, c5, c4, noise):
-    """Return the squared length of a step in radians, from squared coefficients: both pairs, lest an even or odd motion hide one."""
-    return math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise), FALL_64 * FALL_64 * c6 / (c4 + noise)))
+    """Return the squared length of a step in radians, from squared coefficients.
+
+    It takes both pairs of them, lest an even or an odd motion hide one.
+    """
+    return math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise),
+                         FALL_64 * FALL_64 * c6 / (c4 + noise)))
 
 
 @compiled
-def march(p, control, node, following, target, end, limit):
-    """Move `node` on until the step from it holds the time `target`, at most `limit` steps; return (steps moved, whether it went well).
+def _span(control, here, h, end):
+    """Return the end of a step h and its size; the last step of a march ends at `end` exactly."""
+    fixed = control[FIXED]
+    if fixed > 0.0:
+        t1 = control[ORIGIN] + (here.step + 1.0) * fixed
+        if t1 + NEARLY * fixed >= end:
+            return end, end - here.time
+        return t1, fixed
+    t1 = end if here.time + 1.1 * h >= end else here.time + h
+    return t1, t1 - here.time
 
-    The step from `node` ends at `following`, which is not known yet if its time is not later. Both are changed. The last node stands at
-    `end` exactly.
+
+@compiled
+def _factor(error, x, allowed, used, converged, good):
+    """Return by how much the next step, or the next attempt, is longer than a step.
+
+    Parameters
+    ----------
+    error, x : float
+        What `_judged` returned, where the step converged.
+    used : int
+        Its sweeps.
+    good : bool
+        Whether the step is taken.
     """
-    moved = onward(node, following, target)
+    factor = SHRINK
+    if converged and error < math.inf:
+        ratio = allowed / max(error, 1e-9 * allowed)
+        factor = min(GROWTH, max(SHRINK, SAFETY * power(ratio, 1.0 / (2 * STAGES - 1))))
+        factor = min(factor, SAFETY * LONGEST / max(x, 1e-3))
+    if good and used > COMFORTABLE:
+        factor = min(factor, 1.0 if used <= COMFORTABLE + 3 else SAFETY)
+    return factor
+
+
+@compiled
+def _step(p, control, here, end):
+    """Return the Standing at the end of a step, and whether the step is good.
+
+    An adaptive step is tried with ever smaller sizes until its estimated error is what the
+    tolerance allows in that time. The rates of the step before stand in S, those of this one
+    replace them.
+    """
+    S, fixed = control[WORK:], control[FIXED] > 0.0
+    scales, h, before = grown(here.scales, here.y), here.step, here.last
+    for _ in range(TRIALS):
+        t1, h = _span(control, here, h, end)
+        allowed = control[TOLERANCE] * h
+        mean, used, fewer, good = solve(p, S, here.y, h, before, here.sweeps, allowed, scales)
+        if fixed:
+            next_step = here.step + 1.0
+            break
+        error, x, converged = 0.0, 0.0, good
+        if converged:
+            error, x = _judged(S, h, mean, scales)
+            good = error <= allowed and x <= LONGEST and t1 > here.time
+        factor = _factor(error, x, allowed, used, converged, good)
+        next_step = h if good and t1 < end and 1.0 <= factor < WORTH else h * factor
+        if good:
+            break
+        h, before = next_step, 0.0    # the rates of the step before are overwritten
+    y, lost = advanced(here.y, mean, here.lost, h)
+    y, lost = settled(y, lost)
+    return Standing(t1, next_step, scales, y, lost, h, max(1, used - 1) if fewer else used), good
+
+
+@compiled
+def march(p, control, point, following, target, end, limit):
+    """Move `point` on until the step from it holds the time `target`, at most `limit` steps.
+
+    The step from `point` ends at `following`, which is not known yet if its time is not later.
+    Both are changed. The last point stands at `end` exactly.
+
+    Returns
+    -------
+    int, bool
+        Steps moved, and whether it went well.
+    """
+    moved = onward(point, following, target)
     if moved < 0:
         return 0, True
-    tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
-    t, planned, last, sweeps = node[TIME], node[STEP], node[KEPT - 2], int(node[KEPT - 1])
-    scales, y, c = load_scales(node, SCALES), load(node, VALUES), load(node, VALUES + SIZE)
-    for k in range(STAGES * SIZE):
-        S[RATES + k] = node[KEPT + k]
-    good = True
-    while t < end:
-        for k in range(STAGES * SIZE):
-            node[KEPT + k] = S[RATES + k]
-        good, h, next_step, before = False, planned, planned, last
-        for _ in range(TRIALS):
-            if fixed > 0.0:
-                t1, h, next_step = control[ORIGIN] + (planned + 1.0) * fixed, fixed, planned + 1.0
-                if t1 + NEARLY * fixed >= end:
-                    t1, h = end, end - t
-            else:
-                t1 = end if t + 1.1 * h >= end else t + h
-                h = t1 - t
-            allowed = tolerance * h
-            scales1 = grown(scales, y)
-            mean, used, fewer, good = solve(p, S, y, h, before, sweeps, allowed, scales1)
-            if fixed == 0.0:
-                factor = SHRINK
-                if good:
-                    error, x = _judged(S, h, mean, scales1)
-                    good = error <= allowed and x <= LONGEST and t1 > t
-                    if error < math.inf:
-                        factor = min(GROWTH, max(SHRINK, SAFETY * power(allowed / max(error, 1e-9 * allowed), 1.0 / (2 * STAGES - 1))))
-                        factor = min(factor, SAFETY * LONGEST / max(x, 1e-3))
-                if good and used > COMFORTABLE:
-                    factor = min(factor, 1.0 if used <= COMFORTABLE + 3 else SAFETY)
-                next_step = h if good and t1 < end and 1.0 <= factor < WORTH else h * factor
-            if good or fixed > 0.0:
-                break
-            h, before = next_step, 0.0    # the rates of the step before are overwritten
-        y1, c1 = advanced(y, mean, c, h)
-        y1, c1 = settled(y1, c1)
-        sweeps1 = max(1, used - 1) if fewer else used
-        if not good or target < t1 or moved == limit:
-            following[TIME], following[STEP], following[KEPT - 2], following[KEPT - 1] = t1, next_step, h, sweeps1
-            put_scales(scales1, following, SCALES)
-            put(y1, following, VALUES)
-            put(c1, following, VALUES + SIZE)
-            for k in range(STAGES * SIZE):
-                following[KEPT + k] = S[RATES + k]
+    S, good = control[WORK:], True
+    here = _load_point(point)
+    _take_rates(point, S)
+    while here.time < end:
+        _keep_rates(S, point)
+        reached, good = _step(p, control, here, end)
+        if not good or target < reached.time or moved == limit:
+            _store_point(reached, following)
+            _keep_rates(S, following)
             break
-        t, planned, last, sweeps, y, c, scales = t1, next_step, h, sweeps1, y1, c1, scales1
+        here = reached
         moved += 1
-    node[TIME], node[STEP], node[KEPT - 2], node[KEPT - 1] = t, planned, last, sweeps
-    put_scales(scales, node, SCALES)
-    put(y, node, VALUES)
-    put(c, node, VALUES + SIZE)
+    _store_point(here, point)
     return moved, good
 
 
 @compiled
-def between(p, control, node, following, dt):
-    """Return the unknowns a time dt after a node and within the step from it.
+def between(p, control, point, following, dt):
+    """Return the unknowns a time dt after a point and within the step from it.
 
-    After a step of the same size they follow the polynomial through the rates of both, 16 in all, if its last coefficient is small enough;
-    else a shorter step of the method is made.
+    After a step of the same size they follow the polynomial through the rates of both, 16 in all,
+    if its last coefficient is small enough; else a shorter step of the method is made.
     """
-    y = load(node, VALUES)
+    y = load(point, VALUES)
     if not dt > 0.0:
         return y
-    S, h, last = control[WORK:], following[KEPT - 2], node[KEPT - 2]
+    S, h, last = control[WORK:], following[LAST], point[LAST]
+    scales = load_scales(point, SCALES)
     if h == last:
-        if S[FOR + 3] != node[TIME]:
-            S[FOR + 3] = node[TIME]
-            _lay_curve(S, node, following, h)
+        if S[FOR_POINT] != point[TIME]:
+            S[FOR_POINT] = point[TIME]
+            _lay_curve(S, point, following, h)
             highest = end_of_curve(S)
-            S[FOR + 4] = math.sqrt(measure(highest, highest, 0.0, load_scales(node, SCALES)))
-        if S[FOR + 4] <= max(control[TOLERANCE] * h, ROUNDING):
+            S[TAIL] = math.sqrt(measure(highest, highest, 0.0, scales))
+        if S[TAIL] <= max(control[TOLERANCE] * h, ROUNDING):
             return along(S, y, dt / h)
-    for k in range(STAGES * SIZE):
-        S[RATES + k] = node[KEPT + k]
-    sweeps = max(1, int(dt / last * node[KEPT - 1])) if last > 0.0 else 1
-    mean, _, _, _ = solve(p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, load_scales(node, SCALES))
-    y, _ = advanced(y, mean, load(node, VALUES + SIZE), dt)
+    _take_rates(point, S)
+    sweeps = max(1, int(dt / last * point[SWEEPS])) if last > 0.0 else 1
+    mean, _, _, _ = solve(p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, scales)
+    y, _ = advanced(y, mean, load(point, VALUES + SIZE), dt)
     return y
 
 
 @compiled
-def _lay_curve(S, node, following, h):
-    """Fill the curve of the step between two nodes: integrals from the first one."""
+def _lay_curve(S, point, following, h):
+    """Fill the curve of the step between two points: integrals from the first one."""
     terms = 2 * STAGES + 1
     for u in range(SIZE):
         for k in range(terms):
             S[CURVE + terms * u + k] = 0.0
         for j in range(STAGES):
-            before, now = h * node[KEPT + STAGES * u + j], h * following[KEPT + STAGES * u + j]
+            before = h * point[KEPT + STAGES * u + j]
+            now = h * following[KEPT + STAGES * u + j]
             for k in range(terms):
                 S[CURVE + terms * u + k] += before * DENSE[j, k] + now * DENSE[STAGES + j, k]

@@ -1,4 +1,8 @@
-"""Gauss nodes and the polynomials through them, for eight stages, to the last bit of a double (formed once, with 60 digits)."""
+# SPDX-License-Identifier: Apache-2.0
+"""Gauss nodes and the polynomials through them, for eight stages.
+
+They are formed once, with 60 digits, and right to the last bit of a double.
+"""
 
 from decimal import Decimal, localcontext
 from math import comb
@@ -16,7 +20,12 @@ def _through(nodes):
         polynomial = [Decimal(1)]
         for other in nodes[:j] + nodes[j + 1:]:
             gap = own - other
-            polynomial = [(low - other * high) / gap for low, high in zip([Decimal(0), *polynomial], [*polynomial, Decimal(0)], strict=True)]
+            polynomial = [
+                (low - other * high) / gap
+                for low, high in zip(
+                    [Decimal(0), *polynomial], [*polynomial, Decimal(0)], strict=True
+                )
+            ]
         yield polynomial
 
 
@@ -26,15 +35,22 @@ def _integral(polynomial):
 
 def _continued(polynomial):
     """Return the polynomial in x - 1: the same curve beyond the end of the interval."""
-    return [sum(coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m) for m in range(len(polynomial))]
+    return [
+        sum(coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m)
+        for m in range(len(polynomial))
+    ]
 
 
 def _in_legendre(polynomial):
-    """Return the coefficients of the Legendre polynomials P_k(x), from those of the powers of x."""
+    """Return the coefficients of Legendre's P_k(x), from those of the powers of x."""
     power, result = [Decimal(1)], [Decimal(0)] * len(polynomial)
     for coefficient in polynomial:
-        result = [r + coefficient * p for r, p in zip(result, power + [Decimal(0)] * len(result), strict=False)]
-        higher = [Decimal(0)] * (len(power) + 1)    # of x times that: x P_k = ((k + 1) P_(k+1) + k P_(k-1))/(2 k + 1)
+        result = [
+            r + coefficient * p
+            for r, p in zip(result, power + [Decimal(0)] * len(result), strict=False)
+        ]
+        # of x times that: x P_k = ((k + 1) P_(k+1) + k P_(k-1))/(2 k + 1)
+        higher = [Decimal(0)] * (len(power) + 1)
         for k, p in enumerate(power):
             higher[k + 1] += p * (k + 1) / (2 * k + 1)
             if k:
@@ -57,9 +73,13 @@ with localcontext(CONTEXT):
     A = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _C])
     # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)
     AHEAD = _floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS])
-    # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before (on [-1, 0]) and of this one (on [0, 1])
-    # that is 1 at the j-th, as a sum over k of DENSE[j, k] P_k(x)
-    DENSE = _floats([_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)])
-    # TAILS: rows that give the last four Legendre coefficients, the last one first, of a function from its values at the nodes
+    # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before
+    # (on [-1, 0]) and of this one (on [0, 1]) that is 1 at the j-th, as a sum over k of DENSE[j,
+    # k] P_k(x)
+    DENSE = _floats(
+        [_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)]
+    )
+    # TAILS: rows that give the last four Legendre coefficients, the last one first, of a function
+    # from its values at the nodes
     TAILS = _floats([[(2 * n + 1) * b * value(legendre(n), c) for b, c in zip(_B, _C, strict=True)]
                      for n in range(STAGES - 1, STAGES - 5, -1)])

@@ -1,18 +1,78 @@
-"""Nodes of a march, for the templates that keep the step from the last one."""
+# SPDX-License-Identifier: Apache-2.0
+"""Points of a march: where a march stands, and how it goes on to the next point.
+
+A point is an array that begins with a Head; behind it stand the unknowns, and what their sums have
+lost (as many numbers again). The templates of this folder add what their method keeps.
+"""
+
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import Vector, layout
+
+
+class Head(NamedTuple):
+    """The beginning of every point.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    step : float
+        The step planned from here, s; where steps are fixed, the number of the point.
+    scales : Vector
+        Squared scales of the groups of unknowns whose errors are relative.
+    """
+
+    time: float
+    step: float
+    scales: Vector
+
+
+HEAD = layout(Head)
+TIME, STEP, SCALES = (HEAD.part(name).first for name in Head._fields)
+VALUES = HEAD.size
+
+
+class Standing(NamedTuple):
+    """A point of a collocation march in the hands of a kernel.
+
+    Attributes
+    ----------
+    time, step, scales
+        Those of the Head.
+    y, lost : tuple of floats
+        The unknowns, those of the ledger included, and what their sums have lost (Kahan).
+    last : float
+        Size of the step that led here, s; 0 where there was none.
+    sweeps : int
+        How many substitutions that step was given before its first check.
+    """
+
+    time: float
+    step: float
+    scales: tuple
+    y: tuple
+    lost: tuple
+    last: float
+    sweeps: int
 
 
 @compiled
-def onward(node, following, target):
-    """Move a node to the following one, unless the target time lies before that; return 1 if it moved, -1 if it stays, 0 if none is known.
+def onward(point, following, target):
+    """Move a point to the following one, unless the target time lies before that.
 
-    A node begins with its time; `following` is not known while its time is not later.
+    The following point is not known while its time is not later.
+
+    Returns
+    -------
+    int
+        1 if the point moved, -1 if it stays, 0 if no following point is known.
     """
-    if not following[0] > node[0]:
+    if not following[TIME] > point[TIME]:
         return 0
-    if target < following[0]:
+    if target < following[TIME]:
         return -1
-    for k in range(len(node)):
-        node[k] = following[k]
+    for k in range(len(point)):
+        point[k] = following[k]
     return 1

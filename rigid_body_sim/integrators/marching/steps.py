@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: single steps of a Runge-Kutta method, for what is marched from Python."""
 
 import math  # noqa: F401 (for the bound steps)

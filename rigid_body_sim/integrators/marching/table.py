@@ -1,6 +1,10 @@
-"""A sphere on a table under a held wrench: phases of sliding and rolling, each smooth, followed by an adaptive Runge-Kutta method.
+# SPDX-License-Identifier: Apache-2.0
+"""A sphere on a table under a held wrench, by an adaptive Runge-Kutta method.
 
-What the phases are and why sliding has its own independent variable says rigid_body_sim/integrators/equations/table_rates.py.
+Its phases of sliding and rolling are smooth.
+
+What the phases are and why sliding has its own independent variable says
+rigid_body_sim/integrators/equations/table_rates.py.
 """
 
 import bisect
@@ -26,7 +30,7 @@ from rigid_body_sim.integrators.equations.table_rates import (
 )
 from rigid_body_sim.integrators.marching import steps, unroll
 from rigid_body_sim.integrators.marching.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
-from rigid_body_sim.mechanics.exchange import EXCHANGE_SIZE
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
 from rigid_body_sim.numerics.rotations import normalised, rotate, rotate_back
@@ -40,8 +44,10 @@ from rigid_body_sim.scene.state import (
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 CLOCK = table_rates.TIME
-KEPT = 2048              # nodes of a phase; beyond, every other one is dropped
-CREEP = 1e-4             # rad: as far the ball turns before a new slip leaves the direction of its drive; its lag is of the order of CREEP^2
+KEPT = 2048              # points of a phase; beyond, every other one is dropped
+# rad: as far the ball turns before a new slip leaves the direction of its drive; its lag is of the
+# order of CREEP^2
+CREEP = 1e-4
 DEAD = 2.0 ** -56        # slip below that share of the speeds is none
 FLOOR = 1e-17            # of an error: none is asked to be smaller
 
@@ -53,18 +59,29 @@ class OnTable:
 
     def __init__(self, scene, method, wrench, step):
         if step is not None:
-            raise BadInput('step', f'got {step!r} for a ball on the table', 'steps end where sliding begins and ends: give an accuracy')
+            raise BadInput(
+                'step',
+                f'got {step!r} for a ball on the table',
+                'steps end where sliding begins and ends: give an accuracy',
+            )
         self.parameters = np.zeros(table_rates.PARAMETERS)
         self.parameters[:sliding_sphere.PARAMETER_SIZE] = sliding_sphere.parameters(scene)
         if wrench:
             in_body = wrench.frame == 'body'
-            self.parameters[table_rates.BODY_FORCE if in_body else table_rates.WORLD_FORCE:][:3] = wrench.force
-            self.parameters[table_rates.BODY_COUPLE if in_body else table_rates.WORLD_COUPLE:][:3] = wrench.torque
+            self.parameters[table_rates.BODY_FORCE if in_body else table_rates.WORLD_FORCE :][
+                :3
+            ] = wrench.force
+            self.parameters[table_rates.BODY_COUPLE if in_body else table_rates.WORLD_COUPLE :][
+                :3
+            ] = wrench.torque
         self.turns_with_body = bool(wrench) and wrench.frame == 'body'
-        extra = EXCHANGE_SIZE
+        extra = ENTRIES_SIZE
         self.kernels = specialise(
-            steps, rate='rigid_body_sim.integrators.equations.table_rates:rate', step=unroll.step_source(method, UNKNOWNS, extra),
-            trial=unroll.trial_source(method, UNKNOWNS, extra, table_rates.GROUPS))
+            steps,
+            rate='rigid_body_sim.integrators.equations.table_rates:rate',
+            step=unroll.step_source(method, UNKNOWNS, extra),
+            trial=unroll.trial_source(method, UNKNOWNS, extra, table_rates.GROUPS),
+        )
         self.order = method.ORDER
 
     def course(self, stepped):
@@ -75,6 +92,8 @@ class OnTable:
 class TableCourse:
     """One course from a start."""
 
+    TELLS_EVENTS = True
+
     def __init__(self, stepped, bound):
         self._bound, self._scene, vector = bound, stepped.scene, stepped.vector
         self._tolerance = stepped.accuracy / stepped.horizon
@@ -83,10 +102,12 @@ class TableCourse:
         omega, v = rotate(*q, *vector[ANGULAR_VELOCITY]), vector[VELOCITY]
         e = p[table_rates.RADIUS] * np.array([omega[1], -omega[0]])
         u = v[:2] - e
-        if hypot(*u) <= sliding_sphere.ROUNDING * (hypot(*v[:2]) + p[table_rates.RADIUS] * hypot3(*omega)):
+        if hypot(*u) <= sliding_sphere.ROUNDING * (
+            hypot(*v[:2]) + p[table_rates.RADIUS] * hypot3(*omega)
+        ):
             u = np.zeros(2)
             e = v[:2]
-        y = np.zeros(UNKNOWNS + EXCHANGE_SIZE)
+        y = np.zeros(UNKNOWNS + ENTRIES_SIZE)
         y[Q:U], y[U:P], y[P:SPIN], y[SPIN] = q, u, v[:2] + p[table_rates.RATIO] * e, omega[2]
         self._start, self._begin = np.array(vector), float(vector[STATE_TIME])
         self._phases = [self._phase_from(tuple(y.tolist()))]
@@ -106,19 +127,29 @@ class TableCourse:
         return _Phase(self._bound, p, y, self._tolerance)
 
     def states(self, times, out):
-        """Fill out with the states at times not before the start, and its columns from 14 on with the books."""
+        """Fill the rows of `out` as `state` does, for times not before the start."""
         for row, time in enumerate(times):
             self.state(time, out[row])
 
     def state(self, time, out):
-        """Fill out with the state at a time not before the start, and what is behind it with the books."""
+        """Fill `out` with the state at a time not before the start.
+
+        Columns from 14 on, where `out` has them, get the entries of the ledger.
+        """
         self._write(time, self._at(time - self._begin), out)
 
     def events(self, after, until):
-        """Return the (time, name, values) after one time (s) and not later than another: rolling began, sliding began."""
+        """Return the (time, name, values) after one time (s) and up to another.
+
+        The events are: rolling began, sliding began.
+        """
         self._reach(until - self._begin)
         names = {CREEPING: 'sliding began', ROLLING: 'rolling began'}
-        changes = [(self._begin + phase.begin, names[phase.mode], {}) for phase in self._phases[1:] if phase.mode in names]
+        changes = [
+            (self._begin + phase.begin, names[phase.mode], {})
+            for phase in self._phases[1:]
+            if phase.mode in names
+        ]
         return [change for change in changes if after < change[0] <= until]
 
     def _reach(self, elapsed):
@@ -142,8 +173,8 @@ class TableCourse:
 class _Phase:
     """Sliding, rolling or gliding from one change to the next.
 
-    A node is (unknowns with books, what their sums lost, squared scales, (next step, step that led here)); the nodes depend on the start of
-    the phase only.
+    A point is (unknowns with the ledger, what their sums lost, squared scales, (next step, the
+    step that led here)); the points depend on the start of the phase only.
 
     Attributes
     ----------
@@ -156,7 +187,12 @@ class _Phase:
     """
 
     def __init__(self, bound, p, y, tolerance):
-        self._bound, self._p, self._tolerance, self.mode = bound, p, tolerance, int(p[table_rates.MODE])
+        self._bound, self._p, self._tolerance, self.mode = (
+            bound,
+            p,
+            tolerance,
+            int(p[table_rates.MODE]),
+        )
         self.begin, self.last = float(y[CLOCK]), None
         self._kept, self._stride, self._count = [], 1, 0
         gx, gy, c = table_rates.drive(p, y)
@@ -170,7 +206,10 @@ class _Phase:
         self._keep()
 
     def reach(self, elapsed):
-        """March until the time is passed or the phase ends; return whether it ends not later than that."""
+        """March until the time is passed or the phase ends.
+
+        Return whether it ends not later than that.
+        """
         while self.last is None and self._front[0][CLOCK] <= elapsed:
             following = self._next(self._front)
             self.last = self._end(self._front, following)
@@ -180,20 +219,23 @@ class _Phase:
         return self.last is not None and self.last[CLOCK] <= elapsed
 
     def at(self, elapsed):
-        """Return the unknowns and books at a time that the march has passed."""
-        node = self._kept[max(0, bisect.bisect_right(self._kept, elapsed, key=lambda node: node[0][CLOCK]) - 1)]
-        following = self._next(node)
+        """Return the unknowns and ledger entries at a time that the march has passed."""
+        point = self._kept[
+            max(0, bisect.bisect_right(self._kept, elapsed, key=lambda point: point[0][CLOCK]) - 1)
+        ]
+        following = self._next(point)
         while following[0][CLOCK] <= elapsed:
-            node, following = following, self._next(following)
-        if node[0][CLOCK] == elapsed:
-            return node[0]
+            point, following = following, self._next(following)
+        if point[0][CLOCK] == elapsed:
+            return point[0]
         if self.mode != SLIDING:
-            return self._part(node, elapsed - node[0][CLOCK])
-        # time is an unknown: Newton's method for the part of the step that ends at it, within what is known to hold it
+            return self._part(point, elapsed - point[0][CLOCK])
+        # time is an unknown: Newton's method for the part of the step that ends at it, within what
+        # is known to hold it
         low, high = 0.0, following[3][1]
-        part = high * (elapsed - node[0][CLOCK]) / (following[0][CLOCK] - node[0][CLOCK])
+        part = high * (elapsed - point[0][CLOCK]) / (following[0][CLOCK] - point[0][CLOCK])
         for _ in range(TRIALS):
-            y = self._part(node, part)
+            y = self._part(point, part)
             late = y[CLOCK] - elapsed
             if late > 0.0:
                 high = part
@@ -213,14 +255,14 @@ class _Phase:
             if len(self._kept) == KEPT:
                 self._kept, self._stride = self._kept[::2], 2 * self._stride
 
-    def _part(self, node, h):
-        y, lost, _, _ = node
+    def _part(self, point, h):
+        y, lost, _, _ = point
         kernels = self._bound.kernels
         return kernels.step(self._p, y, lost, kernels.rate(self._p, y), h)[0]
 
-    def _next(self, node):
-        """Return the node after one accepted step."""
-        y, lost, scales, (h, _) = node
+    def _next(self, point):
+        """Return the point after one accepted step."""
+        y, lost, scales, (h, _) = point
         kernels, p = self._bound.kernels, self._p
         first = kernels.rate(p, y)
         for _ in range(TRIALS):
@@ -228,22 +270,29 @@ class _Phase:
             allowed = self._tolerance * (after[CLOCK] - y[CLOCK]) + FLOOR
             factor = SHRINK
             if error < math.inf:
-                factor = SAFETY * power(allowed / max(error, 1e-9 * allowed), 1.0 / self._bound.order)
+                factor = SAFETY * power(
+                    allowed / max(error, 1e-9 * allowed), 1.0 / self._bound.order
+                )
                 factor = min(GROWTH, max(SHRINK, factor))
             if error <= allowed:
                 q, lost_q = unit(*after[Q:U], *lost_after[Q:U])
                 return (*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after, (h * factor, h)
             h *= factor
-        raise NotConverged(f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start of the hold')
+        raise NotConverged(
+            f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start '
+            'of the hold'
+        )
 
-    def _end(self, node, following):
+    def _end(self, point, following):
         """Return the unknowns where the phase ends if it does so within a step, else None."""
-        before, after = node[0], following[0]
+        before, after = point[0], following[0]
         if self.mode == SLIDING:
             vx, vy, *omega = table_rates.motion(self._p, after)
             slip, c = hypot(after[U], after[U + 1]), table_rates.drive(self._p, after)[2]
             speed = hypot(vx, vy) + self._p[table_rates.RADIUS] * hypot3(*omega)
-            dead = slip < hypot(before[U], before[U + 1]) and slip <= DEAD * max(speed, c * (after[CLOCK] - self.begin))
+            dead = slip < hypot(before[U], before[U + 1]) and slip <= DEAD * max(
+                speed, c * (after[CLOCK] - self.begin)
+            )
             return (*after[:U], 0.0, 0.0, *after[P:]) if dead else None
         if self.mode == CREEPING:
             return after if after[U] != 0.0 or after[U + 1] != 0.0 else None
@@ -252,11 +301,11 @@ class _Phase:
         low, high = 0.0, following[3][1]
         for _ in range(TRIALS):
             middle = 0.5 * (low + high)
-            if self._grips(self._part(node, middle)):
+            if self._grips(self._part(point, middle)):
                 low = middle
             else:
                 high = middle
-        return self._part(node, high)
+        return self._part(point, high)
 
     def _grips(self, y):
         """Return whether friction can hold the lowest point."""

@@ -1,26 +1,35 @@
-"""Taylor series of a turning body: a step of the method taylor, as a recurrence for eight lanes (lanes.py).
+# SPDX-License-Identifier: Apache-2.0
+"""Taylor series of a turning body: a step of taylor as a recurrence for eight lanes (lanes.py).
 
-    q' = q omega/2,   omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + Gamma_1/I1 and so on in turn,   f' = f x omega
+    q' = q omega/2,
+    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + Gamma_1/I1 and so on in turn,
+    f' = f x omega
 
-Gamma = constant + arm x f + c - D omega, where f and c are the components in the frame of a force and a couple that keep their direction in
-the world, and D is the matrix of drag; a scene that lacks one has no f, no c or no D. All right-hand sides are products of two unknowns or
-linear, so that the series follow from Cauchy's products:
+Gamma = constant + arm x f + c - D omega, where f and c are the components in the frame of a force
+and a couple that keep their direction in the world, and D is the matrix of drag; a scene that
+lacks one has no f, no c or no D. All right-hand sides are products of two unknowns or linear, so
+that the series follow from Cauchy's products:
 
     (a b)_k = sum over i of a_i b_(k - i),    q_(k + 1) = (q omega)_k/(2 (k + 1)),  ...
 
-As soon as the coefficients k are known, what they give with those of order 0 ... 7 is added to the sums of the orders k ... k + 7, eight
-lanes at once: up to order 16 no pair is left out.
+As soon as the coefficients k are known, what they give with those of order 0 ... 7 is added to the
+sums of the orders k ... k + 7, eight lanes at once: up to order 16 no pair is left out.
 """
 
 from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
 
 ORDER = 2 * LANES
-CHAINS = 3      # of sums side by side: the latency of one sum after the other would cost more than to join them
-UNKNOWNS = 7    # q, omega; the coefficients of an order stand in LANES places, the last one is not used
+# of sums side by side: the latency of one sum after the other would cost more than to join them
+CHAINS = 3
+# q, omega; the coefficients of an order stand in LANES places, the last one is not used
+UNKNOWNS = 7
 
 
 class _Series:
-    """Coefficients of one unknown: as numbers, spread over all lanes, and the first eight of them side by side as far as they are known."""
+    """Coefficients of one unknown: as numbers, and spread over all lanes.
+
+    The first eight also stand side by side, as far as they are known.
+    """
 
     def __init__(self, operations, start):
         self._operations = operations
@@ -37,16 +46,22 @@ class _Series:
 
 
 class _Products:
-    """A sum of products of series with signs, [(sign, a, b), ...]; b should be the one whose coefficients are known first.
+    """A sum of products of series with signs, [(sign, a, b), ...].
+
+    B should be the one whose coefficients are known first.
 
     None stands for a series that is zero throughout: its products are left out.
     """
 
     def __init__(self, operations, *terms):
-        self._operations, self._terms, self._sums = operations, [term for term in terms if None not in term], None
+        self._operations, self._terms, self._sums = (
+            operations,
+            [term for term in terms if None not in term],
+            None,
+        )
 
     def at(self, k):
-        """Return the coefficient k, to be asked for in turn, once the series are known to order k."""
+        """Return the coefficient k; calls come in turn, when the series are known to order k."""
         o = self._operations
         if not self._terms:
             return o.number(0.0)
@@ -76,33 +91,52 @@ def _turned(o, f, w):
 def _turning(o, q, w):
     """Return the products of 2 q' = q omega."""
     x, y, z, s = q
-    return (_Products(o, (1, s, w[0]), (1, y, w[2]), (-1, z, w[1])), _Products(o, (1, s, w[1]), (1, z, w[0]), (-1, x, w[2])),
-            _Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])), _Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])))
+    return (
+        _Products(o, (1, s, w[0]), (1, y, w[2]), (-1, z, w[1])),
+        _Products(o, (1, s, w[1]), (1, z, w[0]), (-1, x, w[2])),
+        _Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])),
+        _Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])),
+    )
 
 
 def expansion(pushed, coupled, dragged, hinged):
-    """Return the kernel ``(S, (y, euler, constant, push, couple, drag)) -> ()`` that fills S with the coefficients of y, order by order.
+    """Return the kernel that fills S with the coefficients of y, order by order.
+
+    Its signature is ``(S, (y, euler, constant, push, couple, drag)) -> ()``.
+    More than forty lines: the recurrence is one closure over the four switches.
 
     Parameters
     ----------
     pushed, coupled, dragged : bool
-        Whether there is a force on an arm, and a couple, that keep their direction in the world, and drag.
+        Whether there is a force on an arm, and a couple, that keep their direction in the world,
+        and drag.
     hinged : bool
-        Whether omega keeps to the third axis; the coefficients of its other components stay as they are in S.
+        Whether omega keeps to the third axis; the coefficients of its other components stay as
+        they are in S.
 
     Notes
     -----
-    euler holds (I2 - I3)/I1 ..., constant a torque's part in omega', push (if `pushed`) f at the start and the six numbers that make
-    omega' of it: omega_1' = u_1 f_2 + u_2 f_3, omega_2' = u_3 f_3 + u_4 f_1, omega_3' = u_5 f_1 + u_6 f_2; couple (if `coupled`) holds c at
-    the start and 1/I1 ...; drag (if `dragged`) -D_11/I1, -D_12/I1 ..., row by row.
+    euler holds (I2 - I3)/I1 ..., constant a torque's part in omega', push (if `pushed`) f at the
+    start and the six numbers that make omega' of it: omega_1' = u_1 f_2 + u_2 f_3, omega_2' = u_3
+    f_3 + u_4 f_1, omega_3' = u_5 f_1 + u_6 f_2; couple (if `coupled`) holds c at the start and
+    1/I1 ...; drag (if `dragged`) -D_11/I1, -D_12/I1 ..., row by row.
     """
     def recurrence(o, S, y, euler, constant, push, couple, drag):
         turns = (2,) if hinged else (0, 1, 2)
-        q, w = [_Series(o, value) for value in y[:4]], [_Series(o, y[4 + i]) if i in turns else None for i in range(3)]
+        q, w = (
+            [_Series(o, value) for value in y[:4]],
+            [_Series(o, y[4 + i]) if i in turns else None for i in range(3)],
+        )
         f, u = ([_Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
-        c, inverse = ([_Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
+        c, inverse = (
+            ([_Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
+        )
         gyroscopic = [_Products(o, (1, w[i - 2], w[i - 1])) for i in range(3)]
-        products = [*_turning(o, q, w), *(_turned(o, f, w) if f else ()), *(_turned(o, c, w) if c else ())]
+        products = [
+            *_turning(o, q, w),
+            *(_turned(o, f, w) if f else ()),
+            *(_turned(o, c, w) if c else ()),
+        ]
         shares = [0.5] * 4 + [1.0] * (len(f) + len(c))
         unknowns = [(place, one) for place, one in enumerate(q + w) if one]
         for place, one in unknowns:
@@ -117,16 +151,31 @@ def expansion(pushed, coupled, dragged, hinged):
                     driven = pull if driven is None else o.plus(driven, pull)
                 if c:
                     turn = c[i].coefficients[k]
-                    driven = o.times(inverse[i], turn) if driven is None else o.gather(inverse[i], turn, driven)
+                    driven = (
+                        o.times(inverse[i], turn)
+                        if driven is None
+                        else o.gather(inverse[i], turn, driven)
+                    )
                 for share, one in zip(drag[3 * i:3 * i + 3], w if drag else (), strict=True):
                     if one:
                         turn = one.coefficients[k]
-                        driven = o.times(share, turn) if driven is None else o.gather(share, turn, driven)
+                        driven = (
+                            o.times(share, turn)
+                            if driven is None
+                            else o.gather(share, turn, driven)
+                        )
                 own = gyroscopic[i].at(k)
-                rates.append(o.times(euler[i], own) if driven is None else o.gather(euler[i], own, driven))
+                rates.append(
+                    o.times(euler[i], own) if driven is None else o.gather(euler[i], own, driven)
+                )
             following = [o.times(o.number(1.0 / (k + 1)), rate) for rate in rates]
-            others = [o.times(o.number(share / (k + 1)), product.at(k)) for share, product in zip(shares, products, strict=True)]
-            for one, coefficient in zip([*(w[i] for i in turns), *q, *f, *c], [*following, *others], strict=True):
+            others = [
+                o.times(o.number(share / (k + 1)), product.at(k))
+                for share, product in zip(shares, products, strict=True)
+            ]
+            for one, coefficient in zip(
+                [*(w[i] for i in turns), *q, *f, *c], [*following, *others], strict=True
+            ):
                 one.add(coefficient)
             for place, one in unknowns:
                 o.store(one.coefficients[k + 1], S, LANES * (k + 1) + place)
@@ -135,11 +184,17 @@ def expansion(pushed, coupled, dragged, hinged):
 
 
 def _along(o, S, h):
-    """Return by how much the unknowns change in a time h: neighbours are joined, then neighbours of these, and so on."""
+    """Return by how much the unknowns change in a time h.
+
+    Neighbours are joined, then neighbours of these, and so on.
+    """
     terms, power = [o.load(S, LANES * k) for k in range(1, ORDER + 1)], o.everywhere(h)
     step = power
     while len(terms) > 1:
-        terms = [o.gather(after, power, before) for before, after in zip(terms[::2], terms[1::2], strict=True)]
+        terms = [
+            o.gather(after, power, before)
+            for before, after in zip(terms[::2], terms[1::2], strict=True)
+        ]
         power = o.times(power, power)
     change = o.times(terms[0], step)
     found = []

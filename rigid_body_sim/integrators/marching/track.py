@@ -1,15 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template: states at any times along a march, with checkpoints.
 
-The nodes of a march depend on its start only. Every `stride`-th node is kept; when the store is full, every other one is dropped and the
-stride doubles, so an earlier time costs a restart from the checkpoint before it. A state between two nodes is one step of the method from
-the earlier one: it is as accurate as the nodes, continuous, and does not depend on which times were asked.
+The points of a march depend on its start only. Every `stride`-th point is kept; when the store is
+full, every other one is dropped and the stride doubles, so an earlier time costs a restart from
+the checkpoint before it. A state between two points is one step of the method from the earlier
+one: it is as accurate as the points, continuous, and does not depend on which times were asked.
 
-A piece is one array, because numba takes a quarter of a microsecond for each that it is handed: parameters, control, node, following node
-of the method, [kept nodes, stride, steps made], kept nodes. Its beginning, up to the node, is copied from a prototype.
+A piece is one array, because numba takes a quarter of a microsecond for each that it is handed:
+parameters, control, point, following point of the method, [kept points, stride, steps made], kept
+points. Its beginning, up to the point, is copied from a prototype.
 """
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.marching.points import TIME
+from rigid_body_sim.scene.state import STATE_SIZE
 
 start = UNBOUND
 begin = UNBOUND
@@ -20,25 +25,25 @@ SIZE = UNBOUND
 VALUES = UNBOUND
 # places in a piece
 CONTROL = UNBOUND
-NODE = UNBOUND
+POINT = UNBOUND
 FOLLOWING = UNBOUND
 COUNTS = UNBOUND
 
-TIME = 0
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
-CHECKPOINTS = 128                   # how many nodes are kept
+CHECKPOINTS = 128                   # how many points are kept
 SPACING = 32                        # at first every which one
 
 
 @compiled
 def _copy(source, target):
-    for k in range(len(source)):    # an assignment of slices would compile numba's own error texts, for seconds
+    # an assignment of slices would compile numba's own error texts, for seconds
+    for k in range(len(source)):
         target[k] = source[k]
 
 
 @compiled
-def _copy_node(source, at, target, to):
-    for k in range(FOLLOWING - NODE):
+def _copy_point(source, at, target, to):
+    for k in range(FOLLOWING - POINT):
         target[to + k] = source[at + k]
 
 
@@ -46,26 +51,31 @@ def _copy_node(source, at, target, to):
 def first_piece(prototype, vector, piece):
     """Fill a piece at its start, a state vector."""
     _copy(prototype, piece)
-    piece[NODE + TIME] = vector[0]
-    start(piece[:CONTROL], vector, piece, NODE + VALUES)
+    piece[POINT + TIME] = vector[0]
+    start(piece[:CONTROL], vector, piece, POINT + VALUES)
     opened(piece)
 
 
 @compiled
 def opened(piece):
-    """Complete a piece whose parameters, control, and first node with its time and unknowns are set."""
-    begin(piece[:CONTROL], piece[CONTROL:NODE], piece[NODE:FOLLOWING])
-    _copy_node(piece, NODE, piece, FOLLOWING)
-    _copy_node(piece, NODE, piece, COUNTS + STORE)
+    """Complete a piece whose parameters, control, and first time and unknowns are set."""
+    begin(piece[:CONTROL], piece[CONTROL:POINT], piece[POINT:FOLLOWING])
+    _copy_point(piece, POINT, piece, FOLLOWING)
+    _copy_point(piece, POINT, piece, COUNTS + STORE)
     piece[COUNTS + STORED], piece[COUNTS + STRIDE], piece[COUNTS + COUNT] = 1.0, SPACING, 0.0
 
 
 @compiled
 def follow(piece, target, end):
-    """Bring the node to the last one not later than `target`; return whether it went well."""
-    p, control, node, following = piece[:CONTROL], piece[CONTROL:NODE], piece[NODE:FOLLOWING], piece[FOLLOWING:COUNTS]
-    counts, store, length = piece[COUNTS:COUNTS + STORE], piece[COUNTS + STORE:], FOLLOWING - NODE
-    if target < node[TIME]:
+    """Bring the point to the last one not later than `target`; return whether it went well."""
+    p, control, point, following = (
+        piece[:CONTROL],
+        piece[CONTROL:POINT],
+        piece[POINT:FOLLOWING],
+        piece[FOLLOWING:COUNTS],
+    )
+    counts, store, length = piece[COUNTS:COUNTS + STORE], piece[COUNTS + STORE:], FOLLOWING - POINT
+    if target < point[TIME]:
         low, high = 0, int(counts[STORED]) - 1
         while low < high:
             middle = (low + high + 1) // 2
@@ -73,13 +83,13 @@ def follow(piece, target, end):
                 low = middle
             else:
                 high = middle - 1
-        _copy_node(store, length * low, node, 0)
-        following[TIME] = node[TIME]
+        _copy_point(store, length * low, point, 0)
+        following[TIME] = point[TIME]
         counts[COUNT] = low * counts[STRIDE]
     while True:
         stride = int(counts[STRIDE])
         until_checkpoint = stride - int(counts[COUNT]) % stride
-        moved, good = march(p, control, node, following, target, end, until_checkpoint)
+        moved, good = march(p, control, point, following, target, end, until_checkpoint)
         counts[COUNT] += moved
         if not good:
             return False
@@ -88,28 +98,38 @@ def follow(piece, target, end):
         if counts[COUNT] == counts[STORED] * counts[STRIDE]:
             if counts[STORED] == CHECKPOINTS:
                 for k in range(CHECKPOINTS // 2):
-                    _copy_node(store, 2 * length * k, store, length * k)
+                    _copy_point(store, 2 * length * k, store, length * k)
                 counts[STORED], counts[STRIDE] = CHECKPOINTS // 2, 2.0 * counts[STRIDE]
             if counts[COUNT] == counts[STORED] * counts[STRIDE]:
-                _copy_node(node, 0, store, length * int(counts[STORED]))
+                _copy_point(point, 0, store, length * int(counts[STORED]))
                 counts[STORED] += 1.0
 
 
 @compiled
-def _fill(p, control, node, following, time, out):
-    """Fill out, (14,) or longer for the books, with the state at a time within the step from `node`."""
-    y = between(p, control, node, following, time - node[TIME])
+def _fill(p, control, point, following, time, out):
+    """Fill `out` with the state at a time within the step from `point`.
+
+    Where `out` has more than 14 columns, the others get the entries of the ledger.
+    """
+    y = between(p, control, point, following, time - point[TIME])
     write(p, time, y, out)
-    for book in range(14, len(out)):
-        out[book] = y[SIZE - len(out) + book]
+    for place in range(STATE_SIZE, len(out)):
+        out[place] = y[SIZE - len(out) + place]
 
 
 @compiled
 def state(piece, time, end, out):
     """Fill out with the state at a time; return whether it went well."""
-    good = piece[NODE + TIME] <= time < piece[FOLLOWING + TIME] or follow(piece, time, end)
+    good = piece[POINT + TIME] <= time < piece[FOLLOWING + TIME] or follow(piece, time, end)
     if good:
-        _fill(piece[:CONTROL], piece[CONTROL:NODE], piece[NODE:FOLLOWING], piece[FOLLOWING:COUNTS], time, out)
+        _fill(
+            piece[:CONTROL],
+            piece[CONTROL:POINT],
+            piece[POINT:FOLLOWING],
+            piece[FOLLOWING:COUNTS],
+            time,
+            out,
+        )
     return good
 
 
@@ -122,11 +142,19 @@ def first_state(prototype, vector, piece, time, end, out):
 
 @compiled
 def states(piece, times, order, end, out):
-    """Fill row order[i] of out with the state at times[order[i]], times rising in that order; return how many rows were filled."""
-    p, control, node, following = piece[:CONTROL], piece[CONTROL:NODE], piece[NODE:FOLLOWING], piece[FOLLOWING:COUNTS]
+    """Fill row order[i] of out with the state at times[order[i]], times rising in that order.
+
+    Return how many rows were filled.
+    """
+    p, control, point, following = (
+        piece[:CONTROL],
+        piece[CONTROL:POINT],
+        piece[POINT:FOLLOWING],
+        piece[FOLLOWING:COUNTS],
+    )
     for i in range(len(order)):
         k = order[i]
-        if not (node[TIME] <= times[k] < following[TIME] or follow(piece, times[k], end)):
+        if not (point[TIME] <= times[k] < following[TIME] or follow(piece, times[k], end)):
             return i
-        _fill(p, control, node, following, times[k], out[k])
+        _fill(p, control, point, following, times[k], out[k])
     return len(order)

@@ -1,39 +1,57 @@
-"""Runge-Kutta steps written out: from a table of coefficients to the source text of kernels without loops.
+# SPDX-License-Identifier: Apache-2.0
+"""Runge-Kutta steps written out: a table of coefficients becomes kernels without loops.
 
-Unrolled, all stages live in registers and a zero coefficient costs nothing. compilation/templates.py binds
-the text into the templates of this folder. An unknown count of ``n + extra`` means n unknowns that
-the rates depend on, then `extra` quadratures, for which no stage values are formed.
+Unrolled, all stages live in registers and a zero coefficient costs nothing.
+compilation/templates.py binds the text into the templates of this folder. An unknown count of ``n
++ extra`` means n unknowns that the rates depend on, then `extra` quadratures, for which no stage
+values are formed.
 """
 
 ROUNDING = 2.0 ** -49    # of an increment: what the sums of error estimates carry
-NOTHING = 1e-100         # rad/s, of a body that a torque sets turning from rest as good as exactly: rates relative to it say nothing
+# rad/s, of a body that a torque sets turning from rest as good as exactly: rates relative to it
+# say nothing
+NOTHING = 1e-100
 
 
 def step_source(method, n, extra):
     """Return the source of ``step(p, y, c, k0, h) -> (y, c)``.
 
-    One step of size h from y, where k0 is rate(p, y). c is what the sums have lost so far (Kahan): it is added to the increment, and what
-    the new sum loses is returned.
+    One step of size h from y, where k0 is rate(p, y). c is what the sums have lost so far (Kahan):
+    it is added to the increment, and what the new sum loses is returned.
     """
-    return '\n'.join(['@compiled', 'def step(p, y, c, k0, h):', *_stages(method, n), *_increment(method, n + extra),
-                      f'    return {sums(n + extra)}, {losses(n + extra)}', ''])
+    return '\n'.join(
+        [
+            '@compiled',
+            'def step(p, y, c, k0, h):',
+            *_stages(method, n),
+            *_increment(method, n + extra),
+            f'    return {sums(n + extra)}, {losses(n + extra)}',
+            '',
+        ]
+    )
 
 
 def trial_source(method, n, extra, groups):
     """Return the source of ``trial(p, y, c, k0, h, scales) -> (y, c, scales, error)``.
 
-    Like ``step``, with the error estimate of DOP853: err5^2/sqrt(err5^2 + 0.01 err3^2), each a sum over groups of unknowns of the squared
-    error over the squared scale of the group. Where err5 is only the rounding of its own terms, the error is 0: it says nothing, and the
-    error of order 8 is far below it.
+    Like ``step``, with the error estimate of DOP853: err5^2/sqrt(err5^2 + 0.01 err3^2), each a sum
+    over groups of unknowns of the squared error over the squared scale of the group. Where err5 is
+    only the rounding of its own terms, the error is 0: it says nothing, and the error of order 8
+    is far below it.
 
     Parameters
     ----------
     groups : sequence of (first, last, absolute)
-        Slices of the unknowns. The scale of an absolute group is 1; of the others the largest norm met so far, `scales` holds their
-        squares.
+        Slices of the unknowns. The scale of an absolute group is 1; of the others the largest norm
+        met so far, `scales` holds their squares.
     """
-    lines = ['@compiled', 'def trial(p, y, c, k0, h, scales):', *_stages(method, n), *_increment(method, n + extra),
-             '    fifth = third = moved = 0.0']
+    lines = [
+        '@compiled',
+        'def trial(p, y, c, k0, h, scales):',
+        *_stages(method, n),
+        *_increment(method, n + extra),
+        '    fifth = third = moved = 0.0',
+    ]
     squares = []
     for first, last, absolute in groups:
         members = range(first, last)
@@ -41,47 +59,87 @@ def trial_source(method, n, extra, groups):
             weight = ''
         else:
             place = len(squares)
-            before, after = (' + '.join(f'{name} * {name}' for name in (form.format(u) for u in members)) for form in ('y[{}]', 's{}'))
+            before, after = (
+                ' + '.join(f'{name} * {name}' for name in (form.format(u) for u in members))
+                for form in ('y[{}]', 's{}')
+            )
             lines.append(f'    square{place} = max(scales[{place}], {before}, {after})')
-            lines.append(f'    weight{place} = 1.0 / square{place} if square{place} > {NOTHING**2!r} else 0.0')
+            lines.append(
+                f'    weight{place} = 1.0 / square{place} '
+                f'if square{place} > {NOTHING**2!r} else 0.0'
+            )
             squares.append(f'square{place}')
             weight = f'weight{place} * '
         for name, row in (('fifth', method.E5), ('third', method.E3)):
             lines += [f'    e{u} = {_sum(row, u)}' for u in members]
             lines.append(f'    {name} += {weight}({" + ".join(f"e{u} * e{u}" for u in members)})')
         lines.append(f'    moved += {weight}({" + ".join(f"d{u} * d{u}" for u in members)})')
-    return '\n'.join([*lines, '    fifth, third = h * h * fifth, h * h * third', '    below = fifth + 0.01 * third',
-                      f'    error = fifth / math.sqrt(below) if not fifth <= {ROUNDING * ROUNDING!r} * moved else 0.0',
-                      f'    return {sums(n + extra)}, {losses(n + extra)}, ({"".join(f"{square}, " for square in squares)}), error', ''])
+    return '\n'.join(
+        [
+            *lines,
+            '    fifth, third = h * h * fifth, h * h * third',
+            '    below = fifth + 0.01 * third',
+            '    error = fifth / math.sqrt(below) '
+            f'if not fifth <= {ROUNDING * ROUNDING!r} * moved else 0.0',
+            f'    return {sums(n + extra)}, {losses(n + extra)}, '
+            f'({"".join(f"{square}, " for square in squares)}), error',
+            '',
+        ]
+    )
 
 
 def fastest_source(groups):
-    """Return the source of ``fastest(y, k)``: the largest rate of change (1/s) of a group of unknowns, relative to its scale at y.
+    """Return the source of ``fastest(y, k)``.
+
+    The largest rate of change (1/s) of a group of unknowns, relative to its scale at y.
 
     It is 0 where nothing moves yet.
     """
     lines = ['@compiled', 'def fastest(y, k):', '    found = 0.0']
     for first, last, absolute in groups:
-        change, square = (' + '.join(f'{name}[{u}] * {name}[{u}]' for u in range(first, last)) for name in 'ky')
+        change, square = (
+            ' + '.join(f'{name}[{u}] * {name}[{u}]' for u in range(first, last)) for name in 'ky'
+        )
         if absolute:
             lines.append(f'    found = max(found, math.sqrt({change}))')
         else:
-            lines += [f'    square = {square}', f'    found = max(found, math.sqrt(({change}) / square)) if square > {NOTHING**2!r} else found']
+            lines += [
+                f'    square = {square}',
+                f'    found = max(found, math.sqrt(({change}) / square)) '
+                f'if square > {NOTHING**2!r} else found',
+            ]
     return '\n'.join([*lines, f'    return found if found > {NOTHING!r} else 0.0', ''])
 
 
 def load_source(name, size):
     """Return the source of ``name(array, at)``: a tuple of `size` entries."""
-    return '\n'.join(['@compiled', f'def {name}(array, at):', f'    return ({"".join(f"array[at + {u}], " for u in range(size))})', ''])
+    return '\n'.join(
+        [
+            '@compiled',
+            f'def {name}(array, at):',
+            f'    return ({"".join(f"array[at + {u}], " for u in range(size))})',
+            '',
+        ]
+    )
 
 
 def put_source(name, size):
     """Return the source of ``name(values, array, at)``: it writes a tuple into an array."""
-    return '\n'.join(['@compiled', f'def {name}(values, array, at):', *(f'    array[at + {u}] = values[{u}]' for u in range(size)), ''])
+    return '\n'.join(
+        [
+            '@compiled',
+            f'def {name}(values, array, at):',
+            *(f'    array[at + {u}] = values[{u}]' for u in range(size)),
+            '',
+        ]
+    )
 
 
 def _stages(method, n):
-    """Return the lines of all stages; the newest stage is added last, because the others are known earlier."""
+    """Return the lines of all stages.
+
+    The newest stage is added last, because the others are known earlier.
+    """
     lines = [f'    a{i}_{j} = h * {a!r}' for i, row in enumerate(method.A) for j, a in row.items()]
     for i, row in enumerate(method.A):
         if i == 0:
@@ -89,7 +147,11 @@ def _stages(method, n):
         *early, last = row
         values = []
         for u in range(n):
-            before = f'(y[{u}] + ({" + ".join(f"a{i}_{j} * k{j}[{u}]" for j in early)}))' if early else f'y[{u}]'
+            before = (
+                f'(y[{u}] + ({" + ".join(f"a{i}_{j} * k{j}[{u}]" for j in early)}))'
+                if early
+                else f'y[{u}]'
+            )
             values.append(f'{before} + a{i}_{last} * k{last}[{u}]')
         lines.append(f'    k{i} = rate(p, ({", ".join(values)}))')
     return lines

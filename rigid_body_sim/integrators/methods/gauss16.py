@@ -1,12 +1,17 @@
-"""gauss16: Gauss collocation of order 16, all eight stages advanced together; the fastest method for smooth scenes.
+# SPDX-License-Identifier: Apache-2.0
+"""gauss16: Gauss collocation of order 16, all eight stages advanced together.
 
-In a step of size h the unknowns follow the polynomials that meet the equations at the eight Gauss nodes c_i. The equations of the stages,
-Y_i = y + h sum_j a_ij f(Y_j), are solved by substitution (Picard) from the continued polynomial of the step before. One sweep is eight
-evaluations of f and one product with the matrix a, both in the vector unit of the processor; it costs about a fifth of a step of dop8, and
-a step of two radians takes about a dozen of them.
+The fastest method for smooth scenes.
 
-Symmetric; a converged step is symplectic and keeps quadratic invariants, so errors of conservative scenes grow in proportion to the time.
-Caveat: substitution converges for steps of a few radians at most, whatever the accuracy asked: this is no method for stiff scenes.
+In a step of size h the unknowns follow the polynomials that meet the equations at the eight Gauss
+nodes c_i. The equations of the stages, Y_i = y + h sum_j a_ij f(Y_j), are solved by substitution
+(Picard) from the continued polynomial of the step before. One sweep is eight evaluations of f and
+one product with the matrix a, both in the vector unit of the processor; it costs about a fifth of
+a step of dop8, and a step of two radians takes about a dozen of them.
+
+Symmetric; a converged step is symplectic and keeps quadratic invariants, so errors of conservative
+scenes grow in proportion to the time. Caveat: substitution converges for steps of a few radians at
+most, whatever the accuracy asked: this is no method for stiff scenes.
 """
 
 from rigid_body_sim.integrators.families import collocation as FAMILY  # noqa: F401, N812
@@ -16,6 +21,11 @@ ORDER = 16
 PRESERVES = ('symplectic form', 'reversal of time', 'quadratic invariants')
 NEEDS = 'acting'
 HEAT = True
+STIFF = False
+TABLE = False
 TAKES = ('accuracy', 'step')
-SOURCE = ('Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), II.1.3, VIII.6; stages in the vector unit: '
-          'Antonana, Makazaga, Murua, arXiv:2511.03655')
+SOURCE = (
+    'Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), II.1.3, VIII.6; '
+    'stages in the vector unit: '
+    'Antonana, Makazaga, Murua, arXiv:2511.03655'
+)

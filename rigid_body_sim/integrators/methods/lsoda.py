@@ -1,4 +1,8 @@
-"""lsoda: SciPy's LSODA, Adams methods of variable order up to 12 that give way to BDF up to 5 where a scene is stiff; scipy_methods.py."""
+# SPDX-License-Identifier: Apache-2.0
+"""lsoda: SciPy's LSODA, for scenes that may become stiff; scipy_methods.py.
+
+Adams methods of variable order up to 12 give way to BDF up to order 5 where a scene is stiff.
+"""
 
 from scipy import integrate
 
@@ -9,6 +13,8 @@ ORDER = 12
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+STIFF = True
+TABLE = False
 TAKES = ('accuracy',)
 SOLVER = integrate.LSODA
 SOURCE = 'L. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; ODEPACK, by SciPy'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """radau: SciPy's Radau IIA of order 5, implicit, for stiff scenes; scipy_methods.py."""
 
 from scipy import integrate
@@ -9,6 +10,8 @@ ORDER = 5
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+STIFF = True
+TABLE = False
 TAKES = ('accuracy',)
 SOLVER = integrate.Radau
 SOURCE = 'Hairer, Wanner, Solving ODEs II (1996), IV.8, by SciPy'

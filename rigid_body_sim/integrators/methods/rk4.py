@@ -1,4 +1,7 @@
-"""rk4: the classical Runge-Kutta method, what general engines call their accurate one; here for comparison.
+# SPDX-License-Identifier: Apache-2.0
+"""rk4: the classical Runge-Kutta method, what general engines call their accurate one.
+
+Here for comparison.
 
 Four stages, order 4, fixed steps only: it has no error estimate, so it needs `step`.
 """
@@ -10,6 +13,8 @@ ORDER = 4
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+STIFF = False
+TABLE = False
 TAKES = ('step',)
 SOURCE = 'W. Kutta, Z. Math. Phys. 46 (1901) 435'
 

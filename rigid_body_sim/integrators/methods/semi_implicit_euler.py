@@ -1,7 +1,11 @@
-"""semi_implicit_euler: what general engines do at every step, for comparison; exactly what is done is said in engine_step.py.
+# SPDX-License-Identifier: Apache-2.0
+"""semi_implicit_euler: what general engines do at every step, for comparison.
 
-Order 1, fixed steps only: it needs `step`. Named so by its users, as the new velocity moves the position; the gyroscopic term is explicit,
-so the method is not symplectic for a body that turns, and its energy grows.
+Exactly what is done is said in engine_step.py.
+
+Order 1, fixed steps only: it needs `step`. Named so by its users, as the new velocity moves the
+position; the gyroscopic term is explicit, so the method is not symplectic for a body that turns,
+and its energy grows.
 """
 
 from rigid_body_sim.integrators.families import engine_step as FAMILY  # noqa: F401, N812
@@ -11,5 +15,8 @@ ORDER = 1
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+STIFF = False
+TABLE = False
 TAKES = ('step',)
-SOURCE = 'Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), I.1.2 (symplectic Euler); the gyroscopic term as engines take it'
+SOURCE = ('Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), I.1.2 (symplectic '
+          'Euler); the gyroscopic term as engines take it')

@@ -1,7 +1,10 @@
-"""split2: the Strang composition, order 2; the only composition that runs scenes with drag or internal dissipation.
+# SPDX-License-Identifier: Apache-2.0
+"""split2: the Strang composition, order 2.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says composition.py. Fixed steps only: it needs
-`step`.
+The only composition that runs scenes with drag or internal dissipation.
+
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
+composition.py. Fixed steps only: it needs `step`.
 """
 
 from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
@@ -11,6 +14,8 @@ ORDER = 2
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = True
+STIFF = False
+TABLE = False
 TAKES = ('step',)
 SOURCE = 'G. Strang, SIAM J. Numer. Anal. 5 (1968) 506'
 

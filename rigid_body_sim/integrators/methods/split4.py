@@ -1,7 +1,10 @@
-"""split4: Blanes and Moan's SRKN 6b, order 4, six drifts a step, for kicks that depend on the attitude alone.
+# SPDX-License-Identifier: Apache-2.0
+"""split4: Blanes and Moan's SRKN 6b, order 4, six drifts a step.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says composition.py. Fixed steps only: it needs
-`step`.
+For kicks that depend on the attitude alone.
+
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
+composition.py. Fixed steps only: it needs `step`.
 """
 
 from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
@@ -11,6 +14,8 @@ ORDER = 4
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+STIFF = False
+TABLE = False
 TAKES = ('step',)
 SOURCE = 'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S6 of order 4 (b)'
 

@@ -1,7 +1,10 @@
-"""split6: Blanes and Moan's SRKN 14a, order 6, fifteen drifts a step, for kicks that depend on the attitude alone.
+# SPDX-License-Identifier: Apache-2.0
+"""split6: Blanes and Moan's SRKN 14a, order 6, fifteen drifts a step.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says composition.py. Fixed steps only: it needs
-`step`.
+For kicks that depend on the attitude alone.
+
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
+composition.py. Fixed steps only: it needs `step`.
 """
 
 import math
@@ -13,12 +16,30 @@ ORDER = 6
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+STIFF = False
+TABLE = False
 TAKES = ('step',)
-SOURCE = 'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S14 of order 6 (a)'
+SOURCE = (
+    'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S14 of order 6 (a)'
+)
 
-_A = (0.0378593198406116, 0.102635633102435, -0.0258678882665587, 0.314241403071447, -0.130144459517415, 0.106417700369543,
-      -0.00879424312851058)
-_B = (0.09171915262446165, 0.183983170005006, -0.05653436583288827, 0.004914688774712854, 0.143761127168358, 0.328567693746804)
+_A = (
+    0.0378593198406116,
+    0.102635633102435,
+    -0.0258678882665587,
+    0.314241403071447,
+    -0.130144459517415,
+    0.106417700369543,
+    -0.00879424312851058,
+)
+_B = (
+    0.09171915262446165,
+    0.183983170005006,
+    -0.05653436583288827,
+    0.004914688774712854,
+    0.143761127168358,
+    0.328567693746804,
+)
 _B7 = 0.5 - math.fsum(_B)
 DRIFTS = (*_A, 1.0 - 2.0 * math.fsum(_A), *_A[::-1])
 KICKS = (0.0, *_B, _B7, _B7, *_B[::-1], 0.0)

@@ -1,7 +1,10 @@
-"""split8: McLachlan's symmetric composition of seventeen Strang steps, order 8, for kicks that depend on the attitude alone.
+# SPDX-License-Identifier: Apache-2.0
+"""split8: McLachlan's symmetric composition of seventeen Strang steps, order 8.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says composition.py. Fixed steps only: it needs
-`step`.
+For kicks that depend on the attitude alone.
+
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
+composition.py. Fixed steps only: it needs `step`.
 """
 
 import math
@@ -14,10 +17,20 @@ ORDER = 8
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+STIFF = False
+TABLE = False
 TAKES = ('step',)
 SOURCE = 'R. I. McLachlan, SIAM J. Sci. Comput. 16 (1995) 151, table 2, SS 17 stages of order 8'
 
-_W = (0.12886597938144329897, 0.5815140871052509624, -0.41017537146985013753, 0.1851469357165877327, -0.40955234342085141934,
-      0.14440594108001204106, 0.27833550039367965131, 0.31495668391629485789)
+_W = (
+    0.12886597938144329897,
+    0.5815140871052509624,
+    -0.41017537146985013753,
+    0.1851469357165877327,
+    -0.40955234342085141934,
+    0.14440594108001204106,
+    0.27833550039367965131,
+    0.31495668391629485789,
+)
 DRIFTS = (*_W, 1.0 - 2.0 * math.fsum(_W), *_W[::-1])
 KICKS = (0.5 * _W[0], *(0.5 * (first + second) for first, second in pairwise(DRIFTS)), 0.5 * _W[0])

@@ -1,16 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
 """taylor: the Taylor series of order 16 of a body turned by constant torques, its weight and drag.
 
-A torque is constant in the body or in the world. The centre of mass of a free body moves in closed form (falling.py), drag or not; a body on
-a hinge is one that takes no torque across it (power_series.py).
+A torque is constant in the body or in the world. The centre of mass of a free body moves in closed
+form (falling.py), drag or not; a body on a hinge is one that takes no torque across it
+(power_series.py).
 
-Coefficients follow one from the other by Cauchy's products, eight orders at once in the vector unit (taylor_series.py); a step, as long as
-the last two coefficients allow, is three to five times cheaper than one of dop8 and twice to thrice as long. The series of a step are also
-its dense output.
+Coefficients follow one from the other by Cauchy's products, eight orders at once in the vector
+unit (taylor_series.py); a step, as long as the last two coefficients allow, is three to five times
+cheaper than one of dop8 and twice to thrice as long. The series of a step are also its dense
+output.
 
 Ensembles have a mode of their own: eight bodies at once (batch.py).
 
-Caveat: it needs products only, so no internal dissipation. Energy and momentum are kept to the accuracy of the method; the norm of the
-quaternion is restored after each step. The ledger's sums, and what holds while a wrench is held, are made by dop8.
+Caveat: it needs products only, so no internal dissipation. Energy and momentum are kept to the
+accuracy of the method; the norm of the quaternion is restored after each step. The ledger's sums,
+and what holds while a wrench is held, are made by dop8.
 """
 
 from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: F401, N812
@@ -20,5 +24,8 @@ NAME = 'taylor'
 PRESERVES = ()
 NEEDS = 'series'
 HEAT = True
+STIFF = False
+TABLE = False
 TAKES = ('accuracy', 'step')
-SOURCE = ('Jorba, Zou, Experimental Mathematics 14 (2005) 99; Cauchy products in blocks: van der Hoeven, J. Symbolic Computation 34 (2002) 479')
+SOURCE = ('Jorba, Zou, Experimental Mathematics 14 (2005) 99; Cauchy products in blocks: '
+          'van der Hoeven, J. Symbolic Computation 34 (2002) 479')

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Layouts: a flat array of floats is loaded into a named view and stored from one.
+
+A view is a NamedTuple. Its annotations say what a field is: ``float``, a vector (``Vector``,
+``Pair``, ``tuple[float, float]``, ...), a matrix (a tuple of vectors, its rows), or another view.
+The places in the array follow from the order of the fields:
+
+    class Throw(NamedTuple):
+        time: float            # s
+        velocity: Vector       # m/s, world axes
+
+    THROW = layout(Throw)
+    load_throw, store_throw, store_time = THROW.load, THROW.store, THROW.part('time').store
+
+    @compiled
+    def later(array, duration, out):
+        throw = load_throw(array)
+        vx, vy, vz = throw.velocity
+        store_throw(out, Throw(throw.time + duration, (vx, vy, vz - G * duration)))
+
+Kernels find functions by global names, so a module names those that it uses, as above. They are
+inlined: what a kernel loads but does not use costs no instruction, and without numba they are plain
+Python. numba keeps compiled callers on disk as if the subscripts stood in them, because every view
+is importable and the sources of kernels, this one included, are the key of the cache.
+"""
+
+import functools
+import itertools
+import linecache
+import typing
+
+from rigid_body_sim.compilation.jit import inlined
+
+Pair = tuple[float, float]                          # a double-double number, or a vector in a plane
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]      # x, y, z, w
+Matrix = tuple[Vector, Vector, Vector]              # rows
+
+
+def layout(view):
+    """Return the layout of an array that begins with the fields of a view (a NamedTuple class).
+
+    Raises
+    ------
+    TypeError
+        If a field is neither a float nor made of floats.
+    """
+    return Layout(view, view, 0, view.__name__)
+
+
+class Layout:
+    """Where a value stands in an array: a view, or a part of one.
+
+    Attributes
+    ----------
+    load : function (array, at=0) -> value
+        Read the value. `at` moves all places on: where an array holds several values of one kind.
+    store : function (array, value, at=0)
+        Write the value.
+    first, size, places : int, int, slice
+        The place of the first float, the number of floats, and all their places.
+    """
+
+    def __init__(self, view, kind, first, name):
+        self._view, self._kind, self._name = view, kind, name
+        self.first, self.size = first, sum(1 for _ in _leaves(kind, name))
+        self.places = slice(first, first + self.size)
+
+    def part(self, field):
+        """Return the layout of a field of a view, or of a row of a matrix (an index)."""
+        before = self.first
+        for name, kind in _parts(self._kind, self._name):
+            if name == field:
+                return Layout(self._view, kind, before, f'{self._name}.{field}')
+            before += sum(1 for _ in _leaves(kind, self._name))
+        raise KeyError(f'{self._name} has no field {field!r}')
+
+    @functools.cached_property
+    def load(self):
+        """Read the value (see the class)."""
+        views, places = {}, itertools.count(self.first)
+        value = _written(self._kind, self._name, places, views)
+        return self._function('load', '(array, at=0)', [f'return {value}'], views)
+
+    @functools.cached_property
+    def store(self):
+        """Write the value (see the class)."""
+        leaves = enumerate(_leaves(self._kind, self._name), self.first)
+        lines = [f'array[at + {place}] = value{path}' for place, path in leaves]
+        return self._function('store', '(array, value, at=0)', lines, {})
+
+    def _function(self, does, signature, lines, names):
+        """Return the inlined function of these lines."""
+        name = f'{does}_{self._name}'.replace('.', '_')
+        source = ''.join(f'{line}\n' for line in [
+            f'def {name}{signature}:', f'    """{does.capitalize()} {self._name}."""',
+            *(f'    {line}' for line in lines)])
+        # tracebacks and numba's messages quote the generated lines
+        file = f'<{self._view.__module__}:{name}>'
+        linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file
+        namespace = {'__name__': self._view.__module__, **names}
+        exec(compile(source, file, 'exec'), namespace)
+        return inlined(namespace[name])
+
+
+def _parts(kind, name):
+    """Return (name, kind) of the parts that a kind is made of, none of a float."""
+    if kind is float:
+        return []
+    if isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, '_fields'):
+        return list(typing.get_type_hints(kind).items())
+    if typing.get_origin(kind) is tuple and Ellipsis not in typing.get_args(kind):
+        return list(enumerate(typing.get_args(kind)))
+    raise TypeError(f'{name} is {kind}; a view is made of floats, tuples of them, and views')
+
+
+def _leaves(kind, name):
+    """Yield how each float of a value is reached from it, in order: '.velocity[0]', ..."""
+    if kind is float:
+        yield ''
+    for part, its_kind in _parts(kind, name):
+        reach = f'[{part}]' if isinstance(part, int) else f'.{part}'
+        for path in _leaves(its_kind, f'{name}.{part}'):
+            yield reach + path
+
+
+def _written(kind, name, places, views):
+    """Return the expression that makes a value of the array; `views` collects classes by name."""
+    if kind is float:
+        return f'array[at + {next(places)}]'
+    parts = _parts(kind, name)
+    inside = ''.join(f'{_written(part, name, places, views)}, ' for _, part in parts)
+    if typing.get_origin(kind) is tuple:
+        return f'({inside})'
+    views[f'{kind.__name__}_{len(views)}'] = kind
+    return f'{list(views)[-1]}({inside[:-2]})'

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The equations of the Taylor series: one kind for all scenes, what acts is in its numbers.
+
+Torques constant in the body or in the world, the weight on an arm, and drag;
+marching/taylor_series.py has the recurrences.
+"""
+
+import dataclasses
+from typing import NamedTuple
+
+import numpy as np
+
+from rigid_body_sim.compilation.layout import Matrix, Vector, layout
+from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators.equations import euler, falling, turning
+from rigid_body_sim.integrators.equations.equations import Equations, moment_on_hinge
+from rigid_body_sim.integrators.equations.falling import FallingParameters
+from rigid_body_sim.numerics.rotations import normalised
+from rigid_body_sim.scene.effects.views import Frame, turned_back
+
+
+class SeriesParameters(NamedTuple):
+    """The numbers of the recurrences, behind those of a body that turns and falls.
+
+    Attributes
+    ----------
+    falling : FallingParameters
+    constant : Vector
+        The constant part of omega', frame components.
+    force : Vector
+        World components, N.
+    pull : tuple of 6 floats
+        They make the force's part of omega' from its components in the frame.
+    couple : Vector
+        World components, N m.
+    drag : Matrix
+        It makes the drag's part of omega' from omega.
+    """
+
+    falling: FallingParameters
+    constant: Vector
+    force: Vector
+    pull: tuple[float, float, float, float, float, float]
+    couple: Vector
+    drag: Matrix
+
+
+SERIES = layout(SeriesParameters)
+CONSTANT, FORCE, PULL, COUPLE, DRAG = (
+    SERIES.part(name).first for name in SeriesParameters._fields[1:])
+COUNT = SERIES.size
+
+
+class Series(Equations):
+    """The equations of turning as taylor_series.py has them.
+
+    What acts is a constant torque, a force on an arm, a couple, drag.
+
+    A free body's centre of mass falls in closed form (falling.py).
+    """
+
+    def __init__(self, scene):
+        self.frame = _frame(scene)
+        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')]
+        self.breakpoints = tuple(
+            sorted({time for actor in self._actors for time in actor.breakpoints})
+        )
+        if not all(hasattr(actor, 'series') for actor in self._actors):
+            raise BadInput(
+                'integrator',
+                f'taylor cannot run the scene {scene.name}',
+                'bodies under gravity, torques and drag only',
+            )
+        pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
+        self.acts, self.extra, self.kind = bool(pulls), 0, turning
+        forced = any(pull.force is not None for pull in pulls)
+        self.pushed = forced and self.frame.kind != 'free'
+        self.falls = self.frame.kind == 'free' and (forced or any(pull.slowing for pull in pulls))
+        self.coupled = any(pull.couple is not None for pull in pulls)
+        self.dragged = any(pull.drag is not None for pull in pulls)
+        # the sums of what acts stay unbound: nothing asks for rates
+        self.kernels = specialise(
+            turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n')
+        )
+        self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
+        self._fixed, self._held = self._constants(), {}
+        self.parameter_count, self.fixed_count = COUNT, len(self._fixed)
+
+    def parameters(self, fixed, time):
+        """Return the parameters that hold just after a time."""
+        p = np.zeros(COUNT)
+        p[:len(fixed)] = fixed
+        inverse, (rx, ry, rz) = p[euler.EQUATION.part('inverse').places], self.frame.arm
+        (constant, force, couple), drag, slowing = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
+        for pull in (actor.series(self.frame, time) for actor in self._actors):
+            constant += pull.constant
+            force += pull.force or 0.0
+            couple += pull.couple or 0.0
+            drag += pull.drag or 0.0
+            slowing += pull.slowing
+        if self.falls:
+            fall = falling.Fall(force / self.frame.mass, slowing / self.frame.mass)
+            falling.FALLING.part('fall').store(p, fall)
+        for name, value in (
+                ('constant', inverse * constant), ('force', force), ('couple', couple),
+                ('pull', np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)),
+                ('drag', inverse[:, np.newaxis] * drag)):
+            SERIES.part(name).store(p, value)
+        return p
+
+
+def _frame(scene):
+    """Return the frame of a scene's equations.
+
+    That of a hinge has its third axis along it, and takes no torque about the others.
+    """
+    frame = Frame.of(scene.body, scene.constraint)
+    if frame.kind != 'hinge':
+        return frame
+    nx, ny, nz = scene.constraint.axis
+    axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)
+    return dataclasses.replace(
+        frame,
+        moments=(0.0, 0.0, moment_on_hinge(scene)),
+        axes=axes,
+        arm=turned_back(axes, frame.arm),
+    )

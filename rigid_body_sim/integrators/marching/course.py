@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The course of a solver whose method marches in compiled code, piece by piece.
+
+A piece is one array (track.py): the stretch between two breakpoints of what acts. The contracts
+`Bound` and `Course` are in integrators/protocols.py.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching import track
+from rigid_body_sim.integrators.marching.points import TIME, VALUES
+
+FOR_EVER = (math.inf,)
+
+
+def lost(method, scene, time):
+    """Return the NotConverged of a march that ends at a time (s)."""
+    return NotConverged(f'{method.NAME} on {scene.name}: at t = {float(time)!r} s the state is no '
+                        'longer finite, or the step fell below what the clock resolves')
+
+
+class Bound:
+    """The kernels of one method on the equations of one scene.
+
+    Parameters
+    ----------
+    method : Method
+        Its family is a MarchingFamily (protocols.py).
+    stepped : Stepped
+    ledger : bool
+        Add the quadratures of the ledger.
+    """
+
+    def __init__(self, method, stepped, ledger):
+        family = method.FAMILY
+        self.equations = equations = family.equations_of(stepped.scene, stepped.wrench, ledger)
+        self.acts = equations.acts
+        self.march = family.march(method, equations, stepped.step is None)
+        control, point = family.begin(stepped, self.march)
+        self._beginning, self._prototypes = np.concatenate((control, point)), {}
+        sizes = [equations.parameter_count, len(control), len(point), len(point)]
+        places = np.cumsum(sizes).tolist()
+        self.point = places[1]
+        self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
+        self.track = self._track(places)
+
+    def _track(self, places):
+        """Return the template track.py bound to the march; `places` are those in a piece."""
+        bindings = {name: f'{self.march.__name__}:{name}'
+                    for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
+        bindings['start'] = f'{self.equations.kernels.__name__}:start'
+        bindings['write'] = self.equations.write
+        for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):
+            bindings[name] = f'{name} = {place}\n'
+        return specialise(track, **bindings)
+
+    def course(self, stepped):
+        """Return the course of a started solver."""
+        return Course(stepped, self)
+
+    def prototype(self, time):
+        """Return the beginning of a piece that starts at a time (s): parameters, control, point.
+
+        The parameters are those that hold from that time to the next breakpoint.
+        """
+        k = bisect.bisect_right(self.equations.breakpoints, time)
+        if k not in self._prototypes:
+            held = self.equations.held(time)
+            self._prototypes[k] = np.concatenate((held, self._beginning))
+        return self._prototypes[k]
+
+
+class Course:
+    """One march from a start: a piece for each stretch, made when the march reaches it."""
+
+    TELLS_EVENTS = False
+
+    def __init__(self, stepped, bound):
+        # A course does not keep the solver itself: two objects that hold each other stay in
+        # memory until the garbage is collected.
+        self._method, self._scene = stepped.method, stepped.scene
+        self._begin, self._vector = stepped.begin, stepped.vector
+        self._bound, self._pieces, self._ends = bound, [], FOR_EVER
+        if bound.equations.breakpoints:
+            later = [time for time in bound.equations.breakpoints if time > self._begin]
+            self._ends = [*later, math.inf]
+
+    def _first_piece(self):
+        """Append the piece at the start, not filled yet; return what track.first_piece takes."""
+        self._pieces.append(np.empty(self._bound.piece_size))
+        return self._bound.prototype(self._begin), self._vector, self._pieces[0]
+
+    def _next_piece(self, begin):
+        """Return the piece that begins where the last one ends, at a time (s)."""
+        bound, before, piece = self._bound, self._pieces[-1], np.empty(self._bound.piece_size)
+        prototype = bound.prototype(begin)
+        fixed, first = bound.equations.fixed_count, bound.point + VALUES
+        values = slice(first, first + bound.march.SIZE)
+        piece[:len(prototype)] = prototype
+        piece[:fixed], piece[bound.point + TIME] = before[:fixed], begin
+        piece[values] = before[values]
+        bound.track.opened(piece)
+        return piece
+
+    def state(self, time, out):
+        """Fill `out` with the state at a time (s) not before the start."""
+        track = self._bound.track
+        if not time < self._ends[0]:
+            self.states(np.array([time]), out[np.newaxis])
+        elif self._pieces:
+            piece = self._pieces[0]
+            self._check(track.state(piece, time, self._ends[0], out), piece)
+        else:
+            first = self._first_piece()
+            self._check(track.first_state(*first, time, self._ends[0], out), self._pieces[0])
+
+    def states(self, times, out):
+        """Fill the rows of `out` with the states at times (s) not before the start."""
+        order = np.argsort(times, kind='stable')
+        track, last, done, k = self._bound.track, times[order[-1]], 0, 0
+        if not self._pieces:
+            track.first_piece(*self._first_piece())
+        while done < len(order):
+            end, until = self._ends[k], len(order)
+            if not last < end:
+                until = int(np.searchsorted(times[order], end, side='left'))
+            piece = self._pieces[k]
+            filled = done + track.states(piece, times, order[done:until], end, out)
+            self._check(filled == until, piece)
+            done, k = until, k + 1
+            if done < len(order) and k == len(self._pieces):
+                self._check(track.follow(piece, end, end), piece)
+                self._pieces.append(self._next_piece(end))
+
+    def _check(self, good, piece):
+        if not good:
+            raise lost(self._method, self._scene, piece[self._bound.point + TIME])
