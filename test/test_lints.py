@@ -40,7 +40,7 @@ def lint(program, *arguments):
 
 
 def test_ament_flake8():
-    lint('ament_flake8', '--linelength', '99', *map(str, sources()))
+    lint('ament_flake8', '--config', 'test/ament_flake8.ini', *map(str, sources()))
 
 
 def test_ament_pep257():
