@@ -57,4 +57,4 @@ def test_every_source_file_has_its_license_on_the_first_line():
     for path in sources():
         lines = path.read_text().splitlines()
         first = next((line for line in lines if not line.startswith('#!')), None)
-        assert first == '# SPDX-License-Identifier: Apache-2.0', path
+        assert not lines or first == '# SPDX-License-Identifier: Apache-2.0', path
