@@ -37,8 +37,9 @@ test: lint ## everything: ruff, colcon build and test of the package, pytest
 unit: .venv/test.stamp ## pytest
 	.venv/bin/$(PYTEST)
 
-lint: .venv/test.stamp ## ruff
+lint: .venv/test.stamp ## ruff; mypy on the public interface and the contracts
 	.venv/bin/ruff check .
+	.venv/bin/mypy
 
 package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) build --base-paths . $(COLCON_FOLDERS)

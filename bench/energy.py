@@ -19,8 +19,9 @@ from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.families import composition
 from rigid_body_sim.integrators.methods import split4
 from rigid_body_sim.integrators.solver import Stepped
-from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL
 from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.scene import parse_scene
 
 SCENE = """scene: counted
@@ -69,7 +70,8 @@ def residuals(scene, method, steps):
     begin = time.process_time()
     solver.states(times, out)
     cost = (time.process_time() - begin) / steps
-    p, found = parameters(scene), np.empty((SAMPLES, DIAGNOSIS_SIZE))
+    p, diagnose = parameters(scene), energies(scene).diagnose
+    found = np.empty((SAMPLES, DIAGNOSIS_SIZE))
     for vector, row in zip(out, found, strict=True):
         diagnose(p, vector, row)
     kinetic, potential, vertical = found[:, KINETIC], found[:, POTENTIAL], found[:, MOMENTUM + 2]

@@ -17,7 +17,6 @@ from smooth_scenes import CASES, exact_attitude, heyoka_system, in_frame
 
 from rigid_body_sim import ensemble
 from rigid_body_sim.numerics.rotations import angle_between, multiply
-from rigid_body_sim.scene.effects.views import Frame
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 CLOSED = {'free body': 'asymmetric_top', 'racket': 'tennis_racket', 'Lagrange top': 'heavy_top'}
@@ -51,7 +50,7 @@ def stepped(case, goal):
     starts = starts_of(scene, MANY)
     exact = [exact_attitude(scene, DURATION, start) for start in starts[:CHECKED]]
 
-    axes = Frame.of(scene.body, scene.constraint).axes
+    axes = scene.constraint.frame(scene.body).axes
 
     def error_of(attitudes):
         return max(angle_between(*q, *truth) for q, truth in zip(attitudes, exact, strict=True))

@@ -58,9 +58,8 @@ def heyoka_system(scene):
     """Return heyoka's equations: those of rigid_body_sim/integrators/equations/turning.py, written for what the scene has, in its frame."""
     import heyoka
 
-    from rigid_body_sim.scene.effects.views import Frame
     qx, qy, qz, qw, wx, wy, wz = heyoka.make_vars('qx', 'qy', 'qz', 'qw', 'wx', 'wy', 'wz')
-    frame, torque = Frame.of(scene.body, scene.constraint), scene.effect('torque')
+    frame, torque = scene.constraint.frame(scene.body), scene.effect('torque')
     I1, I2, I3 = frame.moments
     rows = [[None] * 3, [None] * 3, [2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx), qw * qw - qx * qx + qz * qz - qy * qy]]
     if torque and torque.frame == 'world':
@@ -88,8 +87,7 @@ def heyoka_system(scene):
 def in_frame(scene, vector):
     """Return q and omega of the frame of a state vector."""
     from rigid_body_sim.numerics.rotations import multiply, rotate_back
-    from rigid_body_sim.scene.effects.views import Frame
-    axes = Frame.of(scene.body, scene.constraint).axes
+    axes = scene.constraint.frame(scene.body).axes
     return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
 
 
@@ -105,9 +103,8 @@ def exact_attitude(scene, duration, vector):
 def our_run(scene, duration, method, accuracy):
     """Return act(): a start and the final state; it returns the frame's attitude."""
     from rigid_body_sim.numerics.rotations import multiply
-    from rigid_body_sim.scene.effects.views import Frame
-    choice, start, out, axes = choose(scene, method, accuracy, horizon=duration), scene.initial.vector, np.empty(14), Frame.of(
-        scene.body, scene.constraint).axes
+    choice, start, out = choose(scene, method, accuracy, horizon=duration), scene.initial.vector, np.empty(14)
+    axes = scene.constraint.frame(scene.body).axes
 
     def act():
         choice.solver(start, STILL).state(duration, out)

@@ -4,6 +4,7 @@ import numpy as np
 
 from rigid_body_sim.analysis.collectors import Curve
 from rigid_body_sim.mechanics import energy, parameters
+from rigid_body_sim.mechanics.potential import energies
 
 FLOOR = 4 * np.finfo(float).eps
 """Round-off floor of a relative residual: a few units in the last place, for each value is made of a handful of products and sums."""
@@ -109,5 +110,5 @@ def scales(scene):
     if scene is None:
         return 0.0, 0.0
     out = np.empty(energy.DIAGNOSIS_SIZE)
-    energy.diagnose(parameters.parameters(scene), scene.initial.vector, out)
+    energies(scene).diagnose(parameters.parameters(scene), scene.initial.vector, out)
     return max(out[energy.KINETIC], abs(out[energy.POTENTIAL])), 0.0

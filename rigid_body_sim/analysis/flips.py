@@ -4,6 +4,8 @@ import itertools
 
 import numpy as np
 
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+
 SHARE = 0.5
 
 
@@ -52,6 +54,6 @@ def can_flip(scene):
     """Return whether flips mean something: a free body with three different moments."""
     return (
         scene is not None
-        and scene.constraint.kind == 'free'
+        and scene.constraint.mechanism is Mechanism.FREE
         and len(set(scene.body.about_center.moments)) == 3
     )

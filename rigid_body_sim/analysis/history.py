@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import Scene, parse_scene
 
 KEEP_ENERGY = {'gravity', 'strike'}
@@ -57,7 +58,7 @@ class Segment:
     @property
     def keeps_momentum(self):
         """Whether L^2 about the centre of mass is constant here."""
-        return self._keeps(KEEP_MOMENTUM) and self.scene.constraint.kind == 'free'
+        return self._keeps(KEEP_MOMENTUM) and self.scene.constraint.mechanism is Mechanism.FREE
 
     def _keeps(self, effects):
         return (
@@ -144,7 +145,7 @@ def _with_strikes(segments, entries):
         begin = segment.stamp if segment.stamp in starts else begin
         cut.append(segment)
         times = (
-            [effect.time for effect in segment.scene.effects if effect.name == 'strike']
+            [effect.time for effect in segment.scene.effects if effect.as_impulse is not None]
             if segment.scene
             else []
         )

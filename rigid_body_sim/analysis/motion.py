@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.analysis.collectors import Curve, Head, Samples
 from rigid_body_sim.analysis.drift import Residual
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 SAMPLES, HEAD = 8192, 65536
 MOST_PHASES = 1000
@@ -57,7 +58,7 @@ class Motion:
                 self.conserved.size,
             )
         self.slip = (
-            Curve(source.ticks) if scene is not None and scene.constraint.kind == 'table' else None
+            Curve(source.ticks) if scene is not None and scene.constraint.mechanism is Mechanism.TABLE else None
         )
         self.phases, self.until = [], 0.0
         self.samples, self.head = Samples(source.ticks, SAMPLES), Head(HEAD)
@@ -127,16 +128,16 @@ class Conserved:
 
 def conserved(scene):
     """Return the Conserved of a scene: L of a free body, L or its vertical part about a fixed point; None if there is none."""
-    if scene is None or scene.constraint.kind not in ('free', 'pivot'):
+    if scene is None or scene.constraint.mechanism not in (Mechanism.FREE, Mechanism.POINT):
         return None
 
-    if scene.constraint.kind == 'free':
+    if scene.constraint.mechanism is Mechanism.FREE:
         return Conserved(
             'L', scene, scene.body.about_center, lambda segment: segment.keeps_momentum
         )
     return Conserved(
         'L_z' if scene.effect('gravity') else 'L',
         scene,
-        scene.body.about_origin,
+        scene.constraint.inertia(scene.body),
         lambda segment: segment.keeps_energy,
     )

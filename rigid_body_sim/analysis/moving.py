@@ -17,6 +17,7 @@ from rigid_body_sim.drawing.setting import (
     middle_of,
     reach_of,
 )
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 MOST_FRAMES, TURN_A_FRAME = 3000, 0.15
 COLORS = {'base': (0.29, 0.56, 0.85), 'accent': (0.96, 0.67, 0.26), 'holder': (0.5, 0.5, 0.53)}
@@ -68,7 +69,7 @@ class Moving:
         values = [self.angular_velocity]
         if self.scene is not None:
             body = self.scene.body
-            held = self.scene.constraint.kind == 'pivot'
+            held = self.scene.constraint.mechanism is Mechanism.POINT
             inertia = (body.about_origin if held else body.about_center).matrix
             values.append(self.angular_velocity @ inertia)
         longest = [float(np.linalg.norm(one, axis=1).max()) or 1.0 for one in values]

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+
 FLATTEST = 1e-6
 """Below this ratio of moments an ellipsoid is a cylinder for all that can be seen, and is not drawn."""
 
@@ -55,7 +57,7 @@ def _sphere(rows=25, columns=49):
 def _polhode(measured):
     """Return omega in the body, with the ellipsoids omega . I omega = 2 T and |I omega| = L of the first tick; of free bodies only."""
     scene = measured.source.scene
-    if scene is None or scene.constraint.kind != 'free':
+    if scene is None or scene.constraint.mechanism is not Mechanism.FREE:
         return None
     times, _, omega, _ = measured.motion.samples.columns()
     inertia = scene.body.about_center
@@ -101,9 +103,9 @@ def traced_axis(scene):
     """Return (what it is, unit vector in body axes): the symmetry axis, else the way to the centre of mass, else the middle principal axis."""
     if scene is None:
         return 'body z axis', np.array([0.0, 0.0, 1.0])
-    held = scene.constraint.kind in ('pivot', 'hinge')
+    held = scene.constraint.holds_a_point
     inertia = (
-        scene.body.about_origin if scene.constraint.kind == 'pivot' else scene.body.about_center
+        scene.constraint.inertia(scene.body)
     )
     axes = Rotation.from_quat(inertia.axes).as_matrix()
     moments = list(inertia.moments)

@@ -13,7 +13,7 @@ import pathlib
 
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
@@ -26,17 +26,23 @@ def table():
 
 
 def kind(scene):
-    """Return the kind of a scene in the table: its constraint, and how it makes heat.
+    """Return the kind of a scene in the table: its free directions, and how it makes heat.
 
     Heat at a constant angular momentum (`turning`) is internal dissipation; other heat is damping.
     """
-    frame = Frame.of(scene.body, scene.constraint)
-    acting = [one for effect in scene.effects if hasattr(effect, 'acting')
+    frame = scene.constraint.frame(scene.body)
+    acting = [one for effect in scene.effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
     hot = [one for one in acting if one.books == 'heat']
     if any(one.gives == 'turning' for one in hot):
-        return f'{scene.constraint.kind}, dissipating'
-    return f'{scene.constraint.kind}, damped' if hot else scene.constraint.kind
+        return f'{_free_directions(scene)}, dissipating'
+    return f'{_free_directions(scene)}, damped' if hot else _free_directions(scene)
+
+
+def _free_directions(scene):
+    """Return the table's word for the free directions of a scene's body."""
+    return {Mechanism.FREE: 'free', Mechanism.POINT: 'pivot', Mechanism.AXIS: 'hinge',
+            Mechanism.TABLE: 'table'}[scene.constraint.mechanism]
 
 
 def pace(scene):
@@ -55,7 +61,7 @@ def rows(scene):
     A dict: method -> list of dicts with tolerance, error (rad) and cost (s), from coarse to fine.
     """
     kinds = table()['kinds']
-    return kinds.get(kind(scene)) or kinds[scene.constraint.kind]
+    return kinds.get(kind(scene)) or kinds[_free_directions(scene)]
 
 
 def pick(scene, able, accuracy, horizon):

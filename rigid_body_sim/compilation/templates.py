@@ -7,6 +7,7 @@ cache folder, where its kernels are cached like any others. What a scene does no
 
 import functools
 import hashlib
+import importlib
 import importlib.util
 import inspect
 import linecache
@@ -37,6 +38,20 @@ def specialise(template, **bindings):
         If a declared name is left unbound, or a name is given that the template does not declare.
     """
     return _bound(template, tuple(sorted(bindings.items())))
+
+
+def imported(kernel, name):
+    """Return the source line that imports a kernel, ``'package.module:function'``, under a name.
+
+    The cache of compiled code knows the sources of this package. A kernel of another package brings
+    a hash of its file along, so that an edit there compiles its callers anew.
+    """
+    module, _, function = kernel.partition(':')
+    line = f'from {module} import {function} as {name}'
+    if module.partition('.')[0] == __package__.partition('.')[0]:
+        return line
+    source = inspect.getsource(importlib.import_module(module))
+    return f'{line}    # {hashlib.sha256(source.encode()).hexdigest()[:16]}'
 
 
 @functools.cache

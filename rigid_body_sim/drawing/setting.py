@@ -7,13 +7,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing import surfaces
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 
 def middle_of(scene):
     """Return the point of reference in body axes, m: the point held, else the centre of mass."""
-    if scene is None or scene.constraint.kind == 'pivot':
+    if scene is None or scene.constraint.mechanism is Mechanism.POINT:
         return np.zeros(3)
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         return np.array(scene.constraint.through)
     return np.array(scene.body.center_of_mass)
 
@@ -25,7 +26,7 @@ def reach_of(scene, drawing):
 
 def follows(scene):
     """Return whether the body can travel, so that a picture should move with it."""
-    return scene is not None and scene.constraint.kind in ('free', 'table')
+    return scene is not None and not scene.constraint.holds_a_point
 
 
 def start_of(scene):
@@ -39,7 +40,7 @@ def start_of(scene):
 def ground_of(scene, reach):
     """Return the height of the ground, m: the table, or just below all that turns."""
     start = float(start_of(scene)[2])
-    if scene is not None and scene.constraint.kind == 'table':
+    if scene is not None and scene.constraint.mechanism is Mechanism.TABLE:
         return start - scene.body.radius
     return start - 1.1 * reach
 

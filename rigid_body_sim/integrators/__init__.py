@@ -20,7 +20,7 @@ from rigid_body_sim.integrators.methods import (
     split8,
     taylor,
 )
-from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 METHODS = {method.NAME: method for method in (
     dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
@@ -32,16 +32,18 @@ whose family does not account for these, and for motions while a wrench is held.
 def runnable(scene):
     """Return the names of the methods that can run a scene.
 
-    These find the view they need in every effect and bear the heat that the effects make. Strikes
-    are impulses, which no method sees. On the table only methods that declare TABLE run.
+    These find the view they need in every effect and bear the heat that the effects make. No
+    method sees an effect that is an impulse and nothing else. On the table only methods that
+    declare TABLE run.
     """
-    if scene.constraint.kind == 'table':
+    if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]
-    effects = [effect for effect in scene.effects if effect.name != 'strike']
-    frame = Frame.of(scene.body, scene.constraint)
-    acting = [one for effect in effects if hasattr(effect, 'acting')
+    effects = [effect for effect in scene.effects
+               if effect.acting is not None or effect.as_impulse is None]
+    frame = scene.constraint.frame(scene.body)
+    acting = [one for effect in effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' for one in acting)
     return [name for name, method in METHODS.items()
-            if all(hasattr(effect, method.NEEDS) for effect in effects)
+            if all(getattr(effect, method.NEEDS) is not None for effect in effects)
             and (method.HEAT or not hot)]

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
 
 RADIANS_BETWEEN_LOOKS = 0.2
@@ -51,12 +52,12 @@ def watches(scene):
     sign. Pivot: `turning point`, the height of the third body axis turns (nutation). Hinge:
     `turning point`, the rate changes its sign.
     """
-    kind, body = scene.constraint.kind, scene.body
-    if kind == 'free' and len(set(body.about_center.moments)) == 3:
+    mechanism, body = scene.constraint.mechanism, scene.body
+    if mechanism is Mechanism.FREE and len(set(body.about_center.moments)) == 3:
         return (Watch('flip', *_momentum_along_middle_axis(body.about_center)),)
-    if kind == 'pivot':
+    if mechanism is Mechanism.POINT:
         return (Watch('turning point', _rise_of_third_axis, 1e-9, _rise_of_third_axis),)
-    if kind == 'hinge':
+    if mechanism is Mechanism.AXIS:
         rate = _rate_about(scene.constraint.axis)
         return (Watch('turning point', rate, 0.0, rate),)
     return ()

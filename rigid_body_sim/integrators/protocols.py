@@ -90,7 +90,8 @@ class Method(Protocol):
     SOURCE : str
         Where it is published.
     NEEDS : str
-        The view of every effect that it asks for (scene/effects/views.py): ``acting``, ``series``.
+        The view of every effect that it asks for (scene/effects/protocol.py): ``acting`` or
+        ``series``.
     HEAT : bool
         Whether it runs scenes in which anything makes heat.
     STIFF : bool

@@ -26,6 +26,7 @@ from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
 
 FINEST = 1e-15          # smallest accuracy that doubles carry
@@ -69,7 +70,8 @@ class Stepped:
 
     def _bind(self, ledger):
         """Return the Bound of the method, with the quadratures of the ledger or without them."""
-        if self.scene.constraint.kind == 'table' and not self.method.TABLE:
+        on_table = self.scene.constraint.mechanism is Mechanism.TABLE
+        if on_table and not self.method.TABLE:
             able = ', '.join(runnable(self.scene))
             raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table '
                            'under a wrench', f'those that can: {able}')

@@ -14,7 +14,6 @@ P (body axes), n unit vector along a hinge.
               lowest point at rest
 """
 
-import dataclasses
 import functools
 import importlib
 from typing import NamedTuple
@@ -34,7 +33,8 @@ from rigid_body_sim.numerics.vectors import (
     scaled,
     transposed,
 )
-from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.scene.constraints import Free
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE
 
@@ -127,15 +127,16 @@ class Dynamics:
 
     def __init__(self, scene):
         body, constraint = scene.body, scene.constraint
-        self._effects = [effect for effect in scene.effects if hasattr(effect, 'acting')]
+        self._effects = [effect for effect in scene.effects if effect.acting is not None]
         self._scene = scene_parameters(scene)
         # effects are asked as if the body were free: only then do they name their forces
-        self._frame = Frame.of(body, dataclasses.replace(constraint, kind='free'))
-        self._of = {'free': self._free, 'pivot': self._pivot, 'hinge': self._hinge,
-                    'table': self._table}[constraint.kind]
-        if constraint.kind == 'table':
-            friction = scene.effect('sliding_friction')
-            self._mu, self._g = (friction.mu, friction.g) if friction else (0.0, 0.0)
+        self._frame = Free().frame(body)
+        balances = {Mechanism.FREE: self._free, Mechanism.POINT: self._pivot,
+                    Mechanism.AXIS: self._hinge, Mechanism.TABLE: self._table}
+        self._of = balances[constraint.mechanism]
+        if constraint.mechanism is Mechanism.TABLE:
+            contacts = [effect.contact for effect in scene.effects if effect.contact]
+            self._mu, self._g = contacts[0] if contacts else (0.0, 0.0)
             self._radius = body.radius
 
     def balance(self, vector, wrench=Wrench()):    # noqa: B008 (immutable)
@@ -188,12 +189,16 @@ class Dynamics:
         return of_origin, growth, NOTHING, NOTHING, motion.position
 
     def _pivot(self, motion, acting):
-        force, center = acting.force, self._scene.center
-        moment = cross(center, apply(transposed(motion.R), force))
+        force, through = acting.force, self._scene.through
+        arm = minus(self._scene.center, through)
+        moment = cross(arm, apply(transposed(motion.R), force))
         growth = self._growth(motion.omega, plus(acting.couple, moment))
-        lever = _carried(motion.omega, growth, center)
+        lever = _carried(motion.omega, growth, arm)
         held = minus(scaled(self._scene.mass, apply(motion.R, lever)), force)
-        return NOTHING, growth, held, NOTHING, motion.position
+        if not any(through):    # the body's origin is held
+            return NOTHING, growth, held, NOTHING, motion.position
+        of_origin = scaled(-1.0, apply(motion.R, _carried(motion.omega, growth, through)))
+        return of_origin, growth, held, NOTHING, plus(motion.position, apply(motion.R, through))
 
     def _hinge(self, motion, acting):
         R, omega, force, scene = motion.R, motion.omega, acting.force, self._scene

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bounds of the rates of a scene: what its weight and its torques can do."""
+"""Bounds of the rates of a scene: what its potentials and its drives can do."""
 
 import math
 from functools import reduce
@@ -7,45 +7,41 @@ from operator import add
 
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.vectors import minus
 
 
 def swing_rate(scene):
-    """Return what the weight can add to the rate of a pivoted or hinged body (rad/s).
+    """Return what potentials can add to the rate of a held body (rad/s).
 
-    2 sqrt(M g r/I) by the energy, with r the arm from the constraint to the centre of mass.
+    By the energy it is 2 sqrt(U/I) with 2 U the range of the potential: M g r for the weight, r
+    the arm from the constraint to the centre of mass.
     """
-    body, constraint, gravity = scene.body, scene.constraint, scene.effect('gravity')
-    if gravity is None or constraint.kind not in ('pivot', 'hinge'):
+    body, constraint = scene.body, scene.constraint
+    energy = reduce(add, (bounds.energy for bounds in _bounds(scene)), 0.0)
+    if energy == 0.0:
         return 0.0
-    if constraint.kind == 'hinge':
-        across = moment_about_hinge(body, constraint)
-    else:    # of the moments across the arm of a symmetric body, whatever the third one is
-        across = sorted(body.about_origin.moments)[1]
-    return 2.0 * math.sqrt(body.mass * gravity.g * _arm(body, constraint) / across)
+    # of the moments across the arm of a symmetric body, whatever the third one is
+    across = (sorted(constraint.inertia(body).moments)[1] if constraint.axis is None
+              else moment_about_hinge(body, constraint))
+    return 2.0 * math.sqrt(energy / across)
 
 
 def drive(scene, wrench):
-    """Return a bound of the angular acceleration by torques and a held wrench (rad/s^2).
+    """Return a bound of the angular acceleration (rad/s^2) by drives and a held wrench.
 
-    The sum of their sizes over the least moment.
+    It is the sum of their torques over the least moment.
     """
     body, constraint = scene.body, scene.constraint
-    torques = [effect.values for effect in scene.effects if effect.name == 'torque']
-    sizes = (max(hypot3(*value) for value in values) for values in torques)
-    torque = reduce(add, sizes, 0.0)
+    torque = reduce(add, (bounds.torque for bounds in _bounds(scene)), 0.0)
     if wrench:
-        lever = _arm(body, constraint) if constraint.kind in ('pivot', 'hinge') else 0.0
+        lever = hypot3(*constraint.arm(body)) if constraint.holds_a_point else 0.0
         torque += hypot3(*wrench.torque) + lever * hypot3(*wrench.force)
     if torque == 0.0:
         return 0.0
-    if constraint.kind == 'hinge':
+    if constraint.axis is not None:
         return torque / moment_about_hinge(body, constraint)
-    inertia = body.about_origin if constraint.kind == 'pivot' else body.about_center
-    return torque / min(moment for moment in inertia.moments if moment > 0.0)
+    return torque / min(moment for moment in constraint.inertia(body).moments if moment > 0.0)
 
 
-def _arm(body, constraint):
-    """Return the distance (m) of the centre of mass from the fixed point, or the hinge's point."""
-    hinged = constraint.kind == 'hinge'
-    return hypot3(*minus(body.center_of_mass, constraint.through if hinged else (0.0, 0.0, 0.0)))
+def _bounds(scene):
+    return [effect.bounds(scene.body, scene.constraint) for effect in scene.effects
+            if effect.bounds is not None]

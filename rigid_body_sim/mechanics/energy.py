@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Energy and angular momentum of a state.
+"""Template: energy and angular momentum of a state.
+
+potential.py binds it to the potentials of the effects that a scene lists.
 
 Symbols: M mass, c centre of mass from the body's origin (body axes), omega angular velocity (body
 axes), I inertia tensor and L angular momentum about the point of reference (parameters.py), R
-rotation from body to world, g acceleration of gravity (along -z of the world).
+rotation from body to world, V velocity of the centre of mass (world axes).
 """
 
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.mechanics.parameters import FREE, HINGE, SCENE, TABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, plus, product, scaled
@@ -41,6 +44,8 @@ KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = (
     DIAGNOSIS.part(name).first for name in Diagnosis._fields)
 load_scene, load_state, store_diagnosis = SCENE.load, STATE.load, DIAGNOSIS.store
 
+potential = UNBOUND    # (p, scene, q, position) -> J
+
 
 @compiled
 def angular_momentum(scene, omega):
@@ -57,13 +62,13 @@ def diagnose(p, state, out):
     """Fill `out` with the Diagnosis of a state.
 
         kinetic     omega . I omega/2, and M V^2/2 with V = v + R (omega x c) of a body that moves
-        potential   M g (z + (R c)_z)
+        potential   the sum of the potentials of the effects
         L           R I omega
 
     Parameters
     ----------
     p : array
-        SceneParameters.
+        SceneParameters, and the values of the potentials.
     state : array (14,)
         StateView.
     out : array (6,)
@@ -76,13 +81,9 @@ def diagnose(p, state, out):
     if scene.kind == FREE or scene.kind == TABLE:
         of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
         kinetic += 0.5 * scene.mass * dot(of_center, of_center)
-    potential = 0.0
-    if scene.gravity != 0.0:
-        _, _, height = rotate(*q, *scene.center)
-        potential = scene.mass * scene.gravity * (now.position[2] + height)
     # L^2 of the body components: the rotation to the world would only add its rounding
-    store_diagnosis(out, Diagnosis(kinetic, potential, dot(momentum, momentum),
-                                   rotate(*q, *momentum)))
+    store_diagnosis(out, Diagnosis(kinetic, potential(p, scene, q, now.position),
+                                   dot(momentum, momentum), rotate(*q, *momentum)))
 
 
 @compiled

@@ -108,10 +108,10 @@ def apply_impulse(p, state, force, couple, out):
     else:
         # M dV of the centre of mass: the bearing supplies what J does not
         reaction = minus(scaled(scene.mass, rotate(*q, *cross(d, arm))), J)
+        # the body's origin moves about what is held
+        store_velocity(state, minus(now.velocity, rotate(*q, *cross(d, scene.through))))
     if scene.kind == HINGE:
         bearing = rotate(*q, *minus(_momentum_at_hinge(scene, d, arm), G))
-        # the body's origin moves about the hinge
-        store_velocity(state, minus(now.velocity, rotate(*q, *cross(d, scene.through))))
     store_response(out, Response(work, rotate(*q, *turns), reaction, bearing))
     return solvable
 
@@ -153,9 +153,7 @@ def add_entries(response, entries):
 @compiled
 def _arm(scene):
     """Return r, from the point of reference to the centre of mass."""
-    if scene.kind == PIVOT:
-        return scene.center
-    if scene.kind == HINGE:
+    if scene.kind == PIVOT or scene.kind == HINGE:
         return minus(scene.center, scene.through)
     return ZERO
 

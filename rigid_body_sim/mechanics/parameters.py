@@ -10,19 +10,20 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
-from rigid_body_sim.numerics.vectors import apply, cross, dot, minus
+from rigid_body_sim.numerics.vectors import apply, cross, dot
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
-FREE, PIVOT, HINGE, TABLE = range(4)
-KINDS = {'free': FREE, 'pivot': PIVOT, 'hinge': HINGE, 'table': TABLE}
+FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
+NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
 
 class SceneParameters(NamedTuple):
-    """A body, its constraint and its weight.
+    """A body and its constraint; the values of the potentials stand behind it (potential.py).
 
     Attributes
     ----------
     kind : float
-        FREE, PIVOT, HINGE or TABLE.
+        FREE, PIVOT, HINGE or TABLE: the constraint's mechanism.
     mass : float
         kg.
     center : Vector
@@ -32,10 +33,12 @@ class SceneParameters(NamedTuple):
         of mass.
     axes : Quaternion
         Turns components along the principal axes into body components.
-    gravity : float
-        Acceleration along -z of the world, m/s^2; 0 where there is none.
-    hinge_axis, through : Vector
-        Unit vector along the hinge, and a point of it (m): body axes.
+    frame_axes : Quaternion
+        Turns components in the frame of the equations into body components.
+    hinge_axis : Vector
+        Unit vector along the hinge, body axes; 0 where there is none.
+    through : Vector
+        The point that is held, body axes, m; 0 where there is none.
     hinge_moment : float
         Moment of inertia about the hinge, kg m^2; 0 where there is none.
     """
@@ -45,33 +48,40 @@ class SceneParameters(NamedTuple):
     center: Vector
     moments: Vector
     axes: Quaternion
-    gravity: float
+    frame_axes: Quaternion
     hinge_axis: Vector
     through: Vector
     hinge_moment: float
 
 
 SCENE = layout(SceneParameters)
-GRAVITY = SCENE.part('gravity').first
 
 
 def scene_parameters(scene):
     """Return the SceneParameters of a scene."""
-    body, constraint, gravity = scene.body, scene.constraint, scene.effect('gravity')
-    inertia = body.about_origin if constraint.kind == 'pivot' else body.about_center
-    hinged = constraint.kind == 'hinge'
+    body, constraint = scene.body, scene.constraint
+    inertia, axis = constraint.inertia(body), constraint.axis
     return SceneParameters(
-        kind=KINDS[constraint.kind], mass=body.mass, center=body.center_of_mass,
-        moments=inertia.moments, axes=inertia.axes, gravity=gravity.g if gravity else 0.0,
-        hinge_axis=constraint.axis, through=constraint.through,
-        hinge_moment=moment_about_hinge(body, constraint) if hinged else 0.0)
+        kind=constraint.mechanism, mass=body.mass, center=body.center_of_mass,
+        moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
+        hinge_axis=NO_AXIS if axis is None else axis,
+        through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
+        hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint))
 
 
 def parameters(scene):
-    """Return the SceneParameters as the flat array that kernels take."""
-    p = np.zeros(SCENE.size)
+    """Return the flat array that kernels take: SceneParameters, then values of potentials."""
+    values = [value for one in potentials(scene) for value in one.values]
+    p = np.zeros(SCENE.size + len(values))
     SCENE.store(p, scene_parameters(scene))
+    p[SCENE.size:] = values
     return p
+
+
+def potentials(scene):
+    """Return the Potential of each effect of a scene that has one."""
+    frame = scene.constraint.frame(scene.body)
+    return [effect.potential(frame) for effect in scene.effects if effect.potential is not None]
 
 
 def moment_about_hinge(body, constraint):
@@ -80,6 +90,6 @@ def moment_about_hinge(body, constraint):
     n . I n + M |n x (c - through)|^2, with I about the centre of mass c.
     """
     n = constraint.axis
-    lever = cross(n, minus(body.center_of_mass, constraint.through))
+    lever = cross(n, constraint.arm(body))
     inertia = body.about_center.matrix.tolist()
     return dot(n, apply(inertia, n)) + body.mass * dot(lever, lever)

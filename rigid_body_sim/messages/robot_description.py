@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.drawing.body import THINNEST, box_of
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.shapes import BOX, SPHERE, equal_box, solids_of
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 TOPIC = 'robot_description'
 TYPE = 'std_msgs/msg/String'
@@ -28,7 +29,7 @@ def urdf(scene, frames) -> str:
     """Return the URDF text of a scene."""
     robot = ElementTree.Element('robot', name=scene.name)
     ElementTree.SubElement(robot, 'link', name=frames.world)
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         _hinge(robot, scene, frames)
     else:
         _joint(robot, f'{frames.body}_joint', 'floating', frames.world, frames.body)

@@ -28,6 +28,7 @@ from rigid_body_sim.messages.tick_messages import (
     TickMessages,
 )
 from rigid_body_sim.numerics import rotations
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
 
 
@@ -111,7 +112,7 @@ def _proper_acceleration(scene):
 
 
 def _held(scene, frames):
-    if scene.constraint.kind == 'free':
+    if scene.constraint.mechanism is Mechanism.FREE:
         raise BadInput(
             'parameter publish', 'got reaction with constraint free', 'nothing holds a free body'
         )
@@ -134,7 +135,7 @@ def _reaction(scene):
 
 
 def _joint(scene, frames):
-    if scene.constraint.kind != 'hinge':
+    if scene.constraint.axis is None:
         raise BadInput(
             'parameter publish',
             f'got joint_states with constraint {scene.constraint.kind!r}',

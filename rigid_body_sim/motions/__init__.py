@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motions solved in closed form, one file each; the one that absorbs all of a scene makes the scene exact.
+"""Motions solved in closed form; the one that absorbs all of a scene makes the scene exact.
 
-A motion declares in `absorbs(scene)` which constraint, effects and bodies it solves whole; `docs/design.md` says how a motion file is built.
+protocol.py says what a motion offers. docs/extending.md adds one step by step.
 
 It may import ``mechanics`` and what lies below.
 """
 
 import importlib
 
-MOTIONS = ('free_body.free_body', 'lagrange_top.lagrange_top', 'pendulum.pendulum', 'sliding_sphere')
+MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
+           'rigid_body_sim.motions.lagrange_top.lagrange_top',
+           'rigid_body_sim.motions.pendulum.pendulum',
+           'rigid_body_sim.motions.sliding_sphere')
+"""Modules in the order in which a scene is offered to them; each is imported when it is asked."""
 
 
 def absorbing_motion(scene):
     """Return the motion module that solves the whole scene in closed form, or None."""
     for name in MOTIONS:
-        motion = importlib.import_module(f'rigid_body_sim.motions.{name}')
+        motion = importlib.import_module(name)
         if motion.absorbs(scene):
             return motion
     return None

@@ -27,11 +27,14 @@ from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import cos, hypot, sin
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
+from rigid_body_sim.scene.constraints import Table
+from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
 from rigid_body_sim.scene.state import STATE_SIZE
 
 ROUNDING = 2.0 ** -49    # 8 ulp; body axes and back were seen to leave 2.9 in 200,000 random states
 CHECKPOINTS = 32
 EVENTS = ('rolling began',)
+fill_columns = None
 
 RADIUS, RATIO, MASS, FRICTION, GRAVITY = range(5)
 PARAMETER_SIZE = 5
@@ -49,8 +52,8 @@ ANCHOR_SIZE = ATTITUDES + 4 * CHECKPOINTS
 
 def absorbs(scene):
     """Return whether the scene is a balanced sphere on a table, with friction or without."""
-    return (scene.constraint.kind == 'table' and scene.body.about_center.moments[0] > 0.0
-            and all(effect.name in ('sliding_friction', 'strike') for effect in scene.effects))
+    return (isinstance(scene.constraint, Table) and scene.lists_only(SlidingFriction)
+            and scene.body.about_center.moments[0] > 0.0)
 
 
 def parameters(scene):

@@ -18,7 +18,7 @@ AT_ONCE = 512    # states of many bodies that a thread takes, at least
 def loops(motion):
     """Return the module of bulk loops bound to a motion (rigid_body_sim/motions/loops.py)."""
     bindings = {name: f'{motion.__name__}:{name}' for name in template.BINDINGS}
-    for name, binding in (template.IN_COLUMNS if hasattr(motion, 'fill_columns') else template.ONE_BY_ONE).items():
+    for name, binding in (template.IN_COLUMNS if motion.fill_columns is not None else template.ONE_BY_ONE).items():
         bindings[name] = binding.format(motion.__name__)
     return specialise(template, **bindings)
 
@@ -69,9 +69,9 @@ class Exact:
     def exchanged(self, time):
         """Return what effects exchanged with the body from the anchor to a time, shape (5,): mechanics/ledger.py."""
         out = np.zeros(ENTRIES_SIZE)
-        if hasattr(self.motion, 'exchanged'):
+        if self.motion.exchanged is not None:
             self.motion.exchanged(self.anchor, time, out)
-        elif self._scene.constraint.kind in ('pivot', 'hinge') and self._scene.effect('gravity'):
+        elif self._scene.constraint.holds_a_point and self._scene.effect('gravity'):
             if self._weight is None:
                 self._weight = WeightImpulse(self._scene, self.states, self._start)
             out[ANGULAR_IMPULSE] = self._weight.until(time)
@@ -83,7 +83,7 @@ class Exact:
         Where more than CROWD happen within the length of a tick (s), the rest of that time is passed over.
         """
         found = []
-        if not hasattr(self.motion, 'next_event'):
+        if self.motion.next_event is None:
             return found
         while self._next_event is None or self._next_event[0] <= until:
             if self._next_event is not None:

@@ -12,8 +12,7 @@ from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.gauss import rule
 from rigid_body_sim.numerics.rotations import matrix, rotate
-from rigid_body_sim.numerics.vectors import dot, minus, scaled
-from rigid_body_sim.scene.effects.views import Frame
+from rigid_body_sim.numerics.vectors import dot, scaled
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
 NODES, WEIGHTS = (np.array(numbers) for numbers in rule(16))
@@ -37,11 +36,13 @@ class WeightImpulse:
     """
 
     def __init__(self, scene, states, start):
-        frame, body = Frame.of(scene.body, scene.constraint), scene.body
+        body, constraint = scene.body, scene.constraint
         self._states, self._from, self._time = states, start[0], start[0]
-        self._arm = minus(body.center_of_mass, frame.point)
+        self._arm = constraint.arm(body)
         self._weight = body.mass * scene.effect('gravity').g
-        self._axis = rotate(*start[ORIENTATION].tolist(), *scene.constraint.axis) if scene.constraint.kind == 'hinge' else None
+        self._axis = None
+        if constraint.axis is not None:
+            self._axis = rotate(*start[ORIENTATION].tolist(), *constraint.axis)
         self._impulse = np.zeros(3)
         self._fastest = hypot3(*start[ANGULAR_VELOCITY].tolist()) + swing_rate(scene)
 

@@ -7,19 +7,22 @@ no schema can say (the triangle inequality, what a constraint allows) only parse
 
 import copy
 
+from rigid_body_sim.scene.constraints import CONSTRAINTS
 from rigid_body_sim.scene.effects import EFFECTS
-from rigid_body_sim.scene.scene import CONSTRAINTS, HINGE, MATRIX, SCENE, VECTOR
+from rigid_body_sim.scene.scene import scene_schema
+from rigid_body_sim.scene.schema import MATRIX, VECTOR
 
 NOTHING = {'type': 'null'}
 
 
 def json_schema():
     """Return the schema (draft 2020-12) as plain data."""
-    schema = copy.deepcopy(SCENE)
+    schema = copy.deepcopy(scene_schema())
     properties = schema['properties']
     properties['body']['properties']['inertia'] = {'anyOf': [VECTOR, MATRIX]}
     properties['constraint'] = {'anyOf': [
-        {'enum': [kind for kind in CONSTRAINTS if kind != 'hinge']}, _one_key('hinge', HINGE)]}
+        {'enum': [kind for kind, one in CONSTRAINTS.items() if one.SCHEMA is None]},
+        *(_one_key(kind, one.SCHEMA) for kind, one in CONSTRAINTS.items() if one.SCHEMA)]}
     properties['effects']['items'] = {'anyOf': [
         {'enum': [name for name, effect in EFFECTS.items() if not effect.SCHEMA.get('required')]},
         *(_one_key(name, effect.SCHEMA) for name, effect in EFFECTS.items())]}

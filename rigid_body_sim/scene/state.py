@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""State: what flows through everything. One vector of 14 doubles, with names for its parts.
+"""The state of a body: one vector of 14 doubles, with names for its parts.
 
 ======== ===================== =========================================================== =====
 slice    name                  meaning                                                     unit

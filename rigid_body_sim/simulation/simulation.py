@@ -21,6 +21,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, balance
+from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State, States
@@ -94,8 +96,10 @@ class Simulation:
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = parameters.parameters(self.scene)
         self._dynamics = Dynamics(self.scene)
+        self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
-        self._strikes = sorted((effect for effect in self.scene.effects if effect.name == 'strike'), key=lambda strike: strike.time)
+        self._strikes = sorted((effect for effect in self.scene.effects if effect.as_impulse is not None),
+                               key=lambda effect: effect.time)
         self._restart()
 
     def follow(self, previous, keep_state):
@@ -121,7 +125,7 @@ class Simulation:
     def _restart(self):
         self._origin, self._origin_time = self.tick, 0.0
         start = self.scene.initial.vector
-        energy.diagnose(self._mechanics, start, self._diagnosis)
+        self._energies.diagnose(self._mechanics, start, self._diagnosis)
         if not np.isfinite(self._diagnosis).all():
             raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
                            'a smaller angular velocity, velocity or height')
@@ -205,7 +209,7 @@ class Simulation:
     def diagnose(self, states):
         """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
         out = np.empty((len(states), energy.DIAGNOSIS_SIZE))
-        energy.diagnose_many(self._mechanics, states.vector, out)
+        self._energies.diagnose_many(self._mechanics, states.vector, out)
         return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[:, energy.MOMENTUM_SQUARED].copy()
 
     def states(self, times) -> States:
@@ -351,7 +355,7 @@ class Simulation:
         BadInput
             A free body; times as in :meth:`states`.
         """
-        if self.scene.constraint.kind == 'free':
+        if self.scene.constraint.mechanism is Mechanism.FREE:
             raise BadInput('reactions', f'nothing holds the body of {self.scene.name}', 'a scene with a pivot, a hinge or a table')
         states = self.states(times)
         spans = self._spans_until(states.time.max()) if len(states) else []
@@ -375,7 +379,7 @@ class Simulation:
 
     def _diagnose(self):
         if self._diagnosed_tick != (self.tick, len(self._spans)):
-            energy.diagnose(self._mechanics, self.vector, self._diagnosis)
+            self._energies.diagnose(self._mechanics, self.vector, self._diagnosis)
             self._diagnosed_tick = (self.tick, len(self._spans))
         return self._diagnosis
 

@@ -50,7 +50,7 @@ def _check(options):
     names = options.scene or [SHAPES, *SYSTEMS]
     held = {
         name: name != SHAPES
-        and load_scene(name, options.set).constraint.kind in ('pivot', 'hinge')
+        and load_scene(name, options.set).constraint.holds_a_point
         for name in names
     }
     began, tables = time.perf_counter(), []

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics import energy, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
 
@@ -87,9 +88,9 @@ class Mechanics:
         center = np.array(body.center_of_mass)
         carried = np.cross(growth, center) + np.cross(omega, np.cross(omega, center))
         force = body.mass * (np.asarray(balance.acceleration) + turn.apply(carried))
-        inertia = (body.about_origin if constraint.kind == 'pivot' else body.about_center).matrix
+        inertia = constraint.inertia(body).matrix
         torque = turn.apply(inertia @ growth + np.cross(omega, inertia @ omega))
-        if constraint.kind == 'hinge':
+        if constraint.mechanism is Mechanism.AXIS:
             axis = turn.apply(constraint.axis)
             arm = turn.apply(center - np.array(constraint.through))
             torque = axis * (axis @ (torque + np.cross(arm, force)))

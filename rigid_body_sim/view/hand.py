@@ -16,6 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, apply_impulse
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ORIENTATION
 from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, WIDTH, WORLD
 
@@ -97,10 +98,9 @@ def release():
 
 def _slack_axes(scene):
     """Return the principal axes of (nearly) zero moment in body axes, array (n, 3)."""
-    inertia = (scene.body.about_origin if scene.constraint.kind == 'pivot'
-               else scene.body.about_center)
+    inertia = (scene.constraint.inertia(scene.body))
     axes = Rotation.from_quat(inertia.axes).as_matrix().T
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         return np.empty((0, 3))
     moments = np.array(inertia.moments)
     return axes[moments < SLACK * moments.max()]

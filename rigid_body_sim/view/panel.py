@@ -12,6 +12,7 @@ import time
 
 import numpy as np
 
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import scene_names
 from rigid_body_sim.view import parameters
 from rigid_body_sim.view.curves import Curves
@@ -163,7 +164,7 @@ class Panel:
         source = self._source
         yield ('spin (rad/s)', parameters.spin_of(scene)[0],
                lambda value: parameters.with_spin(source.scene, value))
-        if scene.constraint.kind != 'table':
+        if scene.constraint.mechanism is not Mechanism.TABLE:
             yield ('tilt (rad)', parameters.tilt_of(scene),
                    lambda value: parameters.with_tilt(source.scene, value))
         for path, value in parameters.numbers(parameters.mapping_of(scene)):

@@ -5,6 +5,7 @@ import math
 
 import yaml
 
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
 
@@ -46,7 +47,7 @@ def spin_of(scene):
 
     Of a hinged body it is the rate about its axis, and the axis is None.
     """
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         return float(yaml.safe_load(scene.text)['initial'].get('rate', 0.0)), None
     omega = scene.initial.angular_velocity
     axis = int(abs(omega).argmax()) if omega.any() else 2
@@ -71,7 +72,7 @@ def with_spin(scene, spin):
 def tilt_of(scene):
     """Return the initial angle (rad) between body z and world z; of a hinged body its angle."""
     mapping = yaml.safe_load(scene.text)
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         return float(mapping['initial'].get('angle', 0.0))
     x, y, z, w = scene.initial.orientation.tolist()
     return 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
@@ -81,7 +82,7 @@ def with_tilt(scene, tilt):
     """Return the YAML text of a scene with another initial tilt, angular velocity unchanged."""
     mapping = yaml.safe_load(scene.text)
     initial = mapping['initial']
-    if scene.constraint.kind == 'hinge':
+    if scene.constraint.mechanism is Mechanism.AXIS:
         initial['angle'] = tilt
     elif 'euler_zyz' in initial:
         initial['euler_zyz'] = [initial['euler_zyz'][0], tilt, initial['euler_zyz'][2]]

@@ -18,8 +18,9 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.methods import rk4
 from rigid_body_sim.integrators.solver import Stepped
-from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, diagnose
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 
@@ -41,7 +42,7 @@ def state(scene, method, time, start=None, **control):
 
 def energy(scene, vector):
     out = np.empty(DIAGNOSIS_SIZE)
-    diagnose(parameters(scene), vector, out)
+    energies(scene).diagnose(parameters(scene), vector, out)
     return out[0] + out[1]
 
 

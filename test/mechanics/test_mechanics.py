@@ -5,9 +5,10 @@ import pytest
 from near import near
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL, diagnose
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, KINETIC, MOMENTUM, POTENTIAL
 from rigid_body_sim.mechanics.impulse import RESPONSE, RESPONSE_SIZE, apply_impulse
 from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
@@ -29,7 +30,7 @@ FORCE, COUPLE = np.array([1.0, -2.0, 0.5]), np.array([0.3, 0.2, -0.7])
 
 def diagnosed(scene, vector):
     out = np.empty(DIAGNOSIS_SIZE)
-    diagnose(parameters(scene), vector, out)
+    energies(scene).diagnose(parameters(scene), vector, out)
     return out
 
 
@@ -92,8 +93,7 @@ def test_impulse_and_reaction_turn_the_body(kind):
     before = vector[ANGULAR_VELOCITY].copy()
     apply_impulse(parameters(scene), vector, FORCE, COUPLE, out)
     gained = turn.apply(scene.body.about_center.matrix @ (vector[ANGULAR_VELOCITY] - before))
-    point = {'free': scene.body.center_of_mass, 'pivot': (0.0, 0.0, 0.0), 'hinge': scene.constraint.through,
-             'table': (0.0, 0.0, 0.0)}[kind]
+    point = scene.constraint.point(scene.body)
     lever = turn.apply(np.subtract(point, scene.body.center_of_mass))
     force, couple = map(np.array, RESPONSE.load(out)[2:])
     if kind == 'table':

@@ -8,8 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.motions.pendulum import pendulum as motion
 from rigid_body_sim.scene.bodies import Body, Inertia, make_body
+from rigid_body_sim.scene.constraints import Hinge
 from rigid_body_sim.scene.effects.gravity import Gravity
-from rigid_body_sim.scene.scene import Constraint, Scene
+from rigid_body_sim.scene.scene import Scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -19,7 +20,7 @@ HANGING, UPRIGHT = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)
 
 def scene_of(body, axis, through=(0.0, 0.0, 0.0), g=9.81, initial=None):
     effects = (Gravity(g),) if g else ()
-    return Scene('pendulum', '', body, Constraint('hinge', tuple(axis), tuple(through)), effects, initial or State.of(), True, '')
+    return Scene('pendulum', '', body, Hinge(tuple(axis), tuple(through)), effects, initial or State.of(), True, '')
 
 
 def unit_scene(g=13.5, axis=(1.0, 0.0, 0.0)):

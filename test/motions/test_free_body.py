@@ -12,8 +12,9 @@ from near import near
 from rigid_body_sim.motions.free_body import free_body as motion
 from rigid_body_sim.motions.solver import loops
 from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia
+from rigid_body_sim.scene.constraints import Free
 from rigid_body_sim.scene.effects.gravity import Gravity
-from rigid_body_sim.scene.scene import Constraint, Scene, parse_scene
+from rigid_body_sim.scene.scene import Scene, parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
 RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
@@ -24,7 +25,7 @@ def parameters_of(moments, axes=IDENTITY, center_of_mass=(0.0, 0.0, 0.0), g=0.0)
     inertia = Inertia(tuple(moments), tuple(axes))
     body = Body(1.0, tuple(center_of_mass), inertia, inertia)
     effects = (Gravity(g),) if g else ()
-    return motion.parameters(Scene('test', '', body, Constraint('free'), effects, State.of(), True, ''))
+    return motion.parameters(Scene('test', '', body, Free(), effects, State.of(), True, ''))
 
 
 def anchored(parameters, start):

@@ -19,7 +19,8 @@ from rigid_body_sim.motions.free_body import free_body as motion
 from rigid_body_sim.motions.solver import loops
 from rigid_body_sim.numerics.rotations import angle_between, rotate
 from rigid_body_sim.scene.bodies import Body, Inertia
-from rigid_body_sim.scene.scene import Constraint, Scene
+from rigid_body_sim.scene.constraints import Free
+from rigid_body_sim.scene.scene import Scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -32,7 +33,7 @@ MOTIONS = {'circular': ((2.0, 3.0, 4.0), (0.7, -0.4, 1.1)), 'hyperbolic': ((1.0,
 
 def parameters_of(moments, center_of_mass=(0.0, 0.0, 0.0)):
     inertia = Inertia(tuple(float(moment) for moment in moments))
-    return motion.parameters(Scene('test', '', Body(1.0, center_of_mass, inertia, inertia), Constraint('free'), (), State.of(), True, ''))
+    return motion.parameters(Scene('test', '', Body(1.0, center_of_mass, inertia, inertia), Free(), (), State.of(), True, ''))
 
 
 def start_of(omega, time=0.0):

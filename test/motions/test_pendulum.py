@@ -28,7 +28,7 @@ from mpmath import cos, mp, mpf, sin
 from near import near
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.mechanics import energy, parameters
+from rigid_body_sim.mechanics import energy, parameters, potential
 from rigid_body_sim.motions.pendulum import pendulum as motion
 from rigid_body_sim.motions.solver import Exact, loops
 from rigid_body_sim.numerics.rotations import multiply
@@ -141,13 +141,15 @@ def test_energy_and_hinge_stay():
     for _ in range(100):
         scene, start = random_scene(rng)
         anchor, numbers = anchored(scene, start), parameters.parameters(scene)
-        energies, sizes, weight = [], [], scene.body.mass * numbers[parameters.GRAVITY]
+        energies, sizes = [], []
+        weight = scene.body.mass * scene.effect('gravity').g
+        diagnose = potential.energies(scene).diagnose
         hinge = start[8:11] + Rotation.from_quat(start[1:5]).apply(scene.constraint.through)
         axis = Rotation.from_quat(start[1:5]).apply(scene.constraint.axis)
         for time in (0.0, 0.1, 1.0, 10.0, 1e3, 1e6, -1e5):
             state = at(anchor, time)
             turn = Rotation.from_quat(state[1:5])
-            energy.diagnose(numbers, state, diagnosis)
+            diagnose(numbers, state, diagnosis)
             energies.append(diagnosis[0] + diagnosis[1])
             sizes.append(diagnosis[0] + weight * (np.linalg.norm(state[8:11]) + np.linalg.norm(scene.body.center_of_mass)))
             arm = turn.apply(scene.constraint.through)

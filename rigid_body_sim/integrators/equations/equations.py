@@ -8,15 +8,15 @@ import bisect
 
 import numpy as np
 
-from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import euler, flying, hinged, turning
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
-from rigid_body_sim.scene.effects.views import Frame
 from rigid_body_sim.scene.state import TIME
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
+OMEGA = 'wx', 'wy', 'wz'
 
 
 class Equations:
@@ -53,18 +53,17 @@ class Equations:
     """
 
     def __init__(self, scene, wrench=None, ledger=False):
-        self.frame = Frame.of(scene.body, scene.constraint)
+        self.frame = scene.constraint.frame(scene.body)
         self._axis = scene.constraint.axis
-        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')] + (
-            [wrench] if wrench else []
-        )
+        self._actors = [effect for effect in scene.effects if effect.acting is not None]
+        self._actors += [wrench] if wrench else []
         self.breakpoints = tuple(
-            sorted({time for actor in self._actors for time in getattr(actor, 'breakpoints', ())})
+            sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         acting = self._acting(-np.inf)
         self.acts = bool(acting)
         self.extra = ENTRIES_SIZE if ledger else 0
-        if self.frame.kind == 'hinge':
+        if self._axis is not None:
             self.kind, self._moment = hinged, moment_on_hinge(scene)
         else:
             self.kind = flying if any(one.gives == 'force' for one in acting) else turning
@@ -100,7 +99,7 @@ class Equations:
         euler.EQUATION.store(fixed, euler.EquationParameters(
             euler=share, inverse=inverse, moments=moments, axes=frame.axes,
             point=frame.from_body(frame.point), start=euler.NO_START, mass=frame.mass,
-            moves=float(frame.kind == 'free')))
+            moves=float(frame.moves)))
         if hinge:
             hinged.PARAMETERS.part('axis').store(fixed, self._axis)
         return fixed
@@ -157,20 +156,19 @@ class _Call:
         module, _, self.function = acting.kernel.partition(':')
         self.gives, self.books = acting.gives, acting.books
         self.name = f'{self.function}_{module.rpartition(".")[2]}'
-        self.imported = f'from {module} import {self.function} as {self.name}'
+        self.imported = imported(acting.kernel, self.name)
         values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
         self.x, self.y, self.z = (f'{self.gives}{number}_{axis}' for axis in 'xyz')
         self.lines = [f'    {self.x}, {self.y}, {self.z} = {self.name}({values}{STATE})']
         if self.gives == 'turning':    # what keeps L = R m: the torque m x u
             m = euler.MOMENTS
-            turns = self.x, self.y, self.z
+            self.turns = ux, uy, uz = self.x, self.y, self.z
             self.x, self.y, self.z = (f'inner{number}_{axis}' for axis in 'xyz')
             self.lines += [
                 f'    m1, m2, m3 = p[{m}] * wx, p[{m + 1}] * wy, p[{m + 2}] * wz',
-                f'    ux, uy, uz = {", ".join(turns)}',
-                f'    {self.x} = m2 * uz - m3 * uy',
-                f'    {self.y} = m3 * ux - m1 * uz',
-                f'    {self.z} = m1 * uy - m2 * ux',
+                f'    {self.x} = m2 * {uz} - m3 * {uy}',
+                f'    {self.y} = m3 * {ux} - m1 * {uz}',
+                f'    {self.z} = m1 * {uy} - m2 * {ux}',
             ]
 
 
@@ -215,7 +213,7 @@ def force_source(calls):
 def turning_source(calls):
     """Return the source of ``turning(p, q, omega, v)``, the extra rate at which the axes turn."""
     calls = [call for call in calls if call.gives == 'turning']
-    return _kernel('turning', calls, ('ux', 'uy', 'uz') if calls else ('0.0', '0.0', '0.0'))
+    return _kernel('turning', calls, _turning_rates(calls) if calls else ('0.0',) * 3)
 
 
 def _omega_rate(calls):
@@ -236,9 +234,13 @@ def _omega_rate(calls):
 def _axes_rate(calls):
     """omega, with the extra turning rate of internal dissipation where there is one."""
     calls = [call for call in calls if call.gives == 'turning']
-    return _kernel(
-        'axes_rate', calls, ('wx + ux', 'wy + uy', 'wz + uz') if calls else ('wx', 'wy', 'wz')
-    )
+    rates = [' + '.join(terms) for terms in zip(OMEGA, _turning_rates(calls), strict=True)]
+    return _kernel('axes_rate', calls, rates if calls else OMEGA)
+
+
+def _turning_rates(calls):
+    """Return the three sums of the rates at which effects turn the axes."""
+    return [' + '.join(call.turns[k] for call in calls) for k in range(3)]
 
 
 def _booked(calls):

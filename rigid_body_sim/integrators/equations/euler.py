@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Euler's equations in the frame of a scene, and the way from that frame to a state vector.
 
-scene/effects/views.py has the frame.
+scene/frame.py has the frame.
 
 The parameters of every scene kind begin with EquationParameters; the values of all that acts stand
 behind them.

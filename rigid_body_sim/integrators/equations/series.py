@@ -17,7 +17,7 @@ from rigid_body_sim.integrators.equations import euler, falling, turning
 from rigid_body_sim.integrators.equations.equations import Equations, moment_on_hinge
 from rigid_body_sim.integrators.equations.falling import FallingParameters
 from rigid_body_sim.numerics.rotations import normalised
-from rigid_body_sim.scene.effects.views import Frame, turned_back
+from rigid_body_sim.scene.frame import turned_back
 
 
 class SeriesParameters(NamedTuple):
@@ -62,11 +62,12 @@ class Series(Equations):
 
     def __init__(self, scene):
         self.frame = _frame(scene)
-        self._actors = [effect for effect in scene.effects if hasattr(effect, 'acting')]
+        self.hinged = scene.constraint.axis is not None
+        self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self.breakpoints = tuple(
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
-        if not all(hasattr(actor, 'series') for actor in self._actors):
+        if not all(actor.series is not None for actor in self._actors):
             raise BadInput(
                 'integrator',
                 f'taylor cannot run the scene {scene.name}',
@@ -75,8 +76,8 @@ class Series(Equations):
         pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
         self.acts, self.extra, self.kind = bool(pulls), 0, turning
         forced = any(pull.force is not None for pull in pulls)
-        self.pushed = forced and self.frame.kind != 'free'
-        self.falls = self.frame.kind == 'free' and (forced or any(pull.slowing for pull in pulls))
+        self.pushed = forced and not self.frame.moves
+        self.falls = self.frame.moves and (forced or any(pull.slowing for pull in pulls))
         self.coupled = any(pull.couple is not None for pull in pulls)
         self.dragged = any(pull.drag is not None for pull in pulls)
         # the sums of what acts stay unbound: nothing asks for rates
@@ -115,8 +116,8 @@ def _frame(scene):
 
     That of a hinge has its third axis along it, and takes no torque about the others.
     """
-    frame = Frame.of(scene.body, scene.constraint)
-    if frame.kind != 'hinge':
+    frame = scene.constraint.frame(scene.body)
+    if scene.constraint.axis is None:
         return frame
     nx, ny, nz = scene.constraint.axis
     axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)

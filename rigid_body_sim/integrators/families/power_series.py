@@ -42,7 +42,7 @@ def march(method, equations, adapts):
     return specialise(
         taylor_march,
         expand=_expand(
-            equations.pushed, equations.coupled, equations.dragged, equations.frame.kind == 'hinge'
+            equations.pushed, equations.coupled, equations.dragged, equations.hinged
         ),
     )
 

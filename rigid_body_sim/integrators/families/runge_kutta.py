@@ -8,6 +8,7 @@ A method is a module with a table of coefficients A, B, and E3, E5 if it estimat
 from rigid_body_sim.integrators.families import one_step
 from rigid_body_sim.integrators.families.one_step import begin, equations_of, march  # noqa: F401
 from rigid_body_sim.integrators.marching import table, unroll
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ACCOUNTS = True
 SHARED = True
@@ -16,7 +17,7 @@ LANES = False
 
 def bind(method, stepped, ledger):
     """Return the method's kernels on the equations of a scene."""
-    if stepped.scene.constraint.kind == 'table':
+    if stepped.scene.constraint.mechanism is Mechanism.TABLE:
         return table.OnTable(stepped.scene, method, stepped.wrench, stepped.step)
     return one_step.bind(method, stepped, ledger)
 

@@ -38,8 +38,11 @@ from rigid_body_sim.motions.loops import BLOCK
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.scene.constraints import Free
+from rigid_body_sim.scene.effects.gravity import Gravity
 
 EVENTS = ('flip',)
+exchanged = None
 
 # layout of the parameters behind those of the rotation: centre of mass, g
 CENTER, GRAVITY = rotation_anchor.PARAMETER_SIZE, rotation_anchor.PARAMETER_SIZE + 3
@@ -52,7 +55,7 @@ ANCHOR_SIZE = OFFSET + 1
 
 def absorbs(scene):
     """Return whether this motion solves the whole scene."""
-    return scene.constraint.kind == 'free' and all(effect.name in ('gravity', 'strike') for effect in scene.effects)
+    return isinstance(scene.constraint, Free) and scene.lists_only(Gravity)
 
 
 def parameters(scene):

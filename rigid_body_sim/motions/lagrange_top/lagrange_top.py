@@ -48,6 +48,8 @@ from rigid_body_sim.numerics.pairs import pair_at, pair_of
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene.constraints import Pivot
+from rigid_body_sim.scene.effects.gravity import Gravity
 
 # layout of the parameters: M, g, h; as pairs M g h/I1, I3/I1, (I1 - I3)/I1; quaternion that turns the axes of the top (third: e3) to the body
 MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = 0, 1, 2, 3, 5, 7, 9
@@ -58,11 +60,12 @@ TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE +
 ANCHOR_SIZE = NUTATION_SIZE + 9
 
 EVENTS = ('turning point',)
+exchanged = None
 
 
 def absorbs(scene):
     """Return whether the scene is a symmetric body on a pivot under its weight alone; symmetric means exactly so (see `symmetry_axis`)."""
-    return (scene.constraint.kind == 'pivot' and all(effect.name in ('gravity', 'strike') for effect in scene.effects)
+    return (isinstance(scene.constraint, Pivot) and scene.lists_only(Gravity)
             and symmetry_axis(scene.body) is not None)
 
 

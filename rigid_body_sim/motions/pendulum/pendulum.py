@@ -57,8 +57,11 @@ from rigid_body_sim.motions.pendulum.anchor import (
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.scene.constraints import Hinge
+from rigid_body_sim.scene.effects.gravity import Gravity
 
 EVENTS = ('turning point',)
+exchanged = None
 
 PARAMETER_SIZE, ANCHOR_SIZE = anchor.PARAMETER_SIZE, anchor.ANCHOR_SIZE
 parameters, anchor = anchor.parameters, anchor.anchor
@@ -66,7 +69,7 @@ parameters, anchor = anchor.parameters, anchor.anchor
 
 def absorbs(scene):
     """Return whether the scene is a body on a hinge under its weight alone, or under nothing."""
-    return scene.constraint.kind == 'hinge' and all(effect.name in ('gravity', 'strike') for effect in scene.effects)
+    return isinstance(scene.constraint, Hinge) and scene.lists_only(Gravity)
 
 
 @compiled

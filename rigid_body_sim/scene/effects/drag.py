@@ -1,58 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drag: resistance in proportion to velocity (creeping flow; Stokes's law)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.vectors import dot
-from rigid_body_sim.scene.effects.views import Acting, Pull
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import mapping_of
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
 
 
 @dataclass(frozen=True)
-class Drag:
+class Drag(Effect):
     """``drag: {linear: c, angular: k}``; either may be left out (0).
 
-    F = -c v at the centre of mass (c in N s/m = kg/s, v its velocity) and the couple -k omega (k in N m s). At a pivot or hinge F counts
-    by its torque about the constraint. Not on the table, where rolling resistance would be another effect.
+    F = -c v at the centre of mass (c in N s/m = kg/s, v its velocity) and the couple -k omega (k
+    in N m s). At a pivot or hinge F acts by its torque about the constraint. It does not act on
+    the table, where rolling resistance would be another effect.
     """
 
     linear: float
     angular: float
-    name: ClassVar = 'drag'
-    SCHEMA: ClassVar = {'type': 'object', 'properties': {'linear': COEFFICIENT, 'angular': COEFFICIENT}, 'additionalProperties': False}
-    constraints: ClassVar = ('free', 'pivot', 'hinge')
-    repeatable: ClassVar = False
-    breakpoints: ClassVar = ()
+    name: ClassVar[str] = 'drag'
+    SCHEMA: ClassVar[dict] = mapping_of(linear=COEFFICIENT, angular=COEFFICIENT)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
 
     @classmethod
-    def from_scene(cls, mapping, body, constraint, where):
-        """Make it of its mapping in a scene file."""
-        if not mapping:
-            raise BadInput(where, 'no coefficient', 'give linear (N s/m), angular (N m s), or both')
-        return cls(float(mapping.get('linear', 0.0)), float(mapping.get('angular', 0.0)))
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file; it needs a coefficient."""
+        if not settings:
+            raise BadInput(where, 'no coefficient',
+                           'give linear (N s/m), angular (N m s), or both')
+        return cls(float(settings.get('linear', 0.0)), float(settings.get('angular', 0.0)))
 
-    def acting(self, frame, time):
-        """View `rate`: force and couple; what is zero does not act."""
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return force and couple; a coefficient of zero does not act."""
         acting = []
-        if self.linear and frame.kind == 'free':
+        if self.linear and frame.moves:
             acting.append(Acting(f'{__name__}:force', (self.linear,), 'force', 'heat'))
         elif self.linear and any(frame.arm):
-            acting.append(Acting(f'{__name__}:moment', (self.linear, *frame.arm), 'torque', 'heat'))
+            values = self.linear, *frame.arm
+            acting.append(Acting(f'{__name__}:moment', values, 'torque', 'heat'))
         if self.angular:
             acting.append(Acting(f'{__name__}:couple', (self.angular,), 'torque', 'heat'))
         return tuple(acting)
 
-    def series(self, frame, time):
-        """View `series`: the couple and, at a pivot, the moment turn a body; the force slows down one that flies."""
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the couple, and the force as a moment about a bearing or as it slows a flight."""
         r = np.array(frame.arm)
-        # of `couple` and `moment`
+        # the matrices of the kernels `couple` and `moment`
         matrix = -self.angular * np.eye(3) - self.linear * (dot(r, r) * np.eye(3) - np.outer(r, r))
-        return Pull(drag=tuple(map(tuple, matrix.tolist())) if matrix.any() else None, slowing=self.linear if frame.kind == 'free' else 0.0)
+        first, second, third = matrix.tolist()
+        return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
+                    slowing=self.linear if frame.moves else 0.0)
 
 
 @compiled
@@ -71,4 +80,5 @@ def couple(k, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 def moment(c, rx, ry, rz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     """Return r x (-c omega x r) = -c (r^2 omega - (r . omega) r), N m."""
     square, along = rx * rx + ry * ry + rz * rz, rx * wx + ry * wy + rz * wz
-    return -c * (square * wx - along * rx), -c * (square * wy - along * ry), -c * (square * wz - along * rz)
+    return (-c * (square * wx - along * rx), -c * (square * wy - along * ry),
+            -c * (square * wz - along * rz))

@@ -1,8 +1,10 @@
-"""Elementary wrenches: the few formulas of which gravity, torques and held commands are made.
+# SPDX-License-Identifier: Apache-2.0
+"""Elementary forces and torques: the few formulas of gravity, torques and held commands.
 
-Every kernel has the signature that rigid_body_sim/scene/effects/views.py asks of an `Acting`: its own values, then the attitude (qx, qy, qz,
-qw) of the frame, its angular velocity (frame components) and the velocity of the centre of mass (world components). `r` is the arm from
-the reference point to the centre of mass (frame components, m).
+Every kernel has the signature that an `Acting` asks for (protocol.py): its own values, then the
+attitude (qx, qy, qz, qw) of the frame, its angular velocity (frame components) and the velocity of
+the centre of mass (world components). `r` is the arm from the reference point to the centre of
+mass (frame components, m).
 """
 
 from rigid_body_sim.compilation.jit import compiled
@@ -36,8 +38,12 @@ def held_torque(tx, ty, tz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
 
 @compiled
-def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, sx, sy, sz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the torque r x R^T F + R^T T + s (N m, frame components) about the point; F and T are given in world axes, s in the frame's."""
+def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, sx, sy, sz,
+                     qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the torque r x R^T F + R^T T + s (N m, frame components) about the point.
+
+    F and T are given in world axes, s in the frame's.
+    """
     fx, fy, fz = rotate_back(qx, qy, qz, qw, fx, fy, fz)
     tx, ty, tz = rotate_back(qx, qy, qz, qw, tx, ty, tz)
     return ry * fz - rz * fy + tx + sx, rz * fx - rx * fz + ty + sy, rx * fy - ry * fx + tz + sz
@@ -45,10 +51,10 @@ def held_about_point(rx, ry, rz, fx, fy, fz, tx, ty, tz, sx, sy, sz, qx, qy, qz,
 
 @compiled
 def moment_of_weight(sx, sy, sz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the torque of gravity -s x (R^T z) with s = M g r (N m): `moment` for F = -M g z, where only the third row of R is needed.
+    """Return the torque of gravity -s x (R^T z) with s = M g r (N m).
 
-    R^T z = (2 (x z - w y), 2 (y z + w x), w^2 + z^2 - x^2 - y^2) with the quaternion (x, y, z, w); the factor 2 of the first two stands
-    out.
+    R^T z = (2 (x z - w y), 2 (y z + w x), w^2 + z^2 - x^2 - y^2) with the quaternion (x, y, z, w):
+    only the third row of R is needed.
     """
     gx, gy = 2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx)
     gz = (qw * qw - qx * qx) + (qz * qz - qy * qy)

@@ -1,57 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
 """Internal dissipation: heat at constant angular momentum, on the way to rotation about the largest axis.
 
-The double bracket of Bloch, Krishnaprasad, Marsden and Ratiu ("The Euler-Poincare equations and double bracket dissipation", Commun.
-Math. Phys. 175, 1996): with m = I omega in body axes,
+The double bracket of Bloch, Krishnaprasad, Marsden and Ratiu ("The Euler-Poincare equations and
+double bracket dissipation", Commun. Math. Phys. 175, 1996): with m = I omega in body axes,
 
     m' = m x (omega + c m x omega),        T' = -c (m x omega)^2 <= 0,        (m^2)' = 0.
 
-The momentum L = R m stays in the world when the axes turn with omega + c m x omega. `omega` means I^-1 m everywhere, in states and in the
-energy; the axes' own rate differs from it by c m x omega, the motion of the inner parts that make the heat.
+The momentum L = R m stays in the world when the axes turn with omega + c m x omega. `omega` means
+I^-1 m everywhere, in states and in the energy; the axes' own rate differs from it by c m x omega,
+the motion of the inner parts that make the heat.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.scene.effects.views import Acting
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Effect
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import POSITIVE, mapping_of
 
 ENDED = 2.0 ** -54    # rad
 
 
 @dataclass(frozen=True)
-class InternalDissipation:
+class InternalDissipation(Effect):
     """``internal_dissipation: {coefficient: c}``; c in 1/(kg m^2/s), positive.
 
-    Near the axis of the largest moment a wobble about axis i dies out at the rate c L^2 (1/I_i - 1/I_max), 1/s. Free bodies only: at a
-    pivot the momentum about it is not the body's own.
+    Near the axis of the largest moment a wobble about axis i dies out at the rate
+    c L^2 (1/I_i - 1/I_max), 1/s. It acts on free bodies only: at a pivot the momentum about it is
+    not the body's own.
     """
 
     coefficient: float
-    name: ClassVar = 'internal_dissipation'
-    SCHEMA: ClassVar = {
-        'type': 'object', 'properties': {'coefficient': {'type': 'number', 'exclusiveMinimum': 0}}, 'required': ['coefficient'],
-        'additionalProperties': False}
-    constraints: ClassVar = ('free',)
-    repeatable: ClassVar = False
-    breakpoints: ClassVar = ()
+    name: ClassVar[str] = 'internal_dissipation'
+    SCHEMA: ClassVar[dict] = mapping_of(['coefficient'], coefficient=POSITIVE)
+    mechanisms: ClassVar = (Mechanism.FREE,)
 
     @classmethod
-    def from_scene(cls, mapping, body, constraint, where):
-        """Make it of its mapping in a scene file."""
-        return cls(float(mapping['coefficient']))
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        return cls(float(settings['coefficient']))
 
-    def acting(self, frame, time):
-        """View `rate`: the extra rate at which the axes turn."""
-        return Acting(f'{__name__}:turning', (self.coefficient, *frame.moments), 'turning', 'heat'),
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the extra rate at which the axes turn."""
+        values = self.coefficient, *frame.moments
+        return Acting(f'{__name__}:turning', values, 'turning', 'heat'),
 
 
 @compiled
 def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     """Return c m x omega, rad/s: component 1 is c (I2 - I3) omega2 omega3.
 
-    What is left of a wobble (m within ENDED of its end, less than the attitude can show) would only keep the steps of a strong dissipation at
-    1/c for ever. So rates die away there, smoothly, as one that stopped at once would be chattered on: those that hold a component along the
-    axes of the least moment with that component, which always decays, the others with all that is across the axes of the largest moment.
+    What is left of a wobble (m within ENDED of its end, less than the attitude can show) would
+    only keep the steps of a strong dissipation at 1/c for ever. So the rates die away there,
+    smoothly, because steps would chatter on one that stopped at once. A rate that holds a
+    component along the axes of the least moment dies with that component, which always decays; the
+    others die with all that is across the axes of the largest moment.
     """
     m1, m2, m3 = I1 * wx, I2 * wy, I3 * wz
     s1, s2, s3 = m1 * m1, m2 * m2, m3 * m3
@@ -61,5 +68,6 @@ def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     ended = ENDED * ENDED * (s1 + s2 + s3)
     free = c * (across / (across + ended)) if across > 0.0 else 0.0
     held = c * (along / (along + ended)) if along > 0.0 else 0.0
-    return ((free if least == I1 else held) * (I2 - I3) * wy * wz, (free if least == I2 else held) * (I3 - I1) * wz * wx,
+    return ((free if least == I1 else held) * (I2 - I3) * wy * wz,
+            (free if least == I2 else held) * (I3 - I1) * wz * wx,
             (free if least == I3 else held) * (I1 - I2) * wx * wy)

@@ -1,34 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sliding friction: Coulomb's law where a sphere touches the table (notes, "Billiard").
 
-While the lowest point moves over the table with the slip velocity u != 0 the force on the ball is -mu M g u/|u|; once u = 0 it rolls. The
-motion is solved in closed form by rigid_body_sim/motions/sliding_sphere.py; held commands on the table by
+While the lowest point moves over the table with the slip velocity u != 0 the force on the ball is
+-mu M g u/|u|; once u = 0 it rolls. The motion is solved in closed form by
+rigid_body_sim/motions/sliding_sphere.py; held commands on the table are solved by
 rigid_body_sim/integrators/marching/table.py.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
-POSITIVE = {'type': 'number', 'exclusiveMinimum': 0}
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Contact, Effect
+from rigid_body_sim.scene.schema import POSITIVE, mapping_of
 
 
 @dataclass(frozen=True)
-class SlidingFriction:
+class SlidingFriction(Effect):
     """``sliding_friction: {mu: 0.2, g: 9.81}``.
 
-    mu is the coefficient of sliding friction, g the gravity that presses the ball on the table (m/s^2); mu may be 0.
+    mu is the coefficient of sliding friction (0 is allowed), g the gravity that presses the ball on
+    the table (m/s^2).
     """
 
     mu: float
     g: float
-    name: ClassVar = 'sliding_friction'
-    SCHEMA: ClassVar = {
-        'type': 'object', 'properties': {'mu': {'type': 'number', 'minimum': 0}, 'g': POSITIVE}, 'required': ['mu', 'g'],
-        'additionalProperties': False}
-    constraints: ClassVar = ('table',)
-    repeatable: ClassVar = False
-    breakpoints: ClassVar = ()
+    name: ClassVar[str] = 'sliding_friction'
+    SCHEMA: ClassVar[dict] = mapping_of(['mu', 'g'], mu={'type': 'number', 'minimum': 0},
+                                        g=POSITIVE)
+    mechanisms: ClassVar = (Mechanism.TABLE,)
 
     @classmethod
-    def from_scene(cls, mapping, body, constraint, where):
-        """Make it of its mapping in a scene file."""
-        return cls(float(mapping['mu']), float(mapping['g']))
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        return cls(float(settings['mu']), float(settings['g']))
+
+    @property
+    def contact(self) -> Contact:
+        """Coefficient of friction and gravity."""
+        return Contact(self.mu, self.g)

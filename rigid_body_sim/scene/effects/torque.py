@@ -1,68 +1,90 @@
-"""Torque: a couple in body or world axes, constant or constant by pieces in time (Euler's equations with Gamma)."""
+# SPDX-License-Identifier: Apache-2.0
+"""Torque: a couple in body or world axes, constant or piecewise constant in time.
+
+These are Euler's equations with a torque Gamma.
+"""
 
 import bisect
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.effects.views import Acting, Pull, as_floats
-
-VECTOR = {'type': 'array', 'items': {'type': 'number'}, 'minItems': 3, 'maxItems': 3}
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull, as_floats
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import VECTOR, mapping_of
 
 
 @dataclass(frozen=True)
-class Torque:
-    """``torque: {value: [x, y, z], frame: body}`` for ever, or ``torque: {times: [t0, t1, ...], values: [[x, y, z], ...], frame: world}``.
+class Torque(Effect):
+    """``torque: {value: [x, y, z], frame: body}`` acts for ever.
 
-    N m; values[i] acts from times[i] to times[i + 1], the last one stays, before the first there is none. `frame` (body, the default, or
-    world) names the axes of the components. A scene may list several.
+    ``torque: {times: [t0, t1, ...], values: [[x, y, z], ...], frame: world}`` acts in pieces.
+    Values are in N m; values[i] acts from times[i] to times[i + 1], the last one stays, and before
+    the first there is none. `frame` (body, the default, or world) names the axes of the
+    components. A scene may list several.
     """
 
-    times: tuple
-    values: tuple
+    times: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]
     frame: str
-    name: ClassVar = 'torque'
-    SCHEMA: ClassVar = {
-        'type': 'object', 'additionalProperties': False, 'properties': {
-            'value': VECTOR, 'values': {'type': 'array', 'items': VECTOR, 'minItems': 1},
-            'times': {'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1}, 'frame': {'enum': ['body', 'world']}}}
-    constraints: ClassVar = ('free', 'pivot', 'hinge')
-    repeatable: ClassVar = True
+    name: ClassVar[str] = 'torque'
+    SCHEMA: ClassVar[dict] = mapping_of(
+        value=VECTOR, values={'type': 'array', 'items': VECTOR, 'minItems': 1},
+        times={'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
+        frame={'enum': ['body', 'world']})
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    repeatable: ClassVar[bool] = True
 
     @classmethod
-    def from_scene(cls, mapping, body, constraint, where):
-        """Make it of its mapping in a scene file."""
-        frame = mapping.get('frame', 'body')
-        if ('value' in mapping) == ('values' in mapping) or ('values' in mapping) != ('times' in mapping):
-            raise BadInput(where, f'got the keys {", ".join(sorted(mapping)) or "none"}', 'give value alone, or times with values')
-        if 'value' in mapping:
-            return cls((0.0,), (as_floats(mapping['value']),), frame)
-        times, values = as_floats(mapping['times']), tuple(as_floats(value) for value in mapping['values'])
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        frame = settings.get('frame', 'body')
+        if (('value' in settings) == ('values' in settings)
+                or ('values' in settings) != ('times' in settings)):
+            raise BadInput(where, f'got the keys {", ".join(sorted(settings)) or "none"}',
+                           'give value alone, or times with values')
+        if 'value' in settings:
+            return cls((0.0,), (as_floats(settings['value']),), frame)
+        times = as_floats(settings['times'])
+        values = tuple(as_floats(value) for value in settings['values'])
         if len(times) != len(values):
-            raise BadInput(where, f'{len(times)} times and {len(values)} values', 'one time for each value: when it begins')
+            raise BadInput(where, f'{len(times)} times and {len(values)} values',
+                           'one time for each value: when it begins')
         if any(later <= earlier for earlier, later in pairwise(times)):
-            raise BadInput(f'{where}.times', f'got {list(times)}', 'times rise from one to the next')
+            raise BadInput(f'{where}.times', f'got {list(times)}',
+                           'times rise from one to the next')
         return cls(times, values, frame)
 
     @property
-    def breakpoints(self):
+    def breakpoints(self) -> tuple[float, ...]:
         """The times at which the torque jumps, s."""
         return self.times
 
-    def value(self, time):
+    def value(self, time: float) -> tuple[float, ...]:
         """Return the components just after a time, N m."""
         place = bisect.bisect_right(self.times, time) - 1
         return self.values[place] if place >= 0 else (0.0, 0.0, 0.0)
 
-    def acting(self, frame, time):
-        """View `rate`: the couple."""
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the couple."""
         value = self.value(time)
         if self.frame == 'world':
-            return Acting('rigid_body_sim.scene.effects.elementary:to_frame', value, 'torque', 'work'),
-        return Acting('rigid_body_sim.scene.effects.elementary:constant', frame.from_body(value), 'torque', 'work'),
+            return Acting('rigid_body_sim.scene.effects.elementary:to_frame', value, 'torque',
+                          'work'),
+        return Acting('rigid_body_sim.scene.effects.elementary:constant', frame.from_body(value),
+                      'torque', 'work'),
 
-    def series(self, frame, time):
-        """View `series`: the couple."""
-        value = self.value(time)
-        return Pull(couple=value) if self.frame == 'world' else Pull(constant=frame.from_body(value))
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the couple."""
+        x, y, z = self.value(time)
+        return (Pull(couple=(x, y, z)) if self.frame == 'world'
+                else Pull(constant=frame.from_body((x, y, z))))
+
+    def bounds(self, body: Body, constraint: Constraint) -> Bounds:
+        """Return the largest torque."""
+        return Bounds(0.0, max(hypot3(*value) for value in self.values))

@@ -13,6 +13,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled_allocating
 from rigid_body_sim.motions.free_body import free_body
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
@@ -39,7 +40,7 @@ def residuals(simulation, states):
     energy, momentum_squared = simulation.diagnose(states)
     q = states.orientation
     found = {'norm of q': np.einsum('ij,ij->i', q, q) - 1.0, 'energy': energy / energy[0] - 1.0}
-    if simulation.scene.constraint.kind == 'free':
+    if simulation.scene.constraint.mechanism is Mechanism.FREE:
         found['L'] = momentum_squared / momentum_squared[0] - 1.0
         return found
     x, y, z, w = q.T

@@ -89,9 +89,10 @@ def unit(vector):
 def of(scene, move):
     """Return the Inputs of a scene, its doubles taken through `move` (`exactly` or Moved(seed)), at mpmath's present precision."""
     body, constraint, kind = scene.body, scene.constraint, scene.constraint.kind
-    inertia = body.about_origin if kind == 'pivot' else body.about_center
-    center, through = tuple(map(move, body.center_of_mass)), tuple(map(move, constraint.through))
-    arm = {'pivot': center, 'hinge': tuple(c - p for c, p in zip(center, through))}.get(kind, ZERO)
+    inertia, held = constraint.inertia(body), constraint.holds_a_point
+    center = tuple(map(move, body.center_of_mass))
+    through = tuple(map(move, constraint.point(body))) if held else ZERO
+    arm = tuple(c - p for c, p in zip(center, through)) if held else ZERO
     gravity, drag, inner, friction = map(
         scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction')
     )

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The potential energy of a scene: the sum over the effects that have one, written as source.
+
+A scene without potentials has none of this in its code.
+"""
+
+from rigid_body_sim.compilation.templates import imported, specialise
+from rigid_body_sim.mechanics import energy
+from rigid_body_sim.mechanics.parameters import SCENE, potentials
+
+
+def energies(scene):
+    """Return the kernels of energy.py, `diagnose` and `diagnose_many`, for a scene."""
+    return specialise(energy, potential=_source(potentials(scene)))
+
+
+def _source(parts):
+    """Return the source of ``potential(p, scene, q, position)``, the sum of the parts."""
+    head = ['@compiled', 'def potential(p, scene, q, position):']
+    if not parts:
+        return '\n'.join([*head, '    return 0.0', ''])
+    lines, at = [], SCENE.size
+    for number, part in enumerate(parts):
+        values = ''.join(f'p[{at + k}], ' for k in range(len(part.values)))
+        lines += [imported(part.kernel, f'potential_{number}')]
+        at += len(part.values)
+        parts[number] = f'potential_{number}({values}*axes, *center)'
+    return '\n'.join([
+        'from rigid_body_sim.numerics.rotations import multiply', *lines, '', '', *head,
+        '    axes = multiply(*q, *scene.frame_axes)',
+        '    center = plus(position, rotate(*q, *scene.center))',
+        f'    return {" + ".join(parts)}', ''])

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The contract of a motion: what a closed form offers to the exact solver.
+
+A motion is a module of this folder with one line in the table of ``motions/__init__.py``. What it
+lacks it declares as None. docs/extending.md adds one step by step.
+"""
+
+from collections.abc import Callable
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from rigid_body_sim.scene.scene import Scene
+
+
+@runtime_checkable
+class Motion(Protocol):
+    """A motion in closed form over any time, from its anchor: the state of the last change.
+
+    `state`, `anchor`, `fill_columns`, `next_event` and `exchanged` are compiled kernels. States are
+    those of scene/state.py (14 doubles), times are simulated seconds.
+
+    Attributes
+    ----------
+    ANCHOR_SIZE : int
+        Number of doubles in an anchor.
+    EVENTS : tuple of str
+        Names of the events, by the code that `next_event` returns.
+    """
+
+    ANCHOR_SIZE: int
+    EVENTS: tuple[str, ...]
+
+    def absorbs(self, scene: Scene) -> bool:
+        """Return whether the motion solves the scene whole: constraint, effects and body.
+
+        Effects that are impulses, such as strikes, need no mention: after each the motion is
+        anchored anew.
+        """
+        ...
+
+    def parameters(self, scene: Scene) -> np.ndarray:
+        """Return the numbers of a scene that the kernels take, in a layout of the motion's own."""
+        ...
+
+    @property
+    def anchor(self) -> Callable[[np.ndarray, np.ndarray, np.ndarray], Any]:
+        """``anchor(parameters, start, out)``: fill `out`, shape (ANCHOR_SIZE,), from a state."""
+        ...
+
+    @property
+    def state(self) -> Callable[[np.ndarray, float, np.ndarray], Any]:
+        """``state(anchor, time, out)``: fill `out`, shape (14,), with the state at any time."""
+        ...
+
+    @property
+    def fill_columns(self) -> Callable[[np.ndarray, np.ndarray, np.ndarray], Any] | None:
+        """``fill_columns(anchor, times, columns)``: the operations of `state` on many times.
+
+        It fills the columns of loops.py with the same bits as `state`, as vector code; None if
+        many states are computed one by one.
+        """
+        ...
+
+    @property
+    def next_event(self) -> Callable[[np.ndarray, float], tuple[float, int]] | None:
+        """``next_event(anchor, after)``: time (s, infinite if none) and code of the next event."""
+        ...
+
+    @property
+    def exchanged(self) -> Callable[[np.ndarray, float, np.ndarray], Any] | None:
+        """``exchanged(anchor, time, out)``: fill `out`, shape (5,), with the ledger's entries.
+
+        They are what effects exchanged with the body since the anchor (mechanics/ledger.py). None
+        if no effect does work or makes heat; the angular impulse of the weight is then a
+        quadrature over the motion.
+        """
+        ...

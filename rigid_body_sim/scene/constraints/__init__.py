@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of constraints: one file each, one line each.
+
+protocol.py says what a constraint offers. This folder imports numerics and its neighbours in
+scene/, but no effect.
+"""
+
+from rigid_body_sim.scene.constraints.free import Free
+from rigid_body_sim.scene.constraints.hinge import Hinge
+from rigid_body_sim.scene.constraints.pivot import Pivot
+from rigid_body_sim.scene.constraints.protocol import Constraint
+from rigid_body_sim.scene.constraints.table import Table
+
+CONSTRAINTS: dict[str, type[Constraint]] = {
+    constraint.kind: constraint for constraint in (Free, Pivot, Hinge, Table)}

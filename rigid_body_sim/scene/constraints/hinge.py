@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hinge: the body turns about an axis through a point, both fixed in the body and in the world."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics import rotations
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
+from rigid_body_sim.scene import initial
+from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia, refuse_beyond, square_of
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.initial import Start
+from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
+from rigid_body_sim.scene.state import State
+
+
+@dataclass(frozen=True)
+class Hinge(Constraint):
+    """``constraint: {hinge: {axis: [x, y, z], through: [x, y, z]}}``.
+
+    `axis` is a direction in body axes. `through` is a point of the axis in body axes (m, default
+    the origin). Instead of it, `distance` hangs the body that far from its centre of mass along
+    body axis z, measured square to the axis. The reference point is `through`.
+    """
+
+    axis: Vector = (0.0, 0.0, 1.0)    # overrides the view `axis` of Constraint
+    through: Vector = (0.0, 0.0, 0.0)
+    kind: ClassVar[str] = 'hinge'
+    usage: ClassVar[str] = 'hinge: {axis: [x, y, z], through: [x, y, z]}'
+    SCHEMA: ClassVar[dict | None] = mapping_of(['axis'], axis=VECTOR, through=VECTOR,
+                                               distance=NUMBER)
+    INITIAL: ClassVar[dict] = {**initial.ORIENTATION, 'angle': NUMBER, 'rate': NUMBER,
+                               **initial.PLACE}
+    mechanism: ClassVar[Mechanism] = Mechanism.AXIS
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Self:
+        """Return the hinge, its axis made a unit vector."""
+        x, y, z = map(float, settings['axis'])
+        length = hypot3(x, y, z)
+        if not length > 0.0 or not math.isfinite(length):
+            raise BadInput(f'{where}.axis', f'got {settings["axis"]}',
+                           'a direction: three numbers, not all zero')
+        axis = x / length, y / length, z / length
+        if 'distance' in settings:
+            through = _suspension(settings, axis, body, where)
+        else:
+            x, y, z = map(float, settings.get('through', (0.0, 0.0, 0.0)))
+            through = x, y, z
+        refuse_beyond(body.mass * square_of(through), where)
+        return cls(axis, through)
+
+    def initial(self, start: Start, body: Body, where: str) -> State:
+        """Return the state at an angle (rad) and rate (rad/s) about the axis.
+
+        `position` is where the point `through` is in the world, m.
+        """
+        angle = float(start.mapping.get('angle', 0.0))
+        rate = float(start.mapping.get('rate', 0.0))
+        turn = rotations.from_rotation_vector(*scaled(angle, self.axis))
+        orientation = rotations.multiply(*start.orientation, *turn)
+        omega = scaled(rate, self.axis)
+        arm = rotations.rotate(*orientation, *self.through)
+        velocity = cross(arm, rotations.rotate(*orientation, *omega))
+        return State.of(0.0, orientation, omega, minus(start.position, arm), velocity)
+
+    def point(self, body: Body) -> Vector:
+        """Return the point `through`."""
+        return self.through
+
+    def inertia(self, body: Body) -> Inertia:
+        """Return the tensor about the centre of mass."""
+        return body.about_center
+
+    def frame(self, body: Body) -> Frame:
+        """Return the body's axes through the point `through`."""
+        return Frame(False, body.mass, body.about_center.moments, IDENTITY, self.through,
+                     self.arm(body))
+
+
+def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) -> Vector:
+    """Return the point at the key `distance` from the centre of mass (body axes, m)."""
+    distance, upward = float(settings['distance']), across(axis, (0.0, 0.0, 1.0))
+    if 'through' in settings:
+        raise BadInput(f'{where}.distance', 'stands beside through', 'give one of them')
+    if distance == 0.0:
+        raise BadInput(f'{where}.distance', f'got {settings["distance"]!r}',
+                       'hung at its centre of mass a body does not swing: a distance above 0, '
+                       'or below 0 on the other side, in m')
+    length = hypot3(*upward)
+    if not length > 1e-8:
+        raise BadInput(f'{where}.distance', f'got an axis {list(axis)} along z',
+                       'distance is measured along body axis z: give through')
+    x, y, z = plus(body.center_of_mass, scaled(distance / length, upward))
+    return x, y, z

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The contract of an effect: what it declares, and the views of it that others ask for.
+
+An effect is a frozen dataclass that inherits :class:`Effect`. It overrides the views that it has;
+a view that it does not override is None, and whoever needs that view says so. docs/extending.md
+adds an effect step by step.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
+
+import numpy as np
+
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.frame import Frame
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A force, a torque or a turning rate that acts as long as its values hold.
+
+    Attributes
+    ----------
+    kernel : str
+        ``'package.module:function'``. The compiled function has the signature ``(value, ...,
+        value, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)``: the attitude of the frame, its angular
+        velocity (frame components, rad/s) and the velocity of the centre of mass (world, m/s). It
+        returns three components.
+    values : tuple of floats
+    gives : str
+        ``force`` (N, world components, at the centre of mass; only where ``frame.moves``),
+        ``torque`` (N m, frame components, about the reference point) or ``turning`` (rad/s, frame
+        components, an extra rate at which the axes turn under a constant angular momentum).
+    books : str
+        Where the ledger writes the power: ``potential`` (the view `potential` has the energy),
+        ``work`` (done on the body) or ``heat`` (taken from it).
+    """
+
+    kernel: str
+    values: tuple[float, ...]
+    gives: str
+    books: str
+
+
+@dataclass(frozen=True)
+class Pull:
+    """Torque and force of an effect without quotients and roots, for power series.
+
+    Attributes
+    ----------
+    constant : tuple of 3 floats
+        Torque about the reference point, frame components (N m).
+    force : tuple of 3 floats, optional
+        At the centre of mass, world components (N). It turns a held body by arm x R^T force, and
+        moves a free one.
+    couple : tuple of 3 floats, optional
+        World components (N m).
+    drag : tuple of 3 tuples of 3 floats, optional
+        Rows of the matrix that makes a torque of omega, frame components (N m s).
+    slowing : float
+        c of a force -c v at the centre of mass of a free body (N s/m).
+    """
+
+    constant: Vector = (0.0, 0.0, 0.0)
+    force: Vector | None = None
+    couple: Vector | None = None
+    drag: tuple[Vector, Vector, Vector] | None = None
+    slowing: float = 0.0
+
+
+@dataclass(frozen=True)
+class Potential:
+    """A potential energy as a function of the attitude and the place of the body.
+
+    Attributes
+    ----------
+    kernel : str
+        ``'package.module:function'``. The compiled function has the signature ``(value, ...,
+        value, qx, qy, qz, qw, x, y, z)``: the attitude of the frame and the place of the centre of
+        mass (world, m). It returns the energy in J.
+    values : tuple of floats
+    """
+
+    kernel: str
+    values: tuple[float, ...]
+
+
+class Bounds(NamedTuple):
+    """What an effect can do at most; solvers look for events as often as that asks for.
+
+    Attributes
+    ----------
+    energy : float
+        Half the range of its potential over all attitudes, J.
+    torque : float
+        Of a drive that may go on for ever, about the reference point, N m.
+    """
+
+    energy: float
+    torque: float
+
+
+class Contact(NamedTuple):
+    """How a ball and a table touch.
+
+    Attributes
+    ----------
+    mu : float
+        Coefficient of sliding friction.
+    g : float
+        Acceleration that presses the ball on the table, m/s^2.
+    """
+
+    mu: float
+    g: float
+
+
+class Effect(Protocol):
+    """What acts on a body beside its constraint.
+
+    The right-hand side and the potential must fit together: the ledger's energy residual of a
+    scene says whether they do.
+
+    Attributes
+    ----------
+    name : str
+        The word for it in a scene file.
+    SCHEMA : dict
+        JSON schema of its settings there.
+    mechanisms : tuple of Mechanism
+        Free directions of the constraints under which it may act.
+    repeatable : bool
+        True if a scene may list it more than once.
+    """
+
+    name: ClassVar[str]
+    SCHEMA: ClassVar[dict[str, Any]]
+    mechanisms: ClassVar[tuple[Mechanism, ...]]
+    repeatable: ClassVar[bool] = False
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file.
+
+        Parameters
+        ----------
+        settings : dict
+            They satisfy SCHEMA, and all numbers are finite.
+        body, constraint
+            Of the scene.
+        where : str
+            File and key path, for error lines.
+
+        Raises
+        ------
+        BadInput
+            For what SCHEMA cannot say.
+        """
+        ...
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times (s) at which its values jump: a step ends at each."""
+        return ()
+
+    @property
+    def acting(self) -> Callable[[Frame, float], tuple[Acting, ...]] | None:
+        """``acting(frame, time)``: what acts continuously just after a time (s), each an Acting.
+
+        The number, the kernels and the ledger entries of these are the same at all times; only
+        values change, and only at breakpoints.
+        """
+        return None
+
+    @property
+    def series(self) -> Callable[[Frame, float], Pull] | None:
+        """``series(frame, time)``: the same as `acting`, as a Pull. The method taylor needs it."""
+        return None
+
+    @property
+    def potential(self) -> Callable[[Frame], Potential] | None:
+        """``potential(frame)``: its energy. An effect needs it if it books its power there."""
+        return None
+
+    @property
+    def as_impulse(self) -> Callable[[Body, np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
+        """``as_impulse(body, vector)``: what it does at one instant, its attribute `time` (s).
+
+        For the state (14 doubles) just before it returns the impulse of force at the centre of
+        mass (N s) and of torque (N m s), each of shape (3,) in world axes.
+        """
+        return None
+
+    @property
+    def bounds(self) -> Callable[[Body, Constraint], Bounds] | None:
+        """``bounds(body, constraint)``: what it can do at most; None counts as nothing."""
+        return None
+
+    @property
+    def contact(self) -> Contact | None:
+        """How the ball and the table touch, for an effect of the mechanism TABLE."""
+        return None
+
+    def notes(self, body: Body, constraint: Constraint) -> list[str]:
+        """Return warnings about settings that are legal but probably unintended, one line each."""
+        return []
+
+
+def as_floats(values: Iterable[float]) -> tuple[float, ...]:
+    """Return a sequence from a scene file as a tuple of floats."""
+    return tuple(float(value) for value in values)

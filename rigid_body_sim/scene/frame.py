@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The frame of a scene: where its equations of motion are written."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rigid_body_sim.numerics import rotations
+from rigid_body_sim.scene.bodies import IDENTITY
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A reference point fixed in the body, and axes fixed in the body.
+
+    A constraint makes the frame of a body: ``constraint.frame(body)``.
+
+    Attributes
+    ----------
+    moves : bool
+        True if the reference point is the centre of mass and moves as forces tell it. False if a
+        bearing holds the point: then a force acts through its torque about the point.
+    mass : float
+        kg.
+    moments : tuple of 3 floats
+        Principal moments about the reference point, kg m^2. Of a body on an axis only the moment
+        about that axis counts, and these are those about the centre of mass.
+    axes : tuple of 4 floats
+        Quaternion that turns frame components into body components.
+    point : tuple of 3 floats
+        From the body's origin to the reference point, body components, m.
+    arm : tuple of 3 floats
+        From the reference point to the centre of mass, frame components, m.
+    """
+
+    moves: bool
+    mass: float
+    moments: tuple[float, float, float]
+    axes: tuple[float, float, float, float]
+    point: tuple[float, float, float]
+    arm: tuple[float, float, float]
+
+    def from_body(self, vector: Sequence[float]) -> tuple[float, float, float]:
+        """Return the frame components of a vector given in body components."""
+        return turned_back(self.axes, vector)
+
+
+def turned_back(axes: tuple[float, float, float, float],
+                vector: Sequence[float]) -> tuple[float, float, float]:
+    """Return the components of a body vector along axes that the quaternion turns into the body's.
+
+    The vector stays the same to the last bit where the axes are the body's own.
+    """
+    x, y, z = map(float, vector)
+    if tuple(axes) == IDENTITY:
+        return x, y, z
+    x, y, z = map(float, rotations.rotate_back(*axes, x, y, z))
+    return x, y, z

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JSON schemas of the parts of a scene file, and the check that refuses a fault in one line."""
+
+import difflib
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import jsonschema
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene import yaml_text
+
+Schema = dict[str, Any]
+
+NUMBER: Schema = {'type': 'number'}
+POSITIVE: Schema = {'type': 'number', 'exclusiveMinimum': 0}
+VECTOR: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 3, 'maxItems': 3}
+QUATERNION: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 4, 'maxItems': 4}
+MATRIX: Schema = {'type': 'array', 'items': VECTOR, 'minItems': 3, 'maxItems': 3}
+
+
+def mapping_of(required: Iterable[str] = (), **properties: Schema) -> Schema:
+    """Return the schema of a mapping that has these keys and no others."""
+    return {'type': 'object', 'properties': properties, 'required': list(required),
+            'additionalProperties': False}
+
+
+def check(value: Any, schema: Schema, where: str) -> None:
+    """Check a part of a scene against a schema; every number must be finite.
+
+    Raises
+    ------
+    BadInput
+        For the first fault: file and key path, the value, what would be right.
+    """
+    _refuse_non_finite(value, where)
+    errors = sorted(jsonschema.Draft202012Validator(schema).iter_errors(value),
+                    key=lambda error: (len(error.absolute_path), str(error.path)))
+    if not errors:
+        return
+    error: Any = errors[0]    # its attributes are typed as perhaps unset, which here they are not
+    where = at(where, *error.absolute_path)
+    if error.validator == 'additionalProperties':
+        known = sorted(error.schema['properties'])
+        unknown = next(key for key in error.instance if key not in known)
+        near = difflib.get_close_matches(unknown, known, 1)
+        raise BadInput(where, f'unknown key {unknown!r}', f'did you mean {near[0]!r}?' if near
+                       else f'the keys are {", ".join(known)}')
+    if error.validator == 'required':
+        missing = next(key for key in error.validator_value if key not in error.instance)
+        raise BadInput(where, f'the key {missing!r} is missing',
+                       f'needed: {", ".join(error.validator_value)}')
+    raise BadInput(where, f'got {yaml_text.brief(error.instance)}', _remedy(error))
+
+
+def _remedy(error: Any) -> str:
+    """Return what would be right."""
+    limit = error.validator_value
+    match error.validator:
+        case 'type':
+            return f'the type is {limit if isinstance(limit, str) else " or ".join(limit)}'
+        case 'exclusiveMinimum':
+            return f'needs a number above {limit}'
+        case 'minimum':
+            return f'needs a number of at least {limit}'
+        case 'exclusiveMaximum':
+            return f'needs a number below {limit}'
+        case 'maximum':
+            return f'needs a number of at most {limit}'
+        case 'minItems':
+            return f'needs at least {limit} entries'
+        case 'maxItems':
+            return f'takes at most {limit} entries'
+        case 'enum':
+            return f'one of {", ".join(map(str, limit))}'
+        case 'pattern':
+            return 'a name is letters, digits and underscores, at most 64, a letter first'
+        case 'minProperties':
+            return f'needs one of {", ".join(sorted(error.schema.get("properties", {})))}'
+        case 'maxProperties':
+            return 'takes only one key'
+    return ' '.join(error.message.split())[:200]
+
+
+def at(where: str, *keys: object) -> str:
+    """Return the place of a key: `file: key.path`."""
+    path = '.'.join(map(str, keys))
+    return where if not path else f'{where}.{path}' if ': ' in where else f'{where}: {path}'
+
+
+def _refuse_non_finite(value: Any, where: str) -> None:
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            _refuse_non_finite(entry, at(where, key))
+    elif isinstance(value, list):
+        for place, entry in enumerate(value):
+            _refuse_non_finite(entry, at(where, place))
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise BadInput(where, f'got {value!r}', 'needs a finite number')
+    elif isinstance(value, int) and not isinstance(value, bool) and abs(value) > 1e300:
+        raise BadInput(where, f'got {yaml_text.brief(value)}',
+                       'needs a number that a double can hold')

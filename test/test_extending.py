@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""docs/extending.md: its files are written to a temporary package, registered as it says, and run."""
+
+import dataclasses
+import importlib
+import math
+import pathlib
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.choice.choose import methods_for
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.protocols import Method
+from rigid_body_sim.motions import MOTIONS
+from rigid_body_sim.motions.protocol import Motion
+from rigid_body_sim.numerics.rotations import angle_between, rotate
+from rigid_body_sim.scene.constraints import CONSTRAINTS
+from rigid_body_sim.scene.effects.protocol import Acting
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.testing import check_effect
+
+PAGE = pathlib.Path(__file__).resolve().parent.parent / 'docs' / 'extending.md'
+FILES = dict(re.findall(r'^```\w+\n# (more_bodies/\S+)\n(.*?)^```$', PAGE.read_text(),
+                        re.MULTILINE | re.DOTALL))
+EFFECTS = {'compass': 'more_bodies.compass:Compass', 'paddle': 'more_bodies.paddle:Paddle'}
+TOP = """scene: top
+body: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}
+constraint: pivot
+effects: [gravity: {g: 9.81}]
+initial: {euler_zyz: [0.0, 0.5, 0.0], angular_velocity: [0, 0, 60]}
+"""
+
+
+@pytest.fixture(scope='module')
+def package(tmp_path_factory):
+    """Write the files of the page, install the entry points, add the lines to the tables."""
+    folder = tmp_path_factory.mktemp('site')
+    for name, text in {'more_bodies/__init__.py': '', **FILES}.items():
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    about = folder / 'more_bodies-1.0.dist-info'
+    about.mkdir()
+    (about / 'METADATA').write_text('Metadata-Version: 2.1\nName: more_bodies\nVersion: 1.0\n')
+    lines = [f'{name} = {value}\n' for name, value in EFFECTS.items()]
+    broken = 'broken = more_bodies.absent:Effect\nconstant = math:pi\n'
+    (about / 'entry_points.txt').write_text(
+        f'[rigid_body_sim.effects]\n{"".join(lines)}{broken}')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(folder))
+        importlib.invalidate_caches()
+        joint = importlib.import_module('more_bodies.ball_joint').BallJoint
+        patch.setitem(CONSTRAINTS, 'ball_joint', joint)
+        method = importlib.import_module('more_bodies.ralston3')
+        patch.setitem(METHODS, 'ralston3', method)
+        patch.setattr('rigid_body_sim.motions.MOTIONS', ('more_bodies.slowing_sphere', *MOTIONS))
+        yield folder / 'more_bodies'
+    for name in [name for name in sys.modules if name.partition('.')[0] == 'more_bodies']:
+        del sys.modules[name]
+
+
+def of(name):
+    """Return a module of the package."""
+    return importlib.import_module(f'more_bodies.{name}')
+
+
+def test_the_page_has_every_kind_of_file():
+    assert {pathlib.PurePath(name).stem for name in FILES} == {
+        'compass', 'paddle', 'ball_joint', 'slowing_sphere', 'ralston3', 'compass_needle'}
+
+
+def test_effects_of_another_package_pass_the_check(package):
+    energy, momentum = check_effect(of('compass').Compass((0.0, 0.1, 0.3), (0.0, 0.2, 1.0)))
+    assert abs(energy) < 1e-14 and abs(momentum) < 1e-13    # measured 2e-16, 4e-15
+    energy, momentum = check_effect(of('paddle').Paddle(0.01))
+    assert abs(energy) < 1e-14 and abs(momentum) < 1e-13
+
+
+def test_the_check_finds_a_potential_of_the_wrong_sign(package):
+    compass = of('compass')
+
+    class Wrong(compass.Compass):
+        def potential(self, frame):
+            right = super().potential(frame)
+            return dataclasses.replace(right, values=tuple(-x for x in right.values[:3])
+                                       + right.values[3:])
+
+    class Unbooked(compass.Compass):
+        potential = None
+
+    class Turned(compass.Compass):
+        def acting(self, frame, time):
+            one, = super().acting(frame, time)
+            return Acting(one.kernel, one.values, 'torque', 'work'),
+
+    moment, field = (0.0, 0.1, 0.3), (0.0, 0.2, 1.0)
+    with pytest.raises(AssertionError, match='energy residual'):
+        check_effect(Wrong(moment, field))
+    with pytest.raises(AssertionError, match='the view potential is None'):
+        check_effect(Unbooked(moment, field))
+    with pytest.raises(AssertionError, match='energy residual'):
+        check_effect(Turned(moment, field))
+
+
+def test_a_compass_moves_like_a_top_under_its_weight(package):
+    """M g h along e3 in a field along -z of size 1 is the weight: the closed form is the truth."""
+    truth = Simulation(parse_scene(TOP), 'exact')
+    magnetic = TOP.replace('gravity: {g: 9.81}',
+                           f'compass: {{moment: [0, 0, {9.81 * 0.1}], field: [0, 0, -1]}}')
+    simulation = Simulation(parse_scene(magnetic), 'dop8', accuracy=1e-12, rate=10.0)
+    simulation.advance(10)
+    exact = truth.states([1.0])[0]
+    assert angle_between(*simulation.state.orientation, *exact.orientation) < 1e-11
+    assert np.abs(simulation.state.angular_velocity - exact.angular_velocity).max() < 1e-9
+    ledger, weighed = simulation.ledger(), truth.diagnose(truth.states([1.0]))[0][0]
+    assert abs(ledger['energy_residual']) < 1e-14
+    assert ledger['kinetic'] + ledger['potential'] == pytest.approx(weighed, rel=1e-13)
+
+
+def test_two_potentials_are_summed(package):
+    both = TOP.replace('9.81}]', '9.81}, compass: {moment: [0.2, 0.1, 0.4], field: [0.3, 0, 1]}]')
+    simulation = Simulation(parse_scene(both), 'dop8', accuracy=1e-12, rate=10.0)
+    simulation.advance(10)
+    ledger = simulation.ledger()
+    assert abs(ledger['energy_residual']) < 1e-14
+    assert abs(ledger['momentum_residual']) < 1e-12
+
+
+def test_a_ball_joint_is_a_pivot_of_the_shifted_body(package):
+    pivoted = parse_scene("""scene: pivoted
+body: {mass: 0.5, inertia: [0.02, 0.03, 0.015], center_of_mass: [0.01, 0.02, 0.1]}
+constraint: pivot
+effects: [gravity: {g: 9.81}]
+initial: {euler_zyz: [0.3, 1.2, 0.4], angular_velocity: [3, -2, 20]}
+""")
+    jointed = parse_scene(pivoted.text, [
+        'body.center_of_mass=[0.11, -0.18, 0.4]',
+        'constraint={ball_joint: {at: [0.1, -0.2, 0.3]}}'])
+    one, other = (Simulation(scene, 'dop8', accuracy=1e-12, rate=10.0)
+                  for scene in (pivoted, jointed))
+    for simulation in (one, other):
+        simulation.advance(5)
+        simulation.impulse(force=(0.01, 0.02, -0.01), torque=(1e-3, 0.0, 2e-3))
+        simulation.advance(5)
+    assert angle_between(*one.state.orientation, *other.state.orientation) < 1e-11
+    assert one.state.angular_velocity == pytest.approx(other.state.angular_velocity, rel=1e-10)
+    assert one.acceleration[1] == pytest.approx(other.acceleration[1], rel=1e-9)
+    force, held = (np.concatenate(one.reactions([0.3, 0.9])[:2]) for one in (one, other))
+    assert force == pytest.approx(held, abs=1e-9)
+    ledger = other.ledger()
+    assert abs(ledger['energy_residual']) < 1e-13
+    assert abs(ledger['momentum_residual']) < 1e-12
+    # the joint stays where it is: the velocity of the origin is that of a turn about it
+    state = other.state
+    turn = state.orientation
+    arm = np.array(rotate(*turn, 0.1, -0.2, 0.3))
+    assert state.position + arm == pytest.approx(np.zeros(3), abs=1e-12)
+    spin = np.array(rotate(*turn, *state.angular_velocity))
+    assert state.velocity == pytest.approx(np.cross(spin, -arm), abs=1e-9)
+
+
+SPHERE = """scene: slowing
+body: {mass: 2.0, shape: {solid_sphere: {radius: 0.1}}}
+constraint: free
+effects: [paddle: {coefficient: 0.004}]
+initial: {angular_velocity: [1.0, 2.0, -2.0], velocity: [0.1, 0.0, 0.3]}
+"""
+
+
+def test_a_sphere_under_a_paddle_slows_down_in_closed_form(package):
+    scene = parse_scene(SPHERE)
+    assert isinstance(of('slowing_sphere'), Motion)
+    assert methods_for(scene)[0] == 'exact'
+    assert 'taylor' not in methods_for(scene)    # no view `series`
+    exact, stepped = (Simulation(scene, method, accuracy=1e-12, rate=1.0)
+                      for method in ('exact', 'dop8'))
+    for simulation in (exact, stepped):
+        simulation.advance(10)
+    rate = 3.0 / (1.0 + 0.004 / 0.008 * 3.0 * 10.0)
+    assert math.hypot(*exact.state.angular_velocity) == pytest.approx(rate, rel=1e-15)
+    assert stepped.state.angular_velocity == pytest.approx(exact.state.angular_velocity, rel=1e-11)
+    assert angle_between(*exact.state.orientation, *stepped.state.orientation) < 1e-11
+    for simulation in (exact, stepped):
+        ledger = simulation.ledger()
+        assert ledger['dissipated'] > 0.0
+        assert abs(ledger['energy_residual']) < 1e-14    # measured 2e-16
+        assert abs(ledger['momentum_residual']) < 1e-13
+
+
+def test_the_method_has_its_order(package):
+    assert isinstance(of('ralston3'), Method)
+    scene = parse_scene(TOP)
+    truth = Simulation(scene, 'exact').states([0.2])[0]
+    errors = []
+    for step in (2e-3, 1e-3):
+        state = Simulation(scene, 'ralston3', step=step).states([0.2])[0]
+        errors.append(angle_between(*state.orientation, *truth.orientation))
+    slope = math.log2(errors[0] / errors[1])
+    assert of('ralston3').ORDER - 0.2 < slope < of('ralston3').ORDER + 0.5
+
+
+def test_the_scene_runs_with_all_of_them(package):
+    scene = load_scene(package / 'compass_needle.yaml')
+    simulation = Simulation(scene, accuracy=1e-11, rate=10.0)
+    simulation.advance(10)
+    ledger = simulation.ledger()
+    assert ledger['dissipated'] > 0.0
+    assert abs(ledger['energy_residual']) < 1e-11    # heat is a quadrature: as accurate as asked
+    again = Simulation(parse_scene(scene.text), 'gauss16', accuracy=1e-12, rate=10.0)
+    again.advance(10)
+    assert angle_between(*again.state.orientation, *simulation.state.orientation) < 1e-9
+
+
+def test_a_package_that_cannot_be_imported_is_refused_in_one_line(package):
+    with pytest.raises(BadInput, match='effect broken: more_bodies.absent:Effect cannot be'.replace('.', r'\.')):
+        parse_scene(SPHERE, ['effects=[broken]'])
+    with pytest.raises(BadInput, match='effect constant: math:pi is not an Effect'):
+        parse_scene(SPHERE, ['effects=[constant]'])
+    with pytest.raises(BadInput, match="did you mean 'drag'"):
+        parse_scene(SPHERE, ['effects=[drg: {}]'])
+
+
