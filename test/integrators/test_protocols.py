@@ -9,7 +9,7 @@ from rigid_body_sim.integrators import GENERAL, METHODS, protocols
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions.solver import Exact
 
-FAMILIES = {method.FAMILY for method in METHODS.values()}
+FAMILIES = sorted({method.FAMILY for method in METHODS.values()}, key=lambda family: family.__name__)
 
 
 @pytest.mark.parametrize('method', METHODS.values(), ids=METHODS)
