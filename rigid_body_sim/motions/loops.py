@@ -1,21 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
 """Template of the loops over a motion in closed form: many times from one start, many starts.
 
-solver.py binds it to a motion. A state has the same bits whether it is asked for alone, among a million, or out of order:
-either every state comes from the motion's kernel `state`, or the motion has a kernel `fill_columns` of the same operations in the same order.
+solver.py binds it to a motion. A state has the same bits whether it is asked for alone, among a
+million, or out of order: either every state comes from the motion's kernel `state`, or the motion
+has a kernel `fill_columns` of the same operations in the same order.
 """
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
+from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.scene.state import STATE, STATE_SIZE, StateView
 
 BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state')
-# bindings of `fill_columns` and `states`: for a motion that has the first, and for one that has not
+# bindings of `fill_columns` and `states`: for a motion without a `fill_columns`, and with one
 ONE_BY_ONE = {'fill_columns': 'fill_columns = None\n', 'states': 'states = one_by_one\n'}
 IN_COLUMNS = {'fill_columns': '{}:fill_columns', 'states': 'states = in_columns\n'}
 BLOCK = 128         # states that are computed side by side
 FEW = 8             # below that they are taken one by one
+
+COLUMNS = layout(StateView, BLOCK)    # one for each number of a state
+load_row, store_state = COLUMNS.load, STATE.store
 
 ANCHOR_SIZE = UNBOUND
 anchor = UNBOUND
@@ -25,7 +31,7 @@ fill_columns = UNBOUND
 
 @compiled
 def one_by_one(anchored, times, out):
-    """Fill out, shape (n, 14), with the states at n times, in any order, of a motion anchored before."""
+    """Fill out, shape (n, 14), with the states of an anchored motion at n times, in any order."""
     for k in range(len(times)):
         state(anchored, times[k], out[k])
 
@@ -41,8 +47,7 @@ def in_columns(anchored, times, out):
         count = min(BLOCK, len(times) - first)
         fill_columns(anchored, times[first:first + count], columns)
         for k in range(count):
-            for j in range(STATE_SIZE):
-                out[first + k, j] = columns[j * BLOCK + k]
+            store_state(out[first + k], load_row(columns, k))
 
 
 states = UNBOUND

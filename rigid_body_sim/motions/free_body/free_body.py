@@ -1,56 +1,86 @@
-"""Motion of a free rigid body, in closed form over any time: no torque, perhaps a uniform field; every inertia.
+# SPDX-License-Identifier: Apache-2.0
+"""Motion of a free rigid body, in closed form over any time: any inertia, perhaps a uniform field.
 
-The rotation is that of free_rotation.py, which has the equations; free_anchor.py computes what it takes. The centre of mass flies on a
-parabola; the pose is that of the body's origin, which may be elsewhere.
+The rotation is that of rotation.py, which has the equations; anchor.py computes what it takes. The
+centre of mass flies on a parabola; the pose is that of the body's origin, which may be elsewhere.
 
-Kernels besides those of every motion: `states`, the same operations as `state` on many times side by side, and `next_event`. The event is
-`flip`: the momentum along the axis of the middle moment changes its sign, in a motion that takes it to at least L/2. (That is the hysteresis:
-in one motion either every change of sign is a flip or none, so none is lost or counted twice when the motion is anchored anew on the way.)
+Kernels besides those of every motion: `fill_columns`, the same operations as `state` on many times
+side by side, and `next_event`. The event is `flip`: the momentum along the axis of the middle
+moment changes its sign, in a motion that takes it to at least L/2. (That is the hysteresis: in one
+motion either every change of sign is a flip or none, so none is lost or counted twice when the
+motion is anchored anew on the way.)
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
-from rigid_body_sim.motions.free_body import anchor as rotation_anchor
+from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.motions.free_body.anchor import (
-    ROUNDING,
-    TO_BODY,
-    TO_WORLD,
-    TUMBLES,
+    Inertia,
+    RotationAnchor,
     fill_rotation,
+    load_attitude,
     rotation_parameters,
 )
 from rigid_body_sim.motions.free_body.rotation import (
     CIRCULAR,
-    FORM,
     HYPERBOLIC,
-    PHASE,
-    RATE,
-    START,
     circular,
     hyperbolic,
+    load_circular,
+    load_course,
+    load_hyperbolic,
     steady,
     turned,
 )
-from rigid_body_sim.motions.loops import BLOCK
+from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.numerics.vectors import apply, cross, minus, plus
 from rigid_body_sim.scene.constraints import Free
 from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('flip',)
 exchanged = None
 
-# layout of the parameters behind those of the rotation: centre of mass, g
-CENTER, GRAVITY = rotation_anchor.PARAMETER_SIZE, rotation_anchor.PARAMETER_SIZE + 3
-PARAMETER_SIZE = GRAVITY + 1
-# layout of the anchor behind that of the rotation: position and velocity of the centre of mass, g, its place in the body, 1 if not the origin
-POSITION, VELOCITY, FIELD, ARM, OFFSET = (rotation_anchor.SIZE + k for k in (0, 3, 6, 7, 10))
-ANCHOR_SIZE = OFFSET + 1
 
+class Parameters(NamedTuple):
+    """Numbers of the scene."""
+
+    inertia: Inertia
+    center_of_mass: Vector    # body axes, m
+    g: float                  # m/s^2, along -z
+
+
+class Flight(NamedTuple):
+    """How the centre of mass moves, and where it is in the body."""
+
+    position: Vector     # of the centre of mass at the start, m
+    velocity: Vector     # m/s
+    g: float             # m/s^2
+    arm: Vector          # from the body's origin to the centre of mass, body axes, m
+    has_arm: float       # 1.0 if the arm is not 0
+
+
+class Anchor(NamedTuple):
+    """What one state decides."""
+
+    rotation_anchor: RotationAnchor
+    flight: Flight
+
+
+PARAMETERS, ANCHOR = layout(Parameters), layout(Anchor)
+PARAMETER_SIZE, ANCHOR_SIZE = PARAMETERS.size, ANCHOR.size
+load_center_of_mass, load_g = PARAMETERS.part('center_of_mass').load, PARAMETERS.part('g').load
+load_flight, store_flight = ANCHOR.part('flight').load, ANCHOR.part('flight').store
+load_tumbles = ANCHOR.part('rotation_anchor').part('attitude').part('tumbles').load
+load_state, store_state = STATE.load, STATE.store
+load_row, store_row = COLUMNS.load, COLUMNS.store
 
 
 def absorbs(scene):
@@ -59,128 +89,110 @@ def absorbs(scene):
 
 
 def parameters(scene):
-    """Return the numbers of the scene that the kernels take, shape (PARAMETER_SIZE,)."""
+    """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     g = sum(effect.g for effect in scene.effects if effect.name == 'gravity')
-    return np.concatenate([rotation_parameters(scene.body.about_center), scene.body.center_of_mass, [g]])
+    inertia = rotation_parameters(scene.body.about_center)
+    return np.concatenate([inertia, scene.body.center_of_mass, [g]])
 
 
 @compiled
-def anchor(p, start, out):
-    """Precompute the motion from a state (14 doubles, its time included); the angular velocity along an axis of zero moment must be 0."""
-    fill_rotation(p, start, out)
-    cx, cy, cz = p[CENTER], p[CENTER + 1], p[CENTER + 2]
-    qx, qy, qz, qw, wx, wy, wz = start[1], start[2], start[3], start[4], start[5], start[6], start[7]
-    rx, ry, rz = rotate(qx, qy, qz, qw, cx, cy, cz)
-    ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
-    out[POSITION], out[POSITION + 1], out[POSITION + 2] = start[8] + rx, start[9] + ry, start[10] + rz
-    out[VELOCITY], out[VELOCITY + 1], out[VELOCITY + 2] = start[11] + ux, start[12] + uy, start[13] + uz
-    out[FIELD], out[ARM], out[ARM + 1], out[ARM + 2] = p[GRAVITY], cx, cy, cz
-    out[OFFSET] = 1.0 if cx != 0.0 or cy != 0.0 or cz != 0.0 else 0.0
+def anchor(parameters, start, out):
+    """Fill the anchor from the state `start`.
+
+    The angular velocity along an axis of zero moment must be 0.
+    """
+    fill_rotation(parameters, start, out)
+    begin, c = load_state(start), load_center_of_mass(parameters)
+    q = begin.orientation
+    position = plus(begin.position, rotate(*q, *c))
+    velocity = plus(begin.velocity, rotate(*q, *cross(begin.angular_velocity, c)))
+    has_arm = 1.0 if c[0] != 0.0 or c[1] != 0.0 or c[2] != 0.0 else 0.0
+    store_flight(out, Flight(position, velocity, load_g(parameters), c, has_arm))
 
 
 @compiled
-def state(c, time, out):
-    """Fill out with the state (14 doubles) at a time before or after the anchor c."""
-    dt, dt_low = two_sum(time, -c[START])
-    w1, w2, w3, x, y, z, w = turned(c, dt, dt_low)
-    qx, qy, qz, qw, wx, wy, wz = _attitude_and_omega(c, w1, w2, w3, x, y, z, w)
-    rx, ry, rz, vx, vy, vz = _flight(c, dt)
-    if c[OFFSET] != 0.0:
-        rx, ry, rz, vx, vy, vz = _origin(c, qx, qy, qz, qw, wx, wy, wz, rx, ry, rz, vx, vy, vz)
-    out[0] = time
-    out[1], out[2], out[3], out[4] = qx, qy, qz, qw
-    out[5], out[6], out[7] = wx, wy, wz
-    out[8], out[9], out[10], out[11], out[12], out[13] = rx, ry, rz, vx, vy, vz
+def state(anchor, time, out):
+    """Fill out with the state at any time, before or after the anchor."""
+    flight = load_flight(anchor)
+    dt = two_sum(time, -load_course(anchor).start)
+    omega, ZS = turned(anchor, dt)
+    begun = _state_of(load_attitude(anchor), flight, time, dt, omega, ZS)
+    store_state(out, _of_origin(flight, begun) if flight.has_arm != 0.0 else begun)
 
 
 @compiled_inline
-def _attitude_and_omega(c, w1, w2, w3, x, y, z, w):
-    """Return the orientation and omega (body axes) of what :func:`turned` returns."""
-    g, m, d = TO_WORLD, TO_BODY, ROUNDING
+def _state_of(attitude, flight, time, dt, omega, ZS):
+    """Return the state of what `turned` returns; position and velocity are the centre of mass's."""
+    x, y, z, w = ZS
     scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
-    x, y, z, w = scale * x, scale * y, scale * z, scale * w
-    return (c[g] * x + c[g + 1] * y + c[g + 2] * z + c[g + 3] * w, c[g + 4] * x + c[g + 5] * y + c[g + 6] * z + c[g + 7] * w,
-            c[g + 8] * x + c[g + 9] * y + c[g + 10] * z + c[g + 11] * w, c[g + 12] * x + c[g + 13] * y + c[g + 14] * z + c[g + 15] * w,
-            c[m] * w1 + c[m + 1] * w2 + c[m + 2] * w3 + c[d], c[m + 3] * w1 + c[m + 4] * w2 + c[m + 5] * w3 + c[d + 1],
-            c[m + 6] * w1 + c[m + 7] * w2 + c[m + 8] * w3 + c[d + 2])
+    q = _apply_4(attitude.to_world, (scale * x, scale * y, scale * z, scale * w))
+    body_omega = plus(apply(attitude.to_body, omega), attitude.rounding)
+    t = dt[0]
+    fall = flight.g * t
+    vx, vy, vz = flight.velocity
+    position = plus(flight.position, (vx * t, vy * t, (vz - 0.5 * fall) * t))
+    return StateView(time, q, body_omega, position, (vx, vy, vz - fall))
 
 
 @compiled_inline
-def _flight(c, dt):
-    """Return position and velocity of the centre of mass."""
-    r, v, fall = POSITION, VELOCITY, c[FIELD] * dt
-    return (c[r] + c[v] * dt, c[r + 1] + c[v + 1] * dt, c[r + 2] + (c[v + 2] - 0.5 * fall) * dt, c[v], c[v + 1], c[v + 2] - fall)
+def _apply_4(matrix, q):
+    """Return the product of a 4 x 4 matrix, given by its rows, and a quaternion."""
+    a, b, c, d = matrix
+    return _dot_4(a, q), _dot_4(b, q), _dot_4(c, q), _dot_4(d, q)
 
 
 @compiled_inline
-def _origin(c, qx, qy, qz, qw, wx, wy, wz, rx, ry, rz, vx, vy, vz):
-    """Return position and velocity of the body's origin, from those of the centre of mass."""
-    cx, cy, cz = c[ARM], c[ARM + 1], c[ARM + 2]
-    dx, dy, dz = rotate(qx, qy, qz, qw, cx, cy, cz)
-    ux, uy, uz = rotate(qx, qy, qz, qw, wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx)
-    return rx - dx, ry - dy, rz - dz, vx - ux, vy - uy, vz - uz
+def _dot_4(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+
+
+@compiled_inline
+def _of_origin(flight, state):
+    """Return the state with position and velocity of the body's origin."""
+    q, arm = state.orientation, flight.arm
+    position = minus(state.position, rotate(*q, *arm))
+    velocity = minus(state.velocity, rotate(*q, *cross(state.angular_velocity, arm)))
+    return StateView(state.time, q, state.angular_velocity, position, velocity)
 
 
 @compiled
-def fill_columns(c, times, columns):
-    """Fill columns, BLOCK times, BLOCK times x, ..., with up to BLOCK states: the operations of `state`, arranged to become vector code."""
-    b = BLOCK
-    if c[FORM] == CIRCULAR:
+def fill_columns(anchor, times, columns):
+    """Fill columns with up to BLOCK states: the operations of `state`, arranged as vector code."""
+    course, attitude, flight = load_course(anchor), load_attitude(anchor), load_flight(anchor)
+    if course.form == CIRCULAR:
+        series = load_circular(anchor)
         for k in range(len(times)):
-            dt, dt_low = two_sum(times[k], -c[START])
-            w1, w2, w3, x, y, z, w = circular(c, dt, dt_low)
-            x, y, z, w, w1, w2, w3 = _attitude_and_omega(c, w1, w2, w3, x, y, z, w)
-            _keep(columns, k, times[k], x, y, z, w, w1, w2, w3)
-    elif c[FORM] == HYPERBOLIC:
+            dt = two_sum(times[k], -course.start)
+            omega, ZS = circular(course, series, dt)
+            store_row(columns, _state_of(attitude, flight, times[k], dt, omega, ZS), k)
+    elif course.form == HYPERBOLIC:
+        series = load_hyperbolic(anchor)
         for k in range(len(times)):
-            dt, dt_low = two_sum(times[k], -c[START])
-            w1, w2, w3, x, y, z, w = hyperbolic(c, dt, dt_low)
-            x, y, z, w, w1, w2, w3 = _attitude_and_omega(c, w1, w2, w3, x, y, z, w)
-            _keep(columns, k, times[k], x, y, z, w, w1, w2, w3)
+            dt = two_sum(times[k], -course.start)
+            omega, ZS = hyperbolic(course, series, dt)
+            store_row(columns, _state_of(attitude, flight, times[k], dt, omega, ZS), k)
     else:
         for k in range(len(times)):
-            dt, dt_low = two_sum(times[k], -c[START])
-            w1, w2, w3, x, y, z, w = steady(c, dt, dt_low)
-            x, y, z, w, w1, w2, w3 = _attitude_and_omega(c, w1, w2, w3, x, y, z, w)
-            _keep(columns, k, times[k], x, y, z, w, w1, w2, w3)
-    for k in range(len(times)):
-        dt, _ = two_sum(times[k], -c[START])
-        rx, ry, rz, vx, vy, vz = _flight(c, dt)
-        _keep_flight(columns, k, rx, ry, rz, vx, vy, vz)
-    if c[OFFSET] != 0.0:
+            dt = two_sum(times[k], -course.start)
+            omega, ZS = steady(course, dt)
+            store_row(columns, _state_of(attitude, flight, times[k], dt, omega, ZS), k)
+    if flight.has_arm != 0.0:
         for k in range(len(times)):
-            rx, ry, rz, vx, vy, vz = _origin(
-                c, columns[b + k], columns[2 * b + k], columns[3 * b + k], columns[4 * b + k], columns[5 * b + k], columns[6 * b + k],
-                columns[7 * b + k], columns[8 * b + k], columns[9 * b + k], columns[10 * b + k], columns[11 * b + k],
-                columns[12 * b + k], columns[13 * b + k])
-            _keep_flight(columns, k, rx, ry, rz, vx, vy, vz)
-
-
-@compiled_inline
-def _keep(columns, k, time, x, y, z, w, wx, wy, wz):
-    b = BLOCK
-    columns[k], columns[b + k], columns[2 * b + k], columns[3 * b + k], columns[4 * b + k] = time, x, y, z, w
-    columns[5 * b + k], columns[6 * b + k], columns[7 * b + k] = wx, wy, wz
-
-
-@compiled_inline
-def _keep_flight(columns, k, rx, ry, rz, vx, vy, vz):
-    b = BLOCK
-    columns[8 * b + k], columns[9 * b + k], columns[10 * b + k] = rx, ry, rz
-    columns[11 * b + k], columns[12 * b + k], columns[13 * b + k] = vx, vy, vz
+            store_row(columns, _of_origin(flight, load_row(columns, k)), k)
 
 
 @compiled
-def next_event(c, after):
-    """Return the time of the first flip later than `after`, infinite if there is none, and the code 0."""
-    if c[TUMBLES] == 0.0:
+def next_event(anchor, after):
+    """Return the time of the first flip later than `after`, infinite if there is none, and 0."""
+    if load_tumbles(anchor) == 0.0:
         return math.inf, 0
-    start, rate, phase = c[START], c[RATE], c[PHASE]
-    half_turns = math.floor(2.0 * (rate * (after - start) + phase)) - 1.0
+    course = load_course(anchor)
+    rate = course.rate[0]
+    half_turns = math.floor(2.0 * (rate * (after - course.start) + course.phase)) - 1.0
     if not abs(half_turns) < COUNTABLE:
         return math.inf, 0
-    time = start + (0.5 * half_turns - phase) / rate
+    time = course.start + (0.5 * half_turns - course.phase) / rate
     while time <= after:
         half_turns += 1.0
-        time = start + (0.5 * half_turns - phase) / rate
+        time = course.start + (0.5 * half_turns - course.phase) / rate
     return time, 0

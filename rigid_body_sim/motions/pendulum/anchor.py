@@ -1,87 +1,137 @@
-"""What a pendulum's motion needs to know before it is evaluated: numbers of the scene, and the anchor (symbols and equations: pendulum.py).
+# SPDX-License-Identifier: Apache-2.0
+"""What a pendulum's motion needs to know: numbers of the scene, and the anchor.
 
-Whatever decides or grows with time, Omega, phi, Delta and the rate of the phase, is formed with 32 digits from the doubles of the input.
+Symbols and equations are those of pendulum.py. Whatever decides or grows with time, Omega, phi,
+Delta and the rate of the phase, is formed with 32 digits from the doubles of the input.
 """
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
-from rigid_body_sim.motions.free_body import rotation
+from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.motions.free_body.rotation import (
-    AMPLITUDES,
     CIRCULAR,
-    FORM,
-    HALF,
     HYPERBOLIC,
     KC_HYPERBOLIC,
-    PHASE,
-    RATE,
-    START,
     STEADY,
+    Course,
+    Rotation,
     circular_series,
     fill_circular,
     fill_hyperbolic,
     hyperbolic_series,
+    load_circular,
+    load_course,
+    load_hyperbolic,
+    phase_of,
+    store_course,
 )
-from rigid_body_sim.numerics.double_double import two_sum
+from rigid_body_sim.numerics import vectors
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf, complete_k
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import (
     TURN,
     minus,
     over,
-    pair_at,
     pair_of,
     plus,
     products,
-    put,
     root_of,
     scaled,
     times,
 )
 from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
+from rigid_body_sim.numerics.vectors import cross
 from rigid_body_sim.scene import bodies
-
-# layout of the parameters: pairs n, (n x r)/d, -r_across/d, M g d/I; doubles n, through, M, g, r, tensor about `through` times n, M g/I
-AXIS, SIDE, DOWN, PULL, UNIT, THROUGH, MASS, GRAVITY, ARM, MOMENTUM, WEIGHT = 0, 6, 12, 18, 20, 23, 26, 27, 28, 31, 34
-PARAMETER_SIZE = 35
-
-# layout of the anchor behind what the theta functions take: 1 if it swings, unit of the rates, w if nothing turns it,
-# quaternions that c and s multiply, n, centre and radii (world) of the circle of the body's origin
-SWINGS, SPEED, UPRIGHT, TURNED, NORMAL, MIDDLE, COSINE, SINE = (rotation.SIZE + k for k in (0, 1, 2, 6, 10, 13, 16, 19))
-ANCHOR_SIZE = SINE + 3
+from rigid_body_sim.scene.state import STATE
 
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
+NOTHING = 0.0, 0.0
+
+Pairs = tuple[Pair, Pair, Pair]
+
+
+class Parameters(NamedTuple):
+    """Numbers of the scene; vectors in body axes."""
+
+    axis: Pairs          # n
+    side: Pairs          # (n x r)/d
+    down: Pairs          # -r_across/d
+    pull: Pair           # M g d/I, 1/s^2
+    unit: Vector         # n in doubles
+    through: Vector      # m
+    mass: float          # kg
+    g: float             # m/s^2
+    arm: Vector          # r, m
+    momentum: Vector     # the tensor about `through` times n, kg m^2
+    weight: float        # M g/I
+
+
+class Swing(NamedTuple):
+    """How s, c and w follow from what goes like cn, sn and dn."""
+
+    swings: float        # 1.0 if it swings, 0.0 if it turns over or turns steadily
+    unit: float          # of w, rad/s
+
+
+class Circle(NamedTuple):
+    """How the attitude follows from s and c, and the circle (world) of the body's origin."""
+
+    upright: Quaternion    # attitude at c = 1, s = 0
+    turned: Quaternion     # attitude at c = 0, s = 1
+    normal: Vector         # n
+    middle: Vector         # m
+    cosine: Vector         # radii of the circle, m: position = middle - cosine cos(phi) - sine sin(phi)
+    sine: Vector
+
+
+class Anchor(NamedTuple):
+    """What one state decides."""
+
+    rotation: Rotation
+    swing: Swing
+    circle: Circle
+
+
+PARAMETERS, ANCHOR = layout(Parameters), layout(Anchor)
+PARAMETER_SIZE, ANCHOR_SIZE = PARAMETERS.size, ANCHOR.size
+load_parameters, load_state = PARAMETERS.load, STATE.load
+load_swing, store_swing = ANCHOR.part('swing').load, ANCHOR.part('swing').store
+load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').store
 
 
 def parameters(scene):
-    """Return the numbers of the scene, shape (PARAMETER_SIZE,): layout above; from the exact rationals that the doubles of the scene are."""
+    """Return the numbers of the scene, :class:`Parameters` as an array.
+
+    They come from the exact rationals that the doubles of the scene are.
+    """
     body, gravity = scene.body, scene.effect('gravity')
-    p = np.zeros(PARAMETER_SIZE)
     axis, through = _exact(scene.constraint.axis), _exact(scene.constraint.through)
     r = [c - t for c, t in zip(_exact(body.center_of_mass), through, strict=True)]
     n = [component / _root(_dot(axis, axis)) for component in axis]
     side, along = _cross(n, r), _dot(n, r)
     down = [along * a - b for a, b in zip(n, r, strict=True)]
     mass, g = Fraction(body.mass), Fraction(gravity.g if gravity else 0.0)
-    momentum = [a - mass * b for a, b in zip(_tensor_times(body.about_center, n), _cross(r, _cross(r, n)), strict=True)]
+    swung = _cross(r, _cross(r, n))
+    momentum = [a - mass * b for a, b in zip(_tensor_times(body.about_center, n), swung, strict=True)]
     d, moment = _root(_dot(side, side)), _dot(n, momentum)
     size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
     if d <= bodies.ULPS * size:
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
-    for k in range(3):
-        put(p, AXIS + 2 * k, pair_of(n[k]))
-        if d:
-            put(p, SIDE + 2 * k, pair_of(side[k] / d))
-            put(p, DOWN + 2 * k, pair_of(down[k] / d))
-    put(p, PULL, pair_of(mass * g * d / moment))
-    p[UNIT:UNIT + 3], p[THROUGH:THROUGH + 3], p[MASS], p[GRAVITY] = n, scene.constraint.through, body.mass, g
-    p[ARM:ARM + 3], p[MOMENTUM:MOMENTUM + 3], p[WEIGHT] = r, momentum, mass * g / moment
-    return p
+
+    def over_d(vector):
+        return [pair_of(component / d) if d else NOTHING for component in vector]
+    numbers = np.zeros(PARAMETER_SIZE)
+    PARAMETERS.store(numbers, Parameters(
+        [pair_of(component) for component in n], over_d(side), over_d(down),
+        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r, momentum,
+        mass * g / moment))
+    return numbers
 
 
 def _exact(numbers):
@@ -111,50 +161,55 @@ def _tensor_times(inertia, n):
     columns = ((w * w + x * x - y * y - z * z, 2 * (x * y + z * w), 2 * (x * z - y * w)),
                (2 * (x * y - z * w), w * w + y * y - z * z - x * x, 2 * (y * z + x * w)),
                (2 * (x * z + y * w), 2 * (y * z - x * w), w * w + z * z - x * x - y * y))
-    along = [Fraction(moment) * _dot(column, n) / norm for moment, column in zip(inertia.moments, columns, strict=True)]
-    return [sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm for k in range(3)]
+    along = [Fraction(moment) * _dot(column, n) / norm
+             for moment, column in zip(inertia.moments, columns, strict=True)]
+    return [sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm
+            for k in range(3)]
 
 
 @compiled
-def anchor(p, start, out):
-    """Precompute the motion from a state (14 doubles, its time included); of its angular velocity the part along the axis counts."""
-    w = scaled(_along(p, AXIS, (start[5], 0.0), (start[6], 0.0), (start[7], 0.0)), 0.5)
-    cosine, sine, size = _position(p, start)
-    omega = root_of(times(pair_at(p, PULL), size))
+def anchor(parameters, start, out):
+    """Fill the anchor from a state; of its angular velocity the part along the axis counts."""
+    p, begin = load_parameters(parameters), load_state(start)
+    wx, wy, wz = begin.angular_velocity
+    w = scaled(_along(p.axis, (wx, 0.0), (wy, 0.0), (wz, 0.0)), 0.5)
+    cosine, sine, size = _position(p.down, p.side, begin.orientation)
+    omega = root_of(times(p.pull, size))
     s, c = _half_angle(cosine, sine, size)
     unit = max(abs(w[0]), omega[0])
-    unit = math.ldexp(1.0, min(max(math.frexp(unit)[1], -900), 900)) if unit > 0.0 else 1.0      # powers of two are exact
-    out[START], out[SWINGS], out[SPEED] = start[0], 0.0, unit
-    out[PHASE], out[rotation.SIDE] = 0.0, 1.0
+    # powers of two are exact
+    unit = math.ldexp(1.0, min(max(math.frexp(unit)[1], -900), 900)) if unit > 0.0 else 1.0
     w, omega = scaled(w, 1.0 / unit), scaled(omega, 1.0 / unit)
     if omega[0] == 0.0 or (w[0] == 0.0 and (s[0] == 0.0 or c[0] == 0.0)):
-        out[FORM] = STEADY
-        turns = times(w, TURN)
-        put(out, HALF, scaled(turns, unit))
-        out[AMPLITUDES] = w[0]
+        store_swing(out, Swing(0.0, unit))
+        store_course(out, Course(STEADY, begin.time, NOTHING, scaled(times(w, TURN), unit), 0.0,
+                                 (0.0, 0.0, 0.0), (w[0], 0.0, 0.0)))
     else:
-        _fill_elliptic(w, omega, s, c, unit, out)
-    _fill_attitude(p, start, out)
+        _fill_elliptic(w, omega, s, c, unit, begin.time, out)
+    _fill_circle(p, begin, out)
 
 
 @compiled
-def _along(p, place, x, y, z):
-    """Return the scalar product of a vector of pairs among the parameters with the vector (x, y, z) of pairs."""
-    total = plus(times(pair_at(p, place), x), times(pair_at(p, place + 2), y))
-    return plus(total, times(pair_at(p, place + 4), z))
+def _along(a, x, y, z):
+    """Return the scalar product of a vector of pairs with the vector (x, y, z) of pairs."""
+    return plus(plus(times(a[0], x), times(a[1], y)), times(a[2], z))
 
 
 @compiled
-def _position(p, start):
-    """Return G cos(phi), G sin(phi) and G; G is 0 for an axis that is vertical to rounding, or if there is no arm."""
-    x, y, z, w = start[1], start[2], start[3], start[4]
+def _position(down, side, orientation):
+    """Return G cos(phi), G sin(phi) and G.
+
+    G is 0 for an axis that is vertical to rounding, or if there is no arm.
+    """
+    x, y, z, w = orientation
     top, rest = products(z, z, w, w), products(x, x, y, y)
     norm = plus(top, rest)
-    gx, gy, gz = scaled(products(x, z, -w, y), 2.0), scaled(products(y, z, w, x), 2.0), minus(top, rest)
-    cosine, sine = over(_along(p, DOWN, gx, gy, gz), norm), over(_along(p, SIDE, gx, gy, gz), norm)
+    gx, gy = scaled(products(x, z, -w, y), 2.0), scaled(products(y, z, w, x), 2.0)
+    gz = minus(top, rest)
+    cosine, sine = over(_along(down, gx, gy, gz), norm), over(_along(side, gx, gy, gz), norm)
     size = root_of(plus(times(cosine, cosine), times(sine, sine)))
     if size[0] <= bodies.ULPS:
-        size = 0.0, 0.0
+        size = NOTHING
     return cosine, sine, size
 
 
@@ -162,7 +217,7 @@ def _position(p, start):
 def _half_angle(cosine, sine, size):
     """Return sin(phi/2) and cos(phi/2) >= 0, each from a sum without cancellation."""
     if size[0] == 0.0:
-        return (0.0, 0.0), (1.0, 0.0)
+        return NOTHING, (1.0, 0.0)
     twice = scaled(size, 2.0)
     if cosine[0] >= 0.0:
         c = root_of(over(plus(size, cosine), twice))
@@ -175,8 +230,8 @@ def _half_angle(cosine, sine, size):
 
 
 @compiled
-def _fill_elliptic(w, omega, s, c, unit, out):
-    """Fill series, rate and phase of the elliptic functions; rates are in the unit given."""
+def _fill_elliptic(w, omega, s, c, unit, start, out):
+    """Fill series, rate and phase of the elliptic functions; w and Omega are in the unit given."""
     side = -1.0 if w[0] < 0.0 else 1.0          # mirrored where needed so that w >= 0
     w, s = scaled(w, side), scaled(s, side)
     rise, fall = times(omega, c), times(omega, s)
@@ -186,108 +241,101 @@ def _fill_elliptic(w, omega, s, c, unit, out):
     ratio = smaller / larger
     top = larger * math.sqrt(1.0 + ratio * ratio)              # w where it is greatest
     if swings:
-        out[SWINGS] = 1.0
         x, k = omega, min(top / omega[0], 1.0)
         cn, sn, dn = w[0] / top, fall[0] / top, c[0]
-        A1, A2, A3 = side * top, side * k, 1.0
+        A = side * top, side * k, 1.0
     else:
         less = scaled(less, -1.0)
         x = root_of(plus(times(w, w), times(fall, fall)))
         k = min(omega[0] / x[0], 1.0)
         cn, sn, dn = c[0], s[0], w[0] / x[0]
-        A1, A2, A3 = 1.0, side, side * x[0]
+        A = 1.0, side, side * x[0]
     y = times(root_of(less), root_of(more))
     kc = y[0] / x[0]
     f = scaled(x, 0.5 / NEVER)
     if kc > 0.0:
-        mean, mean_low = agm_pair(x[0], x[1], y[0], y[1])
-        f = times((mean, mean_low), TURN)
-    put(out, RATE, scaled(f, unit))
+        f = times(agm_pair(*x, *y), TURN)
     if cn < kc * abs(sn):
         # nearer to the quarter period: K - u has sn = cn/dn, cn = k' sn/dn, dn = k'/dn
-        out[PHASE] = math.copysign(0.25 - f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn), sn)
+        left = f[0] / x[0] * _argument(cn / dn, kc * abs(sn) / dn, kc / dn)
+        phase = math.copysign(0.25 - left, sn)
     else:
-        out[PHASE] = f[0] / x[0] * _argument(sn, cn, dn)
+        phase = f[0] / x[0] * _argument(sn, cn, dn)
     if kc >= KC_HYPERBOLIC:
-        out[FORM] = CIRCULAR
-        fill_circular(out, A1, A2, A3, k * k, kc, 0.25 * x[0] / f[0], 0.0)
+        form = CIRCULAR
+        amplitudes, _ = fill_circular(out, A, 1.0, k * k, kc, 0.25 * x[0] / f[0], 0.0)
     else:
-        out[FORM] = HYPERBOLIC
+        form = HYPERBOLIC
         period = 0.25 * math.pi * x[0] / (f[0] * complete_k(k)) if kc > 0.0 else NEVER
-        fill_hyperbolic(out, A1, A2, A3, k, kc, period, 0.0)
+        amplitudes, _, _ = fill_hyperbolic(out, A, 1.0, k, kc, period, 0.0)
+    store_swing(out, Swing(1.0 if swings else 0.0, unit))
+    store_course(out, Course(form, start, scaled(f, unit), NOTHING, phase, (0.0, 0.0, 0.0),
+                             amplitudes))
 
 
 @compiled
 def _argument(sn, cn, dn):
-    """Return u = sn R_F(cn^2, dn^2, 1) (DLMF 19.25.5) for cn, dn >= 0, its first duplication written out for the sake of 1e-300."""
+    """Return u = sn R_F(cn^2, dn^2, 1) (DLMF 19.25.5) for cn, dn >= 0.
+
+    The first duplication of R_F is written out for the sake of 1e-300.
+    """
     step = cn * dn + cn + dn
     return sn * carlson_rf(0.25 * (cn * cn + step), 0.25 * (dn * dn + step), 0.25 * (1.0 + step))
 
 
-@compiled
-def _fill_attitude(p, start, out):
-    """Fill what takes s and c to the attitude and to the circle of the body's origin, so that the start itself comes out."""
-    nx, ny, nz = p[UNIT], p[UNIT + 1], p[UNIT + 2]
-    s, c, _ = functions(out, 0.0, 0.0)
-    x, y, z, w = normalised(start[1], start[2], start[3], start[4])
-    x, y, z, w = normalised(*multiply(x, y, z, w, -s * nx, -s * ny, -s * nz, c))
-    out[UPRIGHT], out[UPRIGHT + 1], out[UPRIGHT + 2], out[UPRIGHT + 3] = x, y, z, w
-    out[TURNED], out[TURNED + 1], out[TURNED + 2], out[TURNED + 3] = multiply(x, y, z, w, nx, ny, nz, 0.0)
-    out[NORMAL], out[NORMAL + 1], out[NORMAL + 2] = nx, ny, nz
+@compiled_inline
+def _fill_circle(p, begin, out):
+    """Fill what takes s and c to the pose, so that the start itself comes out."""
+    n = p.unit
+    nx, ny, nz = n
+    s, c, _ = functions(out, NOTHING)
+    q = normalised(*begin.orientation)
+    upright = normalised(*multiply(*q, -s * nx, -s * ny, -s * nz, c))
     # the body's origin from the hinge is -through; of that the part across the axis goes round
-    hx, hy, hz = p[THROUGH], p[THROUGH + 1], p[THROUGH + 2]
-    mx, my, mz = ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx
-    ax, ay, az = rotate(x, y, z, w, my * nz - mz * ny, mz * nx - mx * nz, mx * ny - my * nx)
-    bx, by, bz = rotate(x, y, z, w, mx, my, mz)
+    across = cross(n, p.through)
+    a, b = rotate(*upright, *cross(across, n)), rotate(*upright, *across)
     cosine, sine = (c - s) * (c + s), 2.0 * s * c
-    out[COSINE], out[COSINE + 1], out[COSINE + 2] = ax, ay, az
-    out[SINE], out[SINE + 1], out[SINE + 2] = bx, by, bz
-    out[MIDDLE] = start[8] + (cosine * ax + sine * bx)
-    out[MIDDLE + 1] = start[9] + (cosine * ay + sine * by)
-    out[MIDDLE + 2] = start[10] + (cosine * az + sine * bz)
+    way = vectors.plus(vectors.scaled(cosine, a), vectors.scaled(sine, b))
+    store_circle(out, Circle(upright, multiply(*upright, *n, 0.0), n,
+                             vectors.plus(begin.position, way), a, b))
 
 
 @compiled_inline
-def steady(c, dt, dt_low):
+def steady(course, swing, dt):
     """Return s, c and w (rad/s) at a time, a pair, after the start: uniform rotation."""
-    sine, cosine = sin_cos(*phase(c[HALF], c[HALF + 1], dt, dt_low))
-    return sine, cosine, c[SPEED] * c[AMPLITUDES]
+    sine, cosine = sin_cos(*phase(*course.half_rate, *dt))
+    return sine, cosine, swing.unit * course.amplitudes[0]
 
 
 @compiled_inline
-def circular(c, dt, dt_low):
+def circular(course, series, swing, dt):
     """Return what :func:`steady` returns: by the nome."""
-    w1, w2, w3, _, _ = circular_series(c, *_argument_at(c, dt, dt_low))
-    return _sorted(c, w1, w2, w3)
+    omega, _, _ = circular_series(course.amplitudes, series, phase_of(course, dt))
+    return _sorted(swing, omega)
 
 
 @compiled_inline
-def hyperbolic(c, dt, dt_low):
+def hyperbolic(course, series, swing, dt):
     """Return what :func:`steady` returns: by the complementary nome."""
-    w1, w2, w3, _, _, _ = hyperbolic_series(c, *_argument_at(c, dt, dt_low))
-    return _sorted(c, w1, w2, w3)
+    omega, _, _, _ = hyperbolic_series(course.amplitudes, series, phase_of(course, dt))
+    return _sorted(swing, omega)
 
 
 @compiled_inline
-def _argument_at(c, dt, dt_low):
-    """Return the phase of the elliptic functions as a pair."""
-    v, v_low = phase(c[RATE], c[RATE + 1], dt, dt_low)
-    v, low = two_sum(v, c[PHASE])
-    return v, v_low + low
-
-
-@compiled_inline
-def _sorted(c, w1, w2, w3):
+def _sorted(swing, omega):
     """Return s, c and w from what goes like cn, sn and dn."""
-    swings = c[SWINGS] != 0.0
-    return w2, w3 if swings else w1, c[SPEED] * (w1 if swings else w3)
+    like_cn, like_sn, like_dn = omega
+    swings = swing.swings != 0.0
+    c, w = (like_dn, like_cn) if swings else (like_cn, like_dn)
+    return like_sn, c, swing.unit * w
 
 
 @compiled
-def functions(c, dt, dt_low):
+def functions(anchor, dt):
     """Return what :func:`steady` returns, by the form that the motion has."""
-    if c[FORM] == CIRCULAR:
-        return circular(c, dt, dt_low)
-    if c[FORM] == HYPERBOLIC:
-        return hyperbolic(c, dt, dt_low)
-    return steady(c, dt, dt_low)
+    course, swing = load_course(anchor), load_swing(anchor)
+    if course.form == CIRCULAR:
+        return circular(course, load_circular(anchor), swing, dt)
+    if course.form == HYPERBOLIC:
+        return hyperbolic(course, load_hyperbolic(anchor), swing, dt)
+    return steady(course, swing, dt)
