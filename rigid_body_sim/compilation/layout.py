@@ -19,9 +19,9 @@ The places in the array follow from the order of the fields:
         store_throw(out, Throw(throw.time + duration, (vx, vy, vz - G * duration)))
 
 Kernels find functions by global names, so a module names those that it uses, as above. They are
-inlined: what a kernel loads but does not use costs no instruction, and without numba they are plain
-Python. numba keeps compiled callers on disk as if the subscripts stood in them, because every view
-is importable and the sources of kernels, this one included, are the key of the cache.
+inlined: what a kernel loads but does not use costs no instruction, and without numba they are
+plain Python. numba keeps compiled callers on disk as if the subscripts stood in them: every view
+is importable, and the sources of kernels, this one included, are the key of the cache.
 """
 
 import functools
@@ -31,7 +31,7 @@ import typing
 
 from rigid_body_sim.compilation.jit import inlined
 
-Pair = tuple[float, float]                          # a double-double number, or a vector in a plane
+Pair = tuple[float, float]                          # a double-double number, or a plane vector
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]      # x, y, z, w
 Matrix = tuple[Vector, Vector, Vector]              # rows

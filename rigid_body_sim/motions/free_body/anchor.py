@@ -209,8 +209,8 @@ def _normal(w):
 def _discriminant(parameters, small, large):
     """Return k'^2 p^2 / lift^2 as a pair, and lift.
 
-    It is positive if the largest moment's axis is polar. small and large are the components of omega along the axes of these moments; lift keeps tiny
-    numbers from underflow.
+    It is positive if the largest moment's axis is polar. small and large are the components of
+    omega along the axes of these moments; lift keeps tiny numbers from underflow.
     """
     lift, size = 1.0, max(abs(small), abs(large))
     if size < 1e-70 and size > 0.0:

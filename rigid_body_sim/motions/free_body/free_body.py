@@ -122,7 +122,7 @@ def state(anchor, time, out):
 
 @compiled_inline
 def _state_of(attitude, flight, time, dt, omega, ZS):
-    """Return the state of what `turned` returns; position and velocity are the centre of mass's."""
+    """Return the state of what `turned` returns, its position that of the centre of mass."""
     x, y, z, w = ZS
     scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
     q = _apply_4(attitude.to_world, (scale * x, scale * y, scale * z, scale * w))

@@ -17,9 +17,8 @@ the argument of one theta function of nome q^2, where q = exp(-pi K'/K):
     s = -1 if I3 is the largest moment, else 1.
 
 The real part of that theta function is positive: the sign of the quaternion is continuous by
-itself, and no angle is ever formed. Nothing divides by the smallest moment, so needles and rods are
-bodies
-like others. For k' < 0.17 the same functions are written in the complementary nome
+itself, and no angle is ever formed. Nothing divides by the smallest moment, so needles and rods
+are bodies like others. For k' < 0.17 the same functions are written in the complementary nome
 q' = exp(-pi K/K') (Jacobi's imaginary transformation), with hyperbolic functions of y = v K/K';
 the separatrix k' = 0 is then nothing special. At most five terms give round-off in either form.
 

@@ -86,7 +86,7 @@ class Circle(NamedTuple):
     turned: Quaternion     # attitude at c = 0, s = 1
     normal: Vector         # n
     middle: Vector         # m
-    cosine: Vector         # radii of the circle, m: position = middle - cosine cos(phi) - sine sin(phi)
+    cosine: Vector         # m: position = middle - cosine cos(phi) - sine sin(phi)
     sine: Vector
 
 
@@ -118,7 +118,8 @@ def parameters(scene):
     down = [along * a - b for a, b in zip(n, r, strict=True)]
     mass, g = Fraction(body.mass), Fraction(gravity.g if gravity else 0.0)
     swung = _cross(r, _cross(r, n))
-    momentum = [a - mass * b for a, b in zip(_tensor_times(body.about_center, n), swung, strict=True)]
+    spun = _tensor_times(body.about_center, n)
+    momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
     d, moment = _root(_dot(side, side)), _dot(n, momentum)
     size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
     if d <= bodies.ULPS * size:

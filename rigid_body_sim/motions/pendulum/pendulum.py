@@ -14,12 +14,14 @@ With s = sin(phi/2), c = cos(phi/2) and w = phi'/2, both h^2 = w^2 + Omega^2 s^2
 Delta = Omega^2 c^2 - w^2 = (Omega c - w)(Omega c + w) stay. Delta decides, and gives the
 complementary modulus without cancellation:
 
-    swings, Delta >= 0:  w = Omega k cn u,  s = k sn u,  c = dn u,    u' = Omega,  k' = sqrt(Delta)/Omega
-    turns over, < 0:     c = cn u,          s = sn u,    w = h dn u,  u' = h,      k' = sqrt(-Delta)/h
+    swings, Delta >= 0:   w = Omega k cn u,   s = k sn u,   c = dn u,
+                          u' = Omega,         k' = sqrt(Delta)/Omega
+    turns over, < 0:      c = cn u,           s = sn u,     w = h dn u,
+                          u' = h,             k' = sqrt(-Delta)/h
 
-The quaternion of the rotation by phi about n is (n s, c): no angle is ever formed, and its sign is
-continuous. sn, cn and dn are the theta functions of free_body/rotation.py (w, s and c move like the
-omega of a free body), separatrix included; the phase u/(4 K) is in turns, its rate a pair of
+The quaternion of the rotation by phi about n is (n s, c): no angle is ever formed, and its sign
+is continuous. sn, cn and dn are the theta functions of free_body/rotation.py (w, s and c move like
+the omega of a free body), separatrix included; the phase u/(4 K) is in turns, its rate a pair of
 doubles. Omega = 0 (vertical axis, centre of mass on the axis, no gravity) and equilibria are
 uniform rotations.
 
@@ -84,7 +86,8 @@ def state(anchor, time, out):
 def _state_of(circle, time, s, c, w):
     """Return the state for s, c and w."""
     a, b = circle.upright, circle.turned
-    qx, qy, qz, qw = c * a[0] + s * b[0], c * a[1] + s * b[1], c * a[2] + s * b[2], c * a[3] + s * b[3]
+    qx, qy = c * a[0] + s * b[0], c * a[1] + s * b[1]
+    qz, qw = c * a[2] + s * b[2], c * a[3] + s * b[3]
     scale = 1.0 / math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
     rate = 2.0 * w
     cosine, sine = (c - s) * (c + s), 2.0 * s * c
@@ -116,7 +119,7 @@ def fill_columns(anchor, times, columns):
 
 @compiled
 def next_event(anchor, after):
-    """Return the time of the first turning point later than `after`, infinite if none is, and 0."""
+    """Return the time of the first turning point after `after`, infinite if none is, and 0."""
     course = load_course(anchor)
     if load_swing(anchor).swings == 0.0:
         return math.inf, 0
