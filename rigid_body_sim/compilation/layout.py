@@ -37,15 +37,21 @@ Quaternion = tuple[float, float, float, float]      # x, y, z, w
 Matrix = tuple[Vector, Vector, Vector]              # rows
 
 
-def layout(view):
+def layout(view, stride=1):
     """Return the layout of an array that begins with the fields of a view (a NamedTuple class).
+
+    Parameters
+    ----------
+    stride : int
+        Distance of two neighbouring numbers of a view. An array of columns, one a number, holds
+        up to `stride` views side by side, which ``load`` and ``store`` tell apart by `at`.
 
     Raises
     ------
     TypeError
         If a field is neither a float nor made of floats.
     """
-    return Layout(view, view, 0, view.__name__)
+    return Layout(view, view, 0, view.__name__, stride)
 
 
 class Layout:
@@ -61,32 +67,33 @@ class Layout:
         The place of the first float, the number of floats, and all their places.
     """
 
-    def __init__(self, view, kind, first, name):
-        self._view, self._kind, self._name = view, kind, name
+    def __init__(self, view, kind, first, name, stride):
+        self._view, self._kind, self._name, self._stride = view, kind, name, stride
         self.first, self.size = first, sum(1 for _ in _leaves(kind, name))
-        self.places = slice(first, first + self.size)
+        self.places = slice(first, first + self.size * stride, stride)
 
     def part(self, field):
         """Return the layout of a field of a view, or of a row of a matrix (an index)."""
         before = self.first
         for name, kind in _parts(self._kind, self._name):
             if name == field:
-                return Layout(self._view, kind, before, f'{self._name}.{field}')
-            before += sum(1 for _ in _leaves(kind, self._name))
+                return Layout(self._view, kind, before, f'{self._name}.{field}', self._stride)
+            before += self._stride * sum(1 for _ in _leaves(kind, self._name))
         raise KeyError(f'{self._name} has no field {field!r}')
 
     @functools.cached_property
     def load(self):
         """Read the value (see the class)."""
-        views, places = {}, itertools.count(self.first)
+        views, places = {}, itertools.count(self.first, self._stride)
         value = _written(self._kind, self._name, places, views)
         return self._function('load', '(array, at=0)', [f'return {value}'], views)
 
     @functools.cached_property
     def store(self):
         """Write the value (see the class)."""
-        leaves = enumerate(_leaves(self._kind, self._name), self.first)
-        lines = [f'array[at + {place}] = value{path}' for place, path in leaves]
+        places = itertools.count(self.first, self._stride)
+        lines = [f'array[at + {next(places)}] = value{path}'
+                 for path in _leaves(self._kind, self._name)]
         return self._function('store', '(array, value, at=0)', lines, {})
 
     def _function(self, does, signature, lines, names):

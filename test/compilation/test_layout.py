@@ -75,7 +75,7 @@ def test_every_number_has_a_place_in_the_order_of_the_fields():
 
 def test_a_part_is_loaded_and_stored_alone():
     array = np.arange(19.0)
-    assert BALL.part('rolling').places == slice(13, 18)
+    assert BALL.part('rolling').places == slice(13, 18, 1)
     assert axis(array) == load_axis(array) == (15.0, 16.0, 17.0)
     assert BALL.part('tensor').part(1).load(array) == (7.0, 8.0, 9.0)
     BALL.part('time').store(array, -1.0)
@@ -88,6 +88,16 @@ def test_many_values_stand_one_after_another():
     out = np.zeros(19)
     copied(np.arange(40.0), out, 20)
     np.testing.assert_array_equal(out, np.arange(20.0, 39.0))
+
+
+def test_many_values_stand_side_by_side_in_columns():
+    columns, rows = np.zeros(19 * 4), np.random.default_rng(2).normal(size=(4, 19))
+    table = layout(Ball, stride=4)
+    for k, row in enumerate(rows):
+        table.store(columns, load_ball(row), k)
+    np.testing.assert_array_equal(columns.reshape(19, 4), rows.T)
+    assert table.load(columns, 3) == load_ball(rows[3])
+    np.testing.assert_array_equal(columns[table.part('tensor').places], rows[0, 4:13])
 
 
 def test_kernels_compute_the_same_bits_by_name_as_by_hand():
