@@ -107,10 +107,14 @@ PARAMETER_SIZE, SLIDE, ATTITUDES = PARAMETERS.size, ANCHOR.part('slide').first, 
 QUATERNION = layout(Checkpoint).part('orientation')
 ANCHOR_SIZE = ATTITUDES + QUATERNION.size * CHECKPOINTS
 load_parameters, load_state, store_state = PARAMETERS.load, STATE.load, STATE.store
-load_anchor, store_start = ANCHOR.load, ANCHOR.part('start').store
-store_ball, store_slide = ANCHOR.part('ball').store, ANCHOR.part('slide').store
-store_duration = ANCHOR.part('duration').store
-store_rolling, store_track = ANCHOR.part('rolling').store, ANCHOR.part('track').store
+load_anchor = ANCHOR.load
+load_start, store_start = ANCHOR.part('start').load, ANCHOR.part('start').store
+load_ball, store_ball = ANCHOR.part('ball').load, ANCHOR.part('ball').store
+load_slide, store_slide = ANCHOR.part('slide').load, ANCHOR.part('slide').store
+load_duration, store_duration = ANCHOR.part('duration').load, ANCHOR.part('duration').store
+load_rolling, store_rolling = ANCHOR.part('rolling').load, ANCHOR.part('rolling').store
+load_rate = ANCHOR.part('rolling').part('rate').load
+load_track, store_track = ANCHOR.part('track').load, ANCHOR.part('track').store
 load_quaternion, store_quaternion = QUATERNION.load, QUATERNION.store
 
 
@@ -231,25 +235,25 @@ def _sliding_attitude(anchor, n, time):
 @compiled
 def state(anchor, time, out):
     """Fill out with the state at any time, before or after the anchor."""
-    held = load_anchor(anchor)
-    begin, slide, rolling = held.start, held.slide, held.rolling
-    elapsed = time - begin.time
-    wz = begin.angular_velocity[2]
-    px, py, pz = begin.position
-    if _rolls(slide.u, held.duration, elapsed):
-        rolled = elapsed - held.duration
+    duration, elapsed = load_duration(anchor), time - load_start(anchor).time
+    if _rolls(load_slide(anchor).u, duration, elapsed):
+        rolled = elapsed - duration
+        half = 0.5 * load_rate(anchor) * rolled
+        sine, cosine = sin(half), cos(half)
+        # only now: what is loaded before these calls would wait for their end on the stack
+        rolling = load_rolling(anchor)
         vx, vy = rolling.velocity
         x, y = rolling.position[0] + rolled * vx, rolling.position[1] + rolled * vy
-        wx, wy = -vy / held.ball.a, vx / held.ball.a
-        half = 0.5 * rolling.rate * rolled
-        sine = sin(half)
+        wx, wy = -vy / load_ball(anchor).a, vx / load_ball(anchor).a
         nx, ny, nz = rolling.axis
-        q = multiply(sine * nx, sine * ny, sine * nz, cos(half), *rolling.orientation)
+        q = multiply(sine * nx, sine * ny, sine * nz, cosine, *rolling.orientation)
         # an ulp in the norm of (axis sin, cos) would be the same at every tick, and the spin would
         # drift where each tick is an anchor
         q = normalised(*q)
     else:
+        begin, slide, track = load_start(anchor), load_slide(anchor), load_track(anchor)
         ex, ey = slide.e
+        px, py, _ = begin.position
         lost, gained = slide.deceleration * elapsed, slide.ramp * elapsed
         v0x, v0y, _ = begin.velocity
         vx, vy = v0x - lost * ex, v0y - lost * ey
@@ -257,9 +261,11 @@ def state(anchor, time, out):
         wx = begin.angular_velocity[0] - gained * ey
         wy = begin.angular_velocity[1] + gained * ex
         n = 0
-        if held.track.count > 1.0 and elapsed > 0.0:
-            n = min(int(elapsed / held.track.interval), int(held.track.count) - 1)
-        q = _sliding_attitude(anchor, n, elapsed - n * held.track.interval)
+        if track.count > 1.0 and elapsed > 0.0:
+            n = min(int(elapsed / track.interval), int(track.count) - 1)
+        q = _sliding_attitude(anchor, n, elapsed - n * track.interval)
+    begin = load_start(anchor)
+    wz, pz = begin.angular_velocity[2], begin.position[2]
     store_state(out, StateView(time, q, rotate_back(*q, wx, wy, wz), (x, y, pz), (vx, vy, 0.0)))
 
 
