@@ -69,11 +69,17 @@ class Layout:
 
     def __init__(self, view, kind, first, name, stride):
         self._view, self._kind, self._name, self._stride = view, kind, name, stride
+        self._made = {}    # parts that were asked for: their functions are written once
         self.first, self.size = first, sum(1 for _ in _leaves(kind, name))
         self.places = slice(first, first + self.size * stride, stride)
 
     def part(self, field):
         """Return the layout of a field of a view, or of a row of a matrix (an index)."""
+        if field not in self._made:
+            self._made[field] = self._part(field)
+        return self._made[field]
+
+    def _part(self, field):
         before = self.first
         for name, kind in _parts(self._kind, self._name):
             if name == field:

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics import energy, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
@@ -75,13 +76,13 @@ class Mechanics:
     def __init__(self, scene):
         self.scene = scene
         self.packed = parameters.parameters(scene)
-        self._dynamics = Dynamics(scene)
+        self._dynamics, self._energies = Dynamics(scene), energies(scene)
 
     def arrows(self, vector, wrench):
         """Return the Arrows of a state (14,) under a held Wrench."""
         body, constraint = self.scene.body, self.scene.constraint
         diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
-        energy.diagnose(self.packed, vector, diagnosis)
+        self._energies.diagnose(self.packed, vector, diagnosis)
         balance = self._dynamics.balance(vector, wrench)
         turn = Rotation.from_quat(vector[ORIENTATION])
         omega, growth = vector[ANGULAR_VELOCITY], np.asarray(balance.angular_acceleration)
