@@ -109,5 +109,5 @@ def anchored_anew(simulation, vector, first, last):
                 shaken.append(angle_between(*end(other), *again))
     fastest = max(float(np.linalg.norm(state[ANGULAR_VELOCITY])) for state in (vector, middle, whole))
     bound = max(shaken) + 4.0 * EPSILON * fastest * last
-    # where ulps move the end by radians they decide its flips, and any attitude may come out
-    return angle_between(*again, *whole[ORIENTATION]), bound if bound < 1.0 else np.pi
+    # ulps that grow to a tenth of a radian no longer grow linearly: any attitude may come out
+    return angle_between(*again, *whole[ORIENTATION]), bound if bound < 0.1 else np.pi
