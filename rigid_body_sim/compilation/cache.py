@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where numba keeps the compiled code of a kernel: one place for all copies of the same sources."""
+"""The place where numba keeps compiled kernels: one for all copies of the same sources."""
 
 import pathlib
 
@@ -10,10 +10,10 @@ from rigid_body_sim.compilation.environment import PACKAGE, cache_folder
 
 
 class Place(UserProvidedCacheLocator):
-    """A folder below ``numba.config.CACHE_DIR``, named by the place of the source file in the package.
+    """A folder below ``numba.config.CACHE_DIR``, named by the file's path inside the package.
 
-    numba's own locator names it by the whole path, so that an installed copy would compile anew what
-    the sources beside it have compiled.
+    numba's own locator names the folder by the absolute path, so an installed copy would compile
+    again what the sources beside it have compiled.
     """
 
     @classmethod
@@ -26,10 +26,10 @@ class Place(UserProvidedCacheLocator):
 
 
 class DeferredCache:
-    """The cache of one kernel, in the place of numba's own, which is made when the kernel is compiled.
+    """The cache of one kernel, which makes numba's own cache only when the kernel is compiled.
 
-    numba makes the folder when a function is decorated: importing the package would hash its
-    sources and write to the disk of somebody who calls no kernel.
+    numba makes the cache folder when a function is decorated: importing the package would hash
+    its sources and write to the disk even if no kernel is ever called.
     """
 
     def __init__(self, function):
@@ -50,7 +50,7 @@ class DeferredCache:
         self._cache.save_overload(signature, data)
 
     def flush(self):
-        """Forget what is kept."""
+        """Remove the compiled code."""
         self._cache.flush()
 
     @property
@@ -64,8 +64,10 @@ def _cache_of(function):
     if folder is None:
         return NullCache()
     settings = {'CACHE_DIR': str(folder), 'CACHE_LOCATOR_CLASSES': f'{__name__}.{Place.__name__}'}
-    # a numba that does not know a setting goes on without it: then each copy of the package compiles
-    before = {name: getattr(numba.config, name) for name in settings if hasattr(numba.config, name)}
+    # a numba that does not know a setting works without it: each copy of the package then
+    # compiles for itself
+    before = {name: getattr(numba.config, name)
+              for name in settings if hasattr(numba.config, name)}
     for name in before:
         setattr(numba.config, name, settings[name])
     try:

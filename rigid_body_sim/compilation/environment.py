@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What kernels are compiled from and for: sources, numba, processor; and the folder of compiled code.
+"""The key and the folder of the cache of compiled kernels.
 
 numba looks at the time stamp of one file only, so a cached caller would go on with the old body of
 a callee in another file. Here the cache folder is named by a hash of the sources that kernels come
-from (KERNEL_SOURCES), of numba's version and of the processor: after an edit to one of them it is
+from (KERNEL_SOURCES), of numba's version and of the processor. An edit to one of the sources gives
 another folder, and copies of the same sources share one. An edit elsewhere recompiles nothing.
 
-Nothing is hashed, created or removed before a kernel is wanted.
+Nothing is hashed, created or removed before a kernel is called.
 """
 
 import functools
@@ -27,7 +27,8 @@ except ImportError:
 HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 KERNEL_SOURCES = ('compilation', 'numerics', 'scene', 'mechanics', 'motions', 'integrators',
-                  'simulation/admission.py', 'messages/tick_messages.py', 'study/hard_cases/trends.py')
+                  'simulation/admission.py', 'messages/tick_messages.py',
+                  'study/hard_cases/trends.py')
 KEEP_UNUSED = 30 * 86400.0    # s
 
 
@@ -35,10 +36,11 @@ def processor():
     """Return the name and the feature flags of the processor that kernels are compiled for."""
     if HAVE_NUMBA:
         from llvmlite import binding
-        # numba compiles for another processor where its settings say so
+        # numba compiles for another processor if its settings say so
         name = numba.config.CPU_NAME or binding.get_host_cpu_name()
         features = numba.config.CPU_FEATURES
-        return f'{name} {binding.get_host_cpu_features().flatten() if features is None else features}'
+        return (f'{name} '
+                f'{binding.get_host_cpu_features().flatten() if features is None else features}')
     return platform.processor() or platform.machine()
 
 
@@ -50,7 +52,7 @@ def kernel_sources():
 
 @functools.cache
 def sources_key():
-    """Return a hash of all that compiled code depends on: sources, processor, versions."""
+    """Return a hash of everything compiled code depends on: sources, processor, versions."""
     digest = hashlib.sha256()
     for path in kernel_sources():
         digest.update(path.relative_to(PACKAGE).as_posix().encode())
@@ -64,7 +66,7 @@ def sources_key():
 def cache_folder():
     """Return a writable folder for compiled code, or None.
 
-    It is in the user's cache folder, or below the temporary folder where that cannot be written.
+    It is in the user's cache folder, or below the temporary folder if that cannot be written.
     """
     if not HAVE_NUMBA:
         return None
@@ -84,7 +86,7 @@ def cache_folder():
 
 
 def _remove_unused(base):
-    """Remove the caches of sources that no process has used for a month."""
+    """Remove the caches that no process has used for a month."""
     for folder in base.iterdir():
         if time.time() - folder.stat().st_mtime > KEEP_UNUSED:
             shutil.rmtree(folder, ignore_errors=True)

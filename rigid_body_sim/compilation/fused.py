@@ -1,4 +1,5 @@
-"""The fused multiply-add: a b + c with one rounding, whatever machine and compiler.
+# SPDX-License-Identifier: Apache-2.0
+"""The fused multiply-add: a b + c with one rounding, on every machine and with every compiler.
 
 Compiled code uses the instruction of the processor (``llvm.fma``; where there is none, LLVM calls
 the C library's function). Plain Python has ``math.fma`` from version 3.13 on; before, or where
@@ -22,7 +23,7 @@ FEW = 32                                      # fewer numbers are faster one by 
 
 
 def exact_fma(a, b, c):
-    """Return a b + c, rounded once, for any doubles: by integers, in some microseconds."""
+    """Return a b + c, rounded once, for any doubles: by integers, in a few microseconds."""
     if not (math.isfinite(a) and math.isfinite(b) and a != 0.0 and b != 0.0):
         return a * b + c
     if not math.isfinite(c):
@@ -37,7 +38,7 @@ def exact_fma(a, b, c):
 
 
 def emulated_fma(a, b, c):
-    """Return a b + c, rounded once, from sums and products of doubles wherever they settle it.
+    """Return a b + c, rounded once, from sums and products of doubles where these suffice.
 
     Exactly, a b = p + e, p + c = s + f and e + f = g + h, so a b + c = s + g + h. For h = 0 the
     sum s + g rounds once. Otherwise let s + g = r + q, r rounded: h is less than an ulp of g,
@@ -67,14 +68,14 @@ def emulated_fma(a, b, c):
 
 
 def guarded_fma(a, b, c):
-    """Return a b + c, rounded once: ``math.fma``, without its exceptions."""
+    """Return a b + c, rounded once: ``math.fma`` without its exceptions."""
     try:
         return math.fma(a, b, c)
     except (OverflowError, ValueError):
         return exact_fma(a, b, c)
 
 
-# what plain Python uses, also where kernels are compiled
+# the function that plain Python uses, also where kernels are compiled
 python_fma = guarded_fma if hasattr(math, 'fma') else emulated_fma
 
 
@@ -87,7 +88,7 @@ def fma_array(a, b, c):
 
 
 def _fma_array(a, b, c):
-    """Return a b + c as emulated_fma does, for whole arrays."""
+    """Return a b + c as emulated_fma does, but for whole arrays."""
     with np.errstate(all='ignore'):
         p = a * b
         upper = SPLITTER * a
@@ -121,7 +122,7 @@ if HAVE_NUMBA:
 
     @intrinsic
     def _fused(typing_context, a, b, c):
-        """Return a b + c, rounded once: the instruction."""
+        """Return a b + c, rounded once, by the instruction of the processor."""
         def generate(context, builder, signature, arguments):
             return builder.fma(*arguments)
         return types.float64(types.float64, types.float64, types.float64), generate

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Decorators of kernels: numba compiles them where it is installed, else they are plain Python.
+"""Decorators of kernels: numba compiles them if it is installed, else they are plain Python.
 
 Kernels follow four rules, so that they mean the same with and without numba: scalars and small
 arrays only; no functions of ``math`` but sqrt, abs, floor, copysign, frexp and ldexp, which are
@@ -18,7 +18,8 @@ if HAVE_NUMBA:
 def _jit(function, **options):
     if not HAVE_NUMBA:
         return function
-    kernel = numba.njit(error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
+    kernel = numba.njit(
+        error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
     kernel._cache = DeferredCache(function)
     return kernel
 
@@ -26,19 +27,19 @@ def _jit(function, **options):
 def compiled(function):
     """Compile a kernel at its first call, without reordering its operations (no ``fastmath``).
 
-    It can make no array, so that numba need not count who holds one: with the counting, each slice
-    of an array costs up to 40 ns.
+    The kernel may not make arrays, so numba need not count references to them: with the counting,
+    each slice of an array costs up to 40 ns.
     """
     return _jit(function, _nrt=False)
 
 
 def compiled_allocating(function):
-    """Compile a kernel that makes arrays for its own use."""
+    """Compile a kernel that makes arrays for its own use, at its first call."""
     return _jit(function, _nrt=True)
 
 
 def inlined(function):
-    """Let kernels inline a short function that Python calls as it stands."""
+    """Let kernels inline a short function; plain Python calls it as it stands."""
     return register_jitable(forceinline=True, _nrt=False)(function) if HAVE_NUMBA else function
 
 

@@ -1,8 +1,10 @@
-"""Eight numbers side by side: one recurrence in Python, run as it stands or written into compiled code for the vector unit.
+# SPDX-License-Identifier: Apache-2.0
+"""Recurrences on eight numbers at a time, for the vector unit of the processor.
 
-Whoever writes a recurrence for an object of :class:`Plain` can have it compiled: with a :class:`Written` the same lines append vector
-instructions to a function that numba is compiling. Sums are made in the order in which they are written; a product and the
-sum that takes it (`gather`) round once, on every processor.
+A recurrence is written once, as a function of an object that has the operations. With a
+:class:`Plain` it runs as ordinary Python; with a :class:`Written` the same lines append vector
+instructions to a function that numba is compiling. Sums are made in the order in which they are
+written; a product and the sum that takes it (`gather`) round once, on every processor.
 """
 
 import numpy as np
@@ -12,11 +14,11 @@ from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 LANES = 8
 PLACES = tuple(range(LANES))
-ONE_BITS = 1023 << 52    # of the double 1.0
+ONE_BITS = 1023 << 52    # the bits of the double 1.0
 
 
 class Plain:
-    """The operations, on floats and on arrays of eight of them."""
+    """The operations on floats and on arrays of eight floats."""
 
     def number(self, value):
         """Return a constant."""
@@ -45,11 +47,11 @@ class Plain:
         return python_fma(a, b, c)
 
     def everywhere(self, x):
-        """Return eight times x."""
+        """Return an array of eight times x."""
         return np.full(LANES, x)
 
     def next(self, v):
-        """Return the lanes one place on, and 0 in the last."""
+        """Return the lanes moved one place down, with 0 in the last."""
         return np.append(v[1:], 0.0)
 
     def first(self, v):
@@ -61,7 +63,7 @@ class Plain:
         return np.where(np.arange(LANES) == lane, x, v)
 
     def load(self, array, at):
-        """Return the eight numbers of an array from a place on."""
+        """Return the eight numbers of an array that begin at a place."""
         return array[at:at + LANES]
 
     def store(self, x, array, at):
@@ -81,7 +83,10 @@ class Plain:
         return np.sqrt(a)
 
     def power(self, a, exponent):
-        """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent: the bits of a double count its logarithm."""
+        """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent.
+
+        The bits of a double, read as an integer, grow as its logarithm.
+        """
         bits = (a.view(np.int64) - ONE_BITS) * exponent
         return (bits.astype(np.int64) + ONE_BITS).view(np.float64)
 
@@ -94,7 +99,7 @@ class Plain:
         return at + stride * i
 
     def repeat(self, first, last, values, act):
-        """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+        """Apply ``values = act(i, values)`` for i = first ... last - 1 and return the values."""
         for i in range(first, last):
             values = act(i, values)
         return values
@@ -109,7 +114,7 @@ if HAVE_NUMBA:
     ABSENT = ir.Constant(EIGHT, ir.Undefined)
 
     class Written:
-        """The operations of Plain as instructions; an array is the address of its first number."""
+        """The operations of Plain as LLVM instructions; an array is its first number's address."""
 
         def __init__(self, builder):
             self._builder = builder
@@ -138,14 +143,15 @@ if HAVE_NUMBA:
             """Return a b + c, rounded once."""
             name = 'llvm.fma.v8f64' if a.type == EIGHT else 'llvm.fma.f64'
             kind = ir.FunctionType(a.type, [a.type] * 3)
-            return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, name), [a, b, c])
+            return self._builder.call(
+                cgutils.get_or_insert_function(self._builder.module, kind, name), [a, b, c])
 
         def everywhere(self, x):
-            """Return eight times x."""
+            """Return a vector of eight times x."""
             return self._shuffled(self.with_lane(ABSENT, 0, x), ABSENT, [0] * LANES)
 
         def next(self, v):
-            """Return the lanes one place on, and 0 in the last."""
+            """Return the lanes moved one place down, with 0 in the last."""
             return self._shuffled(v, self.none(), [place + 1 for place in PLACES])
 
         def first(self, v):
@@ -157,9 +163,10 @@ if HAVE_NUMBA:
             return self._builder.insert_element(v, x, ir.Constant(PLACE, lane))
 
         def load(self, array, at):
-            """Return the eight numbers of an array from a place on."""
-            found = self._builder.load(self._builder.bitcast(self._place(array, at), EIGHT.as_pointer()))
-            found.align = 8    # of a double: arrays begin anywhere
+            """Return the eight numbers of an array that begin at a place."""
+            found = self._builder.load(
+                self._builder.bitcast(self._place(array, at), EIGHT.as_pointer()))
+            found.align = 8    # the alignment of a double: arrays begin anywhere
             return found
 
         def store(self, x, array, at):
@@ -168,7 +175,8 @@ if HAVE_NUMBA:
 
         def put(self, v, array, at):
             """Write eight numbers into an array."""
-            self._builder.store(v, self._builder.bitcast(self._place(array, at), EIGHT.as_pointer())).align = 8
+            self._builder.store(
+                v, self._builder.bitcast(self._place(array, at), EIGHT.as_pointer())).align = 8
 
         def divided(self, a, b):
             """Return a / b."""
@@ -177,13 +185,19 @@ if HAVE_NUMBA:
         def root(self, a):
             """Return the square root of a."""
             kind = ir.FunctionType(EIGHT, [EIGHT])
-            return self._builder.call(cgutils.get_or_insert_function(self._builder.module, kind, 'llvm.sqrt.v8f64'), [a])
+            return self._builder.call(
+                cgutils.get_or_insert_function(self._builder.module, kind, 'llvm.sqrt.v8f64'), [a])
 
         def power(self, a, exponent):
-            """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent: the bits of a double count its logarithm."""
-            builder, one = self._builder, ir.Constant(ir.VectorType(INDEX, LANES), [ONE_BITS] * LANES)
+            """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent.
+
+            The bits of a double, read as an integer, grow as its logarithm.
+            """
+            builder, one = self._builder, ir.Constant(
+                ir.VectorType(INDEX, LANES), [ONE_BITS] * LANES)
             bits = builder.sitofp(builder.sub(builder.bitcast(a, one.type), one), EIGHT)
-            bits = builder.fptosi(builder.fmul(bits, ir.Constant(EIGHT, [exponent] * LANES)), one.type)
+            bits = builder.fptosi(
+                builder.fmul(bits, ir.Constant(EIGHT, [exponent] * LANES)), one.type)
             return builder.bitcast(builder.add(bits, one), EIGHT)
 
         def where_less(self, a, b, x, y):
@@ -192,19 +206,22 @@ if HAVE_NUMBA:
 
         def place(self, at, stride, i):
             """Return the place at + stride i in an array."""
-            return self._builder.add(self._index(at), self._builder.mul(self._index(stride), self._index(i)))
+            return self._builder.add(
+                self._index(at), self._builder.mul(self._index(stride), self._index(i)))
 
         def repeat(self, first, last, values, act):
-            """Return what ``values = act(i, values)`` makes of a list of values for i = first ... last - 1."""
+            """Append a loop ``values = act(i, values)`` for i = first ... last - 1."""
             builder, first, last = self._builder, self._index(first), self._index(last)
-            before, body, after = builder.block, builder.append_basic_block('body'), builder.append_basic_block('after')
+            before, body, after = (builder.block, builder.append_basic_block('body'),
+                                   builder.append_basic_block('after'))
             builder.cbranch(builder.icmp_signed('<', first, last), body, after)
             builder.position_at_end(body)
             i, running = builder.phi(INDEX), [builder.phi(value.type) for value in values]
             made = act(i, running)
             following, end = builder.add(i, self._index(1)), builder.block
             builder.cbranch(builder.icmp_signed('<', following, last), body, after)
-            for phi, begin, then in zip([i, *running], [first, *values], [following, *made], strict=True):
+            for phi, begin, then in zip(
+                    [i, *running], [first, *values], [following, *made], strict=True):
                 phi.add_incoming(begin, before)
                 phi.add_incoming(then, end)
             builder.position_at_end(after)
@@ -223,7 +240,8 @@ if HAVE_NUMBA:
             return self._builder.gep(array, [self._index(at)])
 
         def _shuffled(self, u, v, places):
-            return self._builder.shuffle_vector(u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
+            return self._builder.shuffle_vector(
+                u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
 
 
 def compiled_lanes(recurrence, results):
@@ -232,8 +250,8 @@ def compiled_lanes(recurrence, results):
     Parameters
     ----------
     recurrence : function (operations, array, *numbers)
-        It may load from the array and store into it, and returns a list of `results` numbers. Each of the numbers is a float, or a tuple of
-        floats that it sees as a list.
+        It may load from the array and store into it, and returns a list of `results` numbers.
+        Each of the numbers is a float, or a tuple of floats that it sees as a list.
     results : int
     """
     if not HAVE_NUMBA:
@@ -245,8 +263,10 @@ def compiled_lanes(recurrence, results):
     def kernel(typing, array, numbers):
         def write(context, builder, signature, given):
             address = context.make_array(signature.args[0])(context, builder, given[0]).data
-            values = [cgutils.unpack_tuple(builder, one) if isinstance(kind, types.BaseTuple) else one
-                      for kind, one in zip(signature.args[1], cgutils.unpack_tuple(builder, given[1]), strict=True)]
+            values = [
+                cgutils.unpack_tuple(builder, one) if isinstance(kind, types.BaseTuple) else one
+                for kind, one in zip(
+                    signature.args[1], cgutils.unpack_tuple(builder, given[1]), strict=True)]
             found = recurrence(Written(builder), address, *values)
             return context.make_tuple(builder, signature.return_type, found)
         return types.UniTuple(types.float64, results)(array, numbers), write

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layouts: a flat array of floats is loaded into a named view and stored from one.
+"""Layouts, which load a flat array of floats into a named view and store a view in an array.
 
 A view is a NamedTuple. Its annotations say what a field is: ``float``, a vector (``Vector``,
 ``Pair``, ``tuple[float, float]``, ...), a matrix (a tuple of vectors, its rows), or another view.
@@ -55,12 +55,12 @@ def layout(view, stride=1):
 
 
 class Layout:
-    """Where a value stands in an array: a view, or a part of one.
+    """The places of a value in an array: a view, or a part of one.
 
     Attributes
     ----------
     load : function (array, at=0) -> value
-        Read the value. `at` moves all places on: where an array holds several values of one kind.
+        Read the value. `at` moves all places on, for arrays that hold several such values.
     store : function (array, value, at=0)
         Write the value.
     first, size, places : int, int, slice
@@ -103,7 +103,7 @@ class Layout:
         return self._function('store', '(array, value, at=0)', lines, {})
 
     def _function(self, does, signature, lines, names):
-        """Return the inlined function of these lines."""
+        """Return an inlined function with these lines."""
         name = f'{does}_{self._name}'.replace('.', '_')
         source = ''.join(f'{line}\n' for line in [
             f'def {name}{signature}:', f'    """{does.capitalize()} {self._name}."""',
@@ -117,7 +117,7 @@ class Layout:
 
 
 def _parts(kind, name):
-    """Return (name, kind) of the parts that a kind is made of, none of a float."""
+    """Return (name, kind) of the parts that a kind is made of; a float has none."""
     if kind is float:
         return []
     if isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, '_fields'):
@@ -128,7 +128,7 @@ def _parts(kind, name):
 
 
 def _leaves(kind, name):
-    """Yield how each float of a value is reached from it, in order: '.velocity[0]', ..."""
+    """Yield the path from a value to each of its floats, in order: '.velocity[0]', ..."""
     if kind is float:
         yield ''
     for part, its_kind in _parts(kind, name):
@@ -138,7 +138,7 @@ def _leaves(kind, name):
 
 
 def _written(kind, name, places, views):
-    """Return the expression that makes a value of the array; `views` collects classes by name."""
+    """Return the expression that reads a value; `views` collects the classes it names."""
     if kind is float:
         return f'array[at + {next(places)}]'
     parts = _parts(kind, name)

@@ -1,8 +1,11 @@
-"""One kernel template, many uses: a loop or a stepper bound to the functions of one motion or one scene kind.
+# SPDX-License-Identifier: Apache-2.0
+"""Kernel templates: one loop or stepper, bound to the functions of a motion or a kind of scene.
 
-numba cannot cache kernels that are closed over other functions, so the binding is done in source: a template is an ordinary module in which
-some names are declared ``NAME = UNBOUND``; :func:`specialise` writes a module with those lines replaced by imports (or by source text) into the
-cache folder, where its kernels are cached like any others. What a scene does not list is then not in its code at all.
+numba cannot cache kernels that are closed over other functions, so the binding is done in source.
+A template is an ordinary module in which some names are declared ``NAME = UNBOUND``;
+:func:`specialise` writes a module with those lines replaced by imports (or by source text) into
+the cache folder, where its kernels are cached like any others. An effect that a scene does not
+list is then not in its code at all.
 """
 
 import functools
@@ -30,12 +33,14 @@ def specialise(template, **bindings):
     template : module
         A module with lines ``NAME = UNBOUND``.
     bindings : str
-        For each such name: ``'package.module:function'``, or source text that defines the name (it contains a newline).
+        For each such name ``'package.module:function'``, or source text that defines the name
+        (it contains a newline).
 
     Raises
     ------
     TypeError
-        If a declared name is left unbound, or a name is given that the template does not declare.
+        If a declared name is left unbound, or a name is given that the template does not
+        declare.
     """
     return _bound(template, tuple(sorted(bindings.items())))
 
@@ -43,8 +48,8 @@ def specialise(template, **bindings):
 def imported(kernel, name):
     """Return the source line that imports a kernel, ``'package.module:function'``, under a name.
 
-    The cache of compiled code knows the sources of this package. A kernel of another package brings
-    a hash of its file along, so that an edit there compiles its callers anew.
+    The cache of compiled code knows the sources of this package. For a kernel of another package
+    the line ends with a hash of its file, so that an edit there recompiles its callers.
     """
     module, _, function = kernel.partition(':')
     line = f'from {module} import {function} as {name}'
@@ -73,7 +78,11 @@ def _bound(template, bindings):
 
 
 def _load(source, stem):
-    """Import the source as a module, by way of a file in the cache folder so that its compiled code is cached too."""
+    """Import the source as a module.
+
+    The source is written to the cache folder, where there is one, so that its compiled code is
+    cached too.
+    """
     name = f'{stem}_{hashlib.sha256(source.encode()).hexdigest()[:12]}'
     if name in sys.modules:
         return sys.modules[name]
@@ -81,8 +90,9 @@ def _load(source, stem):
     if folder is None:
         module = types.ModuleType(name)
         module.__file__ = f'<{name}>'
-        # so that tracebacks and inspect show it
-        linecache.cache[module.__file__] = len(source), None, source.splitlines(keepends=True), module.__file__
+        # lets tracebacks and inspect show the source
+        linecache.cache[module.__file__] = (
+            len(source), None, source.splitlines(keepends=True), module.__file__)
         exec(compile(source, module.__file__, 'exec'), module.__dict__)
     else:
         path = folder / f'{name}.py'

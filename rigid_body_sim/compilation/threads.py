@@ -1,13 +1,22 @@
-"""Work shared out to all cores: kernels hold no interpreter lock."""
+# SPDX-License-Identifier: Apache-2.0
+"""Work shared among all cores; it scales because kernels release the interpreter lock."""
 
 import concurrent.futures
 import os
 
-PARTS = 8    # for each core: the last one to finish is short then
+PARTS = 8    # parts for each core: the last one to finish is then short
 
 
 def on_all_cores(work, count, least=1):
-    """Call work(slice) until all of `count` things are done, at least so many at a time where there are as many."""
+    """Call work(slice) on all cores until all of `count` items are done.
+
+    Parameters
+    ----------
+    work : function (slice)
+    count : int
+    least : int
+        Smallest number of items in a slice, but for the last one.
+    """
     chunk = max(1, least, -(-count // (PARTS * os.cpu_count())))
     parts = iter([slice(first, min(first + chunk, count)) for first in range(0, count, chunk)])
 
@@ -17,7 +26,8 @@ def on_all_cores(work, count, least=1):
     if count <= chunk:
         take()
         return
-    # the calling thread does its share: to start another costs as much as a hundred tops in closed form
+    # the calling thread takes its share: starting one more costs as much as a hundred tops in
+    # closed form
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
         others = [threads.submit(take) for _ in range(os.cpu_count() - 1)]
         take()
