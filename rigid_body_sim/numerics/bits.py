@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exponents of doubles: exact operations, so that their bits do not depend on how they are done.
 
 Compiled code reads and writes the exponent field of the double; plain Python calls ``math.frexp``

@@ -1,10 +1,13 @@
-"""Arithmetic with the unevaluated sum of two doubles (high, low), about 32 digits, for the few numbers that must not lose any.
+# SPDX-License-Identifier: Apache-2.0
+"""Double-double arithmetic: a number is the unevaluated sum of two doubles, about 32 digits.
 
-A pair is a tuple of two floats with |low| <= ulp(high)/2. The error of a product is one fused multiply-add where numba compiles, else Dekker's
-split or an fma in plain Python: all are exact, so the bits agree. Low parts of products below 1e-290 are lost.
+It serves the few numbers that must not lose any digit. A pair is a tuple of two floats with
+|low| <= ulp(high)/2. The error of a product is one fused multiply-add where numba compiles, and
+Dekker's split or an fma in plain Python: all are exact, so the bits agree. Low parts of products
+below 1e-290 are lost.
 
-Sources: T. J. Dekker, Numerische Mathematik 18 (1971) 224; M. Joldes, J.-M. Muller, V. Popescu, ACM TOMS 44 (2017) 15, whose error bounds are
-quoted in units of u^2 = 2^-106.
+Sources: T. J. Dekker, Numerische Mathematik 18 (1971) 224; M. Joldes, J.-M. Muller, V. Popescu,
+ACM TOMS 44 (2017) 15, whose error bounds are quoted in units of u^2 = 2^-106.
 """
 
 import math
@@ -21,7 +24,7 @@ def _product_error(a, b, product):
     """Return a b - product exactly, for product = a b rounded: fma(a, b, -product)."""
     if HAVE_FMA or not (LEAST < abs(product) < MOST and abs(a) < MOST and abs(b) < MOST):
         return python_fma(a, b, -product)
-    # both factors split into halves of 26 bits: half the time of an fma that is put together
+    # splits both factors into halves of 26 bits, in half the time of an emulated fma
     c, d = SPLITTER * a, SPLITTER * b
     ah, bh = c - (c - a), d - (d - b)
     al, bl = a - ah, b - bh
@@ -34,7 +37,7 @@ if HAVE_NUMBA:
 
     @intrinsic
     def _product_error(typing_context, a, b, product):
-        """Return a b - product exactly: the machine's fused multiply-add."""
+        """Return a b - product exactly, by the processor's fused multiply-add."""
         def generate(context, builder, signature, arguments):
             a, b, product = arguments
             return builder.fma(a, b, builder.fneg(product))
@@ -74,7 +77,7 @@ def add(a, al, b, bl):
 
 @compiled_inline
 def add_double(a, al, b):
-    """Return a + b for a pair a and a double b: how sums are carried on with what they lose."""
+    """Return a + b for a pair a and a double b, as in a sum that keeps what it would lose."""
     s, e = two_sum(a, b)
     return quick_two_sum(s, e + al)
 

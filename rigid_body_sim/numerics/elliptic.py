@@ -1,8 +1,10 @@
-"""Elliptic integrals and functions, to round-off also where modulus or parameter come close to 0 or 1.
+# SPDX-License-Identifier: Apache-2.0
+"""Elliptic integrals and functions, to round-off also near modulus or parameter 0 and 1.
 
-Names follow the NIST Digital Library of Mathematical Functions (DLMF), chapters 19, 20 and 22. A modulus is never taken as k alone: what
-the functions need near k = 1 is the complementary modulus k', formed by the caller without cancellation (scipy.special.ellipj, which takes
-k^2, is wrong by 5e-6 at k'^2 = 1e-10).
+Names follow the NIST Digital Library of Mathematical Functions (DLMF), chapters 19, 20 and 22. No
+function takes a modulus k alone: near k = 1 it needs the complementary modulus k', which the
+caller forms without cancellation (scipy.special.ellipj, which takes k^2, is wrong by 5e-6 at
+k'^2 = 1e-10).
 """
 
 import math
@@ -31,15 +33,17 @@ def _rf_series(x, y, mean):
     dz = -dx - dy
     e2 = dx * dy - dz * dz
     e3 = dx * dy * dz
-    series = e2 * (-1 / 10 + e2 * (1 / 24 - 5 / 208 * e2) + e3 * (-3 / 44 + 1 / 16 * e2)) + e3 * (1 / 14 + 3 / 104 * e3)
+    series = (e2 * (-1 / 10 + e2 * (1 / 24 - 5 / 208 * e2) + e3 * (-3 / 44 + 1 / 16 * e2))
+              + e3 * (1 / 14 + 3 / 104 * e3))
     return (1.0 + series) / math.sqrt(mean)
 
 
 @compiled
 def carlson_rf(x, y, z):
-    """Return Carlson's R_F(x, y, z), the symmetric integral of the first kind (DLMF 19.16.1), for x, y, z >= 0, at most one of them 0.
+    """Return Carlson's R_F(x, y, z), the symmetric integral of the first kind (DLMF 19.16.1).
 
-    Duplication (DLMF 19.26.18) until the arguments agree to 1 %, then the series of DLMF 19.36.1 to its seventh order.
+    The arguments are not negative, and at most one of them is 0. Duplication (DLMF 19.26.18) is
+    repeated until they agree to 1 %; then the series of DLMF 19.36.1 follows to its seventh order.
     """
     mean, apart = _spread(x, y, z)
     while apart:
@@ -50,7 +54,7 @@ def carlson_rf(x, y, z):
 
 @compiled
 def carlson_rf_pair(x, y, z, u, v, w):
-    """Return R_F(x, y, z) and R_F(u, v, w), side by side in little more than the time of one."""
+    """Return R_F(x, y, z) and R_F(u, v, w) together, in little more than the time of one."""
     mean, apart = _spread(x, y, z)
     other_mean, other_apart = _spread(u, v, w)
     while apart or other_apart:
@@ -63,23 +67,28 @@ def carlson_rf_pair(x, y, z, u, v, w):
 
 @compiled
 def carlson_rc(x, y):
-    """Return Carlson's R_C(x, y) = R_F(x, y, y) (DLMF 19.2.17) for x >= 0, y > 0: atan and artanh in one, without a seam at x = y."""
+    """Return Carlson's R_C(x, y) = R_F(x, y, y) (DLMF 19.2.17) for x >= 0, y > 0.
+
+    It is atan and artanh in one, without a seam at x = y.
+    """
     mean = (x + y + y) / 3.0
     while abs(y - mean) > 0.01 * mean:
         shift = 2.0 * math.sqrt(x) * math.sqrt(y) + y
         x, y = 0.25 * (x + shift), 0.25 * (y + shift)
         mean = (x + y + y) / 3.0
     s = (y - mean) / mean
-    series = s * s * (3 / 10 + s * (1 / 7 + s * (3 / 8 + s * (9 / 22 + s * (159 / 208 + 9 / 8 * s)))))
+    series = s * s * (3 / 10 + s * (1 / 7 + s * (3 / 8 + s * (
+        9 / 22 + s * (159 / 208 + 9 / 8 * s)))))
     return (1.0 + series) / math.sqrt(mean)
 
 
 @compiled
 def carlson_rj(x, y, z, p):
-    """Return Carlson's R_J(x, y, z, p), the integral of the third kind (DLMF 19.16.2), for x, y, z >= 0, at most one of them 0, and p > 0.
+    """Return Carlson's R_J(x, y, z, p), the integral of the third kind (DLMF 19.16.2).
 
-    Duplication with R_C in the form of DLMF 19.26.21, whose terms are all positive and free of cancellation, then the series of DLMF
-    19.36.2. R_D(x, y, z), the integral of the second kind, is R_J(x, y, z, z).
+    x, y and z are not negative, at most one of them is 0, and p > 0. Duplication uses R_C in the
+    form of DLMF 19.26.21, whose terms are all positive and free of cancellation; then the series
+    of DLMF 19.36.2 follows. R_D(x, y, z), the integral of the second kind, is R_J(x, y, z, z).
     """
     mean = (x + y + z + p + p) / 5.0
     total, factor = 0.0, 1.0
@@ -88,7 +97,8 @@ def carlson_rj(x, y, z, p):
         shift = root_x * (root_y + root_z) + root_y * root_z
         alpha = p * (root_x + root_y + root_z) + root_x * root_y * root_z
         total += factor * carlson_rc(alpha * alpha, p * (p + shift) * (p + shift))
-        x, y, z, p = 0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift), 0.25 * (p + shift)
+        x, y, z, p = (0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift),
+                      0.25 * (p + shift))
         mean = (x + y + z + p + p) / 5.0
         factor *= 0.25
     dx, dy, dz = 1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean
@@ -97,7 +107,8 @@ def carlson_rj(x, y, z, p):
     e3 = dx * dy * dz + 2.0 * e2 * dp + 4.0 * dp * dp * dp
     e4 = (2.0 * dx * dy * dz + e2 * dp + 3.0 * dp * dp * dp) * dp
     e5 = dx * dy * dz * dp * dp
-    series = (-3 / 14 * e2 + e3 / 6 + 9 / 88 * e2 * e2 - 3 / 22 * e4 - 9 / 52 * e2 * e3 + 3 / 26 * e5 - e2 * e2 * e2 / 16 + 3 / 40 * e3 * e3
+    series = (-3 / 14 * e2 + e3 / 6 + 9 / 88 * e2 * e2 - 3 / 22 * e4 - 9 / 52 * e2 * e3
+              + 3 / 26 * e5 - e2 * e2 * e2 / 16 + 3 / 40 * e3 * e3
               + 3 / 20 * e2 * e4 + 45 / 272 * e2 * e2 * e3 - 9 / 68 * (e3 * e4 + e2 * e5))
     return factor * (1.0 + series) / (mean * math.sqrt(mean)) + 3.0 * total
 
@@ -114,29 +125,35 @@ def agm(x, y):
 
 @compiled
 def complete_k(kc):
-    """Return the quarter period K of the modulus k whose complementary modulus is kc = k' > 0 (DLMF 19.8.5); K' is complete_k(k)."""
+    """Return the quarter period K for the complementary modulus kc = k' > 0 (DLMF 19.8.5).
+
+    The quarter period K' is complete_k(k).
+    """
     return 0.5 * math.pi / agm(1.0, kc)
 
 
 @compiled
 def nome(k, kc):
-    """Return q = exp(-pi K'/K) (DLMF 22.2.1) to full relative accuracy for 0 <= k and kc >= 0.17 (q <= 0.21).
+    """Return q = exp(-pi K'/K) (DLMF 22.2.1) for 0 <= k and kc >= 0.17 (q <= 0.21).
 
-    Both moduli are asked for because k^2 + kc^2 = 1 holds the more digits in the smaller one; for kc < 0.17 use the nome of the
-    complementary modulus, nome(kc, k) = exp(-pi K/K'). Series: DLMF 19.5.5 with its integers (OEIS A002103).
+    The result has full relative accuracy. The function takes both moduli because k^2 + kc^2 = 1
+    gives more digits to the smaller one. For kc < 0.17 use the nome of the complementary modulus,
+    nome(kc, k) = exp(-pi K/K'). The series is DLMF 19.5.5 with the integers of OEIS A002103.
     """
     s = 1.0 + math.sqrt(kc)
     half = 0.5 * k * k / ((1.0 + kc) * s * s)
     x = half * half * half * half
-    return half * (1.0 + x * (2.0 + x * (15.0 + x * (150.0 + x * (1707.0 + x * (20910.0 + x * (268616.0 + x * (
-        3567400.0 + x * (48555069.0 + x * 673458874.0)))))))))
+    return half * (1.0 + x * (2.0 + x * (15.0 + x * (150.0 + x * (1707.0 + x * (20910.0 + x * (
+        268616.0 + x * (3567400.0 + x * (48555069.0 + x * 673458874.0)))))))))
 
 
 @compiled
 def agm_pair(x, x_low, y, y_low):
-    """Return the arithmetic-geometric mean of two pairs of doubles (double_double.py), x >= y > 0, to 1e-19 of itself.
+    """Return the arithmetic-geometric mean of two pairs of doubles, x >= y > 0, to 1e-19.
 
-    Two steps of the mean take the modulus to that of nome q^4, and what is left of it is 1/theta_3(q^4)^2 (DLMF 20.9.2).
+    Pairs are those of double_double.py. Two steps of the mean bring the modulus to the one with
+    nome q^4; the mean then differs from its first argument by a factor 1/theta_3(q^4)^2
+    (DLMF 20.9.2).
     """
     while y < 0.7 * x:
         product, product_low = multiply(x, x_low, y, y_low)
@@ -157,10 +174,11 @@ def agm_pair(x, x_low, y, y_low):
 
 @compiled
 def jacobi(u, k, kc):
-    """Return sn, cn and dn of u for the modulus k with complementary modulus kc (k^2 + kc^2 = 1; kc = 0 is allowed).
+    """Return sn, cn and dn of u for moduli k and kc (k^2 + kc^2 = 1; kc = 0 is allowed).
 
-    By theta functions: of the nome for kc >= 0.17, else of the complementary nome with hyperbolic functions (Jacobi's imaginary
-    transformation, DLMF 22.2.4-6, 22.6(iv)), so that a few terms give round-off everywhere. u is reduced modulo 2 K in double precision.
+    They come from theta functions: of the nome for kc >= 0.17, otherwise of the complementary nome
+    with hyperbolic functions (Jacobi's imaginary transformation, DLMF 22.2.4-6, 22.6(iv)), so that
+    a few terms give round-off everywhere. u is reduced modulo 2 K in double precision.
     """
     if kc >= 0.17:
         return _jacobi_circular(u, k, kc)
@@ -174,12 +192,14 @@ def _jacobi_circular(u, k, kc):
     s, c = sin(v), cos(v)
     q2 = q * q
     q4 = q2 * q2
-    q6, q9, q12, q16, q20 = q2 * q4, q4 * q4 * q, q4 * q4 * q4, q4 * q4 * q4 * q4, q4 * q4 * q4 * q4 * q4
+    q6, q9, q12, q16, q20 = (q2 * q4, q4 * q4 * q, q4 * q4 * q4, q4 * q4 * q4 * q4,
+                             q4 * q4 * q4 * q4 * q4)
     c1 = (c - s) * (c + s)
     c2 = 2.0 * c1 * c1 - 1.0
     c3 = c1 * (2.0 * c2 - 1.0)
     c4 = 2.0 * c2 * c2 - 1.0
-    # theta_1 / sin, theta_2 / cos without their common factor; even and odd part of theta_3, theta_4
+    # theta_1/sin and theta_2/cos without their common factor; even and odd parts of theta_3 and
+    # theta_4
     d1 = 1.0 + 2.0 * c1
     d2 = d1 + 2.0 * c2
     d3 = d2 + 2.0 * c3
@@ -205,7 +225,7 @@ def _jacobi_hyperbolic(u, k, kc):
     quarter = complete_k(k)                                     # K', near pi/2
     root_q = kc * math.sqrt(0.5 / (1.0 + k)) / (1.0 + math.sqrt(k))
     q = root_q * root_q
-    root_q *= 1.0 + q * q * q * q                               # sqrt(q'), which may be far above an underflowing q'
+    root_q *= 1.0 + q * q * q * q            # sqrt(q'), far above q' where that underflows
     q = root_q * root_q
     y = 0.5 * math.pi * u / quarter
     sign = 1.0
@@ -231,7 +251,10 @@ def _jacobi_hyperbolic(u, k, kc):
 
 @compiled
 def root_nome(k, kc):
-    """Return the square root of the nome for k <= kc to full relative accuracy, also where the nome itself underflows."""
+    """Return the square root of the nome for k <= kc, also where the nome itself underflows.
+
+    The result has full relative accuracy.
+    """
     s = 1.0 + math.sqrt(kc)
     half = 0.5 * k * k / ((1.0 + kc) * s * s)
     x = half * half * half * half

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Elementary functions with the same bits on every machine, with and without numba.
 
 They call no function of the C library: they are made of sums, products, quotients and square
@@ -119,12 +120,12 @@ SHRINK, GROW = 2.0 ** -600, 2.0 ** 600   # scale numbers beyond those bounds
 
 
 def _table(values):
-    """Return constants as what is indexed fastest: an array in numba, a tuple in Python."""
+    """Return constants in the form that is indexed fastest: array in numba, tuple in Python."""
     return np.array(values) if HAVE_NUMBA else tuple(values)
 
 
 def _rounded(value, bits):
-    """Return a Decimal rounded to a multiple of 2^-bits, as a double, and the rest as another."""
+    """Return a Decimal as two doubles: rounded to a multiple of 2^-bits, and the rest."""
     high = math.ldexp(round(value * 2 ** bits), -bits)
     return high, float(value - Decimal(high))
 
@@ -180,15 +181,15 @@ def _pair_plus(high, low, more):
 
 @compiled_inline
 def _less_turns(turns):
-    """Return turns less a whole number of turns: the fraction, for |turns| < 2^100."""
-    # what the first line leaves of a huge number is a small one
+    """Return turns less a whole number of turns, for |turns| < 2^100."""
+    # the first line leaves a small number of a huge one
     turns -= nearest(turns)
     return turns - nearest(turns)
 
 
 @compiled
 def _far_reduced(x):
-    """Return what _reduced returns, for any finite angle, by the method of Payne and Hanek.
+    """Return the result of _reduced for any finite angle, by the method of Payne and Hanek.
 
     x is multiplied by those digits of 1/(2 pi) that matter: the digits before give whole turns,
     and those after come to less than 2^-139 turns, where no double is within 2^-65 turns of a
@@ -221,7 +222,7 @@ def _far_reduced(x):
 
 @compiled_inline
 def _reduced(x):
-    """Return (n, r, r_low) with x = n pi/2 + r + r_low but for whole turns, |r| <= pi/4."""
+    """Return (n, r, r_low) with x = n pi/2 + r + r_low up to whole turns, |r| <= pi/4."""
     if abs(x) > COUNTED:
         return _far_reduced(x)
     n = nearest(QUARTERS * x)
@@ -306,7 +307,7 @@ def _exponential(x, low):
         return 2.0 * ((power + more) * power_of_two(1023))
     if k > -1022 or (k == -1022 and power + more >= 1.0):
         return (power + more) * power_of_two(k)
-    # subnormal doubles are as far apart as doubles between 1 and 2, but for the power of two
+    # subnormal doubles are as far apart as doubles between 1 and 2, up to the power of two
     scale = power_of_two(k + 1022)
     s, error = quick_two_sum(1.0, power * scale)
     return ((s + (error + more * scale)) - 1.0) * SMALLEST_NORMAL
@@ -365,7 +366,7 @@ def _logarithm_pair(m, e):
 
 @compiled
 def _log_of_rest(x):
-    """Return log of a double that is not both normal and positive."""
+    """Return the logarithm of a double that is not both normal and positive."""
     if 0.0 < x < math.inf:
         m, e = balanced(x * 2.0 ** 54)
         return _logarithm(m, e - 54, 0.0)
@@ -394,7 +395,7 @@ def _power(x, y, shift):
 
 @compiled
 def _power_of_rest(x, y):
-    """Return x^y for the arguments that power passes on."""
+    """Return x^y for the arguments that power does not treat itself."""
     if y == 0.0 or x == 1.0:
         return 1.0
     if not x >= 0.0 or y != y:

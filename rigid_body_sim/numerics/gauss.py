@@ -13,7 +13,7 @@ NEWTON_STEPS = 7    # the first guess has two digits at least, and each step dou
 
 
 def legendre(n):
-    """Return the coefficients (ascending, Decimal) of P_n(2 x - 1), the Legendre polynomial on [0, 1]."""
+    """Return the ascending coefficients (Decimal) of P_n(2 x - 1), Legendre on [0, 1]."""
     return [Decimal((-1) ** (n + k) * math.comb(n, k) * math.comb(n + k, k)) for k in range(n + 1)]
 
 
@@ -26,7 +26,7 @@ def value(polynomial, x):
 
 
 def roots(n):
-    """Return the n roots of P_n(2 x - 1) in ascending order, Decimal, in the present context."""
+    """Return the n roots of P_n(2 x - 1), ascending, as Decimal in the current context."""
     polynomial = legendre(n)
     slope = [k * coefficient for k, coefficient in enumerate(polynomial)][1:]
     found = []
@@ -40,7 +40,7 @@ def roots(n):
 
 
 def rule(n):
-    """Return the nodes and the weights of the rule with n nodes, two lists of floats."""
+    """Return the nodes and the weights of the rule with n nodes, as two lists of floats."""
     with localcontext(CONTEXT):
         slope = [k * coefficient for k, coefficient in enumerate(legendre(n))][1:]
         nodes = roots(n)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Print the constants of functions.py: ``python rigid_body_sim/numerics/make_functions.py``.
 
 Each polynomial is fitted to what is left of a function when its leading terms, which functions.py

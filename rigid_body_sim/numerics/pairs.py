@@ -1,4 +1,5 @@
-"""Pairs of doubles (double_double.py) as tuples, to write formulas in them: ``plus(times(n, x), c)``.
+# SPDX-License-Identifier: Apache-2.0
+"""Pairs of doubles (double_double.py) as tuples, for formulas such as ``plus(times(n, x), c)``.
 
 Sums and differences are exact to 2 u^2 of their larger term, u = 2^-53.
 """
@@ -8,7 +9,7 @@ from fractions import Fraction
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.double_double import add_alike, divide, multiply, root, two_product
 
-TURN = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi): turns of an angle
+TURN = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi), turns per radian
 
 
 def pair_of(number):
@@ -63,7 +64,7 @@ def products(a, b, c, d):
 
 @compiled
 def not_negative(p):
-    """Return the pair, or 0 if it is below."""
+    """Return the pair, or 0 if it is negative."""
     return p if p[0] > 0.0 else (0.0, 0.0)
 
 

@@ -1,20 +1,27 @@
-"""Turn of a body whose angular velocity runs along a straight line at constant speed: omega(t) = omega0 + w t, in world axes.
+# SPDX-License-Identifier: Apache-2.0
+"""Turn of a body whose angular velocity moves along a straight line at constant speed.
 
-A sphere sliding on a table with side spin turns like this. In the frame e1 = w/|w|, e2 along the part of omega0 across w, e3 = e1 x e2,
-the angular velocity is (c + |w| t, p, 0), and the turn U (dU/dt = omega U / 2 as quaternions, U(0) = 1) is made of parabolic-cylinder
-functions: it is the Landau-Zener problem of quantum mechanics. With T = omega_1/sqrt|w|, P = p/sqrt|w|, rho^2 = T^2 + P^2 there are
+In world axes omega(t) = omega0 + w t. A sphere sliding on a table with side spin turns like this.
+In the frame e1 = w/|w|, e2 along the part of omega0 across w, e3 = e1 x e2, the angular velocity
+is (c + |w| t, p, 0), and the turn U (dU/dt = omega U / 2 as quaternions, U(0) = 1) is made of
+parabolic-cylinder functions: it is the Landau-Zener problem of quantum mechanics. With
+T = omega_1/sqrt|w|, P = p/sqrt|w|, rho^2 = T^2 + P^2 there are two regions:
 
-- the inside of the ellipse T^2 + (pi/2) P^2 = 100: Taylor series about the middle of steps of at most 3 rad of half-angle; ten of them
-  reach from the middle to the rim;
-- the outside: one step of any length. Let theta be the angle from e1 to omega, s = sin(theta) = P/rho, x = cos(theta). Seen from axes
-  that follow omega, the turn keeps a slowly moving axis, whose stereographic coordinate is the series of Riccati's equation
+- Inside the ellipse T^2 + (pi/2) P^2 = 100 the turn is composed of Taylor series about the middle
+  of steps of at most 3 rad of half-angle; ten of them reach from the middle to the rim.
+- Outside, one step of any length suffices. Let theta be the angle from e1 to omega,
+  s = sin(theta) = P/rho, x = cos(theta). Seen from axes that follow omega, the turn keeps a slowly
+  moving axis, whose stereographic coordinate is the series of Riccati's equation
 
-      z = s sum_n i^(n-1) p_n(x)/rho^(2n),  p_1 = -1/2,  p_(n+1) = -(2n + 1) x p_n + (1 - x^2) (p_n' - sum_(a+b=n) p_a p_b/2),
+      z = s sum_n i^(n-1) p_n(x)/rho^(2n),
+      p_1 = -1/2,  p_(n+1) = -(2n + 1) x p_n + (1 - x^2) (p_n' - sum_(a+b=n) p_a p_b/2),
 
-  and it turns about that axis by the integral of |omega| dt, which is elementary, plus the integral of Re z dtheta. The terms are below
-  (2n - 1)!!/(T^2 + (pi/2) P^2)^n: on the rim 22 of them reach 5e-18, far out two.
+  and it turns about that axis by the integral of |omega| dt, which is elementary, plus the
+  integral of Re z dtheta. The terms are below (2n - 1)!!/(T^2 + (pi/2) P^2)^n: on the rim 22 of
+  them reach 5e-18, and far from it two do.
 
-Source: M. V. Berry, Histories of adiabatic quantum transitions, Proc. R. Soc. Lond. A 429 (1990) 61-72 (the series and how far it goes).
+Source: M. V. Berry, Histories of adiabatic quantum transitions, Proc. R. Soc. Lond. A 429 (1990)
+61-72 (the series and how far it goes).
 """
 
 import math
@@ -42,7 +49,8 @@ def _product(first, second):
 
 
 def _sum(*polynomials):
-    return [sum((each[power] for each in polynomials if power < len(each)), Fraction(0)) for power in range(max(map(len, polynomials)))]
+    return [sum((each[power] for each in polynomials if power < len(each)), Fraction(0))
+            for power in range(max(map(len, polynomials)))]
 
 
 def _axis_polynomials():
@@ -53,13 +61,17 @@ def _axis_polynomials():
         derivative = [power * value for power, value in enumerate(last)][1:] or [Fraction(0)]
         pairs = [_product(polynomials[a], polynomials[n - 2 - a]) for a in range(n - 1)]
         bracket = _sum(derivative, *[[-value / 2 for value in pair] for pair in pairs])
-        stretched, bent = _product([Fraction(0), Fraction(-2 * n - 1)], last), _product([Fraction(1), Fraction(0), Fraction(-1)], bracket)
+        stretched, bent = (_product([Fraction(0), Fraction(-2 * n - 1)], last),
+                           _product([Fraction(1), Fraction(0), Fraction(-1)], bracket))
         polynomials.append(_sum(stretched, bent))
     return polynomials
 
 
 def _turn_polynomial(axis_polynomial, n):
-    """Return r in integral_x^1 (1 - x^2)^n p_n dx = (1 - x)^(n + 1) r(1 - x), as exact coefficients."""
+    """Return the exact coefficients of r, a polynomial in 1 - x.
+
+    It is defined by integral_x^1 (1 - x^2)^n p_n dx = (1 - x)^(n + 1) r(1 - x).
+    """
     integrand, power_of_x = [Fraction(0)], [Fraction(1)]
     for value in axis_polynomial:
         integrand = _sum(integrand, [value * each for each in power_of_x])
@@ -70,14 +82,18 @@ def _turn_polynomial(axis_polynomial, n):
 
 
 def _tables():
-    """Return the coefficients of p_n in powers of x^2 (even n: without a factor x) and of r_n for odd n, with the signs of i^(n-1)."""
+    """Return the coefficients of p_n and of r_n with the signs of i^(n-1).
+
+    Those of p_n belong to powers of x^2 (for even n without a factor x); r_n is for odd n only.
+    """
     axis, turn = np.zeros((TERMS, (TERMS + 1) // 2)), np.zeros((TERMS, 2 * TERMS))
     for index, polynomial in enumerate(_axis_polynomials()):
         sign = -1 if index % 4 >= 2 else 1
         coefficients = [float(sign * value) for value in polynomial[index % 2:index + 1:2]]
         axis[index, :len(coefficients)] = coefficients
         if index % 2 == 0:
-            coefficients = [float(sign * value) for value in _turn_polynomial(polynomial[:index + 1], index + 1)]
+            coefficients = [float(sign * value)
+                            for value in _turn_polynomial(polynomial[:index + 1], index + 1)]
             turn[index, :len(coefficients)] = coefficients
     return axis, turn
 
@@ -88,7 +104,9 @@ RECIPROCALS = np.array([0.0] + [1.0 / n for n in range(1, 41)])
 
 @compiled
 def ramped_rotation(c, p, w, time):
-    """Return the turn (x, y, z, w in the frame e1, e2, e3) of a body in the time from 0 to ``time``.
+    """Return the turn of a body from time 0 to ``time``, a quaternion (x, y, z, w).
+
+    Its components belong to the frame e1, e2, e3 of the module's docstring.
 
     Parameters
     ----------
@@ -100,7 +118,7 @@ def ramped_rotation(c, p, w, time):
         In seconds, of either sign.
     """
     if p <= SMALLEST * math.sqrt(w):
-        # about one axis: what p adds over all times is below 3 p/sqrt(w)
+        # turning about one axis: over all times p adds less than 3 p/sqrt(w)
         half = 0.5 * time * (c + 0.5 * w * time)
         return sin(half), 0.0, 0.0, cos(half)
     if w == 0.0:
@@ -128,7 +146,7 @@ def ramped_rotation(c, p, w, time):
 
 @compiled
 def _on_one_side(c, p, w, time):
-    """Return the turn where omega_1 is positive or zero at both ends; cut where the path crosses the rim."""
+    """Return the turn if omega_1 >= 0 at both ends; the path is cut where it crosses the rim."""
     end = max(c + w * time, 0.0)
     rim, width = RIM * math.sqrt(w), math.sqrt(WIDER) * p
     start_outside, end_outside = hypot(c, width) >= rim, hypot(end, width) >= rim
@@ -153,9 +171,10 @@ def _inside(c, p, w, time):
     direction = 1.0 if time >= 0.0 else -1.0
     remaining = abs(time)
     while remaining > 0.0:
-        # from (speed + w step / 2) step / 2 = 2 HALF_STEP, where c and w step have the same sign
+        # step solves (speed + w step / 2) step / 2 = 2 HALF_STEP if c and w step have one sign
         speed = hypot(c, p)
-        step = min(8.0 * HALF_STEP / (speed + math.sqrt(speed * speed + 8.0 * w * HALF_STEP)), remaining)
+        step = min(8.0 * HALF_STEP / (speed + math.sqrt(speed * speed + 8.0 * w * HALF_STEP)),
+                   remaining)
         remaining -= step
         step *= direction
         ux, uy, uz, us = _step(c, p, w, step)
@@ -166,16 +185,17 @@ def _inside(c, p, w, time):
 
 @compiled
 def _step(c, p, w, time):
-    """Return the turn of a time short enough for the series about its middle."""
+    """Return the turn over a time that is short enough for the series about its middle."""
     half = 0.5 * time
     return _taylor(0.5 * (c + w * half) * half, 0.5 * p * half, 0.5 * w * half * half)
 
 
 @compiled
 def _taylor(a, b, ramp):
-    """Return the turn over a step, from the series about its middle: (n + 1) u_(n+1) = (a e1 + b e2) u_n + ramp e1 u_(n-1).
+    """Return the turn over a step, from the series about its middle.
 
-    The sums of even and of odd terms, E and O, give both halves: U = (E + O) (E - O)^-1.
+    The series is (n + 1) u_(n+1) = (a e1 + b e2) u_n + ramp e1 u_(n-1). Its sums of even and of
+    odd terms, E and O, give both halves: U = (E + O) (E - O)^-1.
     """
     size, bound, bound_before = hypot(a, b), 1.0, 0.0
     x, y, z, s = 0.0, 0.0, 0.0, 1.0
@@ -184,13 +204,15 @@ def _taylor(a, b, ramp):
     ox, oy, oz, os = 0.0, 0.0, 0.0, 0.0
     for n in range(1, RECIPROCALS.size, 2):
         an, bn, rn = a * RECIPROCALS[n], b * RECIPROCALS[n], ramp * RECIPROCALS[n]
-        bx, by, bz, bs = (an * s + bn * z + rn * bs, bn * s - an * z - rn * bz, an * y - bn * x + rn * by, -an * x - bn * y - rn * bx)
+        bx, by, bz, bs = (an * s + bn * z + rn * bs, bn * s - an * z - rn * bz,
+                          an * y - bn * x + rn * by, -an * x - bn * y - rn * bx)
         ox += bx
         oy += by
         oz += bz
         os += bs
         an, bn, rn = a * RECIPROCALS[n + 1], b * RECIPROCALS[n + 1], ramp * RECIPROCALS[n + 1]
-        x, y, z, s = (an * bs + bn * bz + rn * s, bn * bs - an * bz - rn * z, an * by - bn * bx + rn * y, -an * bx - bn * by - rn * x)
+        x, y, z, s = (an * bs + bn * bz + rn * s, bn * bs - an * bz - rn * z,
+                      an * by - bn * bx + rn * y, -an * bx - bn * by - rn * x)
         ex += x
         ey += y
         ez += z
@@ -204,7 +226,11 @@ def _taylor(a, b, ramp):
 
 @compiled
 def _outside(c, p, w, time):
-    """Return the turn between two points outside the rim with omega_1 >= 0: dress the end, turn, undress the start."""
+    """Return the turn between two points outside the rim with omega_1 >= 0.
+
+    It is the rotation from the slow axis at the start to e1, a turn about e1, and the rotation
+    from e1 to the slow axis at the end.
+    """
     end = max(c + w * time, 0.0)
     speed, end_speed = hypot(c, p), hypot(end, p)
     root = math.sqrt(w)
@@ -212,7 +238,7 @@ def _outside(c, p, w, time):
     ex, ey, ez, es, end_turn = _slow_axis(end, p, root / end_speed, end_speed)
     half = 0.5 * (_angle(c, end, p, speed, end_speed, w * time, time) + (end_turn - turn))
     if not abs(half) < math.inf:
-        half = 0.0    # more than a double holds: an ulp of omega is any angle at all
+        half = 0.0    # more than a double holds: within an ulp of omega the angle can be anything
     x, y, z, s = multiply(sin(half), 0.0, 0.0, cos(half), -x, -y, -z, s)
     return multiply(ex, ey, ez, es, x, y, z, s)
 
@@ -233,7 +259,7 @@ def _angle(c, end, p, speed, end_speed, gain, time):
 
 @compiled
 def _slow_axis(c, p, inverse_rho, speed):
-    """Return the quaternion that takes e1 to the slow axis, and the integral of Re z dtheta from theta = 0."""
+    """Return the quaternion from e1 to the slow axis and the integral of Re z dtheta from 0."""
     x, s = c / speed, p / speed
     square = x * x
     e = inverse_rho * inverse_rho
@@ -264,5 +290,5 @@ def _slow_axis(c, p, inverse_rho, speed):
     cosine = math.sqrt(0.5 * (1.0 + x))
     sine = 0.5 * s / cosine
     # (cosine + sine e3) (1 + real e2 - imaginary e3) scale
-    return (-sine * real * scale, cosine * real * scale, (sine - cosine * imaginary) * scale, (cosine + sine * imaginary) * scale,
-            versed * turn)
+    return (-sine * real * scale, cosine * real * scale, (sine - cosine * imaginary) * scale,
+            (cosine + sine * imaginary) * scale, versed * turn)

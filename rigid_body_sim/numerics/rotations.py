@@ -1,7 +1,9 @@
-"""Rotations: unit quaternions (x, y, z, w) as in ROS and SciPy, that turn body vectors into world vectors, and z-y-z Euler angles.
+# SPDX-License-Identifier: Apache-2.0
+"""Rotations as unit quaternions (x, y, z, w), as in ROS and SciPy, and as z-y-z Euler angles.
 
-Kernels take and return scalars in tuples. A product p q means: first q, then p. Euler angles are those of the notes (section "Euler angles
-for rigid body in inertial frame"): R = Rz(alpha) Ry(beta) Rz(gamma).
+A quaternion turns body vectors into world vectors. Kernels take and return scalars in tuples. The
+product p q means the rotation q followed by p. Euler angles are those of the notes (section
+"Euler angles for rigid body in inertial frame"): R = Rz(alpha) Ry(beta) Rz(gamma).
 """
 
 import math
@@ -21,7 +23,10 @@ def multiply(px, py, pz, pw, qx, qy, qz, qw):
 
 @compiled
 def rotate(qx, qy, qz, qw, vx, vy, vz):
-    """Return the world components of the body vector v: v + 2 w (u x v) + 2 u x (u x v) with u = (qx, qy, qz)."""
+    """Return the world components of the body vector v.
+
+    They are v + 2 w (u x v) + 2 u x (u x v) with u = (qx, qy, qz).
+    """
     tx = 2.0 * (qy * vz - qz * vy)
     ty = 2.0 * (qz * vx - qx * vz)
     tz = 2.0 * (qx * vy - qy * vx)
@@ -40,8 +45,9 @@ def rotate_back(qx, qy, qz, qw, vx, vy, vz):
 def normalised(qx, qy, qz, qw):
     """Return q / |q|; the norm must not be zero.
 
-    A sum of squares near 1 rounds more finely below 1 than above, and quaternions made unit by it come out 0.6 ulp long on average: a trend
-    where it happens at every tick. So the last bits are corrected by |q|^2 - 1, summed near 0, where rounding has no side.
+    A sum of squares near 1 rounds more finely below 1 than above, and quaternions divided by its
+    root come out 0.6 ulp long on average, which becomes a trend if it happens at every tick. So
+    the last bits are corrected by |q|^2 - 1, summed near 0, where rounding is symmetric.
     """
     if abs(_excess(qx, qy, qz, qw)) > 1e-9:
         scale = 1.0 / math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
@@ -58,23 +64,28 @@ def _excess(qx, qy, qz, qw):
 
 @inlined
 def matrix(qx, qy, qz, qw):
-    """Return the rows of the rotation matrix of a unit quaternion, which turns body into world components."""
-    return ((1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - qz * qw), 2.0 * (qx * qz + qy * qw)),
-            (2.0 * (qx * qy + qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz - qx * qw)),
-            (2.0 * (qx * qz - qy * qw), 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)))
+    """Return the rows of the rotation matrix of q, which turns body into world components."""
+    return ((1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - qz * qw),
+             2.0 * (qx * qz + qy * qw)),
+            (2.0 * (qx * qy + qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz),
+             2.0 * (qy * qz - qx * qw)),
+            (2.0 * (qx * qz - qy * qw), 2.0 * (qy * qz + qx * qw),
+             1.0 - 2.0 * (qx * qx + qy * qy)))
 
 
 def from_matrix(R):
-    """Return the quaternion of a rotation matrix, given by its rows, with w >= 0.
+    """Return the quaternion, with w >= 0, of a rotation matrix given by its rows.
 
-    The largest component is found from the diagonal and divides the others (S. W. Shepperd, Journal of
-    Guidance and Control 1 (1978) 223).
+    The diagonal shows which component is largest, and that one divides the others
+    (S. W. Shepperd, Journal of Guidance and Control 1 (1978) 223).
     """
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R
-    squares = (1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz, 1.0 + xx + yy + zz)    # of 2 x, 2 y, 2 z, 2 w
+    # the squares of 2 x, 2 y, 2 z, 2 w
+    squares = (1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz, 1.0 + xx + yy + zz)
     k = squares.index(max(squares))
     products = ((squares[0], xy + yx, xz + zx, zy - yz), (xy + yx, squares[1], yz + zy, xz - zx),
-                (xz + zx, yz + zy, squares[2], yx - xy), (zy - yz, xz - zx, yx - xy, squares[3]))[k]
+                (xz + zx, yz + zy, squares[2], yx - xy),
+                (zy - yz, xz - zx, yx - xy, squares[3]))[k]
     scale = math.copysign(0.5 / math.sqrt(squares[k]), products[3])
     return normalised(*(scale * product for product in products))
 
@@ -91,7 +102,10 @@ def from_rotation_vector(rx, ry, rz):
 
 @compiled
 def angle_between(px, py, pz, pw, qx, qy, qz, qw):
-    """Return the angle (rad, 0 to pi) of the rotation that takes one attitude to the other, accurate for small angles too."""
+    """Return the angle (rad, 0 to pi) of the rotation that takes one attitude to the other.
+
+    It is accurate for small angles too.
+    """
     x, y, z, w = multiply(-px, -py, -pz, pw, qx, qy, qz, qw)
     return 2.0 * atan2(math.sqrt(x * x + y * y + z * z), abs(w))
 
@@ -101,14 +115,16 @@ def from_euler_zyz(alpha, beta, gamma):
     """Return the quaternion of R = Rz(alpha) Ry(beta) Rz(gamma)."""
     sine, cosine = sin(0.5 * beta), cos(0.5 * beta)
     total, difference = 0.5 * (alpha + gamma), 0.5 * (alpha - gamma)
-    return -sine * sin(difference), sine * cos(difference), cosine * sin(total), cosine * cos(total)
+    return (-sine * sin(difference), sine * cos(difference),
+            cosine * sin(total), cosine * cos(total))
 
 
 @compiled
 def to_euler_zyz(qx, qy, qz, qw):
     """Return (alpha, beta, gamma) with alpha, gamma in (-pi, pi] and beta in [0, pi].
 
-    At beta = 0 and pi only the sum or the difference of alpha and gamma is defined; there gamma is 0.
+    At beta = 0 and pi only the sum or the difference of alpha and gamma is defined; there gamma
+    is 0.
     """
     upright, inverted = hypot(qz, qw), hypot(qx, qy)
     beta = 2.0 * atan2(inverted, upright)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vectors as tuples of three floats, and matrices as tuples of three rows.
 
-Every sum is written out, so the source fixes its order: a matrix product of numpy goes through BLAS,
-whose kernels round differently from one processor to the next. Kernels inline these functions, and
-Python calls them as they stand; arrays of three numbers are as good as tuples.
+Every sum is written out, so the source fixes its order: a matrix product of numpy goes through
+BLAS, whose kernels round differently from one processor to the next. Kernels inline these
+functions, and Python calls them as they stand; arrays of three numbers serve as well as tuples.
 """
 
 from rigid_body_sim.compilation.jit import inlined
