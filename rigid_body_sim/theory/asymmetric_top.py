@@ -15,32 +15,47 @@ from scipy.special import ellipkm1
 
 
 def linear_rates(eta, omega0, I1, I2, I3):
-    """Return eta' of I1 eta1' = (I2 - I3) omega0 eta2, I2 eta2' = (I3 - I1) omega0 eta1, eta3' = 0, rad/s^2."""
+    """Return eta' = (eta1', eta2', eta3'), rad/s^2.
+
+    I1 eta1' = (I2 - I3) omega0 eta2, I2 eta2' = (I3 - I1) omega0 eta1, eta3' = 0.
+    """
     return np.array([(I2 - I3) * omega0 * eta[1] / I1, (I3 - I1) * omega0 * eta[0] / I2, 0.0])
 
 
 def linear_rates_as_written(eta, omega0, I1, I2, I3):
-    """Return eta' of the notes, with I1 on the left of all three, rad/s^2."""
+    """Return eta' as the notes write it, with I1 on the left of all three equations, rad/s^2."""
     return np.array([(I2 - I3) * omega0 * eta[1] / I1, (I3 - I1) * omega0 * eta[0] / I1, 0.0])
 
 
 def frequency_squared(omega0, I1, I2, I3):
-    """Return Omega^2 = omega0^2 (I3 - I1) (I3 - I2)/(I1 I2), (rad/s)^2; negative (unstable) if I3 lies between."""
+    """Return Omega^2 = omega0^2 (I3 - I1) (I3 - I2)/(I1 I2), (rad/s)^2.
+
+    It is negative (the rotation is unstable) if I3 lies between I1 and I2.
+    """
     return omega0**2 * (I3 - I1) * (I3 - I2) / (I1 * I2)
 
 
 def frequency_squared_as_written(omega0, I1, I2, I3):
-    """Return the Omega^2 that follows from the notes' linear equations, omega0^2 (I3 - I1) (I3 - I2)/I1^2, (rad/s)^2."""
+    """Return the Omega^2 that follows from the notes' linear equations, (rad/s)^2.
+
+    Omega^2 = omega0^2 (I3 - I1) (I3 - I2)/I1^2.
+    """
     return omega0**2 * (I3 - I1) * (I3 - I2) / I1**2
 
 
 def frequency(omega0, I1, I2, I3):
-    """Return the frequency Omega of small oscillations about a stable axis, rad/s; NaN about the intermediate one."""
+    """Return the frequency Omega of small oscillations about a stable axis, rad/s.
+
+    It is NaN about the intermediate axis.
+    """
     return np.sqrt(frequency_squared(omega0, I1, I2, I3))
 
 
 def growth_rate(omega0, I1, I2, I3):
-    """Return the rate sqrt(-Omega^2) at which eta1, eta2 ~ e^(rate t) run away from the intermediate axis, 1/s; NaN about a stable one."""
+    """Return the growth rate sqrt(-Omega^2) about the intermediate axis, 1/s.
+
+    There eta1 and eta2 grow as e^(rate t). The rate is NaN about a stable axis.
+    """
     return np.sqrt(-frequency_squared(omega0, I1, I2, I3))
 
 
@@ -50,11 +65,12 @@ def growing_ratio(I1, I2, I3):
 
 
 def time_between_flips(moments, omega):
-    """Return the time between two changes of sign of omega2 of a free body with I1 < I2 < I3, 2 K(k)/lambda, s; every second one is a period.
+    """Return the time between two sign changes of omega2 of a free body with I1 < I2 < I3, s.
 
-    Beyond the notes: Landau and Lifshitz, Mechanics, section 37. `omega` in principal axes
-    (rad/s), at any time. Discriminants are sums of like-signed terms, and the modulus is taken by
-    1 - k^2. None where there are no flips: moments not rising, or a steady rotation.
+    The time is 2 K(k)/lambda, and two of them make a period (beyond the notes: Landau and
+    Lifshitz, Mechanics, section 37). `omega` is in principal axes (rad/s), at any time. The
+    discriminants are sums of terms of one sign, and the modulus enters as 1 - k^2. The result is
+    None if there are no flips: the moments do not rise, or the rotation is steady.
     """
     I1, I2, I3 = moments
     if not 0.0 < I1 < I2 < I3:

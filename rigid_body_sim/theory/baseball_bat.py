@@ -23,7 +23,10 @@ def center_of_percussion_as_written(length, a):
 
 
 def angular_acceleration(F, d, M, length, a):
-    """Return phi'' = F d/(M (l^2 + a^2)), rad/s^2; with an impulse for F, the change of phi' (rad/s)."""
+    """Return phi'' = F d/(M (l^2 + a^2)), rad/s^2.
+
+    With an impulse for F it is the change of phi' (rad/s).
+    """
     return F * d / (M * (length**2 + a**2))
 
 

@@ -24,45 +24,57 @@ def height_of_natural_roll(a):
 
 
 def friction_direction(h, a):
-    """Return -1 where friction holds the ball back (h < 2 a/5), +1 where it drives it on (h > 2 a/5), 0 where there is none."""
+    """Return the sign of the friction: -1 for h < 2 a/5, +1 for h > 2 a/5, 0 at equality.
+
+    A negative sign means that friction slows the ball down.
+    """
     return np.sign(h - height_of_natural_roll(a))
 
 
 def acceleration(h, a, mu, g):
-    """Return x'' while sliding, -mu g struck below 2 a/5 and +mu g above, m/s^2."""
+    """Return x'' while sliding, m/s^2: -mu g if struck below 2 a/5, +mu g above."""
     return friction_direction(h, a) * mu * g
 
 
 def angular_acceleration(h, a, mu, g):
-    """Return phi'' while sliding, (5/2) mu g/a struck below 2 a/5 and the opposite above, rad/s^2."""
+    """Return phi'' while sliding, rad/s^2.
+
+    It is (5/2) mu g/a if struck below 2 a/5, -(5/2) mu g/a above and zero at 2 a/5.
+    """
     return -friction_direction(h, a) * 2.5 * mu * g / a
 
 
 def sliding_time(slip, mu, g, share=2.0 / 5.0):
-    """Return how long a ball slides whose lowest point slips at a speed (m/s): 2 slip/(7 mu g), s; share = I/(M a^2) of another ball."""
+    """Return how long a ball slides whose lowest point slips at a speed (m/s), s.
+
+    The time is 2 slip/(7 mu g) for a solid ball; `share` = I/(M a^2) of another ball.
+    """
     return slip * share / ((1.0 + share) * mu * g)
 
 
 def speed_when_rolling(speed, rim_speed, share=2.0 / 5.0):
-    """Return the speed (m/s) of a ball that began with a speed and a rim speed a omega, (5/7) (speed + (2/5) rim_speed).
+    """Return the speed of a rolling ball that began with a speed and a rim speed a omega, m/s.
 
-    Friction does not enter: the angular momentum about a point of the table stays. share = I/(M
-    a^2) of another ball.
+    For a solid ball it is (5/7) (speed + (2/5) rim_speed); `share` = I/(M a^2) of another ball.
+    Friction does not enter: the angular momentum about a point of the table is conserved.
     """
     return (speed + share * rim_speed) / (1.0 + share)
 
 
 def onset_of_rolling(v0, h, a, mu, g):
-    """Return when rolling begins, on both sides of 2 a/5: t = 2 |v0 - a omega0|/(7 mu g), s.
+    """Return the time when rolling begins, on both sides of 2 a/5, s.
 
-    For h = 0 it is 2 v0/(7 mu g), below 2 a/5 it is 2 v0/(7 mu g) (1 - 5 h/(2 a)): right in the
-    notes.
+    t = 2 |v0 - a omega0|/(7 mu g). For h = 0 it is 2 v0/(7 mu g), and below 2 a/5 it is
+    2 v0/(7 mu g) (1 - 5 h/(2 a)), as the notes correctly say.
     """
     return sliding_time(np.abs(v0 - a * spin_after_strike(v0, h, a)), mu, g)
 
 
 def onset_of_rolling_above_as_written(v0, h, a, mu, g):
-    """Return what the notes say for h > 2 a/5, 2 v0/(mu g) (5 h/(2 a) - 1), s: seven times too long."""
+    """Return the notes' time for h > 2 a/5, 2 v0/(mu g) (5 h/(2 a) - 1), s.
+
+    It is seven times too long.
+    """
     return 2.0 * v0 / (mu * g) * (2.5 * h / a - 1.0)
 
 

@@ -22,10 +22,17 @@ def period_in_solar_days(ellipticity=ELLIPTICITY):
 
 
 def period_in_sidereal_days_as_written(ellipticity=ELLIPTICITY):
-    """Return 2 pi/Omega with the Omega as written in the section before, omega3 (I3 - I1)/I3: I3/(I3 - I1) = 306 sidereal days."""
+    """Return 2 pi/Omega with Omega = omega3 (I3 - I1)/I3, as written in the section before.
+
+    It is I3/(I3 - I1) = 306 sidereal days.
+    """
     return (1.0 + ellipticity) / ellipticity
 
 
 def wobble_angle(offset, radius):
-    """Return lambda = (few metres)/R_Earth, rad: offset (m) of the rotation pole from the pole of figure, radius of the Earth (m)."""
+    """Return lambda = (few metres)/R_Earth, rad.
+
+    `offset` (m) is the distance of the rotation pole from the pole of figure, `radius` (m) that
+    of the Earth.
+    """
     return offset / radius

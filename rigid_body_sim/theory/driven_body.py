@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symmetric body driven by a constant torque about its axis: Euler's equations with Gamma in closed form (notes, "Euler's Equations").
+"""Symmetric body driven by a constant torque about its axis (notes, "Euler's Equations").
 
-Symbols: I1 = I2 and I3 moments (kg m^2), Gamma3 torque about the symmetry axis (N m), omega
-angular velocity in body axes (rad/s), zero at the end of a name means at t = 0.
+Euler's equations with this Gamma have a closed form. Symbols: I1 = I2 and I3 moments (kg m^2),
+Gamma3 torque about the symmetry axis (N m), omega angular velocity in body axes (rad/s); zero at
+the end of a name means at t = 0.
 """
 
 import numpy as np
@@ -14,24 +15,25 @@ def axial_rate(t, omega3_0, Gamma3, I3):
 
 
 def phase(t, omega3_0, Gamma3, I1, I3):
-    """Return the angle that (omega1, omega2) has turned in body axes, (I3 - I1)/I1 (omega3(0) t + Gamma3 t^2/(2 I3)), rad."""
+    """Return the angle through which (omega1, omega2) has turned in body axes, rad.
+
+    It is (I3 - I1)/I1 (omega3(0) t + Gamma3 t^2/(2 I3)).
+    """
     return (I3 - I1) / I1 * (omega3_0 * t + 0.5 * Gamma3 * t**2 / I3)
 
 
 def angular_velocity(t, omega_0, Gamma3, I1, I3):
-    """Return omega in body axes, shape (..., 3), rad/s: omega1 + i omega2 = (omega1(0) + i omega2(0)) exp(i phase)."""
+    """Return omega in body axes, shape (..., 3), rad/s.
+
+    omega1 + i omega2 = (omega1(0) + i omega2(0)) exp(i phase).
+    """
     angle = phase(t, omega_0[2], Gamma3, I1, I3)
     c, s = np.cos(angle), np.sin(angle)
-    return np.stack(
-        [
-            omega_0[0] * c - omega_0[1] * s,
-            omega_0[0] * s + omega_0[1] * c,
-            axial_rate(t, omega_0[2], Gamma3, I3),
-        ],
-        axis=-1,
-    )
+    return np.stack([omega_0[0] * c - omega_0[1] * s,
+                     omega_0[0] * s + omega_0[1] * c,
+                     axial_rate(t, omega_0[2], Gamma3, I3)], axis=-1)
 
 
 def spin_reversal_time(omega3_0, Gamma3, I3):
-    """Return when omega3 passes through zero, -I3 omega3(0)/Gamma3, s."""
+    """Return the time when omega3 passes through zero, -I3 omega3(0)/Gamma3, s."""
     return -I3 * omega3_0 / Gamma3

@@ -1,26 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Euler's equations and what torque-free motion conserves (notes, "Euler's Equations" and "Torque-free Motion").
+"""Euler's equations and the constants of torque-free motion.
 
-Symbols: I = (I1, I2, I3) = `moments`, principal moments (kg m^2), omega angular velocity and Gamma
-torque in body axes, shape (..., 3) (rad/s, N m), L = I omega angular momentum (kg m^2/s).
+They are those of the notes, "Euler's Equations" and "Torque-free Motion". Symbols: I =
+(I1, I2, I3) = `moments`, principal moments (kg m^2), omega angular velocity and Gamma torque in
+body axes, shape (..., 3) (rad/s, N m), L = I omega angular momentum (kg m^2/s).
 """
 
 import numpy as np
 
 
 def angular_acceleration(moments, omega, Gamma=(0.0, 0.0, 0.0)):
-    """Return omega' of I1 omega1' = omega2 omega3 (I2 - I3) + Gamma1 and its cyclic fellows, rad/s^2."""
+    """Return omega', rad/s^2.
+
+    I1 omega1' = omega2 omega3 (I2 - I3) + Gamma1, and cyclically for axes 2 and 3.
+    """
     I1, I2, I3 = moments
     o1, o2, o3 = np.moveaxis(np.asarray(omega), -1, 0)
     G1, G2, G3 = np.moveaxis(np.asarray(Gamma), -1, 0)
-    return np.stack(
-        [
-            (o2 * o3 * (I2 - I3) + G1) / I1,
-            (o3 * o1 * (I3 - I1) + G2) / I2,
-            (o1 * o2 * (I1 - I2) + G3) / I3,
-        ],
-        axis=-1,
-    )
+    return np.stack([(o2 * o3 * (I2 - I3) + G1) / I1,
+                     (o3 * o1 * (I3 - I1) + G2) / I2,
+                     (o1 * o2 * (I1 - I2) + G3) / I3], axis=-1)
 
 
 def angular_momentum_rate_in_body(omega, L, torque):

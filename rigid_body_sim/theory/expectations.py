@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What theory expects of a motion, beside what its events or its states show.
+"""Expectations of theory for a motion, compared with what its events or its states show.
 
 Each has ``note(name, time)`` for events, ``look(state)`` for later states, and ``compared()``,
 which returns predicted and measured values and their relative difference as a dict.
@@ -20,15 +20,14 @@ def _comparison(name, predicted, measured, values):
         difference = float(measured / predicted - 1.0) if predicted else float(measured)
         values[f'measured_{name}'] = float(measured)
         values['relative_difference'] = max(
-            difference, values.get('relative_difference', 0.0), key=abs
-        )
+            difference, values.get('relative_difference', 0.0), key=abs)
     return values
 
 
 class Interval:
-    """The time between two events of one name, and as a frequency (rad/s).
+    """The time between two events of one name (s), also as a frequency (rad/s).
 
-    Two intervals are one period.
+    Two intervals make one period.
     """
 
     def __init__(self, event, seconds):
@@ -42,30 +41,26 @@ class Interval:
             self._last = time
 
     def look(self, state):
-        """States say nothing new."""
+        """Do nothing: states add nothing."""
 
     def compared(self):
         """Return the comparison, a dict."""
         found = _comparison('interval', self._seconds, self._measured, {'event': self.event})
-        return _comparison(
-            'frequency',
-            math.pi / self._seconds,
-            math.pi / self._measured if self._measured else None,
-            found,
-        )
+        return _comparison('frequency', math.pi / self._seconds,
+                           math.pi / self._measured if self._measured else None, found)
 
 
 class Turning:
     """The mean rate (rad/s) at which omega turns about the axis of a symmetric body.
 
-    It is taken in body axes, from the first look at the state on.
+    It is the rate in body axes since the first look at the state.
 
     Parameters
     ----------
     angle : callable
-        Seconds since the first state -> predicted angle, rad.
+        Takes the seconds since the first state and returns the predicted angle, rad.
     components : callable
-        State -> the two components of omega across the axis.
+        Takes a state and returns the two components of omega across the axis.
     """
 
     def __init__(self, angle, components, state):
@@ -78,7 +73,7 @@ class Turning:
         return math.atan2(second, first)
 
     def note(self, name, time):
-        """Events say nothing new."""
+        """Do nothing: events add nothing."""
 
     def look(self, state):
         """Add the angle since the last look; its whole turns are those nearest to theory."""
@@ -89,69 +84,56 @@ class Turning:
 
     def compared(self):
         """Return the comparison, a dict."""
-        # before the first look: the rate in the next second
+        # before the first look the rate is that of the next second
         seconds = self._elapsed or 1.0
         measured = self._turned / seconds if self._elapsed else None
-        return _comparison(
-            'rate', self._angle(seconds) / seconds, measured, {'quantity': 'omega round the axis'}
-        )
+        return _comparison('rate', self._angle(seconds) / seconds, measured,
+                           {'quantity': 'omega round the axis'})
 
 
 class Relaxing:
-    """The energy (J) at which dissipation ends, measured once it falls no more."""
+    """The energy (J) at which dissipation ends; it is measured once it stops falling."""
 
     def __init__(self, scene, state):
         self._inertia = scene.body.about_center
         self._least = largest_axis.least_energy(
-            self._inertia.moments, np.linalg.norm(self._momentum(state))
-        )
+            self._inertia.moments, np.linalg.norm(self._momentum(state)))
         self._energy, self._settled = None, None
 
     def _momentum(self, state):
         return np.array(self._inertia.moments) * rotate_back(
-            *self._inertia.axes, *state.angular_velocity
-        )
+            *self._inertia.axes, *state.angular_velocity)
 
     def note(self, name, time):
-        """Events say nothing new."""
+        """Do nothing: events add nothing."""
 
     def look(self, state):
-        """Take the energy; it has settled when it hardly falls between two looks.
+        """Take the energy, and find whether it has settled between two looks.
 
-        It then falls by less than 1e-9 of itself, and the last wobble has gone.
+        It has settled when it falls by less than 1e-9 of itself and the wobble has died out.
         """
-        energy = float(
-            euler_equations.kinetic_energy(
-                self._inertia.moments, rotate_back(*self._inertia.axes, *state.angular_velocity)
-            )
-        )
+        energy = float(euler_equations.kinetic_energy(
+            self._inertia.moments, rotate_back(*self._inertia.axes, *state.angular_velocity)))
         across = np.delete(self._momentum(state), np.argmax(self._inertia.moments))
-        still = (
-            self._energy is not None
-            and abs(energy - self._energy) < 1e-9 * energy
-            and np.linalg.norm(across)
-            < 1e-3 * math.sqrt(2.0 * energy * max(self._inertia.moments))
-        )
+        still = (self._energy is not None and abs(energy - self._energy) < 1e-9 * energy
+                 and np.linalg.norm(across)
+                 < 1e-3 * math.sqrt(2.0 * energy * max(self._inertia.moments)))
         self._energy, self._settled = energy, energy if still else None
 
     def compared(self):
         """Return the comparison, a dict."""
-        return _comparison(
-            'energy',
-            self._least,
-            self._settled,
-            {'quantity': 'least energy at this angular momentum'},
-        )
+        return _comparison('energy', self._least, self._settled,
+                           {'quantity': 'least energy at this angular momentum'})
 
 
 class Steady:
-    """A rate (rad/s) about a hinge that stays."""
+    """A constant rate (rad/s) about a hinge."""
 
     def __init__(self, rate, axis):
         self._rate, self._axis, self._seen = rate, np.array(axis), None
 
     def note(self, name, time):
-        """Events say nothing new."""
+        """Do nothing: events add nothing."""
 
     def look(self, state):
         """Read the rate."""
@@ -163,7 +145,7 @@ class Steady:
 
 
 class Rolling:
-    """When a ball stops slipping (s after the state it starts from), and the speed it then has."""
+    """The time when a ball stops slipping (s after its first state), and its speed then (m/s)."""
 
     def __init__(self, scene, state):
         body, friction = scene.body, scene.effect('sliding_friction')
@@ -173,14 +155,10 @@ class Rolling:
         size = float(np.hypot(*slip))
         slipping = size > 1e-14 * (np.hypot(*state.velocity[:2]) + np.hypot(*ahead))
         grip = friction.mu * friction.g
-        self._time = (
-            (billiard.sliding_time(size, friction.mu, friction.g, share) if grip else math.inf)
-            if slipping
-            else 0.0
-        )
-        self._speed = float(
-            np.hypot(*billiard.speed_when_rolling(state.velocity[:2], ahead, share))
-        )
+        self._time = ((billiard.sliding_time(size, friction.mu, friction.g, share)
+                       if grip else math.inf) if slipping else 0.0)
+        self._speed = float(np.hypot(
+            *billiard.speed_when_rolling(state.velocity[:2], ahead, share)))
         self._onset = None if slipping else 0.0
         self._rolls_at = None
         self.look(state)
@@ -191,12 +169,12 @@ class Rolling:
             self._onset = time - self._start
 
     def look(self, state):
-        """Read the speed once it rolls."""
+        """Read the speed once the ball rolls."""
         if self._onset is not None and state.time >= self._start + self._onset:
             self._rolls_at = float(np.hypot(*state.velocity[:2]))
 
     def compared(self):
-        """Return the comparison, a dict; empty for a ball that never rolls."""
+        """Return the comparison, a dict; it is empty for a ball that never rolls."""
         if not math.isfinite(self._time):
             return {}
         found = _comparison('time', self._time, self._onset, {'event': 'rolling began'})
@@ -204,7 +182,7 @@ class Rolling:
 
 
 def _slip(radius, state):
-    """Return slip of the lowest point and forward velocity of rolling, in the plane, m/s."""
+    """Return the slip of the lowest point and the forward velocity of rolling, in the plane."""
     wx, wy, _ = rotate(*state.orientation, *state.angular_velocity)
     ahead = radius * np.array([wy, -wx])
     return state.velocity[:2] - ahead, ahead

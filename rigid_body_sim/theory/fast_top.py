@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits of a fast top (notes, "Fast top").
 
-Symbols as in rigid_body_sim/theory/heavy_top.py. The small parameter is `slowness` = I1 M g
-l/P_gamma^2; the notes' second one is P_alpha/P_gamma, the cosine of a nearly horizontal tilt, and
-the formulas below are the leading terms in both.
+Symbols are those of rigid_body_sim/theory/heavy_top.py. The small parameter is `slowness` =
+I1 M g l/P_gamma^2; the notes' second one is P_alpha/P_gamma, the cosine of a nearly horizontal
+tilt, and the formulas below are the leading terms in both.
 
-Errata: the notes state the limit as P_gamma/P_alpha -> infinity, the precession as I1 M g
-l/P_gamma, the nutation as P_gamma^2/I1^2 (its square).
+Errata: the notes state the limit as P_gamma/P_alpha -> infinity, the precession as
+I1 M g l/P_gamma, and the nutation as P_gamma^2/I1^2 (its square).
 """
 
 

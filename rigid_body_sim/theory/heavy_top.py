@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symmetric top with a fixed point in a uniform field (notes, "Symmetric Top" to "Small oscillations about equilibrium").
+"""Symmetric top with a fixed point in a uniform field.
+
+The formulas are those of the notes, "Symmetric Top" to "Small oscillations about equilibrium".
 
 Symbols: I1 = I2 and I3 moments about the pivot (kg m^2), M mass (kg), g gravity (m/s^2), l
 distance from the pivot to the centre of mass (m) along e3; `Mgl` their product (J). alpha, beta,
-gamma Euler's angles z-y-z (rad), beta from the upward vertical; P_alpha = L_z and P_gamma = L_3
+gamma Euler angles z-y-z (rad), beta from the upward vertical; P_alpha = L_z and P_gamma = L_3
 their momenta (kg m^2/s), both constant. beta_0 the tilt of steady precession, eta = beta - beta_0.
 
-Errata: P_x, P_y of the scan are P_alpha, P_gamma; the prefactor in I1 beta'' reads cos(beta)/(I1
-sin^3(beta)). Omega^2 holds at equilibrium only and is singular at beta_0 = 90 degrees (`curvature`
-holds everywhere).
+Errata: P_x, P_y of the scan are P_alpha, P_gamma; the prefactor in I1 beta'' reads
+cos(beta)/(I1 sin^3(beta)). Omega^2 holds at equilibrium only and is singular at beta_0 = 90
+degrees (`curvature` holds everywhere).
 """
 
 import math
@@ -37,20 +39,20 @@ def alpha_rate(beta, P_alpha, P_gamma, I1):
 
 
 def gamma_rate(beta, P_alpha, P_gamma, I1, I3):
-    """Return the spin gamma' = p_gamma (1/(I1 tan^2(beta)) + 1/I3) - p_alpha cos(beta)/(I1 sin^2(beta)), rad/s."""
-    omega3 = P_gamma / I3 if P_gamma else 0.0  # also of a body without moment about its axis
-    return (
-        P_gamma / (I1 * np.tan(beta) ** 2)
-        + omega3
-        - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha
-    )
+    """Return the spin gamma', rad/s.
+
+    gamma' = p_gamma (1/(I1 tan^2(beta)) + 1/I3) - p_alpha cos(beta)/(I1 sin^2(beta)).
+    """
+    omega3 = P_gamma / I3 if P_gamma else 0.0  # serves a body without moment about its axis too
+    return (P_gamma / (I1 * np.tan(beta) ** 2) + omega3
+            - np.cos(beta) / (I1 * np.sin(beta) ** 2) * P_alpha)
 
 
 def beta_acceleration(beta, P_alpha, P_gamma, I1, Mgl):
     """Return beta'', rad/s^2.
 
-    I1 beta'' = cos(beta)/(I1 sin^3(beta)) (p_alpha^2 - 2 p_alpha p_gamma cos(beta) + p_gamma^2) -
-    p_alpha p_gamma/(I1 sin(beta)) + M g l sin(beta).
+    I1 beta'' = cos(beta)/(I1 sin^3(beta)) (p_alpha^2 - 2 p_alpha p_gamma cos(beta) + p_gamma^2)
+    - p_alpha p_gamma/(I1 sin(beta)) + M g l sin(beta).
     """
     c, s = np.cos(beta), np.sin(beta)
     turning = c / (I1 * s**3) * (P_alpha**2 - 2.0 * P_alpha * P_gamma * c + P_gamma**2)
@@ -58,12 +60,19 @@ def beta_acceleration(beta, P_alpha, P_gamma, I1, Mgl):
 
 
 def spin_energy(P_gamma, I3):
-    """Return P_gamma^2/(2 I3), the constant in V_eff, J; 0 for a body without spin, also one without moment about its axis."""
+    """Return P_gamma^2/(2 I3), the constant in V_eff, J.
+
+    It is 0 for a body without spin, even if its moment about the axis is zero.
+    """
     return P_gamma**2 / (2.0 * I3) if P_gamma else 0.0
 
 
 def effective_potential(beta, P_alpha, P_gamma, I1, I3, Mgl):
-    """Return V_eff = (P_alpha - P_gamma cos(beta))^2/(2 I1 sin^2(beta)) + M g l cos(beta) + P_gamma^2/(2 I3), J."""
+    """Return the effective potential V_eff, J.
+
+    V_eff = (P_alpha - P_gamma cos(beta))^2/(2 I1 sin^2(beta)) + M g l cos(beta)
+    + P_gamma^2/(2 I3).
+    """
     centrifugal = (P_alpha - P_gamma * np.cos(beta)) ** 2 / (2.0 * I1 * np.sin(beta) ** 2)
     return centrifugal + Mgl * np.cos(beta) + spin_energy(P_gamma, I3)
 
@@ -74,7 +83,10 @@ def energy(beta, beta_rate, P_alpha, P_gamma, I1, I3, Mgl):
 
 
 def tilt_of_least_centrifugal_potential(P_alpha, P_gamma):
-    """Return where the first part of V_eff is least (zero): cos(beta) = P_alpha/P_gamma, for |P_alpha| < |P_gamma|, rad."""
+    """Return the tilt where the first part of V_eff is least (zero), rad.
+
+    cos(beta) = P_alpha/P_gamma, for |P_alpha| < |P_gamma|.
+    """
     return np.arccos(P_alpha / P_gamma)
 
 
@@ -86,50 +98,47 @@ def slope(beta, P_alpha, P_gamma, I1, Mgl):
 def curvature(beta, P_alpha, P_gamma, I1, Mgl):
     """Return d^2 V_eff/dbeta^2 at any tilt, J/rad^2.
 
-    ((P_alpha^2 + P_gamma^2) (1 + 2 c^2) - P_alpha P_gamma c (5 + c^2))/(I1 s^4) - M g l c, with c
-    = cos(beta), s = sin(beta).
+    With c = cos(beta) and s = sin(beta) it is
+    ((P_alpha^2 + P_gamma^2) (1 + 2 c^2) - P_alpha P_gamma c (5 + c^2))/(I1 s^4) - M g l c.
     """
     c, s = np.cos(beta), np.sin(beta)
-    return (
-        (P_alpha**2 + P_gamma**2) * (1.0 + 2.0 * c**2) - P_alpha * P_gamma * c * (5.0 + c**2)
-    ) / (I1 * s**4) - Mgl * c
+    return ((P_alpha**2 + P_gamma**2) * (1.0 + 2.0 * c**2)
+            - P_alpha * P_gamma * c * (5.0 + c**2)) / (I1 * s**4) - Mgl * c
 
 
 def curvature_at_equilibrium(beta_0, P_alpha, P_gamma, I1, Mgl):
-    """Return the notes' V_eff'' at equilibrium, J/rad^2; not at 90 degrees.
+    """Return the notes' V_eff'' at equilibrium, J/rad^2; it is singular at 90 degrees.
 
-    (P_alpha P_gamma - I1 M g l (4 - 3 sin^2(beta_0)))/(I1 cos(beta_0)).
+    V_eff'' = (P_alpha P_gamma - I1 M g l (4 - 3 sin^2(beta_0)))/(I1 cos(beta_0)).
     """
-    return (P_alpha * P_gamma - I1 * Mgl * (4.0 - 3.0 * np.sin(beta_0) ** 2)) / (
-        I1 * np.cos(beta_0)
-    )
+    return ((P_alpha * P_gamma - I1 * Mgl * (4.0 - 3.0 * np.sin(beta_0) ** 2))
+            / (I1 * np.cos(beta_0)))
 
 
 def equilibrium_residual(beta_0, P_alpha, P_gamma, I1, Mgl):
-    """Return the notes' condition for beta_0, zero at equilibrium, (kg m^2/s)^2.
+    """Return the residual of the notes' condition for beta_0, (kg m^2/s)^2.
 
-    (P_gamma^2 - 2 P_alpha P_gamma cos(beta_0) + P_alpha^2) cos(beta_0) - (P_alpha P_gamma - I1 M g
-    l sin^2(beta_0)) sin^2(beta_0).
+    It is zero at equilibrium: (P_gamma^2 - 2 P_alpha P_gamma cos(beta_0) + P_alpha^2) cos(beta_0)
+    - (P_alpha P_gamma - I1 M g l sin^2(beta_0)) sin^2(beta_0).
     """
     c, s = np.cos(beta_0), np.sin(beta_0)
-    return (P_gamma**2 - 2.0 * P_alpha * P_gamma * c + P_alpha**2) * c - (
-        P_alpha * P_gamma - I1 * Mgl * s**2
-    ) * s**2
+    return ((P_gamma**2 - 2.0 * P_alpha * P_gamma * c + P_alpha**2) * c
+            - (P_alpha * P_gamma - I1 * Mgl * s**2) * s**2)
 
 
 def equilibrium_quartic(P_alpha, P_gamma, I1, Mgl):
-    """Return the coefficients of the condition as a quartic in cos(beta_0), highest power first."""
+    """Return the coefficients of the condition, a quartic in cos(beta_0), highest power first."""
     K = I1 * Mgl
-    return np.array(
-        [K, 0.0, -(P_alpha * P_gamma + 2.0 * K), P_alpha**2 + P_gamma**2, K - P_alpha * P_gamma]
-    )
+    return np.array([K, 0.0, -(P_alpha * P_gamma + 2.0 * K), P_alpha**2 + P_gamma**2,
+                     K - P_alpha * P_gamma])
 
 
 def equilibrium_tilt(P_alpha, P_gamma, I1, Mgl):
-    """Return beta_0, the tilt of steady precession between 0 and pi where V_eff is least, rad; for |P_alpha| != |P_gamma|.
+    """Return beta_0, the tilt of steady precession where V_eff is least, rad.
 
-    There V_eff rises without bound towards both poles and is convex in cos(beta), so the quartic
-    has one root between -1 and 1. It is found by halving and polished by Newton's rule.
+    It lies between 0 and pi, for |P_alpha| != |P_gamma|. V_eff then rises without bound towards
+    both poles and is convex in cos(beta), so the quartic has one root between -1 and 1. Bisection
+    finds it and Newton's method polishes it.
     """
     low, high = -1.0, 1.0
     quartic = equilibrium_quartic(P_alpha, P_gamma, I1, Mgl)
@@ -148,9 +157,9 @@ def nutation_frequency(beta_0, P_alpha, P_gamma, I1, Mgl):
 
 
 def nutation_frequency_squared_of_notes(beta_0, P_alpha, P_gamma, I1, Mgl):
-    """Return the notes' Omega^2, (rad/s)^2; right at equilibrium, not at 90 degrees.
+    """Return the notes' Omega^2, (rad/s)^2; it holds at equilibrium, except at 90 degrees.
 
-    (P_alpha P_gamma - I1 M g l (4 - 3 sin^2(beta_0)))/(I1^2 cos(beta_0)).
+    Omega^2 = (P_alpha P_gamma - I1 M g l (4 - 3 sin^2(beta_0)))/(I1^2 cos(beta_0)).
     """
     return curvature_at_equilibrium(beta_0, P_alpha, P_gamma, I1, Mgl) / I1
 
@@ -158,7 +167,8 @@ def nutation_frequency_squared_of_notes(beta_0, P_alpha, P_gamma, I1, Mgl):
 def precession_variation(beta_0, P_alpha, P_gamma, I1):
     """Return d alpha'/d beta at beta_0, (rad/s)/rad: alpha' = main precession + eta(t) times this.
 
-    P_gamma/(I1 sin(beta_0)) - 2 cos(beta_0) (P_alpha - P_gamma cos(beta_0))/(I1 sin^3(beta_0)).
+    It is P_gamma/(I1 sin(beta_0))
+    - 2 cos(beta_0) (P_alpha - P_gamma cos(beta_0))/(I1 sin^3(beta_0)).
     """
     c, s = np.cos(beta_0), np.sin(beta_0)
     return P_gamma / (I1 * s) - 2.0 * c * (P_alpha - P_gamma * c) / (I1 * s**3)
@@ -189,10 +199,11 @@ def turning_points(E, P_alpha, P_gamma, I1, I3, Mgl):
 
 
 def time_between_turning_points(omega, up, I1, I3, Mgl):
-    """Return half the period of the nutation, s, from omega and the upward vertical in body axes at any time; None where there is none.
+    """Return half the period of the nutation, s, or None if there is none.
 
-    Beyond the notes: with w = 1 - cos(beta), (I1 w')^2 = K (w3 - w)(w - w1)(w - w2) or its like
-    with K = 2 I1 M g l, so that the time is I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3)));
+    `omega` and the upward vertical `up` are in body axes, at any time. Beyond the notes: with
+    w = 1 - cos(beta) and K = 2 I1 M g l, (I1 w')^2 = K (w3 - w)(w - w1)(w - w2), or the like for
+    another sign of K, so that the time is I1 pi/(sqrt(K) agm(sqrt(w2 - w3), sqrt(w1 - w3)));
     Whittaker and Watson, Modern Analysis, 22.7. The coefficients in w keep their digits near the
     upright top.
     """
@@ -209,7 +220,10 @@ def time_between_turning_points(omega, up, I1, I3, Mgl):
 
 
 def _turning_heights(omega, up, I1, I3, Mgl):
-    """Return the roots w1, w2, w3 of the cubic of :func:`time_between_turning_points`, the one that is no turning point last; or None."""
+    """Return the roots w1, w2, w3 of the cubic of :func:`time_between_turning_points`, or None.
+
+    The root that is no turning point comes last.
+    """
     surplus, P_gamma, lead = _constants(omega, up, I1, I3, Mgl)
     K = 2.0 * I1 * Mgl
     cubic = [-K, 2.0 * K - surplus - P_gamma**2, 2.0 * (surplus - lead * P_gamma), -(lead**2)]
@@ -221,7 +235,10 @@ def _turning_heights(omega, up, I1, I3, Mgl):
 
 
 def _constants(omega, up, I1, I3, Mgl):
-    """Return 2 I1 (E - P_gamma^2/(2 I3) - M g l), P_gamma and P_alpha - P_gamma, with their digits also near the upright top."""
+    """Return 2 I1 (E - P_gamma^2/(2 I3) - M g l), P_gamma and P_alpha - P_gamma.
+
+    They keep their digits near the upright top too.
+    """
     across = up[0] ** 2 + up[1] ** 2
     w = across / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - up[2]
     P_gamma = I3 * omega[2]
@@ -230,11 +247,12 @@ def _constants(omega, up, I1, I3, Mgl):
 
 
 def mean_precession(omega, up, I1, I3, Mgl):
-    """Return the mean of alpha' over a nutation, rad/s, from omega and the upward vertical in body axes; None where it is not defined.
+    """Return the mean of alpha' over a nutation, rad/s, or None where it is not defined.
 
-    Beyond the notes: alpha' = (P_alpha - P_gamma + P_gamma w)/(I1 w (2 - w)) with w = 1 -
-    cos(beta), averaged over time by w = (w1 + w2)/2
-    - (w2 - w1)/2 cos(theta), where dt is proportional to dtheta/sqrt(|w - w3|): the rule of midpoints then converges geometrically. None for
+    `omega` and the upward vertical `up` are in body axes. Beyond the notes:
+    alpha' = (P_alpha - P_gamma + P_gamma w)/(I1 w (2 - w)) with w = 1 - cos(beta) is averaged over
+    time by w = (w1 + w2)/2 - (w2 - w1)/2 cos(theta), where dt is proportional to
+    dtheta/sqrt(|w - w3|); the midpoint rule then converges geometrically. The result is None for
     a top that passes (nearly) through the vertical.
     """
     heights = _turning_heights(omega, up, I1, I3, Mgl)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Moments of inertia of simple bodies (notes, "Some inertia tensors").
 
-Written as the notes have them, M times a length squared times numbers, and independent of
+They are written as in the notes, M times a length squared times numbers, and independently of
 rigid_body_sim/scene/bodies.py, which they confirm. Symbols: M mass (kg), L length, R radius (m);
 moments (I1, I2, I3) in kg m^2 about the centre of mass, axis 3 along z, unless a name says
-otherwise. Box, cylinder and ellipsoid are not in the notes: Landau and Lifshitz, Mechanics,
-section 32, problem 2.
+otherwise. Box, cylinder and ellipsoid are not in the notes: their source is Landau and Lifshitz,
+Mechanics, section 32, problem 2.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ def rod_about_end(M, L):
 
 
 def lamina(Ixx, Iyy):
-    """Return the moments of any lamina in the xy plane: I_zz = I_xx + I_yy (perpendicular axes)."""
+    """Return the moments of any lamina in the xy plane, I_zz = I_xx + I_yy."""
     return np.array([Ixx, Iyy, Ixx + Iyy])
 
 
@@ -62,10 +62,16 @@ def cylinder(M, R, L):
 
 
 def ellipsoid(M, a, b, c):
-    """Return the moments of an ellipsoid with semi-axes a, b, c, M/5 (b^2 + c^2, c^2 + a^2, a^2 + b^2)."""
+    """Return the moments of an ellipsoid with semi-axes a, b, c.
+
+    They are M/5 (b^2 + c^2, c^2 + a^2, a^2 + b^2).
+    """
     return M / 5.0 * np.array([b**2 + c**2, c**2 + a**2, a**2 + b**2])
 
 
 def parallel_axis(moment, M, distance):
-    """Return I + M distance^2, about an axis at a distance (m) from the parallel one through the centre of mass (notes, "Kater")."""
+    """Return I + M distance^2, the moment about a parallel axis (notes, "Kater").
+
+    `moment` is about the axis through the centre of mass, at a distance (m) from the other.
+    """
     return moment + M * distance**2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What theory predicts of an undisturbed motion, beside what was measured.
+"""Predictions of theory for an undisturbed motion, with what was measured.
 
 ==================== ======================================= =====================================
 scene                predicted and measured                  theory
@@ -16,7 +16,7 @@ ball on the table    time and speed when rolling begins      billiard.sliding_ti
 ==================== ======================================= =====================================
 
 The formulas share nothing with the simulation. They start from the state after the last
-disturbance. The node and the page in the browser ask here.
+disturbance. The node and the browser view use this module.
 """
 
 import math
@@ -38,7 +38,7 @@ from rigid_body_sim.theory.expectations import Interval, Relaxing, Rolling, Stea
 
 
 def expectation(scene, state):
-    """Return what theory expects of a scene from a state on; None where it is silent.
+    """Return what theory expects of a scene from a state on, or None if it says nothing.
 
     The object has ``note``, ``look`` and ``compared`` (expectations.py).
     """
@@ -64,9 +64,8 @@ def expectation(scene, state):
 def _in_order(inertia, state):
     """Return the moments in rising order and omega along their axes."""
     order = np.argsort(inertia.moments)
-    return np.array(inertia.moments)[order], np.array(
-        rotate_back(*inertia.axes, *state.angular_velocity)
-    )[order]
+    return (np.array(inertia.moments)[order],
+            np.array(rotate_back(*inertia.axes, *state.angular_velocity))[order])
 
 
 def _flips(scene, state):
@@ -75,7 +74,7 @@ def _flips(scene, state):
 
 
 def _round_the_axis(scene, state):
-    """Return what is expected of omega about the axis of a body with two equal moments."""
+    """Return the expected turning of omega about the axis of a body with two equal moments."""
     inertia = scene.body.about_center
     I = inertia.moments
     axes = [axis for axis in range(3) if I[(axis + 1) % 3] == I[(axis + 2) % 3] != I[axis]]
@@ -92,14 +91,9 @@ def _round_the_axis(scene, state):
     if torque is None or not (spin or torque) or not any(across(state)):
         return None
     return Turning(
-        lambda time: float(
-            driven_body.phase(time, spin, torque, I1, I3)
-            if torque
-            else symmetric_top.precession_rate(spin, I1, I3) * time
-        ),
-        across,
-        state,
-    )
+        lambda time: float(driven_body.phase(time, spin, torque, I1, I3) if torque
+                           else symmetric_top.precession_rate(spin, I1, I3) * time),
+        across, state)
 
 
 def _axial_torque(scene, inertia, axis):
@@ -108,11 +102,8 @@ def _axial_torque(scene, inertia, axis):
     along = 0.0
     for torque in torques:
         value = rotate_back(*inertia.axes, *torque.values[0])
-        if (
-            torque.frame != 'body'
-            or torque.times != (0.0,)
-            or any(value[k] for k in range(3) if k != axis)
-        ):
+        if (torque.frame != 'body' or torque.times != (0.0,)
+                or any(value[k] for k in range(3) if k != axis)):
             return None
         along += value[axis]
     return along
@@ -124,35 +115,21 @@ def _after_a_blow(scene, state):
     n, body = np.array(scene.constraint.axis), scene.body
     arm = np.subtract(body.center_of_mass, scene.constraint.through)
     length = np.linalg.norm(arm - n * (n @ arm))
-    if (
-        len(strikes) != 1
-        or strikes[0].time
-        or strikes[0].point is None
-        or state.time
-        or scene.initial.angular_velocity.any()
-        or not length
-    ):
+    if (len(strikes) != 1 or strikes[0].time or strikes[0].point is None or state.time
+            or scene.initial.angular_velocity.any() or not length):
         return None
     impulse = np.array(
-        strikes[0].impulse
-        if strikes[0].frame == 'body'
-        else rotate_back(*scene.initial.orientation, *strikes[0].impulse)
-    )
+        strikes[0].impulse if strikes[0].frame == 'body'
+        else rotate_back(*scene.initial.orientation, *strikes[0].impulse))
     lever = np.subtract(strikes[0].point, scene.constraint.through)
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
-    # the moment of the blow about the hinge, F d, by its lever
-    return Steady(
-        float(
-            baseball_bat.angular_acceleration(
-                n @ np.cross(lever, impulse), 1.0, body.mass, length, a
-            )
-        ),
-        n,
-    )
+    # the moment of the blow about the hinge, F d, found from its lever
+    return Steady(float(baseball_bat.angular_acceleration(
+        n @ np.cross(lever, impulse), 1.0, body.mass, length, a)), n)
 
 
 def _swing(scene, state):
-    """Return the expected half period at the amplitude that the energy reaches.
+    """Return the expected half period at the amplitude that the energy allows.
 
     It is None for a pendulum that turns over or stands still.
     """
@@ -171,13 +148,12 @@ def _swing(scene, state):
     reach = half_sine_squared + (n @ state.angular_velocity / (2.0 * frequency)) ** 2
     if not 0.0 < reach < 1.0:
         return None
-    return Interval(
-        'turning point', kater_pendulum.period(frequency, 2.0 * math.asin(math.sqrt(reach))) / 2.0
-    )
+    return Interval('turning point', kater_pendulum.period(
+        frequency, 2.0 * math.asin(math.sqrt(reach))) / 2.0)
 
 
 def _nutation(scene, state):
-    """Half the period of the nutation of a top whose axis of symmetry is body axis 3."""
+    """Return the expected half period of nutation of a top with body axis 3 as symmetry axis."""
     body = scene.body
     I1, I2, I3 = body.about_origin.moments
     x, y, length = body.center_of_mass
@@ -185,22 +161,21 @@ def _nutation(scene, state):
         return None
     up = rotate_back(*state.orientation, 0.0, 0.0, 1.0)
     seconds = heavy_top.time_between_turning_points(
-        state.angular_velocity, up, I1, I3, body.mass * scene.effect('gravity').g * length
-    )
+        state.angular_velocity, up, I1, I3, body.mass * scene.effect('gravity').g * length)
     return Interval('turning point', seconds) if seconds else None
 
 
 class Prediction:
-    """Follows one undisturbed motion: its prediction, and what was seen of it.
+    """The prediction for one undisturbed motion, compared with what was seen of it.
 
-    The prediction is made when it is first wanted: under a stream of commands most motions end
-    before. Any thread may want it.
+    The prediction is made when it is first needed: under a stream of commands most motions end
+    before that. Any thread may ask for it.
 
     Parameters
     ----------
     scene : scenes.Scene
     state : State or None
-        At its beginning; None while a wrench is held, when theory has nothing to say.
+        The state at the beginning; None while a wrench is held, when theory has nothing to say.
     """
 
     def __init__(self, scene, state):
@@ -225,5 +200,5 @@ class Prediction:
             self._expected.look(state)
 
     def compared(self):
-        """Return what is predicted and what was measured last; empty without a prediction."""
+        """Return the prediction and the last measurement; empty without a prediction."""
         return self._expected.compared() if self._expected else {}

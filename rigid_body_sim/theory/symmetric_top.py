@@ -22,31 +22,37 @@ def precession_rate_as_written(omega3, I1, I3):
 
 
 def angular_velocity(t, omega, lambda_, I1, I3):
-    """Return (omega sin(lambda) cos(Omega t), omega sin(lambda) sin(Omega t), omega cos(lambda)) in body axes, shape (..., 3), rad/s."""
+    """Return omega in body axes, shape (..., 3), rad/s.
+
+    It is (omega sin(lambda) cos(Omega t), omega sin(lambda) sin(Omega t), omega cos(lambda)).
+    """
     angle = precession_rate(omega * np.cos(lambda_), I1, I3) * t
     across = omega * np.sin(lambda_)
-    return np.stack(
-        np.broadcast_arrays(
-            across * np.cos(angle), across * np.sin(angle), omega * np.cos(lambda_)
-        ),
-        axis=-1,
-    )
+    return np.stack(np.broadcast_arrays(
+        across * np.cos(angle), across * np.sin(angle), omega * np.cos(lambda_)), axis=-1)
 
 
 def body_cone(omega_across, omega3):
-    """Return the half-angle of the cone that omega describes about e3 in the body, lambda = atan(omega_across/omega3), rad."""
+    """Return the half-angle of the cone that omega describes about e3 in the body, rad.
+
+    lambda = atan(omega_across/omega3).
+    """
     return np.arctan2(omega_across, omega3)
 
 
 def axis_cone(omega_across, omega3, I1, I3):
-    """Return the half-angle of the cone that e3 describes about L in space, atan(I1 omega_across/(I3 omega3)), rad."""
+    """Return the half-angle of the cone that e3 describes about L in space, rad.
+
+    It is atan(I1 omega_across/(I3 omega3)).
+    """
     return np.arctan2(I1 * omega_across, I3 * omega3)
 
 
 def space_cone(omega_across, omega3, I1, I3):
-    """Return the half-angle of the cone that omega describes about L in space, rad; the body cone rolls on it without slipping.
+    """Return the half-angle of the cone that omega describes about L in space, rad.
 
-    It is the difference of the other two cones: e3, omega and L lie in one plane.
+    The body cone rolls on it without slipping. The angle is the difference of those of the other
+    two cones: e3, omega and L lie in one plane.
     """
     return np.abs(body_cone(omega_across, omega3) - axis_cone(omega_across, omega3, I1, I3))
 
