@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What accuracy costs, the hard cases, and every scene measured against theory and peers.
+"""Work-precision, the hard cases, and every scene compared with theory and with peers.
 
 It may import ``analysis`` and what lies below.
 """

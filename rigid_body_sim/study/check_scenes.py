@@ -1,4 +1,5 @@
-"""The command `check_scenes`: every system of the notes run by the simulator and measured, beside what theory predicts."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `check_scenes`: it runs every scene of the notes and compares it with theory."""
 
 import concurrent.futures
 import contextlib
@@ -22,7 +23,8 @@ def main(arguments=None):
     """Run the command; return the exit status: 1 if a quantity is not as predicted."""
     parser = command_line.parser(
         'check_scenes',
-        'Run every scene by its exact motion and by dop8 on the full equations, measure what the notes predict, compare.',
+        'Run every scene by its exact motion and by dop8 on the full equations, measure what the '
+        'notes predict, compare.',
         'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80',
     )
     parser.add_argument(
@@ -71,7 +73,8 @@ def _check(options):
         )
     else:
         print(
-            f'{len(quantities)} quantities of {len(tables)} systems: {len(quantities) - failed} confirmed, {failed} not; '
+            f'{len(quantities)} quantities of {len(tables)} systems: '
+            f'{len(quantities) - failed} confirmed, {failed} not; '
             f'{time.perf_counter() - began:.1f} s'
         )
     return command_line.CHECK_FAILED if failed else command_line.GOOD
@@ -80,8 +83,8 @@ def _check(options):
 def _tables(held, overrides):
     """Yield the tables of the systems in order, with progress on a terminal.
 
-    Several are shared out between two processes, held bodies in one and the others in another: so
-    neither compiles what the other does.
+    Several are shared between two processes, held bodies in one and the others in another, so
+    that neither compiles what the other does.
     """
     with contextlib.ExitStack() as stack:
         if len(held) == 1:
@@ -111,7 +114,7 @@ def _tables(held, overrides):
 
 
 def _table(name, overrides):
-    """Return the table of a system as plain data, or what is wrong with it: where, problem, remedy."""
+    """Return the table of a system as plain data, or (where, problem, remedy) of an error."""
     scene = None if name == SHAPES else load_scene(name, overrides)
     try:
         rows = confirm(scene) if scene else confirm_shapes()
@@ -156,7 +159,7 @@ def _plain(row):
 
 
 def _number(value):
-    """Return a float or a list of floats; what is not finite as its name, which JSON can hold."""
+    """Return a float or a list of floats; other than finite ones become names, as JSON needs."""
     return [_finite(entry) for entry in np.ravel(value)] if np.ndim(value) else _finite(value)
 
 
@@ -165,7 +168,7 @@ def _finite(value):
 
 
 def _tell(table):
-    """Print the table of a scene for people."""
+    """Print the table of a scene as text."""
     print(f'{table["scene"]}: {table["about"]}')
     for note in table['notes']:
         print(f'  note: {note}')
@@ -175,12 +178,14 @@ def _tell(table):
         errors = ', '.join(f'{way} {_short(error)}' for way, error in row['error'].items())
         print(f'  {row["quantity"]}{unit}')
         print(
-            f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  {row["kind"]} error: {errors}  '
+            f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  '
+            f'{row["kind"]} error: {errors}  '
             f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}'
         )
         if 'as_written' in row:
             print(
-                f'      uncorrected, the notes give {_digits(row["as_written"])}: off by {_short(row["error_as_written"])}'
+                f'      uncorrected, the notes give {_digits(row["as_written"])}: '
+                f'off by {_short(row["error_as_written"])}'
             )
         if 'detail' in row:
             print(f'      {row["detail"]}')

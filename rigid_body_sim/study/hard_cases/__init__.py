@@ -1,1 +1,5 @@
-"""Hard cases: on which general simulators lose energy, blow up, refuse or lie; one table for the command and for test/hard_cases."""
+# SPDX-License-Identifier: Apache-2.0
+"""Hard cases, on which general simulators lose energy, blow up, refuse or lie.
+
+The command and test/hard_cases share one table of them.
+"""

@@ -1,9 +1,11 @@
-"""Cases with a reference of 34 digits and more: the attitude at every reference time, and the times of flips (groups 1, 2, 3 and 6).
+# SPDX-License-Identifier: Apache-2.0
+"""Cases with a reference of at least 34 digits (groups 1, 2, 3 and 6).
 
-Bound: the floor of two roundings of a quaternion, 2e-15 rad, plus for free bodies half an ulp of
-the angle turned over (the rounding of omega itself; the motion may magnify it far beyond: up to 3
-rad on the separatrix, yet the closed form stays here, its rates have more digits than a double). A
-flip: 4 ulp of its time.
+They compare the attitude at every reference time, and the times of flips. The bound on an
+attitude is the floor of two roundings of a quaternion, 2e-15 rad. For free bodies half an ulp of
+the angle turned through is added (the rounding of omega itself; the motion may magnify it far
+beyond that: up to 3 rad on the separatrix, yet the closed form stays within the bound, because its
+rates have more digits than a double). The bound on a flip is 4 ulp of its time.
 """
 
 import functools
@@ -44,7 +46,7 @@ def scene_of(record):
 
 
 def attitude(record):
-    """Return the Outcome at the reference time where the error is the largest share of its bound."""
+    """Return the Outcome at the reference time with the largest ratio of error to bound."""
     simulation = Simulation(scene_of(record))
     states = simulation.states([state['time'] for state in record['states']]).orientation
     size = math.hypot(*record['angular_velocity']) if record['kind'] == 'free' else 0.0
@@ -58,12 +60,13 @@ def attitude(record):
         error,
         bound,
         'rad',
-        f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, up to {last:g} s',
+        f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, '
+        f'up to {last:g} s',
     )
 
 
 def flips(record):
-    """Return the Outcome of the times of flips, relative to these."""
+    """Return the Outcome of the times of flips, with errors relative to the times."""
     simulation = Simulation(scene_of(record), rate=1.0)
     last = float(mpf(record['flips'][-1]['time']))
     simulation.advance(math.ceil(min(last, 1e15)) + 1)
@@ -95,6 +98,7 @@ def cases():
             yield Case(
                 1,
                 f'flips: {record["name"]}',
-                'energy says nothing of them; each is the time of a passage through the middle axis',
+                'energy says nothing of them; each is the time of a passage through the middle '
+                'axis',
                 functools.partial(flips, record),
             )

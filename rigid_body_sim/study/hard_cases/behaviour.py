@@ -1,4 +1,5 @@
-"""Groups 4, 7, 8, 9 and 10: what has to hold exactly, or by a law, rather than by a reference."""
+# SPDX-License-Identifier: Apache-2.0
+"""Groups 4, 7, 8, 9 and 10: what must hold exactly, or by a law, rather than by a reference."""
 
 import functools
 import hashlib
@@ -20,23 +21,25 @@ from rigid_body_sim.study.hard_cases.contact import A, G, Shot, question
 EPSILON = np.finfo(float).eps
 RELAXING = (
     'scene: relaxing\nbody: {{mass: 1.0, inertia: {inertia}}}\nconstraint: free\n'
-    'effects: [internal_dissipation: {{coefficient: {c!r}}}]\ninitial: {{angular_velocity: {omega}}}\n'
+    'effects: [internal_dissipation: {{coefficient: {c!r}}}]\n'
+    'initial: {{angular_velocity: {omega}}}\n'
 )
 BALL = (
-    'scene: ball\nbody: {{mass: 0.17, shape: {{solid_sphere: {{radius: 0.028575}}}}}}\nconstraint: table\n'
+    'scene: ball\nbody: {{mass: 0.17, shape: {{solid_sphere: {{radius: 0.028575}}}}}}\n'
+    'constraint: table\n'
     'effects: [{strike}sliding_friction: {{mu: {mu!r}, g: 9.81}}]\ninitial: {initial}\n'
 )
 WOBBLING, ON_SMALLEST, OFF_SMALLEST = (2.0, 0.1, 0.2), (5.0, 0.0, 0.0), (5.0, 0.0, 1e-300)
 LEAVES = (math.log(1e300) - math.log(3.0)) / (175.0 / 12.0)
 ENDED = 100.0
-"""c times the time (s) after which nothing is left of a wobble."""
-SPEED = 1.5    # m/s, of the ball that is struck again
+"""Product of c and the time (s) after which nothing is left of a wobble."""
+SPEED = 1.5    # m/s, speed of the ball that is struck again
 RESTRUCK = 2.0 * SPEED / (7.0 * G * 0.25)
-"""mu with which it rolls after 0.25 s."""
+"""Coefficient mu with which that ball rolls after 0.25 s."""
 DRAWN = (1.0 - 0.4 * A * 140.0) / 1.4
-"""m/s, of a ball of 1 m/s with 140 rad/s of back spin, once it rolls."""
+"""Speed (m/s) once it rolls of a ball of 1 m/s with 140 rad/s of back spin."""
 OPPOSITE = tuple((0.1 * sign, 1e100 * sign, 5e-324 * sign) for sign in (1.0, -1.0))
-"""N m s, body axes."""
+"""Opposite angular impulses, N m s, in body axes."""
 
 
 def _same_bits(*vectors):
@@ -50,8 +53,8 @@ def _same_bits(*vectors):
 
 
 def million_ticks():
-    """One jump of 1e6 s, a million ticks of 1 s, and times out of order."""
-    # slowly, as only its 4000 flips cost time
+    """Compare one jump of 1e6 s, a million ticks of 1 s, and times out of order."""
+    # the body turns slowly, because only its 4000 flips cost time
     scene = load_scene('tennis_racket', ['initial.angular_velocity=[0.0001, 0.05, 0.0001]'])
     ticking, jumping, shuffled = (Simulation(scene, rate=1.0) for _ in range(3))
     last = ticking.advance_through(1_000_000)[-1].vector
@@ -73,9 +76,9 @@ def composed_jumps():
     for time in times:
         motion(state, wrench).state(time, out)
         state = out.copy()
-    # an error of omega at an anchor turns the body for the time from there to the end at 0; three
-    # times the walk of 1 ulp each (24 such walks, two versions of NumPy and numba: 0.04 to 1.5 of
-    # it)
+    # An error of omega at an anchor turns the body for the time from there to the end at 0. The
+    # factor 3 multiplies a walk of 1 ulp each (24 such walks with two versions of NumPy and numba
+    # reached 0.04 to 1.5 of it).
     left = float(np.linalg.norm(start[5:8])) * float(np.linalg.norm(times))
     bound = 3.0 * EPSILON * (4.0 * math.sqrt(len(times)) + left)
     return Outcome(
@@ -99,7 +102,7 @@ def random_bits():
 
 
 def two_processes():
-    """Run one scene with commands in this process, again, and in another one."""
+    """Run one scene with commands in this process twice, and in another one."""
     here = random_bits()
     code = (
         'from rigid_body_sim.study.hard_cases.behaviour import random_bits; print(random_bits())'
@@ -129,7 +132,7 @@ def ball(mu=0.2, initial='{}', strike=''):
 
 
 def two_fifths():
-    """Struck at 2a/5: rolls at once, no slip, no event, the speed to the last bit."""
+    """Strike a ball at 2a/5: it rolls at once, without slip or event, at a constant speed."""
     simulation = ball(strike=f'strike: {{impulse: [0.255, 0, 0], height: {2.0 * A / 5.0!r}}}, ')
     speeds = simulation.states(np.linspace(0.0, 10.0, 1001)).velocity[:, 0]
     return Outcome(
@@ -141,7 +144,7 @@ def two_fifths():
 
 
 def frictionless():
-    """Mu = 0: slips for ever."""
+    """Let a ball slip with mu = 0, for ever."""
     states = ball(mu=0.0, initial='{velocity: [1.0, 0, 0], angular_velocity: [0, -50, 3]}').states(
         [0.1, 1e3, 1e6]
     )
@@ -154,7 +157,7 @@ def frictionless():
 
 
 def restruck_at_onset():
-    """Struck again at the very tick at which rolling begins, twice in that tick."""
+    """Strike a ball again at the very tick at which rolling begins, twice in that tick."""
     simulation = ball(mu=RESTRUCK, initial=f'{{velocity: [{SPEED!r}, 0, 0]}}')
     simulation.advance(250)
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
@@ -170,7 +173,7 @@ def restruck_at_onset():
 
 
 def draw_shot():
-    """Back spin: it comes back, and then rolls with a slip of exactly zero."""
+    """Play a ball with back spin: it comes back, then rolls with a slip of exactly zero."""
     simulation = ball(initial='{velocity: [1.0, 0, 0], angular_velocity: [0, -140.0, 0]}')
     simulation.advance(3000)
     v, q = simulation.state.velocity[0], simulation.state
@@ -196,7 +199,7 @@ def relaxing(c, omega, seconds, inertia=(1.0, 2.0, 3.0), accuracy=1e-12):
 
 
 def never_rises(c, omega, seconds, **more):
-    """Return the largest rise of the excess, and the end."""
+    """Return the Outcome of the largest rise of the excess, and of its value at the end."""
     excess, _ = relaxing(c, omega, seconds, **more)
     return Outcome(
         max(float(np.diff(excess).max()), float(abs(excess[-1])) if c * seconds > ENDED else 0.0),
@@ -207,7 +210,7 @@ def never_rises(c, omega, seconds, **more):
 
 
 def stays_on_smallest():
-    """Exactly on the smallest axis: an exact solution, however unstable."""
+    """Start exactly on the smallest axis, which is an exact solution, however unstable."""
     _, states = relaxing(1.0, ON_SMALLEST, 100.0)
     return Outcome(
         float(np.abs(states.angular_velocity - ON_SMALLEST).max()),
@@ -218,7 +221,10 @@ def stays_on_smallest():
 
 
 def leaves_smallest():
-    """Start 1e-300 off it: the offset grows as a spiral at the mean of c L^2 (1/I1 - 1/I2) and c L^2 (1/I1 - 1/I3), 175/12 1/s."""
+    """Start 1e-300 off the smallest axis and time the growth of the offset.
+
+    It grows as a spiral at the mean of c L^2 (1/I1 - 1/I2) and c L^2 (1/I1 - 1/I3), 175/12 1/s.
+    """
     _, states = relaxing(1.0, OFF_SMALLEST, 80.0)
     time = states.time[
         int(
@@ -237,7 +243,7 @@ def leaves_smallest():
 
 
 def impulses_cancel():
-    """Opposite impulses of one tick; the denormal ones; 1e300 is refused in one line."""
+    """Apply opposite impulses in one tick, denormal ones too; 1e300 is refused in one line."""
     scene = load_scene('tennis_racket')
     one, quiet = Simulation(scene), Simulation(scene)
     for each in (one, quiet):
@@ -261,12 +267,16 @@ def impulses_cancel():
 
 
 def energy_is_no_proof():
-    """Beside the separatrix, by RK4 of 1 ms: energy to 1e-14 and better while the attitude is wrong by more than 1e-6 rad."""
+    """Follow a body beside the separatrix by RK4 with steps of 1 ms.
+
+    The energy holds to 1e-14 and better while the attitude is wrong by more than 1e-6 rad.
+    """
     text = (
-        'scene: beside\nbody: {{mass: 1.0, inertia: [3.0, 4.0, 6.0]}}\nconstraint: {0}\neffects: {1}\n'
+        'scene: beside\nbody: {{mass: 1.0, inertia: [3.0, 4.0, 6.0]}}\n'
+        'constraint: {0}\neffects: {1}\n'
         'initial: {{angular_velocity: [2.0, 0.7, 1.0000000000000002]}}\n'
     )
-    # held at its centre of mass the body turns as a free one, by the kernels of any top
+    # held at its centre of mass the body turns like a free one, by the kernels of any top
     exact = Simulation(parse_scene(text.format('free', '[]')))
     stepped = Simulation(
         parse_scene(text.format('pivot', '[gravity: {g: 9.81}]')), 'rk4', step=1e-3
@@ -335,7 +345,8 @@ def cases():
         *(
             (
                 f'stiff: c dt = {c * 1e-3:g}',
-                'the wobble dies within a fraction of a tick; explicit steps would follow it for ever',
+                'the wobble dies within a fraction of a tick; '
+                'explicit steps would follow it for ever',
                 c,
                 1.0,
             )
@@ -356,8 +367,10 @@ def cases():
     ):
         yield Case(
             8,
-            f'stiff: c dt = 1e+06, I = ({", ".join(f"{moment:g}" for moment in inertia)}), asked for {accuracy:g} rad',
-            'a rate that ends at once is chattered on; with loose steps a wobble stays above its end, and the steps at 1/rate for ever',
+            f'stiff: c dt = 1e+06, I = ({", ".join(f"{moment:g}" for moment in inertia)}), '
+            f'asked for {accuracy:g} rad',
+            'a rate that ends at once is chattered on; with loose steps a wobble stays above its '
+            'end, and the steps at 1/rate for ever',
             functools.partial(never_rises, 1e9, WOBBLING, 1.0, inertia=inertia, accuracy=accuracy),
         )
     yield Case(8, 'exactly on the smallest axis', 'unstable, yet it must stay', stays_on_smallest,

@@ -1,7 +1,8 @@
-"""The peers beside a case: their error at one time, as their users run them (steps of 1 ms, tolerances of 1e-12), or what they say.
+# SPDX-License-Identifier: Apache-2.0
+"""The peers beside a case: their error at one time, or what they say.
 
-Each answer is asked of a process of its own, so that a peer that crashes or goes on for ever is
-one more answer.
+They run as their users run them (steps of 1 ms, tolerances of 1e-12). Each question is asked in a
+process of its own, so that a peer that crashes or never ends gives one more answer.
 """
 
 import importlib
@@ -14,16 +15,16 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.study.hard_cases.case import Question
 
 LONGEST = 100.0
-"""s: later reference times would take the peers hours."""
+"""Last reference time (s) that peers are asked for; later ones would take them hours."""
 STEP, TOLERANCE = 1e-3, 1e-12
 MOST_RADIANS = 1e4
-"""Turned over, beyond which even a step a radian takes a peer minutes."""
+"""Largest angle (rad); beyond it even one step a radian takes a peer minutes."""
 PATIENCE = 20.0
-"""s: a peer that has not answered by then has none."""
+"""Time (s) after which a peer that has not answered is stopped."""
 
 
 def modules():
-    """Return what is installed of the peers: name -> module, and the names of those that are not."""
+    """Return the installed peers, name -> module, and the names of the others."""
     try:
         from rigid_body_sim.study.precision import peers
     except ImportError:
@@ -42,7 +43,10 @@ def modules():
 
 
 def answer(module, question):
-    """Return the error of a peer, or a text that says why there is none: empty where it cannot be asked."""
+    """Return the error of a peer, or a text that says why there is none.
+
+    The text is empty if the peer cannot be asked.
+    """
     context = multiprocessing.get_context('fork')
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=lambda: theirs.send(_asked(module, question)))
@@ -73,7 +77,10 @@ def _asked(module, question):
 
 
 def attitude(scene, record):
-    """Return the Question for the attitude (rad) of a record (attitudes.py), at the last of its times that peers can reach."""
+    """Return the Question for the attitude (rad) of a record of attitudes.py.
+
+    It asks for the last of the record's times that peers can reach.
+    """
     size = math.hypot(*record['angular_velocity'])
     near = [
         state
@@ -89,7 +96,10 @@ def attitude(scene, record):
 
 
 def smooth(scene, time, unit, measure):
-    """Return the Question for what is measured on the started Run (precision/runner.py) of a smooth scene."""
+    """Return the Question for a measurement on the started Run of a smooth scene.
+
+    A Run is that of precision/runner.py.
+    """
     def ask(module):
         from rigid_body_sim.study.precision.suite import Problem
         runner = next(
@@ -108,14 +118,14 @@ def smooth(scene, time, unit, measure):
 
 
 class _Rates:
-    """What the peers ask of a reference: the fastest rate."""
+    """Stand-in for a reference: it has the fastest rate, which is all that peers ask for."""
 
     def __init__(self, omega):
         self.omega = omega
 
 
 def angle(found, expected):
-    """Return the angle (rad) between an attitude and one given in digits."""
+    """Return the angle (rad) between an attitude and one given by its digits."""
     with mp.workdps(50):
         p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
         size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))

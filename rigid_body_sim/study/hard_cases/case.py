@@ -1,16 +1,20 @@
-"""What a hard case is: a name, why it is hard, a run that returns an error and the bound that the problem itself allows."""
+# SPDX-License-Identifier: Apache-2.0
+"""A hard case: a name, why it is hard, and a run.
+
+The run returns an error and the bound that the problem itself allows.
+"""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run gave.
+    """The result of a run.
 
     Attributes
     ----------
     error, bound : float
-        In `unit`; the bound is floor + growth by conditioning, `reason` says which.
+        Both in `unit`; the bound is floor + growth by conditioning, and `reason` names it.
     unit, reason : str
     """
 
@@ -27,16 +31,17 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Question:
-    """What peers are asked about a case.
+    """A question to the peers about a case.
 
     Attributes
     ----------
     time : float
-        Simulated, s, of the answer.
+        Simulated time of the answer, s.
     unit : str
-        Of the error.
+        Unit of the error.
     ask : callable
-        Module of a peer -> its error; it may raise RefusedError, NotConverged or anything else.
+        Takes the module of a peer and returns its error; it may raise RefusedError, NotConverged
+        or anything else.
     """
 
     time: float
@@ -51,14 +56,14 @@ class Case:
     Attributes
     ----------
     group : int
-        1 racket, 2 inertia, 3 speed, 4 steps, 5 long runs, 6 tops, 7 contact, 8 dissipation, 9
-        commands, 10 reversal.
+        1 racket, 2 inertia, 3 speed, 4 steps, 5 long runs, 6 tops, 7 contact, 8 dissipation,
+        9 commands, 10 reversal.
     name, why : str
-        `why` says what makes it hard.
+        `why` says why the case is hard.
     run : callable
-        () -> Outcome.
+        Takes nothing and returns the Outcome.
     asked : Question or None
-        What peers are asked.
+        The question to the peers.
     """
 
     group: int

@@ -1,7 +1,10 @@
-"""The peers' billiard ball: engines with their own contact, integrators on Coulomb's law as their user writes it, all with 1 ms or 1e-12.
+# SPDX-License-Identifier: Apache-2.0
+"""The peers' billiard ball, with steps of 1 ms or tolerances of 1e-12.
 
-Engines get the ball lying on a plane, friction mu between them, nothing else that brakes. Integrators get v' = -mu g e and
-a omega' = (5/2) mu g (-e_y, e_x), e = u/|u| the direction of the slip u = v + omega x (-a z), zero where u is.
+Engines use their own contact: they get the ball lying on a plane, friction mu between them, and
+nothing else that brakes. Integrators get Coulomb's law as their user writes it: v' = -mu g e and
+a omega' = (5/2) mu g (-e_y, e_x), where e = u/|u| is the direction of the slip
+u = v + omega x (-a z), or zero where u is zero.
 """
 
 import math
@@ -18,21 +21,21 @@ A, MASS, G = 0.028575, 0.17, 9.81
 
 @dataclass(frozen=True)
 class Shot:
-    """What the ball does: start, one push on the way, end.
+    """A shot: the start of the ball, one push on the way, and its end.
 
     Attributes
     ----------
     mu : float
     v : tuple of 2 floats
-        m/s.
+        Initial velocity, m/s.
     omega : tuple of 3 floats
-        World axes, rad/s.
+        Initial angular velocity, world axes, rad/s.
     end : float
-        s.
+        Last time, s.
     expected : tuple of 2 floats
-        v at the end, m/s.
+        Velocity at the end, m/s.
     push : tuple
-        (time in s, change of v in m/s).
+        Time (s) and change of v (m/s).
     """
 
     mu: float
@@ -44,7 +47,10 @@ class Shot:
 
 
 def question(shot):
-    """Return the Question: how far v is off at the end, and how fast the ball still slips though it should roll (m/s)."""
+    """Return the Question for the error of v at the end plus the slip left then (m/s).
+
+    The slip counts if the ball should roll by then.
+    """
     def ask(module):
         if module.NAME not in PEERS:
             return ''
@@ -59,7 +65,7 @@ def question(shot):
 
 
 def rates(y, drive, root=math.sqrt):
-    """Return (v', a omega') of y = (vx, vy, a wx, a wy); drive = mu g."""
+    """Return (v', a omega') at y = (vx, vy, a wx, a wy) for drive = mu g."""
     ux, uy = y[0] - y[3], y[1] + y[2]
     slip = root(ux * ux + uy * uy)
     ex, ey = (ux / slip, uy / slip) if slip != 0.0 else (0.0, 0.0)
@@ -67,7 +73,7 @@ def rates(y, drive, root=math.sqrt):
 
 
 class _Equations:
-    """What integrators share: the unknowns (vx, vy, a wx, a wy)."""
+    """Base of the integrators, with the unknowns (vx, vy, a wx, a wy)."""
 
     def __init__(self, shot):
         self.drive, self.time = shot.mu * G, 0.0
@@ -134,7 +140,9 @@ class _Heyoka(_Equations):
 class _Mujoco:
     SCENE = """<mujoco><option timestep="{step}" gravity="0 0 -{g}" cone="elliptic"/><worldbody>
 <geom type="plane" size="100 100 1" friction="{mu} 0 0" condim="3"/>
-<body pos="0 0 {a}"><freejoint/><geom type="sphere" size="{a}" mass="{mass}" friction="{mu} 0 0" condim="3"/></body></worldbody></mujoco>"""
+<body pos="0 0 {a}"><freejoint/>\
+<geom type="sphere" size="{a}" mass="{mass}" friction="{mu} 0 0" condim="3"/>\
+</body></worldbody></mujoco>"""
 
     def __init__(self, shot):
         import mujoco
@@ -143,7 +151,7 @@ class _Mujoco:
             self.SCENE.format(step=STEP, g=G, mu=shot.mu, a=A, mass=MASS)
         )
         self._data, self._done = mujoco.MjData(model), 0
-        # at first the body's axes are the world's
+        # the body's axes coincide with the world's at first
         self._data.qvel[:] = *shot.v, 0.0, *shot.omega
         self._steps = lambda count: mujoco.mj_step(model, self._data, nstep=count)
 
@@ -174,7 +182,8 @@ class _Bullet:
             engine.createCollisionShape(engine.GEOM_SPHERE, radius=A),
             basePosition=[0.0, 0.0, A],
         )
-        for body, mu in ((plane, 1.0), (self._ball, shot.mu)):      # it takes their product
+        # PyBullet multiplies the two coefficients
+        for body, mu in ((plane, 1.0), (self._ball, shot.mu)):
             engine.changeDynamics(
                 body,
                 -1,
@@ -253,4 +262,4 @@ PEERS = {
     'Drake': _Drake,
     'PyBullet': _Bullet,
 }
-"""By the NAME of the peer's module; RK4 is plain Python here, the same numbers."""
+"""Classes by the NAME of the peer's module; RK4 is plain Python here, with the same numbers."""

@@ -1,4 +1,5 @@
-"""The command `hard_cases`: the table of hard cases, ours and the peers beside it."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `hard_cases`: the table of hard cases, with the peers beside our own results."""
 
 import sys
 
@@ -9,8 +10,10 @@ from rigid_body_sim.study.hard_cases import beside
 from rigid_body_sim.study.hard_cases.case import GROUPS
 from rigid_body_sim.study.hard_cases.table import CASES
 
-ABOUT = """Run the hard cases, on which general simulators lose energy, blow up, refuse or lie, and print the table: case, ours, bound, verdict.
-With --peers the errors of the programs installed here (requirements/peers.txt has them all) stand beside ours."""
+ABOUT = """Run the hard cases, on which general simulators lose energy, blow up, refuse or lie, \
+and print the table: case, ours, bound, verdict.
+With --peers the errors of the programs installed here (requirements/peers.txt has them all) \
+stand beside ours."""
 
 
 def main(arguments=None):
@@ -30,7 +33,8 @@ def _run(options):
     else:
         for row in rows:
             print(
-                f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  {row["case"]}: {row["error"]:.1e} {row["unit"]}'
+                f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  '
+                f'{row["case"]}: {row["error"]:.1e} {row["unit"]}'
                 f' (bound {row["bound"]:.1e}: {row["reason"]})'
             )
             for name, value in row['peers'].items():
@@ -43,7 +47,7 @@ def _run(options):
 
 
 def measure(with_peers, watch):
-    """Return a row of plain data for each case, and the names of the peers that are not installed."""
+    """Return a row of plain data for each case, and the names of the peers not installed."""
     installed, missing = beside.modules() if with_peers else ({}, [])
     rows = []
     for case in tqdm(CASES, disable=not watch, unit='case'):
@@ -72,5 +76,5 @@ def measure(with_peers, watch):
 
 
 def _number(error):
-    """Return the number, the largest double where there is none: JSON has no NaN."""
+    """Return the number, or the largest double instead of a NaN or infinity, which JSON lacks."""
     return error if error == error and abs(error) != float('inf') else 1.7e308

@@ -1,4 +1,8 @@
-"""What peers are asked about dissipation and commands: the same numbers that behaviour.py takes from ours."""
+# SPDX-License-Identifier: Apache-2.0
+"""Questions to the peers about dissipation and commands.
+
+They ask for the same numbers that behaviour.py measures in our own results.
+"""
 
 import math
 
@@ -13,14 +17,17 @@ STATES = 400
 
 
 def _passed(run, seconds):
-    """Yield (time, omega) of a started Run at the times that ours is looked at."""
+    """Yield (time, omega) of a started Run at the times used for our own results."""
     for time in np.linspace(0.0, seconds, STATES)[1:]:
         run.to(float(time))
         yield float(time), np.array(run.state()[4:7])
 
 
 def never_rises(scene, seconds, ended):
-    """Ask for the largest rise of the excess over L^2/(2 I_max), and for what is left of it where it must have ended."""
+    """Ask for the largest rise of the excess over L^2/(2 I_max), and for what remains of it.
+
+    The remainder counts if the excess must have ended.
+    """
     start = scene.initial.angular_velocity
 
     def measure(run):
@@ -38,7 +45,7 @@ def _excess(omega):
 
 
 def stays(scene, seconds):
-    """Ask how far omega has gone from where it must stay (rad/s)."""
+    """Ask how far omega has moved from the value that it must keep (rad/s)."""
     def measure(run):
         return float(
             max(
@@ -50,7 +57,7 @@ def stays(scene, seconds):
 
 
 def leaves(scene, seconds, expected):
-    """Ask when the body has left the smallest axis: the error of that time (s)."""
+    """Ask for the error of the time when the body leaves the smallest axis (s)."""
     def measure(run):
         for time, omega in _passed(run, seconds):
             if math.hypot(2.0 * omega[1], 3.0 * omega[2]) > 1.0:
@@ -60,7 +67,10 @@ def leaves(scene, seconds, expected):
 
 
 def cancel(impulses):
-    """Ask what opposite impulses of torque (N m s, body axes) leave where each is added to omega as it comes: of omega, 0.1 s later (rad/s)."""
+    """Ask what opposite angular impulses (N m s, body axes) leave of a change in omega (rad/s).
+
+    Each is added to omega in turn, and omega is compared 0.1 s later.
+    """
     racket = load_scene('tennis_racket')
 
     def ask(module):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All hard cases, in the order of their groups."""
 
 from rigid_body_sim.study.hard_cases import attitudes, behaviour, trends

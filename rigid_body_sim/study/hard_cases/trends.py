@@ -1,9 +1,10 @@
-"""Group 5, long runs: does a residual have a trend? By statistics, not by eye.
+# SPDX-License-Identifier: Apache-2.0
+"""Group 5, long runs: a statistical test whether a residual has a trend.
 
 Stationary noise (anchored exact motion): least squares over the run gives a slope whose own
-uncertainty is known from the scatter; a trend is a slope beyond 5 of these. A walk at random
-(anchored anew at each tick): its steps are the noise, and their mean is compared with 5 of its own
-uncertainty; what a walk of n steps may reach is 5 sqrt(n) of a step.
+uncertainty is known from the scatter; a trend is a slope beyond 5 of these. Random walk (anchored
+anew at each tick): its steps are the noise, and their mean is compared with 5 of its own
+uncertainty; a walk of n steps may reach 5 sqrt(n) of a step.
 """
 
 import math
@@ -21,11 +22,14 @@ from rigid_body_sim.study.hard_cases.case import Case, Outcome
 SIGMAS = 5.0
 BLOCKS = 64
 LONG = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
-"""Set for the long form: 1e8 ticks, a day at 1 kHz, instead of 64,000."""
+"""Whether to run the long form: 1e8 ticks, a day at 1 kHz, instead of 64,000."""
 
 
 def slope_in_sigmas(means, scatter):
-    """Return the slope of block means over the run in units of its uncertainty, scatter being that of one mean."""
+    """Return the slope of block means over the run in units of its uncertainty.
+
+    `scatter` is the uncertainty of one mean.
+    """
     place = np.linspace(-1.0, 1.0, len(means))
     slope = place @ means / (place @ place)
     return (
@@ -48,7 +52,7 @@ def residuals(simulation, states):
     o1, o2, o3 = states.angular_velocity.T
     g = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), (z * z + w * w) - (x * x + y * y)
     P_alpha, P_gamma = I1 * (o1 * g[0] + o2 * g[1]) + I3 * o3 * g[2], I3 * o3
-    # about their mean: the first value is rounded too
+    # relative to the mean: the first value is rounded too
     return found | {
         'p_alpha': P_alpha / P_alpha.mean() - 1.0,
         'p_gamma': P_gamma / P_gamma[0] - 1.0,
@@ -56,7 +60,10 @@ def residuals(simulation, states):
 
 
 def anchored(name):
-    """Return the Outcome of the worst slope of an exact scene that is ticked: 64,000 ticks of 1 ms spread over a day, or every one of 1e8."""
+    """Return the Outcome of the worst slope of an exact scene that is ticked.
+
+    It takes 64,000 ticks of 1 ms spread over a day, or every one of 1e8.
+    """
     simulation = Simulation(load_scene(name))
     in_block = 100_000_000 // BLOCKS if LONG else 1000
     step = 1e-3 if LONG else 86400.0 / (BLOCKS * in_block)
@@ -75,21 +82,22 @@ def anchored(name):
     for key in means[0]:
         values = np.array([mean[key] for mean in means])
         within = np.mean([square[key] for square in squares]) - values.mean() ** 2
-        # of a block mean: by its own scatter between blocks, but no less than that of independent
-        # roundings
+        # the scatter of a block mean is taken between blocks, but is no less than that of
+        # independent roundings
         scatter = max(values.std(), math.sqrt(max(within, 0.0) / in_block))
         worst = max(worst, slope_in_sigmas(values, scatter))
     return Outcome(
         worst,
         SIGMAS,
         'sigma',
-        f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, stationary noise',
+        f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, '
+        'stationary noise',
     )
 
 
 @compiled_allocating
 def walk(parameters, start, ticks, every, moments, out):
-    """Anchor anew at every tick of 1 ms; fill out with 2 E, L^2 and |q|^2 - 1 of every so many."""
+    """Anchor anew at every tick of 1 ms; store 2 E, L^2 and |q|^2 - 1 at every `every` ticks."""
     anchor, state = np.empty(free_body.ANCHOR_SIZE), start.copy()
     for k in range(ticks):
         free_body.anchor(parameters, state, anchor)
@@ -140,7 +148,8 @@ def anchored_anew():
 
 def cases():
     """Yield the cases."""
-    why = 'a bias of a thousandth of an ulp a tick is 1e-11 after a day at 1 kHz, while noise hides it from the eye'
+    why = ('a bias of a thousandth of an ulp a tick is 1e-11 after a day at 1 kHz, '
+           'while noise hides it from the eye')
     for name in ('free_body', 'heavy_top'):
         yield Case(5, f'{name.replace("_", " ")}, a day', why, lambda name=name: anchored(name))
     yield Case(

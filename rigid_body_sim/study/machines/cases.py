@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of cases: what must have the same bits on every machine.
+"""The table of cases that must have the same bits on every machine.
 
 A case runs a scene and returns its parts: name -> list of arrays and texts, whose bytes make a
-digest for each part. Some cases do in another way what another one does (`same_as`),
-and must have the same digests: ticks in slices, other blocks of times, other numbers of threads.
+digest for each part. Some cases compute in another way what another case computes (`same_as`) and
+must have the same digests: ticks in slices, other blocks of times, other numbers of threads.
 
 Durations are short and states few, so that plain Python takes minutes, not hours.
 """
@@ -25,30 +25,30 @@ from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.machines import scenes
 
 EXACT, STEPPED = (20.0, 300), (0.4, 5)
-"""Duration (s) and number of states of a closed form and of a method that steps."""
+"""Duration (s) and number of states of a closed form, and of a method that steps."""
 PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_center': 0.05,
         'billiard_follow': 0.05, 'billiard_low': 0.05, 'billiard_natural_roll': 0.05,
         'ball_with_side_spin': 0.05, 'ball_struck_twice': 0.05, 'graded_tensor': 0.1}
-"""Scene -> factor of its durations, where it is not 1."""
+"""Factor of the durations of a scene, if it is not 1."""
 STEPS, ACCURACY = 40, 1e-9
-"""Steps of a method that does not control its error; accuracy (rad) of one that does."""
+"""Number of steps of a method without error control; accuracy (rad) of one with it."""
 ACCURACIES, HORIZON = (1e-6, 1e-12), 0.5
-"""Of what `auto` chooses: rad, s."""
+"""Accuracies (rad) and horizon (s) asked of `auto`."""
 FORCE, TORQUE = (0.03, -0.02, 0.0), (1e-3, 2e-3, 0.0)
 ON_AWKWARD = ('exact', 'dop8', 'taylor')
 """Methods that run awkward scenes."""
 COMMANDED = ('tennis_racket', 'heavy_top', 'skew_hinge', 'skew_tensor', 'driven_body',
              'ball_with_side_spin')
-"""Scenes that take commands, on the way of `auto`."""
+"""Scenes that take commands, by the method that `auto` chooses."""
 BOOKED = (('major_axis_relaxation', 'dop8'), ('skew_top_damped', 'gauss16'))
-"""Scenes and methods whose ledger is asked for: it has heat in it."""
+"""Scenes and methods whose ledger is read; it contains heat."""
 STRETCHED = (('heavy_top', 'exact'), ('skew_hinge', 'exact'), ('ball_with_side_spin', 'exact'),
              ('tennis_racket', 'exact'), ('skew_top', 'taylor'), ('driven_in_pieces', 'dop8'))
 WAYS = ('one by one', 'in slices', 'foreseen', 'backwards')
-"""Scenes and methods whose ticks are asked for in one go, and in these ways."""
+"""Scenes and methods whose ticks are read in one go, and the other ways to read them."""
 ENSEMBLES = (('heavy_top', 'exact'), ('skew_top', 'taylor'), ('heavy_top', 'dop8'))
 BODIES, THREADS = (3, 8, 17, 40), (1, 2, 5)
-"""Scenes and methods that run many bodies, so many, on so many threads."""
+"""Scenes and methods that run many bodies, the numbers of bodies and of threads."""
 
 
 class Case(typing.NamedTuple):
@@ -87,7 +87,7 @@ def _simulation(name, method):
 
 
 def _parts(simulation, states):
-    """Return all that messages carry of states: they themselves, energies, L^2, reactions."""
+    """Return all that messages carry of states: the states, energies, L^2 and reactions."""
     found = {'states': [states.vector], 'energies': simulation.diagnose(states)}
     if simulation.scene.constraint.kind != 'free':
         found['reactions'] = simulation.reactions(states.time)
@@ -103,7 +103,8 @@ def set_up(name):
             'about the origin': [[*body.about_origin.moments, *body.about_origin.axes]],
             # the digests were made when every constraint had both
             'constraint': [held.axis or (0.0, 0.0, 1.0),
-                           held.through if held.axis else (0.0, 0.0, 0.0)], 'start': [scene.initial.vector]}
+                           held.through if held.axis else (0.0, 0.0, 0.0)],
+            'start': [scene.initial.vector]}
 
 
 def states(name, method):
@@ -118,7 +119,7 @@ def states(name, method):
 
 
 def chosen(name):
-    """Return what `auto` chooses: method, tolerance, expected error."""
+    """Return the choice of `auto`: method, tolerance, expected error."""
     found = (choose(scene_of(name), accuracy=one, horizon=HORIZON) for one in ACCURACIES)
     return {f'{one.accuracy:g} rad': [one.method, [one.tolerance, one.expected_error]]
             for one in found}
@@ -153,7 +154,7 @@ def booked(name, method):
 
 
 def ticks(name, method, way):
-    """Return 300 ticks: asked for one by one, in slices, foreseen, backwards or in one go."""
+    """Return 300 ticks, read one by one, in slices, foreseen, backwards or in one go."""
     simulation = _simulation(name, method)
     if way == 'one by one':
         found = []
@@ -179,7 +180,7 @@ def ticks(name, method, way):
 
 
 def many(name, method, bodies, threads):
-    """Return the states of bodies that start apart."""
+    """Return the states of bodies that start differently."""
     scene = scene_of(name)
     starts = np.tile(scene.initial.vector, (bodies, 1))
     starts[:, ANGULAR_VELOCITY] += np.arange(bodies)[:, np.newaxis] * (0.001, -0.003, 0.007)

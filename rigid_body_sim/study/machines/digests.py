@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compute the digests of all cases and compare them with those kept, which hold on every machine.
+"""Compute the digests of all cases and compare them with the stored ones, valid everywhere.
 
 ::
 
-    python -m rigid_body_sim.study.machines.digests           # 0: all are the same here; 1: not
+    python -m rigid_body_sim.study.machines.digests           # exit status 1 if one differs
     python -m rigid_body_sim.study.machines.digests --json    # the digests of this machine
-    python -m rigid_body_sim.study.machines.digests --write   # keep them: another arithmetic
+    python -m rigid_body_sim.study.machines.digests --write   # store them: another arithmetic
 
 Whoever changes the arithmetic on purpose writes the file anew and says so in CHANGELOG.rst:
 recordings made before then resimulate within a tolerance, no longer to the bit.
@@ -31,7 +31,7 @@ def digest(parts):
 
 
 def compute(wanted=lambda name, case: True):
-    """Return case -> part -> digest; what fails has the part `failed`, with the error's text."""
+    """Return case -> part -> digest; a case that fails has the part `failed`: the error's text."""
     found = {}
     for name, case in cases().items():
         if wanted(name, case):
@@ -43,7 +43,7 @@ def compute(wanted=lambda name, case: True):
 
 
 def different(found, kept):
-    """Return 'case: part' for each digest that is another one, or stands on one side only."""
+    """Return 'case: part' for each digest that differs, or that one side lacks."""
     pairs = ((name, part) for name in sorted({*found, *kept})
              for part in sorted({*found.get(name, ()), *kept.get(name, ())}))
     return [f'{name}: {part}' for name, part in pairs

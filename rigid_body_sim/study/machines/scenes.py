@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes beside those that ship, for what these do not have: awkward bodies, skew axes, drag.
+"""Scenes with features that those that ship lack: awkward bodies, skew axes, drag.
 
 Each stands for an operation on the way from a scene's text to its numbers that once gave other
 bits on another machine, or could: a dot product, an eigenvector, a parallel axis, a long lever.
@@ -88,7 +88,7 @@ AWKWARD = {
         '[strike: {impulse: [0.3, -0.2, 0.5], point: [0.1, 0.2, -0.3], time: 0.25, frame: body}]',
         '{angular_velocity: [0.3, 2.0, -0.2]}'),
 }
-"""Name -> body, constraint, effects, initial."""
+"""Body, constraint, effects and initial conditions by name."""
 
 
 def text(name):

@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ball on a table in multiple precision: the reference for scenes with the constraint `table`.
 
-Sliding: M v' = -mu M g e, I omega' = (-a z) x (-mu M g e), e = u/|u|, u = v + omega x (-a z) the slip. u' = -mu g (1 + M a^2/I) e is along
-e, so e does not turn, v and omega are linear in time until u vanishes, and then stay. The attitude is the Taylor series of
-q' = omega(t) q / 2 (omega in world axes).
+While the ball slides, M v' = -mu M g e and I omega' = (-a z) x (-mu M g e), where e = u/|u| and
+u = v + omega x (-a z) is the slip. u' = -mu g (1 + M a^2/I) e is along e, so e does not turn, v
+and omega are linear in time until u vanishes, and constant from then on. The attitude is the
+Taylor series of q' = omega(t) q / 2 (omega in world axes).
 """
 
 from mpmath import mp, mpf
@@ -11,7 +13,7 @@ from rigid_body_sim.study.precision.inputs import cross, product, turned, turned
 
 
 class Ball:
-    """The motion of one ball from its start on: the same calls as taylor.Turning."""
+    """The motion of one ball from its start, with the same methods as taylor.Turning."""
 
     def __init__(self, inputs, bits):
         self.bits, self.time = bits, 0.0
@@ -27,7 +29,7 @@ class Ball:
         return unit(self._q), turned_back(unit(self._q), self._omega)
 
     def go(self, time):
-        """Go on to a time (s, a double); strikes of that time have acted."""
+        """Go on to a time (s, a double); strikes at that time have acted."""
         with mp.workprec(self.bits + 64):
             while self._strikes and self._strikes[0][0] <= time:
                 until, impulse, lever, height, _ = self._strikes.pop(0)
@@ -57,7 +59,7 @@ class Ball:
             self._omega[0] ** 2 + self._omega[1] ** 2
         )
         push = given.mu * given.g
-        # inputs are doubles: a slip below their rounding is none
+        # inputs are doubles, so a slip below their rounding counts as zero
         if slip > 4e-16 * speed and push:
             e = u[0] / slip, u[1] / slip
             change = (-e[1] * push / (self._ratio * a), e[0] * push / (self._ratio * a), mpf(0))
@@ -73,7 +75,7 @@ class Ball:
             self._now = end
 
     def _turn(self, duration, change):
-        """Turn the attitude for a time while omega changes at a constant rate."""
+        """Turn the attitude for a duration while omega changes at a constant rate."""
         largest = mp.sqrt(
             mp.fsum((abs(w) + abs(c) * duration) ** 2 for w, c in zip(self._omega, change))
         )

@@ -1,7 +1,8 @@
-"""The work-precision figure: error against CPU time per simulated second, one line a method, readable in print and by the colour-blind.
+# SPDX-License-Identifier: Apache-2.0
+"""The work-precision figure: error against CPU time per simulated second, one line a method.
 
-Lines that are the cheapest of ours, or of the peers, at some accuracy are thick; fixed steps of a
-method that has both are dotted.
+It is readable in print and by the colour-blind. Lines that are the cheapest of ours, or of the
+peers, at some accuracy are thick; fixed steps of a method that also controls its error are dotted.
 """
 
 import math
@@ -27,7 +28,7 @@ def draw(results):
     rows = math.ceil(len(results) / columns)
     figure = Figure(figsize=(7.6 * columns, 4.9 * rows), dpi=110, layout='constrained')
     FigureCanvasAgg(figure)
-    looks = {}    # a method looks the same in all panels
+    looks = {}    # method -> number; a method looks the same in all panels
     for peers in (False, True):
         names = dict.fromkeys(
             family(line['name'])
@@ -44,7 +45,7 @@ def draw(results):
 
 
 def panel(axes, result, looks):
-    """Draw one problem; `looks` has a number for each method, which is its colour and marker."""
+    """Draw one problem; `looks` gives the number that selects a method's colour and marker."""
     floor = result['floor']
     axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
     axes.text(
@@ -106,12 +107,12 @@ def panel(axes, result, looks):
 
 
 def family(name):
-    """Return the name of a method without its variant: variants have one colour."""
+    """Return the name of a method without its variant, as variants share a colour."""
     return name.removesuffix(FIXED).removesuffix(ONE_MORE)
 
 
 def leaders(lines):
-    """Return the names of the lines that are the cheapest at some level of the table: they are drawn thick."""
+    """Return the names of the lines to draw thick: the cheapest at some level of the table."""
     names = set()
     for level in table.LEVELS:
         costs = [

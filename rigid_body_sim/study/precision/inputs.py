@@ -1,7 +1,8 @@
-"""The numbers of a scene in multiple precision, as the reference integrators take them: exact doubles, or moved by half an ulp.
+# SPDX-License-Identifier: Apache-2.0
+"""The numbers of a scene in multiple precision, as the reference integrators take them.
 
-Only the inputs are shared with the package's own methods; the equations and the arithmetic of a
-reference are its own.
+They are exact doubles, or doubles moved by half an ulp. Only these inputs are shared with the
+package's own methods; the equations and the arithmetic of a reference are its own.
 """
 
 import math
@@ -14,18 +15,21 @@ ZERO = (mpf(0),) * 3
 
 
 def exactly(x):
-    """Return a double as it is."""
+    """Return a double unchanged."""
     return mpf(float(x))
 
 
 class Moved:
-    """Move every double by half an ulp, up or down by chance; equal numbers together, so that symmetric bodies stay so. Zero stays."""
+    """Random shift of every double by half an ulp, up or down.
+
+    Equal numbers move together, so that symmetric bodies stay symmetric. Zero does not move.
+    """
 
     def __init__(self, seed):
         self._source, self._signs = random.Random(seed), {}
 
     def __call__(self, x):
-        """Return a double moved."""
+        """Return the shifted double."""
         x = float(x)
         if x == 0.0:
             return mpf(0)
@@ -35,30 +39,30 @@ class Moved:
 
 @dataclass(frozen=True)
 class Inputs:
-    """A scene's numbers.
+    """The numbers of a scene.
 
     Attributes
     ----------
     kind : str
         free, pivot, hinge or table.
     mass, g, linear, angular, inner, mu, radius : mpf
-        kg, m/s^2; coefficients of drag, internal dissipation and sliding friction; 0 where the
-        scene has none.
+        Units kg and m/s^2, coefficients of drag, internal dissipation and sliding friction, and
+        m; 0 where the scene has none.
     moments : tuple of 3 mpf
-        Principal, about the point of reference, kg m^2.
+        Principal moments about the point of reference, kg m^2.
     axes : tuple of 4 mpf
-        Unit quaternion, principal axes -> body axes.
+        Unit quaternion from principal to body axes.
     arm : tuple of 3 mpf
-        Point of reference -> centre of mass, body axes, m.
+        Vector from the point of reference to the centre of mass, body axes, m.
     axis : tuple of 3 mpf or None
-        Of a hinge, body axes, unit length.
+        Direction of a hinge, body axes, unit length.
     couples : tuple
-        (times (floats), values (mpf), 'body' or 'world') of the torque effects.
+        Torque effects: (times (floats), values (mpf), 'body' or 'world').
     strikes : tuple
-        (time (float), impulse (mpf), lever from the centre of mass (mpf, body axes), height (mpf),
-        'body' or 'world'), by time.
+        Strikes by time: (time (float), impulse (mpf), lever from the centre of mass (mpf, body
+        axes), height (mpf), 'body' or 'world').
     orientation, omega, velocity : tuples of mpf
-        Start: unit quaternion body -> world, rad/s in body axes, m/s in the world.
+        Start: unit quaternion from body to world, rad/s in body axes, m/s in the world.
     """
 
     kind: str
@@ -87,7 +91,10 @@ def unit(vector):
 
 
 def of(scene, move):
-    """Return the Inputs of a scene, its doubles taken through `move` (`exactly` or Moved(seed)), at mpmath's present precision."""
+    """Return the Inputs of a scene at mpmath's current precision.
+
+    `move` is applied to each of its doubles: `exactly` or Moved(seed).
+    """
     body, constraint, kind = scene.body, scene.constraint, scene.constraint.kind
     inertia, held = constraint.inertia(body), constraint.holds_a_point
     center = tuple(map(move, body.center_of_mass))

@@ -1,11 +1,14 @@
-"""Measure what auto chooses by: rigid_body_sim/choice/measured.json, from the problems of the suite without a closed form.
+# SPDX-License-Identifier: Apache-2.0
+"""Measure the costs by which auto chooses, and write rigid_body_sim/choice/measured.json.
+
+They are measured on the problems of the suite without a closed form.
 
 ::
 
     .venv/bin/python -m rigid_body_sim.study.precision.make_measured [KIND ...]
 
-All kinds of scene, or the kinds named (``pivot``, ``free`` ...), while the others stay as they
-are.
+It measures all kinds of scene, or the named ones (``pivot``, ``free`` ...); the others stay as
+they are.
 """
 
 import json
@@ -24,7 +27,7 @@ LIMIT, REPEATS = 0.02, 7
 
 
 def main(only=()):
-    """Measure and write."""
+    """Measure, and write the file."""
     gathered = {}
     for name in tqdm(suite.NAMES + suite.TRAINING):
         problem = suite.problem(name)

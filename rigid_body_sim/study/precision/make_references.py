@@ -1,6 +1,8 @@
-"""Make references/*.json: the suite's references by Taylor series in fixed point, and the floors of the problems.
+# SPDX-License-Identifier: Apache-2.0
+"""Make references/*.json: the suite's references and the floors of its problems.
 
-Where a file is there already, it says how far the new states are from those in it.
+A reference is a Taylor series in fixed point. If its file exists already, the command prints how
+far the new states are from those in it.
 
 ::
 
@@ -14,11 +16,12 @@ from rigid_body_sim.study.precision import reference, suite
 
 
 def make(name):
-    """Compute and write one reference; return what to say about it."""
+    """Compute and write one reference, and return a report of one line."""
     problem = suite.problem(name)
     found, before = reference.compute(problem.scene, problem.duration), reference.load(problem)
     reference.save(name, problem, found)
-    said = f'{name}: {found.digits:.1f} digits, floor at the end {found.floor[-1]:.2e} rad, {found.floor_omega[-1]:.2e} rad/s'
+    said = (f'{name}: {found.digits:.1f} digits, '
+            f'floor at the end {found.floor[-1]:.2e} rad, {found.floor_omega[-1]:.2e} rad/s')
     if before is None:
         return said
     angles, lengths = found.distances(before.orientation, before.omega)

@@ -1,8 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error and CPU time of every runner on one problem.
 
-Errors first, from coarse to fine until round-off or the limit of cost is met; then the timed runs,
-all in turn in one process, each several times over, so that whatever else the machine does falls
-on all alike.
+The errors come first, from coarse to fine until round-off or the limit of cost is met. The timed
+runs follow, in turn in one process, each several times over, so that other load on the machine
+affects all alike.
 """
 
 import gc
@@ -18,13 +19,14 @@ from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.study.precision.runner import RefusedError
 
 SAMPLE = 1e-3
-"""A timed sample takes at least this long, s."""
+"""Least duration of a timed sample, s."""
 WORSE, NEAR = 4.0, 1e4
-"""A sweep ends after two settings that are that much worse than the best one, if this is so near the floor: round-off has won."""
+"""Signs of round-off: a sweep ends after two settings whose error is WORSE times the best one,
+if that is below NEAR times the floor."""
 
 
 def measure(problem, reference, runners, limit, repeats, watch=None):
-    """Return what was measured.
+    """Return errors and CPU times of the runners on a problem.
 
     Parameters
     ----------
@@ -34,9 +36,9 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
     limit : float
         CPU seconds that one run may take.
     repeats : int
-        Timed samples of each run.
+        Number of timed samples of each run.
     watch : bool, optional
-        Show progress (default: on a terminal).
+        Whether to show progress (default: on a terminal).
 
     Returns
     -------
@@ -95,13 +97,13 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
 
 
 def _sweep(problem, reference, runner, limit, balance, notes):
-    """Yield (point, run) from coarse to fine; what went wrong on the way is added to notes."""
+    """Yield (point, run) from coarse to fine; failures on the way are added to notes."""
     best, worse = math.inf, 0
     for setting in runner.settings:
         began = time.process_time()
         try:
             run = runner.make(setting)
-            _go(run, problem.duration)    # compiles
+            _go(run, problem.duration)    # the first run compiles
             set_up = time.process_time() - began
             began = time.process_time()
             _go(run, problem.duration)
@@ -111,7 +113,7 @@ def _sweep(problem, reference, runner, limit, balance, notes):
             states[-1] = final
             if not np.isfinite(states).all():
                 raise NotConverged(f'at {runner.control} {setting!r} it returns NaN in silence')
-        except NotConverged as error:    # too coarse to hold; a finer one may do
+        except NotConverged as error:    # the setting may be too coarse, and a finer one good
             notes.append(str(error))
             continue
         angles, omegas = reference.errors(states)
@@ -144,18 +146,21 @@ def _along(run, times):
 
 
 class _Timed:
-    """The timed samples of a run; one that fails at last, though its first runs went well, is noted and has no time."""
+    """The timed samples of a run.
+
+    A run that fails now, though its first runs went well, is noted and has no time.
+    """
 
     def __init__(self, run, point, notes, end):
         self._run, self._point, self._notes, self._end = run, point, notes, end
         self._samples, self._count, self._failed = [], 1, False
 
     def sample(self):
-        """Time it once more."""
+        """Time the run once more."""
         if self._failed:
             return
         try:
-            # the first runs of a short one, with cold caches, take ten times as long as later ones
+            # the first repetitions of a short run, with cold caches, take ten times as long
             while not self._samples and self._once() * self._count < SAMPLE:
                 self._count *= 2
             self._samples.append(self._once())
@@ -164,14 +169,14 @@ class _Timed:
             self._notes.append(f'at {self._point["setting"]!r}, in a later run: {error}')
 
     def _once(self):
-        """Return the CPU seconds of a run, the mean of as many as make a sample."""
+        """Return the CPU seconds of a run, the mean of as many as fill a sample."""
         began = time.process_time()
         for _ in range(self._count):
             _go(self._run, self._end)
         return (time.process_time() - began) / self._count
 
     def tell(self):
-        """Write median, least and most per simulated second into the point."""
+        """Store median, least and most per simulated second in the point."""
         if not self._failed:
             per_second = [value / self._end for value in self._samples]
             self._point['cpu'] = {
@@ -182,7 +187,10 @@ class _Timed:
 
 
 class Balance:
-    """Energy and angular momentum of the turning alone, against what the reference has at the end: whatever is kept is compared with itself."""
+    """Energy and angular momentum of the rotation alone, compared with the reference's end.
+
+    So quantities that are not conserved are compared with their own course.
+    """
 
     def __init__(self, scene):
         body, kind = scene.body, scene.constraint.kind
@@ -190,7 +198,7 @@ class Balance:
             body.about_origin if kind == 'pivot' else body.about_center
         ), scene.effect('gravity')
         self._moments, self._axes = inertia.moments, inertia.axes
-        # of a hinged body the centre of mass moves too
+        # the centre of mass of a hinged body moves too
         self._arm = (
             np.subtract(body.center_of_mass, scene.constraint.through)
             if kind == 'hinge'
@@ -210,7 +218,10 @@ class Balance:
         )
 
     def residuals(self, final, reference):
-        """Return the residuals of a final state, relative to kinetic plus potential energy and to the momentum."""
+        """Return the residuals of a final state.
+
+        They are relative to kinetic plus potential energy, and to the momentum.
+        """
         energy, momentum = self.of(final[:4] / np.linalg.norm(final[:4]), final[4:])
         omega = np.array([float(x) for x in reference.omega[-1]])
         true_energy, true_momentum = self.of(

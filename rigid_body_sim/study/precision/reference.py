@@ -1,9 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """References: attitude and omega along a problem to 34 digits, and the floor that the inputs set.
 
-The floor is what half an ulp on every input number does to the answer, the largest of some draws
-of signs, computed in the same arithmetic. No method in doubles can be better in general; where one
-is, it had luck. Where the inputs are simple fractions that doubles hold exactly it still tells how
-sharp the question is.
+The floor is the effect of half an ulp on every input number, the largest over some random choices
+of signs, computed in the same arithmetic. No method in doubles can be better in general; one that
+is, was lucky. Where the inputs are simple fractions that doubles hold exactly, it still tells how
+sensitive the problem is.
 """
 
 import json
@@ -25,18 +26,18 @@ DIGITS = 34
 
 @dataclass(frozen=True)
 class Reference:
-    """The truth about a problem.
+    """The true motion of a problem.
 
     Attributes
     ----------
     times : array (n,)
-        s; the last one is the duration.
+        Times, s; the last one is the duration.
     orientation, omega : lists of n tuples of mpf
-        Unit quaternion body -> world; rad/s in body axes.
+        Unit quaternion from body to world; rad/s in body axes.
     floor, floor_omega : arrays (n,)
-        rad; rad/s.
+        Floors of the two, rad and rad/s.
     digits : float
-        Decimal digits to which two computations of different precision and steps agree.
+        Number of decimal digits to which two computations of different precision and steps agree.
     """
 
     times: np.ndarray
@@ -47,12 +48,18 @@ class Reference:
     digits: float
 
     def errors(self, states):
-        """Return the errors of states (n, 7), q and omega at the times: rotation angle (rad), length of the difference of omega (rad/s)."""
+        """Return the errors of states (n, 7), q and omega, at the times.
+
+        They are rotation angles (rad) and lengths of the difference of omega (rad/s).
+        """
         rows = [[mpf(x) for x in row] for row in states.tolist()]
         return self.distances([row[:4] for row in rows], [row[4:] for row in rows])
 
     def distances(self, orientation, omega):
-        """Return how far attitudes and rates (lists of tuples of mpf) are from these: rotation angles (rad), lengths (rad/s)."""
+        """Return the distances of attitudes and rates (lists of tuples of mpf) from these.
+
+        They are rotation angles (rad) and lengths (rad/s).
+        """
         return _distances(orientation, omega, self.orientation, self.omega)
 
 
@@ -63,11 +70,11 @@ def compute(scene, duration, draws=8, progress=lambda part: None):
     ----------
     scene : Scene
     duration : float
-        s.
+        Length of the motion, s.
     draws : int
-        Of signs for the floor.
+        Number of random choices of signs for the floor.
     progress : callable
-        Told the part that is done, from 0 to 1.
+        Called with the share that is done, from 0 to 1.
     """
     times = [duration * (k + 1) / SAMPLES for k in range(SAMPLES)]
     count = draws + 2
@@ -95,7 +102,7 @@ def compute(scene, duration, draws=8, progress=lambda part: None):
 
 
 def _distances(orientation, omega, true_orientation, true_omega):
-    """Return rotation angles and lengths of differences of omega, two arrays."""
+    """Return the rotation angles and the lengths of differences of omega, two arrays."""
     angles, lengths = [], []
     with mp.workprec(max(mp.prec, 160)):
         for q, w, p, v in zip(orientation, omega, true_orientation, true_omega):
@@ -107,7 +114,7 @@ def _distances(orientation, omega, true_orientation, true_omega):
 
 
 def save(name, problem, reference):
-    """Write a reference to its file, with the scene and duration that it is of."""
+    """Write a reference to its file, with its scene and duration."""
     def text(rows):
         return [[mp.nstr(x, DIGITS) for x in row] for row in rows]
     FOLDER.joinpath(f'{name}.json').write_text(
@@ -129,7 +136,10 @@ def save(name, problem, reference):
 
 
 def load(problem):
-    """Return the cached Reference of a problem, or None if there is none of exactly this scene and duration."""
+    """Return the cached Reference of a problem, or None.
+
+    The scene and the duration in the file must be exactly those of the problem.
+    """
     path = FOLDER / f'{problem.name}.json'
     if not path.is_file():
         return None

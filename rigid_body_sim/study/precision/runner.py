@@ -1,8 +1,9 @@
-"""What is measured: a method (ours or a peer's) on one problem, from coarse to fine.
+# SPDX-License-Identifier: Apache-2.0
+"""Runners: a method (ours or a peer's) on one problem, with settings from coarse to fine.
 
 A peer is a module in peers/ with NAME, `version()` and `runners(problem)`; ours come from the
-table of methods. A Runner's `make(setting)` does what a user does once (compile, allocate); the
-Run it returns is what is timed.
+table of methods. A Runner's `make(setting)` does what a user does once (compile, allocate); only
+the Run that it returns is timed.
 """
 
 from dataclasses import dataclass
@@ -19,13 +20,13 @@ from rigid_body_sim.simulation.simulation import Simulation
 TOLERANCES = tuple(10.0 ** -k for k in range(1, 16))
 STEPS_OF_A_RADIAN = tuple(2.0 ** k for k in range(-1, 16))
 ONE_MORE = 'exact, one more state'
-"""The line of the exact method without its anchor: what a state costs once the start is known, at whatever time."""
+"""Name of the exact method without its anchor: the cost of a state once the start is known."""
 GRID = 32
-"""The number of steps is a multiple of it: references have so many times, and a step ends at each."""
+"""Divisor of the number of steps: references have so many times, and a step ends at each."""
 
 
 class RefusedError(Exception):
-    """What cannot run a problem, or gets it wrong by its design; the text says why."""
+    """Error of a method that cannot run a problem, or is wrong by design; its text says why."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +37,11 @@ class Runner:
     ----------
     name : str
     control : str
-        accuracy, tolerance, step or none: what a setting is.
+        Meaning of a setting: accuracy, tolerance, step or none.
     settings : tuple
-        From coarse to fine.
+        Settings from coarse to fine.
     make : callable
-        setting -> Run.
+        Takes a setting and returns a Run.
     is_peer : bool
     """
 
@@ -52,10 +53,10 @@ class Runner:
 
 
 class Run:
-    """A method made ready.
+    """A method that is ready to run.
 
-    `start()` goes (back) to the start and `to(time)` goes on; these are timed. `state()` returns q
-    and omega there, 7 numbers.
+    `start()` goes (back) to the start and `to(time)` goes on; these are timed. `state()` returns
+    q and omega there, 7 numbers.
     """
 
     def __init__(self, start, to, state):
@@ -63,7 +64,10 @@ class Run:
 
 
 def steps_for(problem, reference):
-    """Return steps (s) from coarse to fine that end at the duration, by the fastest rate of the motion."""
+    """Return steps (s) from coarse to fine that divide the duration.
+
+    They are shares of a radian at the fastest rate of the motion.
+    """
     fastest = max(float(sum(x * x for x in omega)) ** 0.5 for omega in reference.omega)
     fastest = (
         max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity)))
@@ -102,7 +106,7 @@ def ours(problem, reference):
 
 
 def begun(scene):
-    """Return the state vector from which all start: the scene's, strikes at time 0 done."""
+    """Return the initial state vector of all methods, after the strikes at time 0."""
     if any(effect.name == 'strike' for effect in scene.effects):
         return Simulation(scene).states(np.zeros(1)).vector[0]
     return scene.initial.vector
@@ -133,7 +137,7 @@ def _one_more(run):
 
 
 def _struck_run(scene, method, control):
-    """Return the Run of a scene with strikes on the way, which are the business of Simulation."""
+    """Return the Run of a scene with strikes on the way, which Simulation applies."""
     simulation = Simulation(scene, method, **control)
     result = np.empty((1, STATE_SIZE))
 

@@ -1,4 +1,8 @@
-"""The problems of the suite: a scene and a duration each. The first and the fourth are those of published comparisons."""
+# SPDX-License-Identifier: Apache-2.0
+"""The problems of the suite: a scene and a duration each.
+
+The first and the fourth are those of published comparisons.
+"""
 
 from dataclasses import dataclass
 
@@ -7,7 +11,7 @@ from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 @dataclass(frozen=True)
 class Problem:
-    """What is solved: a scene, from its start to `duration` (s)."""
+    """A problem to solve: a scene, from its start to `duration` (s)."""
 
     name: str
     about: str
@@ -41,8 +45,8 @@ _PROBLEMS = {
             '{orientation: [0.1, -0.5, 0.3, 0.8], angular_velocity: [0.9, -1.1, 0.7]}',
         ),
     ),
-    # I1 (I2 - I1) omega1^2 = I3 (I3 - I2) omega3^2 (1 + 2e-9): the polhode is the separatrix but
-    # for that
+    # the polhode is nearly the separatrix:
+    # I1 (I2 - I1) omega1^2 = I3 (I3 - I2) omega3^2 (1 + 2e-9)
     'separatrix_free_body': (
         'all but on the separatrix, far from the axes',
         100.0,
@@ -50,7 +54,8 @@ _PROBLEMS = {
             FREE,
             'free',
             '[]',
-            '{orientation: [0.3, 0.1, -0.4, 0.7], angular_velocity: [1.212435567710711, 1.1, 0.7]}',
+            '{orientation: [0.3, 0.1, -0.4, 0.7], '
+            'angular_velocity: [1.212435567710711, 1.1, 0.7]}',
         ),
     ),
     'heavy_symmetric_top': (
@@ -64,7 +69,8 @@ _PROBLEMS = {
         'no closed form is known',
         20.0,
         _written(
-            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0.01, 0.005, 0.1]}',
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, '
+            'center_of_mass: [0.01, 0.005, 0.1]}',
             'pivot',
             WEIGHT,
             '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
@@ -100,7 +106,7 @@ _PROBLEMS = {
             '{angular_velocity: [40.0, -60.0, 30.0], velocity: [1.5, 0.4, 0.0]}',
         ),
     ),
-    # from hanging upwards with 1e-9 less than the rate 2 sqrt(M g l/I) that reaches the top
+    # it starts hanging, with 1e-9 less than the rate 2 sqrt(M g l/I) that reaches the top
     'separatrix_pendulum': (
         'all but enough to reach the top',
         20.0,
@@ -118,13 +124,14 @@ _PROBLEMS = {
     ),
 }
 
-# kinds of scene that the suite lacks, for the table that `auto` chooses by
+# kinds of scene that the suite lacks, for the table by which `auto` chooses
 _TRAINING = {
     'fast_asymmetric_top': (
         'fast nutation of a small size',
         10.0,
         _written(
-            '{mass: 0.4, inertia: [0.003, 0.0036, 0.002], inertia_about: origin, center_of_mass: [0.002, 0, 0.04]}',
+            '{mass: 0.4, inertia: [0.003, 0.0036, 0.002], inertia_about: origin, '
+            'center_of_mass: [0.002, 0, 0.04]}',
             'pivot',
             WEIGHT,
             '{euler_zyz: [0.3, 0.5, 0.1], angular_velocity: [0.4, 0.3, 120]}',
@@ -134,7 +141,8 @@ _TRAINING = {
         'drag on an asymmetric top',
         10.0,
         _written(
-            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, center_of_mass: [0, 0, 0.1]}',
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, '
+            'center_of_mass: [0, 0, 0.1]}',
             'pivot',
             '[gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.002}]',
             '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
@@ -146,7 +154,8 @@ _TRAINING = {
         _written(
             FREE,
             'free',
-            '[gravity: {g: 9.81}, torque: {value: [0.3, -0.2, 0.5]}, drag: {linear: 0.1, angular: 0.05}]',
+            '[gravity: {g: 9.81}, torque: {value: [0.3, -0.2, 0.5]}, '
+            'drag: {linear: 0.1, angular: 0.05}]',
             '{angular_velocity: [0.1, 2.0, 0.3], velocity: [3.0, 0.0, 9.0]}',
         ),
     ),
@@ -173,7 +182,7 @@ _TRAINING = {
 }
 NAMES, TRAINING = tuple(_PROBLEMS), tuple(_TRAINING)
 QUICK = ('racket', 'heavy_symmetric_top', 'asymmetric_heavy_top', 'driven_body')
-"""What the quick form of the study runs: two problems with a closed form, two without."""
+"""Problems of the quick form of the study: two with a closed form, two without."""
 
 
 def problem(name):

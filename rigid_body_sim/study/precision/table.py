@@ -1,4 +1,8 @@
-"""The table of a study: what each method needs for 1e-3, 1e-6, 1e-9 and 1e-12 rad, and the best it reaches, at the end and on the way."""
+# SPDX-License-Identifier: Apache-2.0
+"""The table of a study: the cost of each method at some levels of error, and its best error.
+
+The levels are 1e-3, 1e-6, 1e-9 and 1e-12 rad at the end; errors on the way are listed too.
+"""
 
 from rigid_body_sim.study.precision.runner import ONE_MORE
 
@@ -6,19 +10,23 @@ LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
 def cost_at(line, level, error='error'):
-    """Return the least CPU time per simulated second (s) at which a line's error is at most a level, or None."""
+    """Return the least CPU time per simulated second (s) with an error up to a level, or None."""
     return min(
         (point['cpu']['median'] for point in line['points'] if point[error] <= level), default=None
     )
 
 
 def best(line):
-    """Return the smallest error of a line (rad)."""
+    """Return the smallest error of a line, rad."""
     return min(point['error'] for point in line['points'])
 
 
 def ratios(result, named):
-    """Return our best cost over the best peer's at each level: None where either does not get there; of our lines those that are `named`."""
+    """Return our best cost over the best peer's at each level.
+
+    It is None where either does not reach the level. Of our lines only those count whose name
+    satisfies `named`.
+    """
     found = []
     for level in LEVELS:
         ours, theirs = (
@@ -38,8 +46,10 @@ def ratios(result, named):
 def lines(result):
     """Return the lines of a problem's table."""
     text = [
-        f'{result["problem"]}: {result["about"]}, {result["duration"]:g} s; half an ulp on the inputs: {result["floor"]:.1e} rad',
-        f'  {"CPU us per simulated second for":34}{"".join(f"{level:>10.0e}" for level in LEVELS)}{"best rad":>11}{"on the way":>12}'
+        f'{result["problem"]}: {result["about"]}, {result["duration"]:g} s; '
+        f'half an ulp on the inputs: {result["floor"]:.1e} rad',
+        f'  {"CPU us per simulated second for":34}'
+        f'{"".join(f"{level:>10.0e}" for level in LEVELS)}{"best rad":>11}{"on the way":>12}'
         f'{"omega":>10}{"energy":>10}{"L":>10}{"set-up s":>10}',
     ]
     for line in result['lines']:
@@ -47,8 +57,10 @@ def lines(result):
         point = min(line['points'], key=lambda one: one['error'])
         name = f'{line["name"]}{" (peer)" if line["is_peer"] else ""}'
         text.append(
-            f'  {name:34}{costs}{point["error"]:11.1e}{point["largest_error"]:12.1e}{point["omega_error"]:10.1e}'
-            f'{point["energy_residual"]:10.1e}{point["momentum_residual"]:10.1e}{line["points"][0]["set_up"]:10.2f}'
+            f'  {name:34}{costs}{point["error"]:11.1e}{point["largest_error"]:12.1e}'
+            f'{point["omega_error"]:10.1e}'
+            f'{point["energy_residual"]:10.1e}{point["momentum_residual"]:10.1e}'
+            f'{line["points"][0]["set_up"]:10.2f}'
         )
     text += [
         f'  {line["name"]}: {note}' for line in result['lines'] for note in line['notes'][-1:]

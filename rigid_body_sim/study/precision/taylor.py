@@ -1,15 +1,18 @@
-"""Taylor series of a turning body in fixed point: the reference for free, pivoted and hinged bodies under whatever a scene may list.
+# SPDX-License-Identifier: Apache-2.0
+"""Taylor series of a rotating body in fixed point, the reference for all but the table.
 
-Equations, in axes fixed in the body (principal about the point of reference; a hinge's: the body's
+It serves free, pivoted and hinged bodies under every effect that a scene may list. The equations
+hold in axes fixed in the body (principal about the point of reference; for a hinge the body's
 own):
 
-    q' = q (omega + u) / 2,    g_j' = g_j x (omega + u),    m' = m x (omega + u) + torque,    m = I omega,    u = c m x omega
+    q' = q (omega + u) / 2,    g_j' = g_j x (omega + u),
+    m' = m x (omega + u) + torque,    m = I omega,    u = c m x omega
 
-q attitude (x, y, z, w); g_j the directions fixed in the world that a torque needs (the vertical;
-that of a torque given in world axes); u internal dissipation; torque = K + D omega + sum of A_j
-g_j: couples in the body, drag, weight and couples in the world. At a hinge only n . torque acts.
-The centre of mass of a free body does not act back on its turning. Nothing here knows of a closed
-form.
+q is the attitude (x, y, z, w); g_j are the directions fixed in the world that a torque needs (the
+vertical; the direction of a torque given in world axes); u is internal dissipation;
+torque = K + D omega + sum of A_j g_j: couples in the body, drag, weight and couples in the world.
+At a hinge only n . torque acts. The motion of the centre of mass of a free body does not act back
+on its rotation. Nothing here uses a closed form.
 
 Numbers are integers in units of 2^-bits, so that a coefficient of the series, a convolution, is
 one loop of exact integer products.
@@ -32,13 +35,13 @@ from rigid_body_sim.study.precision.inputs import (
 
 
 class Turning:
-    """The motion of one body from its start on.
+    """The motion of one body from its start.
 
     Parameters
     ----------
     inputs : inputs.Inputs
     bits : int
-        After the point.
+        Number of bits after the binary point.
     """
 
     def __init__(self, inputs, bits):
@@ -68,7 +71,7 @@ class Turning:
         return unit(product(self._q, (-x, -y, -z, w))), turned(self._frame, self._omega)
 
     def go(self, time):
-        """Go on to a time (s, a double, not before the present one); strikes of that time have acted."""
+        """Go on to a time (s, a double, not before the present); strikes at it have acted."""
         with mp.workprec(self.bits + 64):
             while True:
                 stops = [t for t in self._breaks if self.time < t <= time] + [
@@ -113,7 +116,7 @@ class Turning:
         self._omega = tuple(w + x for w, x in zip(self._omega, self._answer(cross(lever, force))))
 
     def _answer(self, torque):
-        """Return I^-1 torque, where the body can answer."""
+        """Return I^-1 torque, for the directions in which the body can turn."""
         if self._hinged:
             n = self._given.axis
             return tuple(x * dot(n, torque) / self._moment for x in n)
@@ -123,7 +126,7 @@ class Turning:
         return int(mp.nint(mp.ldexp(mpf(x), self.bits)))
 
     def _prepare(self):
-        """Set unit of time, constants and directions of the stretch that begins now."""
+        """Set unit of time, constants and directions of the interval that begins now."""
         given, fixed = self._given, self._fixed
         constant, columns, self._directions = ZERO, [], []
         for times, values, frame in given.couples:
@@ -154,7 +157,7 @@ class Turning:
             (abs(x) for matrix in columns for row in matrix for x in row), default=mpf(0)
         ) + max(map(abs, constant))
         heavy = [i for i in ([self._moment] if self._hinged else given.moments) if i]
-        # a unit of time in which rates are of order one
+        # in this unit of time rates are of order one
         fastest = mp.sqrt(dot(self._omega, self._omega)) + mp.sqrt(
             weight / sorted(heavy)[len(heavy) // 2]
         )
@@ -246,7 +249,10 @@ class Turning:
         return series
 
     def _step(self, series):
-        """Return a step after which the last terms of every series are below four units; of some, as singularities in pairs may hide two."""
+        """Return a step after which the last terms of every series are below four units.
+
+        Several terms are tested, because a pair of singularities may make single ones small.
+        """
         longest = 4.0
         for k in range(self.order - 7, self.order + 1):
             largest = max(abs(coefficients[k]) for coefficients in series)

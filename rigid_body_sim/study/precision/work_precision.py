@@ -1,4 +1,5 @@
-"""The command `work_precision`: error against CPU time of every method that can run a scene, and of peers."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `work_precision`: error against CPU time of every method, and of peers."""
 
 import contextlib
 import json
@@ -16,7 +17,7 @@ from rigid_body_sim.recording.about import machine, version
 from rigid_body_sim.study.precision import measure, peers, reference, runner, suite, table
 
 QUICK_LIMIT, FULL_LIMIT = 0.03, 0.15
-"""CPU seconds that one run may take: a sweep ends there."""
+"""Limits of the CPU seconds of one run; a sweep ends at the first run beyond."""
 QUICK_REPEATS, FULL_REPEATS = 5, 7
 
 
@@ -136,7 +137,7 @@ def _problems(options):
 
 
 def study(problem, with_peers, limit, repeats):
-    """Return the result of one problem: what was measured, its reference's digits and floors."""
+    """Return the result of one problem: measurements, the reference's digits and the floors."""
     truth = reference.load(problem)
     if truth is None:
         with tqdm(total=100, desc=f'{problem.name}: reference', disable=None, leave=False) as bar:
@@ -161,7 +162,7 @@ def study(problem, with_peers, limit, repeats):
 
 
 def write(folder, found):
-    """Write JSON, table and figure."""
+    """Write the JSON file, the table and the figure."""
     # matplotlib takes a second to import
     from rigid_body_sim.study.precision.figure import draw
     folder.joinpath('work_precision.json').write_text(json.dumps(found, indent=1) + '\n')

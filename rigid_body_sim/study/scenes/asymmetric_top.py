@@ -1,4 +1,8 @@
-"""Free body near a stable axis (notes, "Asymmetric Top"): small oscillations, their frequency, eta3, and what the linear equations say."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a free body near a stable axis (notes, "Asymmetric Top").
+
+It measures small oscillations: their frequency, eta3, and the terms of the linear equations.
+"""
 
 import numpy as np
 
@@ -13,7 +17,7 @@ TURNS = 4
 
 
 def check(run):
-    """Yield the quantities of a body that rotates about axis 3 but for a small eta."""
+    """Yield the quantities of a body that rotates about axis 3 with a small eta."""
     I1, I2, I3 = run.scene.body.about_center.moments
     start = run.at(0.0).angular_velocity.copy()
     omega0 = start[2]

@@ -1,4 +1,8 @@
-"""Sweet spot of a bat (notes, "Baseball bat sweet spot"): what the hand takes of a blow at any distance, read from the motion after it."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the sweet spot of a bat (notes, "Baseball bat sweet spot").
+
+The share of a blow that the hand takes, at any distance, is read from the motion after the blow.
+"""
 
 import numpy as np
 from scipy.optimize import brentq
@@ -7,11 +11,11 @@ from rigid_body_sim.study.scenes.instruments import axes
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import baseball_bat as theory
 
-SHARES = (0.5, 1.0, 1.3)            # of l', where it is hit besides the scene's own place
+SHARES = (0.5, 1.0, 1.3)            # of l': where it is hit besides the scene's own place
 
 
 def check(run):
-    """Yield the quantities of a bat at rest that is hit across, at the distance of the scene and at others."""
+    """Yield the quantities of a bat at rest that is hit at the scene's distance and at others."""
     scene = run.scene
     n, arm = np.array(scene.constraint.axis), np.subtract(
         scene.body.center_of_mass, scene.constraint.through
@@ -59,12 +63,18 @@ def check(run):
 
 
 def _sense(scene, n, arm):
-    """Return the moment about the hinge of the blow at unit distance, N s: its sign is the sense in which the bat turns."""
+    """Return the moment about the hinge of the blow at unit distance, N s.
+
+    Its sign is the sense in which the bat turns.
+    """
     return n @ np.cross(arm / np.linalg.norm(arm), scene.effect('strike').impulse)
 
 
 def _reaction(run, n, arm, J):
-    """Return F_R/F = 1 - M l phi'/J: what the momentum of the centre of mass lacks of the blow, along the blow."""
+    """Return F_R/F = 1 - M l phi'/J.
+
+    It is the part of the blow that the momentum of the centre of mass lacks, along the blow.
+    """
     scene = run.scene
     state = run.states([0.0])
     center = np.array(scene.body.center_of_mass)

@@ -1,4 +1,5 @@
-"""Billiard ball, from slipping to rolling (notes, "Billiard ball slipping -> rolling"), struck at any height."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a billiard ball struck at any height (notes, "Billiard ball slipping -> rolling")."""
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from rigid_body_sim.theory import billiard as theory
 
 
 def check(run):
-    """Yield the quantities of a ball that a cue has just struck, at rest before, running along x."""
+    """Yield the quantities of a ball at rest that a cue has just struck along x."""
     scene = run.scene
     strike, friction = scene.effect('strike'), scene.effect('sliding_friction')
     a, mu, g, h = scene.body.radius, friction.mu, friction.g, strike.height
@@ -62,7 +63,7 @@ def check(run):
 
 
 def _while_sliding(run, v0, h, a, mu, g, onset):
-    """Yield what friction does before the onset, from two moments on the way."""
+    """Yield the effect of friction before the onset, from two times on the way."""
     first, second = run.at(0.25 * onset), run.at(0.75 * onset)
     elapsed = second.time - first.time
     yield Quantity(
@@ -96,5 +97,8 @@ def _while_sliding(run, v0, h, a, mu, g, onset):
 
 
 def _rim(state):
-    """Return the rolling rate phi', the part of omega (world) along y: sideways, so that it is the same in body axes turned about y."""
+    """Return the rolling rate phi', the component of omega along y.
+
+    It is the same in world and body axes, because the body turns about y.
+    """
     return state.angular_velocity[1]

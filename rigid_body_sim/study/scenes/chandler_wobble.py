@@ -1,4 +1,8 @@
-"""The Earth, were it rigid (notes, "Chandler wobble"): period and amplitude of the wobble over three periods."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the Earth, were it rigid (notes, "Chandler wobble").
+
+It measures the period and the amplitude of the wobble over three periods.
+"""
 
 import numpy as np
 
@@ -7,7 +11,7 @@ from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import chandler_wobble as theory
 
 PERIODS = 3
-# of the pole of rotation from the pole of figure, radius of the Earth at the pole, m
+# distance of the pole of rotation from the pole of figure, radius of the Earth at the pole, m
 OFFSET = 6.0, 6.356e6
 
 

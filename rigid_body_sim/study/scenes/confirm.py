@@ -1,4 +1,5 @@
-"""Confirms systems: every quantity of a scene by every way of solving it, and the ways against each other."""
+# SPDX-License-Identifier: Apache-2.0
+"""Confirmation of scenes: each quantity by each way of solving, and the ways compared."""
 
 import numpy as np
 
@@ -12,14 +13,14 @@ from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 
 SMOOTH = 'dop8'
-TIMES = 41      # at which two ways are compared
+TIMES = 41      # number of times at which two ways are compared
 
 
 def confirm(scene):
-    """Return a list of rows, one a quantity: {method: Quantity}.
+    """Return a list of rows, one for each quantity: {method: Quantity}.
 
-    Methods are ``exact``, where a motion solves the scene, and the smooth one on the full
-    equations; ``both`` heads their comparison.
+    Methods are ``exact``, if a motion solves the scene, and the smooth one on the full equations;
+    ``both`` heads their comparison.
     """
     if scene.name not in SYSTEMS:
         raise BadInput(
@@ -54,13 +55,16 @@ def confirm_shapes():
 
 
 def _rows(quantities):
-    """Return the rows of quantities that several ways measured, in the order of the first."""
+    """Return the rows of quantities that several methods measured, in the order of the first."""
     columns = {way: list(found) for way, found in quantities.items()}
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _agreement(scene, system, ways):
-    """Return how far two ways part: the angle between attitudes, or omega relative to its largest size."""
+    """Return the difference of two methods, as a Quantity.
+
+    It is the angle between attitudes or the difference of omega relative to its largest size.
+    """
     times = np.linspace(0.0, system.seconds, TIMES)
     first, second = (Experiment(scene, way, system.accuracy).states(times) for way in ways)
     angle = max(

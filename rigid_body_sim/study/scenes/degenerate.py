@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies at the edge of the table of inertia: rod, ball, needle, and a pendulum without spin."""
 
 import numpy as np
@@ -11,7 +12,7 @@ from rigid_body_sim.theory import heavy_top, inertia_tensors, symmetric_top
 
 
 def thin_rod(run):
-    """Yield the quantities of a rod without moment about itself: it turns evenly about L, at L/I1."""
+    """Yield the quantities of a rod without moment about itself, which turns about L at L/I1."""
     M = run.scene.body.mass
     I1 = run.scene.body.about_center.moments[0]
     length = np.sqrt(12.0 * I1 / M)
@@ -54,7 +55,7 @@ def thin_rod(run):
 
 
 def sphere(run):
-    """Yield the quantities of a body with three equal moments: omega stays, in the body and in the world."""
+    """Yield the quantities of a body with three equal moments: omega is constant in all axes."""
     omega = run.at(0.0).angular_velocity.copy()
     size = float(np.linalg.norm(omega))
     if not size:

@@ -1,4 +1,8 @@
-"""Euler's equations with a torque (notes, "Euler's Equations"): in closed form where the torque is axial, by their terms for any body."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of Euler's equations with a torque (notes, "Euler's Equations").
+
+An axial torque has a closed form; for any other body the terms of the equations are compared.
+"""
 
 import numpy as np
 
@@ -12,7 +16,10 @@ ASYMMETRIC = {'body.inertia': [0.8, 1.0, 1.3], 'torque.value': [0.1, -0.2, 0.5]}
 
 
 def check(run):
-    """Yield the quantities of a symmetric body under an axial torque in body axes, and of an asymmetric one under an oblique torque."""
+    """Yield the quantities of a symmetric body under axial torque and of an asymmetric one.
+
+    The torque is constant in body axes; for the asymmetric body it is oblique.
+    """
     I1, I2, I3 = run.scene.body.about_center.moments
     Gamma = np.array(run.scene.effect('torque').values[0])
     start = run.at(0.0).angular_velocity.copy()
@@ -36,7 +43,7 @@ def check(run):
 
 
 def _turn(run, start, Gamma3, I1, I3):
-    """Yield when the spin runs through zero, and how far omega has turned in the body then and at the end."""
+    """Yield the time when the spin passes through zero, and the angle that omega has turned."""
     reversal = theory.spin_reversal_time(start[2], Gamma3, I3)
     if 0.0 < reversal < SECONDS:
         yield Quantity(
@@ -59,7 +66,7 @@ def _turn(run, start, Gamma3, I1, I3):
 
 
 def equations_of_euler(run, Gamma, seconds, about=''):
-    """Yield omega' by differentiation of the motion, against Euler's equations."""
+    """Yield omega' by differentiation of the motion, compared with Euler's equations."""
     moments = np.array(run.scene.body.about_center.moments)
     times = seconds * np.array([0.21, 0.53, 0.88])
     predicted = euler_equations.angular_acceleration(
@@ -80,7 +87,10 @@ def equations_of_euler(run, Gamma, seconds, about=''):
 
 
 def momentum(run, Gamma, seconds, about=''):
-    """Yield the change of L in the world, against the integral of R Gamma over the motion (Gauss-Legendre in short pieces)."""
+    """Yield the change of L in the world, compared with the integral of R Gamma over the motion.
+
+    The integral is made by Gauss-Legendre quadrature in short pieces.
+    """
     points, weights = np.polynomial.legendre.leggauss(12)
     edges = np.linspace(0.0, seconds, 161)
     half = 0.5 * np.diff(edges)[:, np.newaxis]

@@ -1,4 +1,5 @@
-"""An experiment: a scene set in motion by one method, and the instruments that read the motion."""
+# SPDX-License-Identifier: Apache-2.0
+"""An experiment: a scene that moves by one method, and the instruments that read the motion."""
 
 import numpy as np
 from scipy.optimize import brentq
@@ -7,7 +8,7 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACY = 1e-13    # rad in 100 s, far below the tolerances
-NODES = 17          # of the interpolation that differentiates
+NODES = 17          # number of nodes of the interpolation that is differentiated
 
 
 class Experiment:
@@ -19,7 +20,7 @@ class Experiment:
     method : str
         ``exact``, or a smooth method that integrates the full equations of motion.
     accuracy : float
-        Asked of a smooth method, rad in 100 s.
+        Accuracy asked of a smooth method, rad in 100 s.
     """
 
     def __init__(self, scene, method, accuracy=ACCURACY):
@@ -28,7 +29,7 @@ class Experiment:
         self._accuracy = accuracy
 
     def variant(self, changes):
-        """Return the same experiment with changes of the scene, {key.path: numbers}."""
+        """Return the same experiment with changes to the scene, {key.path: numbers}."""
         overrides = [f'{key}={np.asarray(value).tolist()}' for key, value in changes.items()]
         return Experiment(
             parse_scene(self.scene.text, overrides, self.scene.name), self.method, self._accuracy
@@ -43,14 +44,22 @@ class Experiment:
         return self.states([time])[0]
 
     def read(self, value, times):
-        """Return what an instrument, `value(states)`, reads at times; shape (n,) or (n, ...)."""
+        """Return the readings of an instrument, `value(states)`, shape (n,) or (n, ...)."""
         return np.asarray(value(self.states(np.atleast_1d(times))))
 
     def crossings(self, value, begin, end, samples, rising=None):
-        """Return the times (s) at which a reading goes through zero, refined to rounding by root finding.
+        """Return the times (s) at which a reading passes through zero, found to round-off.
 
-        `samples`: how often it is looked at in between, enough that no two crossings lie closer.
-        rising: True or False for one direction.
+        Parameters
+        ----------
+        value : callable
+            Takes States and returns the readings.
+        begin, end : float
+            Span of times that is searched, s.
+        samples : int
+            Number of intervals of the search, enough that no two crossings share one.
+        rising : bool, optional
+            Sense of the crossings; both by default.
         """
         times = np.linspace(begin, end, samples + 1)
         readings = self.read(value, times)
@@ -74,7 +83,11 @@ class Experiment:
         )
 
     def derivative(self, value, time, width, order=1):
-        """Return the time derivative of a reading, from polynomial interpolation at Chebyshev points within `width` (s) of a time."""
+        """Return the time derivative of a reading.
+
+        The reading is interpolated by a polynomial at Chebyshev points within `width` (s) of the
+        time.
+        """
         points = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         readings = self.read(value, time + width * points)
         fit = np.polynomial.chebyshev.chebfit(points, readings, NODES - 1)

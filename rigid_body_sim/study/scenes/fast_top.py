@@ -1,4 +1,8 @@
-"""Fast top (notes, "Fast top"): epsilon, slow precession and rapid nutation as the spin grows at constant P_alpha."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the fast top (notes, "Fast top").
+
+It measures epsilon, slow precession and rapid nutation as the spin grows at constant P_alpha.
+"""
 
 import numpy as np
 
@@ -11,7 +15,10 @@ FASTER = (2.0, 4.0, 8.0)
 
 
 def check(run):
-    """Yield the quantities of the scene's top, spun 2, 4, 8 times as fast at the same P_alpha: ever nearer to level."""
+    """Yield the quantities of the scene's top, spun 2, 4 and 8 times as fast at the same P_alpha.
+
+    The faster it spins, the nearer its axis is to level.
+    """
     top = Top(run)
     spin, height = top.P_gamma / top.I3, np.cos(top.beta)
     found = []
@@ -46,7 +53,10 @@ def check(run):
 
 
 def _measure(run, top):
-    """Return epsilon, mean precession and nutation, each over its formula, and the notes' precession over the corrected one."""
+    """Return epsilon, mean precession and nutation, each over its formula, and the notes' error.
+
+    The last one is the notes' precession over the corrected one.
+    """
     half = np.pi * top.I1 / top.P_gamma
     turns = run.crossings(
         instruments.beta_rate, 0.05 * half, (2 * SWINGS + 1.5) * half, 80 * SWINGS

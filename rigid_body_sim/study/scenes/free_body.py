@@ -1,4 +1,8 @@
-"""Torque-free motion (notes, "Torque-free Motion", "Euler angles"): E and L^2 stay and bound omega; p_alpha of an asymmetric body."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of torque-free motion (notes, "Torque-free Motion", "Euler angles").
+
+E and L^2 are constant and bound omega; p_alpha of an asymmetric body is constant too.
+"""
 
 import numpy as np
 
@@ -65,7 +69,7 @@ def check(run):
 
 
 def flips(run, seconds, most=6):
-    """Yield the time between changes of sign of omega2, where there are such."""
+    """Yield the time between sign changes of omega2, if there are any."""
     order = np.argsort(run.scene.body.about_center.moments)
     moments = np.array(run.scene.body.about_center.moments)[order]
     expected = asymmetric_top.time_between_flips(moments, run.at(0.0).angular_velocity[order])
@@ -83,12 +87,12 @@ def flips(run, seconds, most=6):
 
 
 def _in_euler_angles(run, moments, L_z):
-    """Yield rates, energy and p_alpha in Euler angles, the rates by differentiation of the angles."""
+    """Yield rates, energy and p_alpha in Euler angles; the angles are differentiated for rates."""
     candidates = np.linspace(5.0, 8.0, 31)
     time = candidates[np.argmax(np.sin(run.read(instruments.beta, candidates)))]
     states = run.states([time])
     if not np.sin(instruments.beta(states)[0]) > 0.1:
-        return      # e3 stays vertical, where alpha and gamma are not told apart
+        return      # e3 stays vertical, where alpha and gamma are not distinct
     beta, gamma = instruments.beta(states)[0], instruments.gamma(states)[0]
     rates = [
         run.derivative(

@@ -1,4 +1,8 @@
-"""Symmetric top in a uniform field (notes, "Symmetric Top" to "Small oscillations about equilibrium"), at any tilt and spin."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the symmetric top in a uniform field, at any tilt and spin.
+
+It covers the notes from "Symmetric Top" to "Small oscillations about equilibrium".
+"""
 
 import numpy as np
 
@@ -25,7 +29,8 @@ class Top:
             raise BadInput(
                 scene.name,
                 f'moments {[self.I1, I2, self.I3]}, centre of mass {[x, y, length]}',
-                'the formulas are for I1 = I2, a centre of mass above the pivot on axis 3, and gravity',
+                'the formulas are for I1 = I2, a centre of mass above the pivot on axis 3, '
+                'and gravity',
             )
         start = run.states([0.0])
         self.beta, self.beta_rate = float(instruments.beta(start)[0]), float(
@@ -64,7 +69,8 @@ def check(run):
         raise BadInput(
             run.scene.name,
             f'tilt {top.beta:.6g} rad, p_alpha {top.P_alpha:.6g}, p_gamma {top.P_gamma:.6g}',
-            'needs a top off the vertical that never reaches it (sleeping_top is about the upright one)',
+            'needs a top off the vertical that never reaches it '
+            '(sleeping_top is about the upright one)',
         )
     half = theory.time_between_turning_points(
         run.at(0.0).angular_velocity, instruments.axes(run.states([0.0]))[0, 2], I1, I3, Mgl
@@ -88,7 +94,10 @@ def check(run):
 
 
 def window(run, top, time):
-    """Return a time around `time`, not before the start, in which angles change by little: for differentiation, s."""
+    """Return the width (s) of a window around `time` in which angles change little.
+
+    It serves differentiation and does not reach back before the start.
+    """
     state = run.states([time])
     pace = (
         np.abs(instruments.alpha_rate(state))
@@ -99,7 +108,7 @@ def window(run, top, time):
 
 
 def rates(run, top, times):
-    """Yield alpha', gamma', beta'' by differentiation of angles and rates, and E, against the formulas of the notes."""
+    """Yield alpha', gamma', beta'' by differentiation, and E, compared with the notes."""
     I1, I3, Mgl = top.I1, top.I3, top.Mgl
     states = run.states(times)
     beta = instruments.beta(states)
@@ -141,7 +150,7 @@ def rates(run, top, times):
 
 
 def turning_points(run, top, half, span):
-    """Yield least and greatest tilt and the time between them."""
+    """Yield the least and the greatest tilt and the time between them."""
     turns = run.crossings(instruments.beta_rate, 0.02 * half, span + 0.02 * half, 60 * SWINGS)
     tilts = run.read(instruments.beta, turns)
     predicted = theory.turning_points(top.E, *top.momenta, top.I1, top.I3, top.Mgl)
@@ -158,7 +167,7 @@ def turning_points(run, top, half, span):
 
 
 def at_equilibrium(run, top, half):
-    """Yield what holds where beta' is largest: there V_eff is least, whatever the amplitude."""
+    """Yield the quantities where beta' is largest: V_eff is least there, at any amplitude."""
     I1, I3, Mgl, momenta = top.I1, top.I3, top.Mgl, top.momenta
     beta_0 = theory.equilibrium_tilt(*momenta, I1, Mgl)
     [time] = run.crossings(lambda s: instruments.beta(s) - beta_0, 0.0, half, 20)[:1]
@@ -206,7 +215,7 @@ def at_equilibrium(run, top, half):
 
 
 def where_beta_rate_turns(run, near, width):
-    """Return the time of the extreme of beta' that lies nearest, s."""
+    """Return the time of the nearest extreme of beta', s."""
     for _ in range(4):
         near -= run.derivative(instruments.beta_rate, near, width) / run.derivative(
             instruments.beta_rate, near, width, 2
@@ -215,7 +224,7 @@ def where_beta_rate_turns(run, near, width):
 
 
 def _curvature(run, top, time):
-    """Yield V_eff'' where the top is not in equilibrium; the notes' formula is for equilibrium alone."""
+    """Yield V_eff'' off equilibrium; the notes' formula holds at equilibrium only."""
     states = run.states([time])
     beta, beta_rate = instruments.beta(states)[0], instruments.beta_rate(states)[0]
     measured = (
@@ -276,10 +285,10 @@ def in_euler_angles(run, top, time):
 
 
 def small_nutation(run, top, rate):
-    """Yield how the nutation frequency of a top in steady precession is reached as the nutation becomes small.
+    """Yield how the nutation frequency approaches its limit as the nutation becomes small.
 
-    `rate` is alpha' of the steady precession at the tilt and spin of the run; a push in beta
-    changes neither p_alpha nor p_gamma.
+    The top is in steady precession. `rate` is alpha' of that precession at the tilt and spin of
+    the run; a push in beta changes neither p_alpha nor p_gamma.
     """
     tilt, Omega = top.beta, theory.nutation_frequency(top.beta, *top.momenta, top.I1, top.Mgl)
     ratios = []

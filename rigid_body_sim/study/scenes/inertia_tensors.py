@@ -1,4 +1,8 @@
-"""Moments of inertia (notes, "Some inertia tensors"): by quadrature over the shape, and by what a blow to the body does."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the moments of inertia (notes, "Some inertia tensors").
+
+They are found by quadrature over the shape, and from the response of the body to a blow.
+"""
 
 import numpy as np
 
@@ -39,7 +43,10 @@ def check(method):
 
 
 def _shapes():
-    """Yield name, shape of a scene file, moments by the notes, and points with masses that stand for it."""
+    """Yield name, shape of a scene file, moments by the notes, and points with masses.
+
+    The points stand for the shape in the quadrature.
+    """
     lamina = _box(A, B, 0.0)
     own = _by_quadrature(*lamina)
     yield 'rod about its centre', {'rod': {'length': L}}, theory.rod_about_center(M, L), _rod(
@@ -77,7 +84,10 @@ def _rod(low, high):
 
 
 def _round(radius, z, weight):
-    """Return points of rings about z: exact for the second powers in the moments, for 8 points a ring sum them without error."""
+    """Return points on rings about z, eight on each.
+
+    They are exact for the second powers in the moments, which eight points sum without error.
+    """
     turn, radius = np.meshgrid(TURN, radius)
     flat = np.ones(8)
     return (
@@ -109,10 +119,14 @@ def _by_quadrature(x, y, z, weight):
 
 
 def _by_a_blow(shape, predicted, to_end=0.0):
-    """Return J/omega_i after an impulse of torque J about each axis; 0 where there is no moment, and no blow is taken."""
+    """Return J/omega_i after an impulse of torque J about each axis.
+
+    It is 0 for an axis without moment, which takes no blow.
+    """
     center = f', center_of_mass: [0, 0, {to_end!r}]' if to_end else ''
     scene = parse_scene(
-        f'scene: shape\nbody: {{mass: {M}, shape: {shape}{center}}}\nconstraint: {"pivot" if to_end else "free"}\n'
+        f'scene: shape\nbody: {{mass: {M}, shape: {shape}{center}}}\n'
+        f'constraint: {"pivot" if to_end else "free"}\n'
         'effects: []\ninitial: {}\n'
     )
     moments = np.zeros(3)

@@ -1,10 +1,17 @@
-"""What an experimenter reads off a body: directions, angles and rates of its axes, from States. Symbols as in rigid_body_sim/theory."""
+# SPDX-License-Identifier: Apache-2.0
+"""Instruments: directions, angles and rates of a body's axes, read from States.
+
+Symbols are those of rigid_body_sim/theory.
+"""
 
 import numpy as np
 
 
 def axes(states):
-    """Return the rotation matrices of orientations, shape (n, 3, 3); their columns are e1, e2, e3 in the world."""
+    """Return the rotation matrices of orientations, shape (n, 3, 3).
+
+    Their columns are e1, e2, e3 in the world.
+    """
     x, y, z, w = np.moveaxis(states.orientation, -1, 0)
     return np.moveaxis(np.array([
         [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],

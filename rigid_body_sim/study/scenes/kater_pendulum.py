@@ -1,4 +1,8 @@
-"""Reversible pendulum (notes, "Reversible (Kater's) Pendulum"): periods from both edges, at the amplitude of the scene and in the limit."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the reversible pendulum (notes, "Reversible (Kater's) Pendulum").
+
+It measures the periods about both edges, at the amplitude of the scene and in the limit.
+"""
 
 import numpy as np
 
@@ -14,7 +18,10 @@ PERIODS = 3
 
 
 class Pendulum:
-    """The hinge, the arm from it to the centre of mass (body axes) and the lengths of the notes, read from a scene."""
+    """The symbols of the notes, read from a scene: hinge, arm and lengths.
+
+    The arm goes from the hinge to the centre of mass, in body axes.
+    """
 
     def __init__(self, scene):
         self.axis = np.array(scene.constraint.axis)
@@ -43,7 +50,7 @@ class Pendulum:
         return states.angular_velocity @ self.axis
 
     def period(self, run, guess):
-        """Return the mean of some periods, from one rise through the lowest point to another, s."""
+        """Return the mean period, from one rise through the lowest point to a later one, s."""
         rises = run.crossings(self.angle, 0.0, (PERIODS + 1.1) * guess, 200, rising=True)
         return (rises[-1] - rises[0]) / (len(rises) - 1)
 
@@ -102,7 +109,7 @@ def check(run):
 
 
 def _reach(pendulum, run, Omega):
-    """Return about how far it swings, rad, by its energy."""
+    """Return the approximate amplitude, rad, from the energy."""
     start = run.states([0.0])
     reach = (
         np.sin(0.5 * pendulum.angle(start)[0]) ** 2
@@ -118,7 +125,7 @@ def _reach(pendulum, run, Omega):
 
 
 def _small_swings(run, pendulum, Omega):
-    """Yield how the small-swing formulas are reached."""
+    """Yield how the small-swing formulas are approached."""
     back = from_rotation_vector(*(-pendulum.angle(run.states([0.0]))[0] * pendulum.axis))
     hanging = list(multiply(*run.scene.initial.orientation, *back))
     ratios = []

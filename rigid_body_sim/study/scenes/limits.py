@@ -1,4 +1,9 @@
-"""Formulas that hold in a limit: the deviation of the motion from them at three values of the small parameter, its order, and the limit."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of formulas that hold in a limit.
+
+The deviation of the motion from the formula is measured at three values of the small parameter;
+its order and its limit follow.
+"""
 
 import math
 
@@ -8,20 +13,20 @@ from rigid_body_sim.study.scenes.quantity import Quantity
 
 
 def limit(name, parameter, values, ratios, order, order_tolerance, tolerance, as_written=None):
-    """Return two Quantities: the order at which the deviation vanishes, and what is left of it in the limit.
+    """Return two Quantities: the order at which the deviation vanishes, and its limit.
 
     Parameters
     ----------
     name, parameter : str
-        Of the quantity and of the small parameter.
+        Names of the quantity and of the small parameter.
     values : sequence of 3 floats
-        Of the parameter, falling.
+        Values of the parameter, falling.
     ratios : sequence of 3 floats
-        Measured over predicted there.
+        Measured over predicted at these values.
     order : int
         Power of the parameter to which the deviation is proportional.
     as_written : float, optional
-        The uncorrected formula over the corrected one.
+        Uncorrected formula over the corrected one.
     """
     values, deviations = np.asarray(values, dtype=float), np.asarray(ratios, dtype=float) - 1.0
     measured = math.log(abs(deviations[1] / deviations[2])) / math.log(values[1] / values[2])
@@ -29,7 +34,7 @@ def limit(name, parameter, values, ratios, order, order_tolerance, tolerance, as
         f'{deviation:.3g} at {value:.3g}'
         for value, deviation in zip(values, deviations, strict=True)
     )
-    # deviation = a p^n + b p^(2 n): from three values its constant term
+    # deviation = a p^n + b p^(2 n) + c: three values give the constant c
     powers = np.stack([np.ones(3), values**order, values ** (2 * order)], axis=1)
     left = np.linalg.solve(powers, deviations)[0]
     return [

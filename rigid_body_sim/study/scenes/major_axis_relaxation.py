@@ -1,4 +1,8 @@
-"""Dissipation turns a body to its largest axis (notes, "Is the Earth's rotation axis unstable?"): T falls to its least value at constant L."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the turn of a dissipating body to its largest axis.
+
+Notes, "Is the Earth's rotation axis unstable?": T falls to its least value at constant L.
+"""
 
 import numpy as np
 
@@ -11,12 +15,15 @@ SAMPLES = 4001
 
 
 def check(run):
-    """Yield the quantities of the way from near the smallest axis, through the separatrix, to the largest."""
+    """Yield the quantities of the way from the smallest axis past the separatrix to the largest.
+
+    The body begins near the smallest axis.
+    """
     moments = np.array(run.scene.body.about_center.moments)
     start = moments * run.at(0.0).angular_velocity
     L, c = float(np.linalg.norm(start)), run.scene.effect('internal_dissipation').coefficient
-    # slowest of the two ways: away from the smallest axis, and on to the largest; 60 times the
-    # time it takes to fall by 1/e
+    # 60 times the time of a fall by 1/e on the slower part of the way: away from the smallest
+    # axis, or on to the largest
     middle = np.sort(moments)[1]
     rates = (
         c
@@ -82,7 +89,10 @@ def check(run):
 
 
 def _heat(run, moments, c, seconds):
-    """Return the heat (J) by Gauss-Legendre quadrature of its power in pieces that are short against a turn of the body."""
+    """Return the heat (J) by Gauss-Legendre quadrature of its power.
+
+    The pieces are short compared with a turn of the body.
+    """
     points, weights = np.polynomial.legendre.leggauss(10)
     pieces = int(np.ceil(seconds * np.linalg.norm(run.at(0.0).angular_velocity)))
     half = 0.5 * seconds / pieces

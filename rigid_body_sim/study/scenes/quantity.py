@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A quantity that theory predicts and a motion shows."""
 
 import math
@@ -8,24 +9,25 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Quantity:
-    """One predicted number (or a few of one kind) beside the measured one.
+    """One predicted number (or a few of one kind) and its measurement.
 
     Attributes
     ----------
     name : str
-        In the words of the notes; the same for every method.
+        Name in the words of the notes; the same for every method.
     predicted, measured : float or array
     tolerance : float
-        Of |measured - predicted|: relative to the largest |predicted|, or as it stands where `absolute`.
+        Bound of |measured - predicted|: relative to the largest |predicted|, or absolute if
+        `absolute` is set.
     unit : str
     bound : bool
         The prediction is a bound: the measured value lies at or below it, within the tolerance.
     absolute : bool
-        For predictions that are zero: relative to it nothing passes.
+        True for predictions that are zero, where nothing passes a relative tolerance.
     as_written : float or array, optional
-        What the uncorrected formula of the notes gives.
+        Value of the uncorrected formula of the notes.
     detail : str
-        What the numbers were got from, where it is not one motion.
+        Source of the numbers, if it is not one motion.
     """
 
     name: str
@@ -39,7 +41,7 @@ class Quantity:
     detail: str = ''
 
     def _off(self, value):
-        """Return by how much a value misses the measured one, in the measure of the tolerance."""
+        """Return the distance of a value from the measured one, as the tolerance counts it."""
         difference = np.asarray(self.measured, dtype=float) - np.asarray(value, dtype=float)
         off = float(np.max(difference if self.bound else np.abs(difference)))
         scale = 1.0 if self.absolute else float(np.max(np.abs(self.predicted)))
@@ -49,15 +51,15 @@ class Quantity:
 
     @property
     def error(self):
-        """By how much the measured value misses the prediction."""
+        """Distance of the measured value from the prediction."""
         return self._off(self.predicted)
 
     @property
     def passed(self):
-        """Whether the error is within the tolerance; never for what is not a number."""
+        """Whether the error is within the tolerance; a NaN never is."""
         return bool(self.error <= self.tolerance)
 
     @property
     def error_as_written(self):
-        """By how much the measured value misses the uncorrected formula; None where the notes are right."""
+        """Distance of the measurement from the uncorrected formula, or None."""
         return None if self.as_written is None else self._off(self.as_written)

@@ -1,4 +1,8 @@
-"""Upright top (notes, "Sleeping top"), on both sides of P_gamma^2 = 4 I1 M g l: above it a seed stays small, below it the top nods."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the upright top (notes, "Sleeping top") on both sides of P_gamma^2 = 4 I1 M g l.
+
+Above it a seed stays small; below it the top nods.
+"""
 
 import numpy as np
 from scipy.optimize import brentq
@@ -10,14 +14,14 @@ from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import sleeping_top as theory
 
-# times the one that bends the frequency by 1e-7, for the limit of small seeds
+# seeds over the one that changes the frequency by 1e-7, for the limit of small seeds
 SEEDS = (4.0, 2.0, 1.0)
-SEED = 1e-6                         # rad/s across, where the scene has none
+SEED = 1e-6                         # rad/s across, if the scene has none
 SIDES = (1.001, 0.999)              # P_gamma^2 over its threshold, whatever the scene's own spin
 
 
 def check(run):
-    """Yield the quantities of the scene's own spin, then of spins on both sides of the threshold, and at it."""
+    """Yield the quantities at the scene's own spin, on both sides of the threshold, and at it."""
     top = Top(run)
     if top.beta > 1e-6:
         raise BadInput(
@@ -39,7 +43,10 @@ def check(run):
 
 
 def _stable(run, top, spin, seed, ratio):
-    """Yield how far the seed is felt, and the rate of the swing that it makes, beta'' = -stiffness beta/I1."""
+    """Yield the effect of a seed above the threshold, where beta'' = -stiffness beta/I1.
+
+    The quantities are the largest tilt and the rate of the swing.
+    """
     rate = float(np.sqrt(theory.stiffness(top.I3 * spin, top.I1, top.Mgl) / top.I1))
     tilts, rates = [], []
     seeds = _seeds(rate, ratio)
@@ -71,7 +78,10 @@ def _stable(run, top, spin, seed, ratio):
 
 
 def _falling(run, top, spin, seed, ratio):
-    """Yield the growth while beta^2 is far below 1e-3, beta = seed sinh(rate t)/rate, and how far the top nods."""
+    """Yield the growth of a seed below the threshold, and how far the top nods.
+
+    The growth is beta = seed sinh(rate t)/rate while beta^2 is far below 1e-3.
+    """
     rate = float(theory.growth_rate(top.I3 * spin, top.I1, top.Mgl))
     nod = float(theory.nodding_tilt(top.I3 * spin, top.I1, top.Mgl))
     growth, tilts = [], []
@@ -104,7 +114,7 @@ def _falling(run, top, spin, seed, ratio):
         detail=f'{np.degrees(nod):.4f} degrees',
     )
     if nod > 3.0:
-        return      # it passes the lowest point, whatever the seed
+        return      # it passes the lowest point for every seed
     yield from limit(
         f'farthest tilt {where}, cos(beta_max) = P_gamma^2/(2 I1 M g l) - 1',
         'the seed',
@@ -117,12 +127,15 @@ def _falling(run, top, spin, seed, ratio):
 
 
 def _seeds(rate, ratio):
-    """Return three seeds, rad/s: the quartic term of V_eff bends a swing of tilt seed/rate by about tilt^2/(4 |ratio - 1|)."""
+    """Return three seeds, rad/s.
+
+    The quartic term of V_eff changes a swing of tilt seed/rate by about tilt^2/(4 |ratio - 1|).
+    """
     return rate * np.sqrt(4.0 * abs(ratio - 1.0) * 1e-7) * np.array(SEEDS)
 
 
 def _upright(seed, spin):
-    """Return an upright start with a seed across, rad/s."""
+    """Return an upright start with a transverse seed, rad/s."""
     return {'initial.euler_zyz': [0.0, 0.0, 0.0], 'initial.angular_velocity': [seed, 0.0, spin]}
 
 

@@ -1,4 +1,8 @@
-"""Top in the minimum of its effective potential (notes, "Small oscillations about equilibrium"): slow and fast precession without nutation."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a top in the minimum of its effective potential.
+
+Notes, "Small oscillations about equilibrium": slow and fast precession without nutation.
+"""
 
 import numpy as np
 
@@ -12,7 +16,10 @@ SECONDS = 10.0
 
 
 def check(run):
-    """Yield the quantities of both steady precessions at the tilt and spin of the scene, and of small nutations about the slow one."""
+    """Yield the quantities of both steady precessions at the tilt and spin of the scene.
+
+    Small nutations about the slow one follow.
+    """
     top = Top(run)
     spin = top.P_gamma / top.I3
     with np.errstate(invalid='ignore'):

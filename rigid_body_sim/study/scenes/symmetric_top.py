@@ -1,4 +1,8 @@
-"""Free symmetric top (notes, "Symmetric top (no gravity)"): omega round the axis, the axis round L, and the three cones."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of the free symmetric top (notes, "Symmetric top (no gravity)").
+
+It measures omega round the axis, the axis round L, and the three cones.
+"""
 
 import numpy as np
 
@@ -65,7 +69,10 @@ def check(run):
 
 
 def round_the_axis(run, Omega, as_written, tolerance=1e-11):
-    """Yield the rate at which omega goes round e3 in the body, from crossings of omega1 in the sense that its sign tells."""
+    """Yield the rate at which omega goes round e3 in the body.
+
+    It is found from crossings of omega1; the sign of omega2 there tells the sense.
+    """
     period = 2.0 * np.pi / abs(Omega)
     rises = run.crossings(
         instruments.omega(0), 0.0, (TURNS + 1.1) * period, 40 * TURNS, rising=True
@@ -84,7 +91,7 @@ def round_the_axis(run, Omega, as_written, tolerance=1e-11):
 
 
 def cones(run, times, tolerance):
-    """Yield the half-angles of the cones, the largest miss over some times."""
+    """Yield the half-angles of the cones, with the largest miss over some times."""
     I1, I2, I3 = run.scene.body.about_center.moments
     states = run.states(times)
     across, along = np.hypot(*states.angular_velocity[0, :2]), states.angular_velocity[0, 2]

@@ -1,4 +1,5 @@
-"""The table of systems: which check confirms which scene, and how long the two ways of solving it are compared."""
+# SPDX-License-Identifier: Apache-2.0
+"""The table of scenes: the check of each, and how long its two ways of solving are compared."""
 
 from dataclasses import dataclass
 
@@ -24,18 +25,18 @@ from rigid_body_sim.study.scenes.experiment import ACCURACY
 
 @dataclass(frozen=True)
 class System:
-    """How a scene is checked.
+    """The check of a scene.
 
     Attributes
     ----------
     check : callable
         (Experiment) -> Quantities.
     seconds : float
-        Over which the exact motion and the smooth method on the full equations are compared.
+        Span over which the exact motion and the smooth method on the full equations are compared.
     tolerance : float
-        Of that comparison: attitude in rad, omega relative to its largest size.
+        Tolerance of that comparison: attitude in rad, omega relative to its largest size.
     accuracy : float
-        Asked of the smooth method, rad in 100 s.
+        Accuracy asked of the smooth method, rad in 100 s.
     """
 
     check: object

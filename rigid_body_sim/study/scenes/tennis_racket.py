@@ -1,4 +1,8 @@
-"""Racket about its middle axis (notes, "Intermediate Axis Theorem = Tennis Racket Theorem"): growth rate, growing direction, flips."""
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a racket about its middle axis.
+
+Notes, "Intermediate Axis Theorem = Tennis Racket Theorem": growth rate, growing direction, flips.
+"""
 
 import numpy as np
 
@@ -8,11 +12,11 @@ from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import asymmetric_top as theory
 
-SEEDS = (0.004, 0.002, 0.001)       # of the growing solution at the start, over omega0
+SEEDS = (0.004, 0.002, 0.001)       # size of the growing solution at the start, over omega0
 
 
 def check(run):
-    """Yield the quantities of a body that rotates about its middle axis but for a small seed."""
+    """Yield the quantities of a body that rotates about its middle axis with a small seed."""
     moments = np.array(run.scene.body.about_center.moments)
     middle = int(np.argsort(moments)[1])
     omega0 = float(run.at(0.0).angular_velocity[middle])

@@ -1,8 +1,10 @@
-"""Peers: other programs that turn bodies, one file each, run as their users run them, in the fastest way they offer.
+# SPDX-License-Identifier: Apache-2.0
+"""Peers: other programs that simulate rotation, one file each.
 
-A module has NAME, `version()` (ImportError where it is not installed) and `runners(problem,
-reference)`, which yields a runner.Runner for each way to run it or raises RefusedError with the
-reason. requirements/peers.txt installs them all.
+They run as their users run them, in the fastest way they offer. A module has NAME, `version()`
+(ImportError if it is not installed) and `runners(problem, reference)`, which yields a
+runner.Runner for each way to run it or raises RefusedError with the reason.
+requirements/peers.txt installs them all.
 """
 
 import contextlib
@@ -26,7 +28,10 @@ MODULES = (
 
 @contextlib.contextmanager
 def quiet():
-    """Send what libraries print on standard output, from C too, to standard error: ours is the table or JSON."""
+    """Send what libraries print on standard output, even from C, to standard error.
+
+    Standard output is for the table or JSON alone.
+    """
     sys.stdout.flush()
     kept = os.dup(1)
     os.dup2(2, 1)
@@ -44,7 +49,7 @@ def installed():
 
 
 def missing():
-    """Return the names of the peers that cannot."""
+    """Return the names of the peers that cannot be imported here."""
     return [module.NAME for module in map(_module, MODULES) if not _is_here(module)]
 
 
@@ -61,7 +66,10 @@ def _is_here(module):
 
 
 def runners(problem, reference):
-    """Return the Runners of all installed peers; one that refuses is a Runner that says so when it is made."""
+    """Return the Runners of all installed peers.
+
+    A peer that refuses becomes a Runner that raises the reason when it is made.
+    """
     found = []
     for module in installed():
         try:

@@ -1,8 +1,10 @@
-"""A ball on a table as a peer's user writes it down: it slides, with friction along the slip, which keeps its direction, and then rolls.
+# SPDX-License-Identifier: Apache-2.0
+"""A ball on a table as a peer's user writes it down: it slides, and then rolls.
 
-Unknowns: q, omega in world axes, v_x, v_y; e the direction of the slip u = v + omega x (-a z) at
-the start; v' = -mu g e, I omega' = -a z x (-mu M g e) until e . u = 0: an event for the methods
-that find events. From there on v and omega stay.
+Friction acts along the slip, which keeps its direction. The unknowns are q, omega in world axes,
+v_x and v_y; e is the direction of the slip u = v + omega x (-a z) at the start. The equations
+v' = -mu g e, I omega' = -a z x (-mu M g e) hold until e . u = 0, which is an event for the methods
+that find events. From there on v and omega are constant.
 """
 
 from dataclasses import dataclass
@@ -14,7 +16,7 @@ from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.study.precision.peers import start
 
 ROLLS = 4e-16
-"""A slip of less than this share of the speeds is rounding."""
+"""Largest share of the speeds that counts as rounding of the slip."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +27,12 @@ class Ball:
     ----------
     radius, mu, g : float
     push : array (9,)
-        Rates of the unknowns while it slides, but for those of q.
+        Rates of the unknowns while it slides, without those of q.
     slip : array (9,)
-        e . u is its product with the unknowns.
+        Vector whose product with the unknowns is e . u.
     start : array (9,)
     slides : bool
-        At the start.
+        Whether it slides at the start.
     """
 
     radius: float
@@ -48,7 +50,7 @@ class Ball:
 
 
 def of(scene):
-    """Return the Ball of a scene; RefusedError says what is not given to peers."""
+    """Return the Ball of a scene; RefusedError tells what peers are not asked to run."""
     body, friction = scene.body, scene.effect('sliding_friction')
     q, omega, velocity = start.of(scene)
     a, ratio = body.radius, body.about_center.moments[0] / (body.mass * body.radius ** 2)
@@ -72,7 +74,7 @@ def of(scene):
 
 @numba.njit(cache=True)
 def rates(p, values, out):
-    """Fill in the rates of the unknowns; p is Ball.push, or zeros when it rolls."""
+    """Store the rates of the unknowns; p is Ball.push, or zeros when it rolls."""
     x, y, z, w, w1, w2, w3 = values[:7]
     out[:] = p
     out[0] = 0.5 * (w * w1 + w2 * z - w3 * y)

@@ -1,4 +1,8 @@
-"""Basilisk: a spacecraft hub under RK4 and under RKF78 with error control; attitude in modified Rodrigues parameters, all steps in C++."""
+# SPDX-License-Identifier: Apache-2.0
+"""Basilisk: a spacecraft hub under RK4, and under RKF78 with error control.
+
+Its attitude is in modified Rodrigues parameters; all steps run in C++.
+"""
 
 import importlib.metadata
 import math
@@ -20,14 +24,15 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield both methods; its clock counts whole nanoseconds, so steps are such."""
+    """Yield both methods; steps are whole nanoseconds, which its clock counts."""
     kind = problem.scene.constraint.kind
     if kind != 'free':
         raise RefusedError(f'{HELD[kind]}: its hub flies free')
     given = body.of(problem.scene)
     if given.inner or np.any(given.damping) or np.any(given.push):
         raise RefusedError(
-            'drag, internal dissipation or a torque fixed in the world: modules of its own would have to be written'
+            'drag, internal dissipation or a torque fixed in the world: '
+            'modules of its own would have to be written'
         )
     steps = tuple(
         dict.fromkeys(_whole(problem.duration, step) for step in steps_for(problem, reference))
@@ -51,7 +56,7 @@ def runners(problem, reference):
 
 
 def _whole(duration, step):
-    """Return the step of whole nanoseconds that is the nearest to one and of which the times of the reference are multiples."""
+    """Return the nearest step of whole nanoseconds that divides the reference's intervals."""
     grid = round(duration / GRID * NANOSECONDS)
     count = max(1, round(duration / GRID / step))
     return (

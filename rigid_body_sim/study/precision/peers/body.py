@@ -1,4 +1,8 @@
-"""The equations that a peer's user would write down: numbers of a scene in principal axes, and their right-hand side for numba."""
+# SPDX-License-Identifier: Apache-2.0
+"""The equations of a rotating body as a peer's user would write them down.
+
+They are the numbers of a scene in principal axes, and their right-hand side for numba.
+"""
 
 import math
 from dataclasses import dataclass
@@ -15,25 +19,25 @@ IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
 @dataclass(frozen=True)
 class Body:
-    """A turning body, axes principal about the point of reference.
+    """A rotating body in axes principal about the point of reference.
 
     Attributes
     ----------
     moments : array (3,)
     axes : tuple
-        Quaternion, principal axes -> body axes.
+        Quaternion from principal to body axes.
     torque : array (3,)
-        Constant in the body, N m.
+        Constant torque in the body, N m.
     push : array (3,)
-        Couple constant in the world, N m.
+        Constant torque in the world, N m.
     weight_arm : array (3,)
-        M g r, principal axes, N m; gravity along -z.
+        M g r in principal axes, N m; gravity is along -z.
     damping : array (3, 3)
-        torque = -damping omega.
+        Matrix of the drag: torque = -damping omega.
     inner : float
         Coefficient of internal dissipation.
     start : array (7,)
-        q (principal axes -> world), omega (principal axes).
+        q (from principal axes to the world) and omega (principal axes).
     """
 
     moments: np.ndarray
@@ -46,7 +50,10 @@ class Body:
     start: np.ndarray
 
     def state(self, values):
-        """Return q (normalised, body axes -> world) and omega in body axes, of unknowns in principal axes."""
+        """Return q (normalised, body axes -> world) and omega in body axes.
+
+        `values` are the unknowns in principal axes.
+        """
         q = np.array(values[:4]) / np.linalg.norm(values[:4])
         if self.axes == IDENTITY:
             return *q, *values[4:7]
@@ -54,7 +61,11 @@ class Body:
         return *multiply(*q, -x, -y, -z, w), *rotate(*self.axes, *values[4:7])
 
     def about_center(self, scene):
-        """Return the inertia tensor about the centre of mass (3, 3) and where that is from the point of reference, in the latter's axes."""
+        """Return the inertia tensor about the centre of mass, and that point's place.
+
+        The tensor has shape (3, 3). The place is relative to the point of reference, in the
+        body's principal axes about it.
+        """
         if scene.constraint.kind == 'free':
             return np.diag(self.moments), np.zeros(3)
         mass = scene.body.mass
@@ -62,7 +73,7 @@ class Body:
         return np.diag(self.moments) - mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)), arm
 
     def numbers(self):
-        """Return everything but the start as one flat array for compiled right-hand sides."""
+        """Return all but the start as one flat array for compiled right-hand sides."""
         i = self.moments
         return np.concatenate(
             [
@@ -78,7 +89,7 @@ class Body:
 
 
 def of(scene):
-    """Return the Body of a free or pivoted scene; RefusedError says what is not given to peers."""
+    """Return the Body of a free or pivoted scene; RefusedError tells what peers are not asked."""
     body, kind = scene.body, scene.constraint.kind
     orientation, omega, _ = start.of(scene)
     inertia = body.about_origin if kind == 'pivot' else body.about_center
@@ -117,7 +128,7 @@ def of(scene):
 
 @numba.njit(cache=True)
 def rates(p, x, y, z, w, w1, w2, w3):
-    """Return the rates of q and omega; p as Body.numbers gives it."""
+    """Return the rates of q and omega for p = Body.numbers()."""
     i1, i2, i3 = p[0], p[1], p[2]
     u1, u2, u3 = (
         p[24] * (i2 - i3) * w2 * w3,
@@ -164,5 +175,5 @@ def rates(p, x, y, z, w, w1, w2, w3):
 
 
 def whole_steps(time, step):
-    """Return how many steps reach a time."""
+    """Return the number of steps that reach a time."""
     return math.floor(time / step + 0.5)

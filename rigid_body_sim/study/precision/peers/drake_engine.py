@@ -1,4 +1,8 @@
-"""Drake: a continuous MultibodyPlant under its 5th- and 3rd-order Runge-Kutta with error control; contact by its discrete solver."""
+# SPDX-License-Identifier: Apache-2.0
+"""Drake: a continuous MultibodyPlant under Runge-Kutta of 5th and 3rd order with error control.
+
+Contact uses its discrete solver.
+"""
 
 import numpy as np
 
@@ -9,7 +13,7 @@ from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, ste
 NAME = 'Drake'
 ACCURACIES = tuple(10.0 ** -k for k in range(1, 13))
 MAX_STEP = 0.1
-"""Drake's own default, s."""
+"""Default of Drake, s."""
 
 
 def version():
@@ -21,7 +25,7 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield Drake with two of its methods; with one, at fixed steps, where there is contact."""
+    """Yield Drake with two of its methods; for contact, with one at fixed steps."""
     numbers = given.of(problem)
     if isinstance(numbers, ball.Ball):
         steps = steps_for(problem, reference)
@@ -152,7 +156,10 @@ def _joined(plant, turning, scene, numbers):
 
 
 def _drive(builder, plant, turning, numbers):
-    """Connect what turns the body; return what sets it in the context. A couple fixed in the body is a propeller that has no thrust."""
+    """Connect the torque on the body; return the function that sets it in the context.
+
+    A couple fixed in the body is a propeller without thrust.
+    """
     from pydrake.math import RigidTransform, RotationMatrix
     from pydrake.multibody.math import SpatialForce
     from pydrake.multibody.plant import ExternallyAppliedSpatialForce, Propeller
@@ -164,7 +171,8 @@ def _drive(builder, plant, turning, numbers):
         return lambda whole: None
     if np.any(numbers.torque) and np.any(numbers.push):
         raise RefusedError(
-            'a couple in the body and one in the world at once: its one port would have to be fed by a system of its user'
+            'a couple in the body and one in the world at once: '
+            'its one port would have to be fed by a system of its user'
         )
     if np.any(numbers.push):
         applied = ExternallyAppliedSpatialForce()
@@ -186,7 +194,7 @@ def _drive(builder, plant, turning, numbers):
 
 
 def _beginning(plant, context, turning, joint, numbers):
-    """Return what puts the body at its start."""
+    """Return the function that puts the body at its start."""
     from pydrake.math import RollPitchYaw
     if isinstance(numbers, pendulum.Pendulum):
         def hinge():

@@ -1,4 +1,5 @@
-"""What a peer is given: the numbers of a problem as its user would write them down, by what holds the body."""
+# SPDX-License-Identifier: Apache-2.0
+"""The numbers given to a peer: those of a problem as its user would write them down."""
 
 from rigid_body_sim.study.precision.peers import ball, body, pendulum
 
@@ -6,5 +7,11 @@ _KINDS = {'free': body.of, 'pivot': body.of, 'hinge': pendulum.of, 'table': ball
 
 
 def of(problem):
-    """Return the Body, Pendulum or Ball of a problem; RefusedError says what is not given to peers."""
+    """Return the Body, Pendulum or Ball of a problem, by what holds the body.
+
+    Raises
+    ------
+    RefusedError
+        If peers are not asked to run such a problem.
+    """
     return _KINDS[problem.scene.constraint.kind](problem.scene)

@@ -1,4 +1,8 @@
-"""heyoka: Taylor series of a variable order, compiled for the very equations; also with 80-bit numbers."""
+# SPDX-License-Identifier: Apache-2.0
+"""heyoka: Taylor series of variable order, compiled for the given equations.
+
+It also runs with 80-bit numbers.
+"""
 
 import numpy as np
 
@@ -15,7 +19,7 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield heyoka in doubles and, but for a ball, in 80-bit numbers."""
+    """Yield heyoka in doubles and, except for a ball, in 80-bit numbers."""
     numbers = given.of(problem)
     made = _rolling if isinstance(numbers, ball.Ball) else smooth_run
     yield Runner(
@@ -53,7 +57,10 @@ def smooth_run(numbers, tolerance, number):
 
 
 def _rolling(numbers, tolerance, _):
-    """Return the Run of a ball: one integrator that stops at the event that it begins to roll, another one from there on."""
+    """Return the Run of a ball, made of two integrators.
+
+    The first one stops at the event when rolling begins, and the second one goes on from there.
+    """
     import heyoka
     variables = heyoka.make_vars('x', 'y', 'z', 'w', 'w1', 'w2', 'w3', 'v1', 'v2')
     x, y, z, w, w1, w2, w3 = variables[:7]
@@ -101,7 +108,7 @@ def _rolling(numbers, tolerance, _):
 
 
 def swinging(numbers, number, phi, rate):
-    """Return the right-hand sides of a pendulum; what is zero is not written."""
+    """Return the right-hand sides of a pendulum, without terms that are zero."""
     import heyoka
     a, b, k, d = numbers.numbers.astype(number)
     parts = [
@@ -112,7 +119,7 @@ def swinging(numbers, number, phi, rate):
 
 
 def turning(numbers, number, x, y, z, w, *omega):
-    """Return the right-hand sides; what is zero is not written."""
+    """Return the right-hand sides, without terms that are zero."""
     def total(*terms):
         terms = [number(c) * e for c, e in terms if c != 0.0]
         return sum(terms[1:], terms[0]) if terms else None
@@ -120,7 +127,7 @@ def turning(numbers, number, x, y, z, w, *omega):
     def plus(*parts):
         parts = [part for part in parts if part is not None]
         return sum(parts[1:], parts[0])
-    # constants are formed in the precision of the numbers
+    # constants are formed in the precision of the run
     i, c = numbers.moments.astype(number), number(numbers.inner)
     products = [omega[1] * omega[2], omega[2] * omega[0], omega[0] * omega[1]]
     a = (

@@ -1,4 +1,8 @@
-"""MuJoCo: RK4, and its default semi-implicit Euler; all steps in one call, so the loop runs in C. A ball meets the table by its own contact."""
+# SPDX-License-Identifier: Apache-2.0
+"""MuJoCo: RK4, and its default semi-implicit Euler.
+
+All steps run in one call, so the loop is in C. A ball meets the table by MuJoCo's own contact.
+"""
 
 import numpy as np
 
@@ -8,9 +12,11 @@ from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'MuJoCo'
-SCENE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" gravity="0 0 {gravity!r}" cone="elliptic">
+SCENE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" \
+gravity="0 0 {gravity!r}" cone="elliptic">
 <flag contact="{contact}"/></option><worldbody>{table}
-<body pos="{origin}" quat="{attitude}">{joint}<inertial pos="{place}" mass="{mass!r}" fullinertia="{inertia}"/>{shape}</body>
+<body pos="{origin}" quat="{attitude}">{joint}\
+<inertial pos="{place}" mass="{mass!r}" fullinertia="{inertia}"/>{shape}</body>
 </worldbody></mujoco>"""
 TABLE = '<geom type="plane" size="0 0 1" friction="{0!r} 0 0"/>'
 BALL = '<geom type="sphere" size="{1!r}" friction="{0!r} 0 0"/>'
@@ -44,7 +50,10 @@ def runners(problem, reference):
 
 
 def _text(scene, numbers, integrator, step):
-    """Return the model: its body frame is that of the peer's numbers, which for a hinge and a ball is the scene's."""
+    """Return the text of the model.
+
+    Its body frame is that of the peer's numbers, which for a hinge and a ball is the scene's.
+    """
     kind, gravity = scene.constraint.kind, scene.effect('gravity')
     g = (
         gravity.g
@@ -60,7 +69,8 @@ def _text(scene, numbers, integrator, step):
         joint = '<joint type="free"/>'
     if kind == 'hinge':
         attitude = numbers.orientation
-        joint = f'<joint type="hinge" axis="{_spaced(numbers.axis)}" pos="{_spaced(scene.constraint.through)}" damping="{numbers.friction!r}"/>'
+        joint = (f'<joint type="hinge" axis="{_spaced(numbers.axis)}" '
+                 f'pos="{_spaced(scene.constraint.through)}" damping="{numbers.friction!r}"/>')
     elif kind == 'table':
         origin, table, shape = (
             (0.0, 0.0, numbers.radius),
@@ -96,7 +106,7 @@ def _run(scene, numbers, integrator, step):
     except ValueError as error:
         raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
     data = mujoco.MjData(model)
-    # else it writes a file into the present folder
+    # otherwise MuJoCo writes a file into the current folder
     mujoco.set_mju_user_warning(lambda text: None)
     turns = isinstance(numbers, body.Body)
     if turns:
@@ -128,7 +138,8 @@ def _run(scene, numbers, integrator, step):
         done = steps
         if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
             raise NotConverged(
-                f'{NAME}: at a step of {step:.3g} s it finds NaN and starts anew from its first pose, with a warning'
+                f'{NAME}: at a step of {step:.3g} s it finds NaN and starts anew from its first '
+                'pose, with a warning'
             )
 
     def state():

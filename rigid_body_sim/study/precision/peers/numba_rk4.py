@@ -1,4 +1,5 @@
-"""Classical Runge-Kutta compiled by numba: what a careful user writes in thirty lines."""
+# SPDX-License-Identifier: Apache-2.0
+"""Classical Runge-Kutta compiled by numba, as a careful user writes it in thirty lines."""
 
 import numba
 import numpy as np
@@ -80,7 +81,10 @@ def swing(p, values, h, steps):
 
 @numba.njit(cache=True)
 def roll(push, slip, values, sliding, h, steps):
-    """Move the unknowns of a ball by a number of steps; return whether it slides then. The step in which it begins to roll is cut there."""
+    """Advance the unknowns of a ball by some steps; return whether it slides at the end.
+
+    The step in which it begins to roll is cut there.
+    """
     slopes, p, trial = np.empty((4, 9)), push * sliding, np.empty(9)
     for _ in range(steps):
         left = h

@@ -1,4 +1,8 @@
-"""A hinged body as a peer's user writes it down: one angle, phi'' = a cos phi + b sin phi + k - d phi'."""
+# SPDX-License-Identifier: Apache-2.0
+"""A hinged body as a peer's user writes it down: one angle phi.
+
+phi'' = a cos phi + b sin phi + k - d phi'.
+"""
 
 import math
 from dataclasses import dataclass
@@ -17,9 +21,9 @@ class Pendulum:
     Attributes
     ----------
     axis : array (3,)
-        Of the hinge, body axes, unit length.
+        Direction of the hinge, body axes, unit length.
     numbers : array (4,)
-        a, b, k (rad/s^2) and d (1/s), in 80-bit numbers, as a rounding of them counts near a
+        a, b, k (rad/s^2) and d (1/s) in 80-bit numbers, because their rounding matters near a
         separatrix.
     torque, friction : float
         I k (N m), I d (N m s).
@@ -37,7 +41,7 @@ class Pendulum:
     start: np.ndarray
 
     def state(self, values):
-        """Return q and omega (body axes) of phi and phi'."""
+        """Return q and omega (body axes) from phi and phi'."""
         half, rate = 0.5 * values[0], values[1]
         return *multiply(*self.orientation, *(math.sin(half) * self.axis), math.cos(half)), *(
             rate * self.axis
@@ -45,7 +49,7 @@ class Pendulum:
 
 
 def of(scene):
-    """Return the Pendulum of a scene; RefusedError says what is not given to peers."""
+    """Return the Pendulum of a scene; RefusedError tells what peers are not asked to run."""
     body, constraint = scene.body, scene.constraint
     q, omega, _ = start.of(scene)
     long = np.longdouble
@@ -54,7 +58,7 @@ def of(scene):
     )
     out = arm - axis * (axis @ arm)
     moment = axis @ body.about_center.matrix.astype(long) @ axis + body.mass * (out @ out)
-    # the vertical in the body at phi = 0; the weight's torque about the axis is M g n . (z x r)
+    # vertical in the body at phi = 0; the weight's torque about the axis is M g n . (z x r)
     up = np.array(rotate_back(*q, 0.0, 0.0, 1.0), long)
     gravity, drag = scene.effect('gravity'), scene.effect('drag')
     weight = body.mass * long(gravity.g if gravity else 0.0)
@@ -89,5 +93,5 @@ def of(scene):
 
 @numba.njit(cache=True)
 def rates(p, phi, rate):
-    """Return the rates of phi and phi'; p is Pendulum.numbers."""
+    """Return the rates of phi and phi' for p = Pendulum.numbers."""
     return rate, p[0] * math.cos(phi) + p[1] * math.sin(phi) + p[2] - p[3] * rate

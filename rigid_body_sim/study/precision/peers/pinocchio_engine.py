@@ -1,4 +1,8 @@
-"""Pinocchio: its articulated-body algorithm under the semi-implicit Euler step of its users, and under RK4 on the group, looped from Python."""
+# SPDX-License-Identifier: Apache-2.0
+"""Pinocchio: its articulated-body algorithm in loops from Python.
+
+The methods are the semi-implicit Euler step of its users, and RK4 on the group.
+"""
 
 import numpy as np
 
@@ -76,7 +80,7 @@ def _turning(scene, numbers, step_of, step):
 
 
 def _swinging(scene, numbers, step_of, step):
-    """Return the Run of a revolute joint: its frame is the body's, moved to the hinge."""
+    """Return the Run of a revolute joint, whose frame is the body's, moved to the hinge."""
     import pinocchio
     through = np.array(scene.constraint.through)
     turn = pinocchio.Quaternion(np.array(numbers.orientation)).matrix()
@@ -124,7 +128,10 @@ def _euler(pinocchio, model, rate, q, v, h):
 
 
 def _rk4(pinocchio, model, rate, q, v, h):
-    """Return the state after a Runge-Kutta-Munthe-Kaas step of order 4 with the commutator corrections of Owren and Marthinsen."""
+    """Return the state after a Runge-Kutta-Munthe-Kaas step of order 4.
+
+    It has the commutator corrections of Owren and Marthinsen.
+    """
     a1, k1 = rate(q, v), v
     v2 = v + 0.5 * h * a1
     a2, k2 = rate(pinocchio.integrate(model, q, 0.5 * h * k1), v2), v2
@@ -138,5 +145,5 @@ def _rk4(pinocchio, model, rate, q, v, h):
 
 
 def _commutator(a, b):
-    """Return a x b; turns about one axis commute."""
+    """Return a x b, or 0 for rates about one axis, which commute."""
     return np.cross(a, b) if len(a) == 3 else 0.0

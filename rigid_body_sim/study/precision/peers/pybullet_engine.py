@@ -1,4 +1,8 @@
-"""PyBullet: its step is one call from Python, there is no other way; its own damping is switched off."""
+# SPDX-License-Identifier: Apache-2.0
+"""PyBullet: each step is one call from Python, for lack of another way.
+
+Its own damping is switched off.
+"""
 
 import importlib.metadata
 import tempfile
@@ -11,8 +15,10 @@ from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, ste
 
 NAME = 'PyBullet'
 URDF = """<robot name="pendulum"><link name="base"/>
-<link name="body"><inertial><origin xyz="{place}"/><mass value="{mass!r}"/><inertia {inertia}/></inertial></link>
-<joint name="hinge" type="continuous"><parent link="base"/><child link="body"/><axis xyz="{axis}"/><origin xyz="{through}"/></joint></robot>"""
+<link name="body"><inertial><origin xyz="{place}"/><mass value="{mass!r}"/>\
+<inertia {inertia}/></inertial></link>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="body"/>\
+<axis xyz="{axis}"/><origin xyz="{through}"/></joint></robot>"""
 
 
 def version():
@@ -22,7 +28,7 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield the one method there is."""
+    """Yield its only method."""
     numbers = given.of(problem)
     if isinstance(numbers, body.Body) and numbers.inner:
         raise RefusedError('internal dissipation: it has no such effect')
@@ -37,7 +43,7 @@ def runners(problem, reference):
 
 
 def _engine(step, g):
-    """Return the module and keywords that name a world of its own."""
+    """Return the module, and the keywords that select a world of its own."""
     import pybullet as engine
     world = {'physicsClientId': engine.connect(engine.DIRECT)}
     engine.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=0, **world)
@@ -63,7 +69,10 @@ def _undamped(engine, world, one, moments, **more):
 
 
 def _stepping(engine, world, step, again, push, state):
-    """Return the Run of a loop of steps; `again` goes back to the start, `push` applies what is no part of the world, if anything."""
+    """Return the Run of a loop of steps.
+
+    `again` goes back to the start; `push`, if any, applies what is not part of the world.
+    """
     done = 0
 
     def begin():
@@ -87,7 +96,8 @@ def _turning(scene, numbers, step):
     inertia, arm = numbers.about_center(scene)
     if np.abs(inertia - np.diag(np.diag(inertia))).max() > 1e-12 * inertia.max():
         raise RefusedError(
-            'the principal axes about the centre of mass are not those about the pivot: it takes three moments only'
+            'the principal axes about the centre of mass are not those about the pivot: '
+            'it takes three moments only'
         )
     engine, world = _engine(step, 0.0 if free or not gravity else gravity.g)
     one = engine.createMultiBody(baseMass=scene.body.mass, **world)
@@ -133,7 +143,7 @@ def _turning(scene, numbers, step):
 
 
 def _swinging(scene, numbers, step):
-    """Return the Run of a revolute joint on a fixed base, of a URDF file as its users write it."""
+    """Return the Run of a revolute joint on a fixed base, from a URDF file as users write it."""
     gravity, body_, through = scene.effect('gravity'), scene.body, scene.constraint.through
     engine, world = _engine(step, gravity.g if gravity else 0.0)
     inertia = body_.about_center.matrix
@@ -167,7 +177,7 @@ def _swinging(scene, numbers, step):
         maxJointVelocity=1e9,
         **world,
     )
-    # else a motor brakes it
+    # otherwise a motor brakes it
     engine.setJointMotorControl2(one, 0, engine.VELOCITY_CONTROL, force=0.0, **world)
 
     def push():
@@ -185,7 +195,10 @@ def _swinging(scene, numbers, step):
 
 
 def _rolling(scene, numbers, step):
-    """Return the Run of a sphere on a plane, both with its own contact; it multiplies their coefficients of friction."""
+    """Return the Run of a sphere on a plane, with PyBullet's own contact.
+
+    It multiplies the two coefficients of friction.
+    """
     engine, world = _engine(step, numbers.g)
     table = engine.createMultiBody(
         0.0, engine.createCollisionShape(engine.GEOM_PLANE, **world), **world

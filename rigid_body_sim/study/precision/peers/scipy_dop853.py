@@ -1,4 +1,8 @@
-"""SciPy: solve_ivp with DOP853 on a right-hand side compiled by numba; rtol = atol = tolerance. A ball's onset of rolling is an event."""
+# SPDX-License-Identifier: Apache-2.0
+"""SciPy: solve_ivp with DOP853 on a right-hand side compiled by numba.
+
+rtol = atol = tolerance. The onset of rolling of a ball is an event.
+"""
 
 import numba
 import numpy as np

@@ -1,14 +1,20 @@
-"""Where a problem begins, and which of its effects change on the way."""
+# SPDX-License-Identifier: Apache-2.0
+"""The start of a problem; it refuses effects that change on the way."""
 
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 from rigid_body_sim.study.precision.runner import RefusedError, begun
 
 
 def of(scene):
-    """Return the attitude, omega (body axes) and velocity (world) from which a peer starts: those of the scene, strikes at time 0 done.
+    """Return the attitude, omega (body axes) and velocity (world) from which a peer starts.
 
-    RefusedError where something jumps later: a peer's user would stop there and start anew, which
-    is no line of a sweep.
+    They are those of the scene, after the strikes at time 0.
+
+    Raises
+    ------
+    RefusedError
+        If something jumps later: a peer's user would stop there and start anew, which is no line
+        of a sweep.
     """
     if any(effect.name == 'strike' and effect.time > 0.0 for effect in scene.effects):
         raise RefusedError('a strike on the way: the harness gives peers smooth motions only')
