@@ -1,9 +1,11 @@
-"""Cost of one state in closed form, and of a state every millisecond, beside a compiled RK4 and heyoka where it is installed.
+# SPDX-License-Identifier: Apache-2.0
+"""Cost of one state in closed form, and of a state every millisecond, beside RK4 and heyoka.
 
     .venv/bin/python bench/closed_forms.py [--json]
 
-Every figure is the median of interleaved repeats in one run; "call" includes the call from Python. Ratios hold, single times depend on the
-machine.
+RK4 is compiled; heyoka is measured where it is installed. Every figure is the median of
+interleaved repeats in one run; "call" includes the call from Python. Ratios are reproducible,
+single times depend on the machine.
 """
 
 import argparse
@@ -21,15 +23,18 @@ from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import STATE_SIZE
 
-SCENES = {'free body': 'tennis_racket', 'free body, generic': 'asymmetric_top', 'Lagrange top': 'heavy_top', 'pendulum': 'kater_pendulum',
-          'ball': 'billiard_follow'}
+SCENES = {'free body': 'tennis_racket', 'free body, generic': 'asymmetric_top',
+          'Lagrange top': 'heavy_top', 'pendulum': 'kater_pendulum', 'ball': 'billiard_follow'}
 MILLISECONDS = 20_000
 REPEATS = 15
 
 
 @compiled_allocating
 def _rk4(I1, I2, I3, w, q, h, steps):
-    """Advance body rates and attitude of a free body by classical Runge-Kutta steps: what a careful user would write with numba."""
+    """Advance body rates and attitude of a free body by classical Runge-Kutta steps.
+
+    It is what a careful user would write with numba.
+    """
     y = np.empty(7)
     y[:3], y[3:] = w, q
     k, sum_, probe = np.empty(7), np.empty(7), np.empty(7)
@@ -38,7 +43,8 @@ def _rk4(I1, I2, I3, w, q, h, steps):
         sum_[:] = 0.0
         for stage in range(4):
             w1, w2, w3, x, yy, z, s = probe
-            k[0], k[1], k[2] = (I2 - I3) / I1 * w2 * w3, (I3 - I1) / I2 * w3 * w1, (I1 - I2) / I3 * w1 * w2
+            k[0], k[1], k[2] = ((I2 - I3) / I1 * w2 * w3, (I3 - I1) / I2 * w3 * w1,
+                                (I1 - I2) / I3 * w1 * w2)
             k[3], k[4] = 0.5 * (s * w1 + yy * w3 - z * w2), 0.5 * (s * w2 + z * w1 - x * w3)
             k[5], k[6] = 0.5 * (s * w3 + x * w2 - yy * w1), -0.5 * (x * w1 + yy * w2 + z * w3)
             sum_ += k * (1.0 if stage in (0, 3) else 2.0)
@@ -55,7 +61,7 @@ def timed(act, count):
 
 
 def cases():
-    """Yield (what, scene, callable, units per call)."""
+    """Yield (name, callable, units per call)."""
     for kind, name in SCENES.items():
         scene = load_scene(name)
         solver = Exact(scene, absorbing_motion(scene))
@@ -75,21 +81,28 @@ def cases():
 
         yield f'{kind}: a state, call', one, 2000
         yield f'{kind}: anchor and state, two calls', from_start, 1000
-        yield f'{kind}: a state every ms, each', lambda started=started, times=times, many=many: started.states(times, many), MILLISECONDS
-    yield 'RK4 compiled by numba, racket: a step of 20 ms', lambda: _rk4(1.0, 2.0, 3.0, np.array([0.01, 5.0, 0.01]),
-                                                                       np.array([0.0, 0.0, 0.0, 1.0]), 0.02, 5000), 5000
+        yield (f'{kind}: a state every ms, each',
+               lambda started=started, times=times, many=many: started.states(times, many),
+               MILLISECONDS)
+    yield ('RK4 compiled by numba, racket: a step of 20 ms',
+           lambda: _rk4(1.0, 2.0, 3.0, np.array([0.01, 5.0, 0.01]),
+                        np.array([0.0, 0.0, 0.0, 1.0]), 0.02, 5000), 5000)
     yield from heyoka_cases()
 
 
 def heyoka_cases():
-    """Yield heyoka's final state of the racket at 1e-9 over 100 s, and its dense output every millisecond."""
+    """Yield heyoka's cost for the racket: final state after 100 s, and a state every ms.
+
+    The final state has an error of 1e-9.
+    """
     try:
         import heyoka
     except ImportError:
         return
     w1, w2, w3, x, y, z, s = heyoka.make_vars('w1', 'w2', 'w3', 'x', 'y', 'z', 's')
     system = [(w1, -1.0 * w2 * w3), (w2, 1.0 * w3 * w1), (w3, -1.0 / 3.0 * w1 * w2),
-              (x, 0.5 * (s * w1 + y * w3 - z * w2)), (y, 0.5 * (s * w2 + z * w1 - x * w3)), (z, 0.5 * (s * w3 + x * w2 - y * w1)),
+              (x, 0.5 * (s * w1 + y * w3 - z * w2)), (y, 0.5 * (s * w2 + z * w1 - x * w3)),
+              (z, 0.5 * (s * w3 + x * w2 - y * w1)),
               (s, -0.5 * (x * w1 + y * w2 + z * w3))]
     start = [0.01, 5.0, 0.01, 0.0, 0.0, 0.0, 1.0]
     # at 1e-13 the racket's final error after 100 s is about 1e-9
@@ -123,14 +136,17 @@ def main():
     for _ in range(REPEATS):
         for what, act, count in rows:
             times[what].append(timed(act, count))
-    result = {what: {'median': statistics.median(values), 'least': min(values), 'most': max(values)} for what, values in times.items()}
+    result = {what: {'median': statistics.median(values), 'least': min(values),
+                     'most': max(values)} for what, values in times.items()}
     if options.json:
-        print(json.dumps({'machine': processor().split()[0], 'python': platform.python_version(), 'compiled': HAVE_NUMBA,
+        print(json.dumps({'machine': processor().split()[0],
+                          'python': platform.python_version(), 'compiled': HAVE_NUMBA,
                           'seconds': result}, indent=2))
         return
     print(f'{"microseconds":62} median  least   most')
     for what, row in result.items():
-        print(f'{what:60} {row["median"] * 1e6:8.3f} {row["least"] * 1e6:7.3f} {row["most"] * 1e6:7.3f}')
+        print(f'{what:60} {row["median"] * 1e6:8.3f} {row["least"] * 1e6:7.3f} '
+              f'{row["most"] * 1e6:7.3f}')
 
 
 if __name__ == '__main__':

@@ -1,10 +1,13 @@
-"""Energy over a million steps of a composition: sums that carry what they lose, beside plain ones.
+# SPDX-License-Identifier: Apache-2.0
+"""Energy over a million steps of a composition: compensated sums beside plain ones.
 
     .venv/bin/python bench/energy.py [--json] [--steps N]
 
-An asymmetric heavy top by split4, steps of 5e-4 s; the energy is formed at a thousand states, as a share of the largest of |kinetic| and
-|potential|. Given are the largest residual, the rise of a straight line fitted to it over the run, and the largest residual of L_z, which
-gravity keeps too, as a share of |L|. Exits with 1 if the compensated energy leaves 1e-14 or its line rises by a tenth of that.
+An asymmetric heavy top runs by split4 with steps of 5e-4 s; the energy is formed at a thousand
+states, as a share of the largest of |kinetic| and |potential|. The figures are the largest
+residual, the rise of a straight line fitted to it over the run, and the largest residual of L_z,
+which gravity conserves too, as a share of |L|. The exit status is 1 if the compensated energy
+leaves 1e-14 or its line rises by a tenth of that.
 """
 
 import argparse
@@ -53,19 +56,24 @@ def kick(p, y, c, h):
 
 
 def plain(method):
-    """Return the method with plain sums: what the sums of a flow lose is dropped; the attitude is still brought back to norm 1."""
+    """Return the method with plain sums, which drop the rounding errors of a flow.
+
+    The attitude is still brought back to norm 1.
+    """
     def step_source(method, bound):
         flows = composition.flows(bound).__name__
-        return composition.composed_source(method, bound, PLAIN_DRIFT.format(flows=flows), PLAIN_KICK.format(flows=flows))
+        return composition.composed_source(method, bound, PLAIN_DRIFT.format(flows=flows),
+                                           PLAIN_KICK.format(flows=flows))
 
     family = types.SimpleNamespace(**{**vars(composition), 'step_source': step_source})
-    return types.SimpleNamespace(**{**vars(method), 'NAME': f'plain {method.NAME}', 'FAMILY': family})
+    return types.SimpleNamespace(
+        **{**vars(method), 'NAME': f'plain {method.NAME}', 'FAMILY': family})
 
 
 def residuals(scene, method, steps):
-    """Return (residual of the energy, of L_z) at each sample, shape (2, samples), and the CPU seconds of a step."""
+    """Return the residuals of energy and L_z, shape (2, samples), and CPU seconds of a step."""
     solver = Stepped(scene, method, step=STEP).start(scene.initial.vector)
-    solver.state(STEP, np.empty(14))    # compiles
+    solver.state(STEP, np.empty(14))    # the first step compiles
     times, out = np.linspace(0, steps, SAMPLES).round() * STEP, np.empty((SAMPLES, 14))
     begin = time.process_time()
     solver.states(times, out)
@@ -82,7 +90,7 @@ def residuals(scene, method, steps):
 
 
 def main():
-    """Measure and print."""
+    """Measure and print; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--json', action='store_true')
     parser.add_argument('--steps', type=int, default=1_000_000)
@@ -92,16 +100,20 @@ def main():
     for label, method in (('compensated', 'split4'), ('plain', 'plain split4')):
         (energy, vertical), cost = residuals(scene, method, options.steps)
         rise = float(np.polyfit(np.linspace(0.0, 1.0, SAMPLES), energy, 1)[0])
-        table[label] = {'energy': float(np.abs(energy).max()), 'rise': rise, 'vertical_momentum': float(np.abs(vertical).max()),
+        table[label] = {'energy': float(np.abs(energy).max()), 'rise': rise,
+                        'vertical_momentum': float(np.abs(vertical).max()),
                         'microseconds_per_step': 1e6 * cost}
-    good = table['compensated']['energy'] < ALLOWED and abs(table['compensated']['rise']) < ALLOWED_RISE
+    good = (table['compensated']['energy'] < ALLOWED
+            and abs(table['compensated']['rise']) < ALLOWED_RISE)
     if options.json:
-        print(json.dumps({'steps': options.steps, 'split4': table, 'allowed': ALLOWED, 'allowed_rise': ALLOWED_RISE, 'good': good}))
+        print(json.dumps({'steps': options.steps, 'split4': table, 'allowed': ALLOWED,
+                          'allowed_rise': ALLOWED_RISE, 'good': good}))
     else:
         title = f'{options.steps} steps of split4'
         print(f'{title:30}{"energy":>12}{"its rise":>12}{"L_z":>12}{"us a step":>12}')
         for label, row in table.items():
-            print(f'{label:30}{row["energy"]:>12.1e}{row["rise"]:>12.1e}{row["vertical_momentum"]:>12.1e}{row["microseconds_per_step"]:>12.2f}')
+            print(f'{label:30}{row["energy"]:>12.1e}{row["rise"]:>12.1e}'
+                  f'{row["vertical_momentum"]:>12.1e}{row["microseconds_per_step"]:>12.2f}')
     return int(not good)
 
 

@@ -1,9 +1,12 @@
-"""Ensembles: states in closed form for each CPU second, and what has none beside heyoka's batch mode where it is installed.
+# SPDX-License-Identifier: Apache-2.0
+"""Speed of ensembles, in closed form and stepped; the latter beside heyoka's batch mode.
 
     .venv/bin/python bench/ensembles.py [--case 'top 2' 'driven body'] [--goal 1e-6] [--json]
 
-CPU seconds of all threads, medians of interleaved repeats, the Python around the kernels included. A case of smooth_scenes.py runs for 20 s to
-an error of at most 1e-9 rad, the largest of CHECKED bodies; heyoka gets the same equations, and of its batches the set-up is left out.
+Times are CPU seconds of all threads, medians of interleaved repeats, and include the Python around
+the kernels. A stepped case, one of smooth_scenes.py, runs for 20 s to an error of at most 1e-9
+rad, the largest of CHECKED bodies. heyoka, where it is installed, gets the same equations; the
+set-up of its batches is left out.
 """
 
 import argparse
@@ -22,7 +25,7 @@ from rigid_body_sim.scene.scene import load_scene, parse_scene
 CLOSED = {'free body': 'asymmetric_top', 'racket': 'tennis_racket', 'Lagrange top': 'heavy_top'}
 BODIES, TIMES, REPEATS = 20_000, 50, 7
 BATCH, MANY, CHECKED, DURATION, GOAL = 8, 512, 16, 20.0, 1e-9
-SPREAD = 0.02    # of the rates: how far the starts lie apart
+SPREAD = 0.02    # largest relative change of the rates at the start
 
 
 def starts_of(scene, count):
@@ -33,18 +36,19 @@ def starts_of(scene, count):
 
 
 def closed():
-    """Yield (what, act, states)."""
+    """Yield (name, callable, states)."""
     for kind, name in CLOSED.items():
         scene = load_scene(name)
         for times in (1, TIMES):
             starts = starts_of(scene, BODIES // times)
             at = np.linspace(0.5, 20.0, times)
-            yield (f'{kind}, {times} times a body', lambda scene=scene, starts=starts, at=at: ensemble(scene, starts, at),
+            yield (f'{kind}, {times} times a body',
+                   lambda scene=scene, starts=starts, at=at: ensemble(scene, starts, at),
                    len(starts) * times)
 
 
 def stepped(case, goal):
-    """Yield (what, act, bodies times seconds) of a case without a closed form, to an error."""
+    """Yield (name, callable, bodies times seconds) of a stepped case, run to an error."""
     import heyoka
     scene = parse_scene(f'scene: bench\n{CASES[case]}')
     starts = starts_of(scene, MANY)
@@ -59,8 +63,10 @@ def stepped(case, goal):
         return lambda: ensemble(scene, starts, [DURATION], 'taylor', accuracy)
 
     def theirs(tolerance):
-        solver = heyoka.taylor_adaptive_batch(heyoka_system(scene), np.zeros((7, BATCH)), tol=tolerance)
-        batches = [np.array([in_frame(scene, start) for start in starts[k:k + BATCH]]).T for k in range(0, MANY, BATCH)]
+        solver = heyoka.taylor_adaptive_batch(
+            heyoka_system(scene), np.zeros((7, BATCH)), tol=tolerance)
+        batches = [np.array([in_frame(scene, start) for start in starts[k:k + BATCH]]).T
+                   for k in range(0, MANY, BATCH)]
 
         def act():
             attitudes = []
@@ -68,7 +74,9 @@ def stepped(case, goal):
                 solver.set_time(0.0)
                 solver.state[:] = start
                 solver.propagate_until(DURATION)
-                attitudes += list(solver.state[:4].T / np.linalg.norm(solver.state[:4], axis=0)[:, np.newaxis])
+                attitudes += list(
+                    solver.state[:4].T
+                    / np.linalg.norm(solver.state[:4], axis=0)[:, np.newaxis])
             return attitudes
         return act
     for digits in np.arange(1.0, 15.0, 0.5):
@@ -79,14 +87,16 @@ def stepped(case, goal):
     for digits in np.arange(1.0, 16.0, 0.5):
         act = theirs(10.0 ** -digits)
         if error_of(act()[:CHECKED]) <= goal:
-            yield f'{case}, heyoka in batches of {BATCH} to {10.0 ** -digits:.0e}', act, MANY * DURATION
+            yield (f'{case}, heyoka in batches of {BATCH} to {10.0 ** -digits:.0e}', act,
+                   MANY * DURATION)
             break
 
 
 def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--case', nargs='+', choices=list(CASES), default=['top 1'], help='without a closed form (top 1)')
+    parser.add_argument('--case', nargs='+', choices=list(CASES), default=['top 1'],
+                        help='cases without a closed form (top 1)')
     parser.add_argument('--goal', type=float, default=GOAL, help=f'their error, rad ({GOAL:g})')
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
@@ -109,7 +119,8 @@ def main():
     for what, rate in rates.items():
         print(f'  {what:60} {rate:12.0f}')
     if len(rows) == 2 * len(CLOSED):
-        print('  stepped ones not measured: heyoka, which they are measured against, is not installed (pip install heyoka==7.13.2)')
+        print('  stepped ones not measured: heyoka, which they are measured against, '
+              'is not installed (pip install heyoka==7.13.2)')
 
 
 if __name__ == '__main__':

@@ -1,12 +1,15 @@
-"""Instructions that a step takes, counted by callgrind: what a scene does not list costs nothing.
+# SPDX-License-Identifier: Apache-2.0
+"""Instructions of a step, counted by callgrind: what a scene does not list costs nothing.
 
     .venv/bin/python bench/instructions.py [--json]
 
-Counts are repeatable where times are not. Every case is counted with all effects known, and with only those left in the table of effects that
-its scene lists: a program that cannot know the others. A count is the difference between 2 N and N steps, so that what a start takes drops
-out. One more scene lists drag besides, and must take more: else the counting would see nothing. All is compiled for a generic x86-64,
-because callgrind does not know the newest instructions. It takes a minute. Exits with 1 if an absent
-effect costs more than 1 %, or a listed one less. Needs valgrind; without it nothing is counted, and one line says so.
+Counts are repeatable where times are not. Every case is counted with all effects in the table of
+effects, and with only those that its scene lists, as in a program that cannot know the others. A
+count is the difference between 2 N and N steps, so that the cost of a start cancels. One more
+scene lists drag besides and must take more; otherwise the counting would miss effects. All code is
+compiled for a generic x86-64, because callgrind does not know the newest instructions. The
+benchmark takes a minute. The exit status is 1 if an absent effect costs more than 1 %, or a listed
+one less. It needs valgrind; without it nothing is counted, and one line says so.
 """
 
 import argparse
@@ -45,7 +48,7 @@ DRAG_COSTS = 'a step of dop8, asymmetric heavy top with drag'
 
 
 def steps(text):
-    """Return act(n): n steps of dop8 from the start."""
+    """Return act(n), which takes n steps of dop8 from the start."""
     scene, out = parse_scene(text), np.empty(14)
     solver = Stepped(scene, 'dop8', step=STEP)
 
@@ -70,7 +73,8 @@ def march(control):
             for name in [name for name in every if known == 'listed' and name not in listed]:
                 del EFFECTS[name]
             act = steps(text)
-            for label, count in (('first', 1), ('once', STEPS), ('twice', 2 * STEPS)):    # the first time more is loaded
+            # the first call loads more
+            for label, count in (('first', 1), ('once', STEPS), ('twice', 2 * STEPS)):
                 control('-z')
                 act(count)
                 control(f'--dump={number}.{known}.{label}')
@@ -79,31 +83,38 @@ def march(control):
 
 
 def callgrind_control(*arguments):
-    """Tell the callgrind that runs this process what to do."""
-    subprocess.run(['callgrind_control', *arguments, str(os.getpid())], check=True, stdout=subprocess.DEVNULL)
+    """Send arguments to the callgrind that runs this process."""
+    subprocess.run(['callgrind_control', *arguments, str(os.getpid())], check=True,
+                   stdout=subprocess.DEVNULL)
 
 
 def counted():
     """Return {case: {known: instructions}}."""
-    environment = os.environ | {'NUMBA_CPU_NAME': 'generic', 'NUMBA_CPU_FEATURES': '', 'PYTHONHASHSEED': '0'}
-    # this Python is the one that the ROS wheels' start-up has run anew, so its child is not run anew under valgrind
+    environment = os.environ | {'NUMBA_CPU_NAME': 'generic', 'NUMBA_CPU_FEATURES': '',
+                                'PYTHONHASHSEED': '0'}
+    # The start-up code of the ROS wheels has already run this Python anew, so its child is not
+    # run anew under valgrind.
     child = [sys.executable, __file__, '--march']
-    subprocess.run([*child, 'alone'], env=environment, check=True)    # compiles
+    subprocess.run([*child, 'alone'], env=environment, check=True)    # this run compiles
     with tempfile.TemporaryDirectory() as folder:
-        valgrind = ['valgrind', '--quiet', '--tool=callgrind', '--instr-atstart=no', f'--callgrind-out-file={folder}/out']
-        subprocess.run([*valgrind, *child, 'counted'], env=environment, check=True, stderr=subprocess.DEVNULL)
+        valgrind = ['valgrind', '--quiet', '--tool=callgrind', '--instr-atstart=no',
+                    f'--callgrind-out-file={folder}/out']
+        subprocess.run([*valgrind, *child, 'counted'], env=environment, check=True,
+                       stderr=subprocess.DEVNULL)
         totals = {}
         for path in pathlib.Path(folder).glob('out.*'):
             profile = path.read_text()
             label = re.search(r'^desc: Trigger: dump (\S+)', profile, re.MULTILINE)
             if label:
-                totals[label.group(1)] = int(re.search(r'^totals: (\d+)', profile, re.MULTILINE).group(1))
-    return {case: {known: (totals[f'{number}.{known}.twice'] - totals[f'{number}.{known}.once']) / STEPS for known in KNOWN}
+                totals[label.group(1)] = int(
+                    re.search(r'^totals: (\d+)', profile, re.MULTILINE).group(1))
+    return {case: {known: (totals[f'{number}.{known}.twice'] - totals[f'{number}.{known}.once'])
+                   / STEPS for known in KNOWN}
             for number, case in enumerate(CASES)}
 
 
 def main():
-    """Count and print."""
+    """Count and print; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--json', action='store_true')
     parser.add_argument('--march', choices=('alone', 'counted'), help=argparse.SUPPRESS)
@@ -121,11 +132,14 @@ def main():
     drag = counts[DRAG_COSTS]['all'] / next(iter(counts.values()))['all'] - 1.0
     good = worst <= ALLOWED < drag
     if options.json:
-        print(json.dumps({'instructions': counts, 'worst': worst, 'allowed': ALLOWED, 'drag_costs': drag, 'good': good}))
+        print(json.dumps({'instructions': counts, 'worst': worst, 'allowed': ALLOWED,
+                          'drag_costs': drag, 'good': good}))
     else:
-        print(f'{"instructions, effects known:":52}{"all":>12}{"listed ones":>12}{"ratio - 1":>12}')
+        print(f'{"instructions, effects known:":52}{"all":>12}{"listed ones":>12}'
+              f'{"ratio - 1":>12}')
         for case, count in counts.items():
-            print(f'{case:52}{count["all"]:>12.1f}{count["listed"]:>12.1f}{count["all"] / count["listed"] - 1.0:>+12.3%}')
+            print(f'{case:52}{count["all"]:>12.1f}{count["listed"]:>12.1f}'
+                  f'{count["all"] / count["listed"] - 1.0:>+12.3%}')
         print(f'drag, once listed, costs {drag:+.1%}')
     return int(not good)
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of recordings: writing, size, reading, analysing, cost to the node, losses by a kill.
+"""Figures of recordings: writing, size, reading, analysing, cost to the node, loss by a kill.
 
     PYTHONPATH=. .venv/bin/python bench/recordings.py [--seconds 60] [--hour]
 
-The messages are those of a node's four topics on the racket scene. Prints JSON; single times
-depend on the machine and on what else it does.
+The messages are those of a node's four topics on the racket scene. The output is JSON; single
+times depend on the machine and on its other load.
 """
 
 import argparse
@@ -72,7 +72,7 @@ class Racket:
 def writing(folder, seconds, block=None, scene='tennis_racket'):
     """Write a scene at 1 kHz; return messages/s and size/payload.
 
-    A chunk ends every `block` ticks as the node does it, or it is written as fast as it goes.
+    A chunk ends every `block` ticks, as in the node; without `block` it is written at full speed.
     """
     racket = Racket(round(seconds * 1000), 1000.0, scene)
     late = racket.stamps + np.random.default_rng(1).integers(30_000, 200_000, len(racket.stamps))
@@ -100,7 +100,7 @@ def reading(folder):
 
 
 def beside_the_library(folder):
-    """Time what recording/mcap does itself and the package mcap for the same; return seconds.
+    """Time the work of recording/mcap and of the package mcap for the same; return seconds.
 
     Each entry is (ours, the library's), on a recording of `folder` as the node writes it.
     """
@@ -175,7 +175,7 @@ def _read_theirs(path):
 
 
 def _cut(path, cut):
-    """Make a copy without the tail of a file."""
+    """Make and return a copy of a file without its tail."""
     content = path.read_bytes()
     cut.write_bytes(content[:-2000])
     return cut
@@ -186,7 +186,7 @@ def _mend_ours(path):
 
 
 def _mend_theirs(path):
-    """Read up to the cut, and write what was found into another file."""
+    """Read up to the cut, and write the records found into another file."""
     with open(path, 'rb') as stream, open(path.with_suffix('.new'), 'wb') as new:
         writer, numbers = mcap.writer.Writer(new, chunk_size=2**16), {}
         writer.start('ros2')
@@ -204,9 +204,9 @@ def _mend_theirs(path):
 
 
 def analysing(folder, seconds):
-    """Run `simulate` for so many seconds and `analyze` on its recording.
+    """Run `simulate` for some seconds and `analyze` on its recording.
 
-    Return messages/s of the one, seconds and peak memory (MB) of the other.
+    Return messages/s of the first, and seconds and peak memory (MB) of the second.
     """
     command = [sys.executable, '-m', 'rigid_body_sim']
     simulated = subprocess.run(
@@ -237,7 +237,7 @@ def analysing(folder, seconds):
 def ticking(folder, rate, seconds):
     """Record at a rate in real time.
 
-    Return the cost of a tick in us (median, 99 %), dropped ticks, and the recorder's CPU share.
+    Return the cost of a tick in us (median, p99), dropped ticks, and the recorder's CPU share.
     """
     racket = Racket(min(round(rate * seconds), 40_000), rate)
     messages = [
@@ -287,9 +287,9 @@ for k in range(10**9):
 
 
 def killing(folder, runs=10):
-    """Kill a 1 kHz recording with its recorder, `runs` times.
+    """Kill a 1 kHz recording and its recorder, `runs` times.
 
-    Return what was lost each time, in ms of stamps, in ascending order.
+    Return the losses in ms of stamps, in ascending order.
     """
     lost = []
     for number in range(runs):

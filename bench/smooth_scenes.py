@@ -1,11 +1,14 @@
-"""CPU time of smooth scenes without a closed form beside heyoka, by accuracy reached, and of a state every millisecond.
+# SPDX-License-Identifier: Apache-2.0
+"""CPU time of smooth scenes without a closed form beside heyoka, by accuracy reached.
 
     .venv/bin/python bench/smooth_scenes.py [--json] [--case NAME ...]
 
-Asymmetric heavy tops drawn by chance and driven bodies, over 20 s and 100 s. A run is a start from new initial data and the final state, calls
-from Python included; of heyoka the object stays and gets the data. Both are swept over their tolerances; a figure is the median of interleaved
-repeats of the cheapest run that reached the accuracy (rotation angle to heyoka with 80-bit numbers). heyoka gets the same equations;
-it is a Taylor method, compiled. Ratios hold, single times depend on the machine.
+The scenes are random asymmetric heavy tops and driven bodies, over 20 s and 100 s. A run is a
+start from new initial data and the final state, with the calls from Python; heyoka's object stays
+and gets the data. Both are swept over their tolerances; a figure is the median of interleaved
+repeats of the cheapest run that reached the accuracy (rotation angle to heyoka with 80-bit
+numbers). heyoka, a compiled Taylor method, gets the same equations. A state every millisecond is
+timed too. Ratios are reproducible, single times depend on the machine.
 """
 
 import argparse
@@ -26,45 +29,60 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
 GOALS = {1e-3: 0.25, 1e-6: 0.33, 1e-9: 0.4, 1e-12: 0.4}
-"""Accuracy -> the part of heyoka's time that is aimed at."""
+"""Accuracy, and the share of heyoka's time that is aimed at."""
 DURATIONS = (20.0, 100.0)
 REPEATS, COUNT = 9, 5
 MILLISECONDS = np.arange(20_001) / 1000.0
-DENSE = 1e-9    # of heyoka's and our final state, where a state every millisecond is timed
+DENSE = 1e-9    # accuracy of both final states where a state every millisecond is timed
 STILL = Wrench()
 
 
 def _drawn_top(seed):
-    """Return the text of an asymmetric heavy top: moments about the pivot, place of the centre of mass, tilt and rates by chance."""
+    """Return the text of a random asymmetric heavy top.
+
+    Moments about the pivot, place of the centre of mass, tilt and rates are random.
+    """
     draw = np.random.default_rng(seed)
     sides = draw.uniform(0.03, 0.12, 3)
     center = np.append(draw.uniform(-0.02, 0.02, 2), draw.uniform(0.06, 0.15))
     at_center = (np.sum(sides ** 2) - sides ** 2) / 3.0
     about_origin = np.diag(at_center) + center @ center * np.eye(3) - np.outer(center, center)
     rates = np.append(draw.uniform(-3.0, 3.0, 2), draw.uniform(20.0, 60.0))
-    return (f'body: {{mass: 1.0, inertia: {about_origin.tolist()}, inertia_about: origin, center_of_mass: {center.tolist()}}}\n'
+    return (f'body: {{mass: 1.0, inertia: {about_origin.tolist()}, inertia_about: origin, '
+            f'center_of_mass: {center.tolist()}}}\n'
             f'constraint: pivot\neffects: [gravity: {{g: 9.81}}]\n'
             f'initial: {{tilt: {draw.uniform(0.2, 1.2)}, angular_velocity: {rates.tolist()}}}\n')
 
 
-DRIVEN = 'body: {{mass: 1.0, inertia: {}}}\nconstraint: free\neffects: [torque: {}]\ninitial: {{angular_velocity: {}}}\n'
+DRIVEN = ('body: {{mass: 1.0, inertia: {}}}\nconstraint: free\neffects: [torque: {}]\n'
+          'initial: {{angular_velocity: {}}}\n')
 CASES = {
     'top 1': _drawn_top(1), 'top 2': _drawn_top(2), 'top 3': _drawn_top(3),
-    'driven body': DRIVEN.format('[1.0, 2.0, 3.0]', '{value: [0.3, -0.2, 0.5]}', '[0.1, 2.0, 0.3]'),
-    'driven in world axes': DRIVEN.format('[1.0, 1.5, 2.2]', '{value: [0.3, -0.2, 0.5], frame: world}', '[0.4, 3.0, 0.2]')}
+    'driven body': DRIVEN.format(
+        '[1.0, 2.0, 3.0]', '{value: [0.3, -0.2, 0.5]}', '[0.1, 2.0, 0.3]'),
+    'driven in world axes': DRIVEN.format(
+        '[1.0, 1.5, 2.2]', '{value: [0.3, -0.2, 0.5], frame: world}', '[0.4, 3.0, 0.2]')}
 
 
 def heyoka_system(scene):
-    """Return heyoka's equations: those of rigid_body_sim/integrators/equations/turning.py, written for what the scene has, in its frame."""
+    """Return heyoka's equations of a scene, in the scene's frame.
+
+    They are those of rigid_body_sim/integrators/equations/turning.py, with the terms that the
+    scene has.
+    """
     import heyoka
 
     qx, qy, qz, qw, wx, wy, wz = heyoka.make_vars('qx', 'qy', 'qz', 'qw', 'wx', 'wy', 'wz')
     frame, torque = scene.constraint.frame(scene.body), scene.effect('torque')
     I1, I2, I3 = frame.moments
-    rows = [[None] * 3, [None] * 3, [2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx), qw * qw - qx * qx + qz * qz - qy * qy]]
+    rows = [[None] * 3, [None] * 3,
+            [2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx),
+             qw * qw - qx * qx + qz * qz - qy * qy]]
     if torque and torque.frame == 'world':
-        rows[0] = [qw * qw + qx * qx - qy * qy - qz * qz, 2.0 * (qx * qy - qw * qz), 2.0 * (qx * qz + qw * qy)]
-        rows[1] = [2.0 * (qx * qy + qw * qz), qw * qw - qx * qx + qy * qy - qz * qz, 2.0 * (qy * qz - qw * qx)]
+        rows[0] = [qw * qw + qx * qx - qy * qy - qz * qz, 2.0 * (qx * qy - qw * qz),
+                   2.0 * (qx * qz + qw * qy)]
+        rows[1] = [2.0 * (qx * qy + qw * qz), qw * qw - qx * qx + qy * qy - qz * qz,
+                   2.0 * (qy * qz - qw * qx)]
 
     def total(*terms):
         terms = [factor * what for factor, what in terms if factor != 0.0]
@@ -73,19 +91,23 @@ def heyoka_system(scene):
     if scene.constraint.kind == 'pivot':
         s1, s2, s3 = (scene.body.mass * scene.effect('gravity').g * r for r in frame.arm)
         g1, g2, g3 = rows[2]
-        gamma = [total((s3, g2), (-s2, g3)), total((s1, g3), (-s3, g1)), total((s2, g1), (-s1, g2))]
+        gamma = [total((s3, g2), (-s2, g3)), total((s1, g3), (-s3, g1)),
+                 total((s2, g1), (-s1, g2))]
     elif torque.frame == 'world':
-        gamma = [total(*((value, rows[i][k]) for i, value in enumerate(torque.values[0]))) for k in range(3)]
+        gamma = [total(*((value, rows[i][k]) for i, value in enumerate(torque.values[0])))
+                 for k in range(3)]
     else:
         gamma = list(frame.from_body(torque.values[0]))
     euler = [(I2 - I3) / I1 * (wy * wz), (I3 - I1) / I2 * (wz * wx), (I1 - I2) / I3 * (wx * wy)]
-    return [(qx, 0.5 * (qw * wx + qy * wz - qz * wy)), (qy, 0.5 * (qw * wy + qz * wx - qx * wz)), (qz, 0.5 * (qw * wz + qx * wy - qy * wx)),
+    return [(qx, 0.5 * (qw * wx + qy * wz - qz * wy)), (qy, 0.5 * (qw * wy + qz * wx - qx * wz)),
+            (qz, 0.5 * (qw * wz + qx * wy - qy * wx)),
             (qw, -0.5 * (qx * wx + qy * wy + qz * wz)),
-            *((w, e + g / moment) for w, e, g, moment in zip((wx, wy, wz), euler, gamma, (I1, I2, I3), strict=True))]
+            *((w, e + g / moment) for w, e, g, moment in zip(
+                (wx, wy, wz), euler, gamma, (I1, I2, I3), strict=True))]
 
 
 def in_frame(scene, vector):
-    """Return q and omega of the frame of a state vector."""
+    """Return q and omega of a state vector in the scene's frame."""
     from rigid_body_sim.numerics.rotations import multiply, rotate_back
     axes = scene.constraint.frame(scene.body).axes
     return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
@@ -95,15 +117,17 @@ def exact_attitude(scene, duration, vector):
     """Return the frame's final attitude by heyoka with 80-bit numbers, from a state vector."""
     import heyoka
     start = [np.longdouble(x) for x in in_frame(scene, vector)]
-    solver = heyoka.taylor_adaptive(heyoka_system(scene), start, fp_type=np.longdouble, high_accuracy=True)
+    solver = heyoka.taylor_adaptive(
+        heyoka_system(scene), start, fp_type=np.longdouble, high_accuracy=True)
     solver.propagate_until(np.longdouble(duration))
     return np.array(solver.state[:4], dtype=float)
 
 
 def our_run(scene, duration, method, accuracy):
-    """Return act(): a start and the final state; it returns the frame's attitude."""
+    """Return act(), a start and the final state, and attitude(), which also returns the latter."""
     from rigid_body_sim.numerics.rotations import multiply
-    choice, start, out = choose(scene, method, accuracy, horizon=duration), scene.initial.vector, np.empty(14)
+    choice, start, out = (choose(scene, method, accuracy, horizon=duration),
+                          scene.initial.vector, np.empty(14))
     axes = scene.constraint.frame(scene.body).axes
 
     def act():
@@ -116,7 +140,7 @@ def our_run(scene, duration, method, accuracy):
 
 
 def heyoka_run(scene, duration, tolerance):
-    """Return the same of heyoka."""
+    """Return the functions of our_run for heyoka."""
     import heyoka
     start = in_frame(scene, scene.initial.vector)
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=tolerance)
@@ -144,10 +168,13 @@ def measure(name, duration):
     """Return {who: {goal: (seconds a run, setting)}}; who is one of our methods, or heyoka."""
     scene = parse_scene(f'scene: bench\n{CASES[name]}')
     exact, runs = exact_attitude(scene, duration, scene.initial.vector), []
-    able = [method for method in runnable(scene) if method in ('taylor', 'gauss16', 'dop8') and 'accuracy' in METHODS[method].TAKES]
+    able = [method for method in runnable(scene)
+            if method in ('taylor', 'gauss16', 'dop8') and 'accuracy' in METHODS[method].TAKES]
     for digits in np.arange(0.5, 15.0, 0.5):
-        runs += [[method, f'{10.0 ** -digits:.0e}', *our_run(scene, duration, method, 10.0 ** -digits)] for method in able]
-        runs.append(['heyoka', f'{10.0 ** -(digits + 2.0):.0e}', *heyoka_run(scene, duration, 10.0 ** -(digits + 2.0))])
+        runs += [[method, f'{10.0 ** -digits:.0e}',
+                  *our_run(scene, duration, method, 10.0 ** -digits)] for method in able]
+        runs.append(['heyoka', f'{10.0 ** -(digits + 2.0):.0e}',
+                     *heyoka_run(scene, duration, 10.0 ** -(digits + 2.0))])
     for run in runs:
         run[3] = angle_between(*run[3](), *exact)
         run.append([])
@@ -164,7 +191,7 @@ def measure(name, duration):
 
 
 def measure_dense(name):
-    """Return {who: CPU seconds a state} of a state every millisecond, start included."""
+    """Return {who: CPU seconds a state} for a state every millisecond, start included."""
     import heyoka
     scene = parse_scene(f'scene: bench\n{CASES[name]}')
     start, out = in_frame(scene, scene.initial.vector), np.empty((len(MILLISECONDS), 14))
@@ -194,30 +221,38 @@ def main():
     parser.add_argument('--case', nargs='*', default=list(CASES), choices=list(CASES))
     options = parser.parse_args()
     if importlib.util.find_spec('heyoka') is None:
-        print('Smooth scenes not measured: heyoka, which they are measured against, is not installed (pip install heyoka==7.13.2)')
+        print('Smooth scenes not measured: heyoka, which they are measured against, '
+              'is not installed (pip install heyoka==7.13.2)')
         return
     results, dense = {}, {}
     if not options.json:
         aims = ', '.join(f'{part} at {goal:.0e}' for goal, part in GOALS.items())
-        print(f'CPU microseconds of a run, and in brackets its part of the time of heyoka; aimed at: {aims}')
+        print('CPU microseconds of a run, and in brackets its part of the time of heyoka; '
+              f'aimed at: {aims}')
     for name in options.case:
         for duration in DURATIONS:
             results[f'{name}, {duration:g} s'] = table = measure(name, duration)
             if options.json:
                 continue
-            print(f'{name}, {duration:g} s\n  {"":10}' + ''.join(f'{goal:>20.0e}' for goal in GOALS))
+            print(f'{name}, {duration:g} s\n  {"":10}'
+                  + ''.join(f'{goal:>20.0e}' for goal in GOALS))
             for who, row in table.items():
                 peers = table['heyoka']
                 cells = ['-' if goal not in row else f'{row[goal][0] * 1e6:.1f}' + (
-                    f' ({row[goal][0] / peers[goal][0]:.2f})' if goal in peers and who != 'heyoka' else '') for goal in GOALS]
+                    f' ({row[goal][0] / peers[goal][0]:.2f})'
+                    if goal in peers and who != 'heyoka' else '') for goal in GOALS]
                 print(f'  {who:10}' + ''.join(f'{cell:>20}' for cell in cells), flush=True)
         dense[name] = measure_dense(name)
         if not options.json:
             print(f'{name}: a state every millisecond, us each: '
-                  + ', '.join(f'{who} {seconds * 1e6:.3f}' for who, seconds in dense[name].items()), flush=True)
+                  + ', '.join(f'{who} {seconds * 1e6:.3f}'
+                              for who, seconds in dense[name].items()), flush=True)
     if options.json:
-        print(json.dumps({'machine': processor().split()[0], 'python': platform.python_version(), 'compiled': HAVE_NUMBA, 'runs': {
-            name: {who: {f'{goal:.0e}': cell for goal, cell in row.items()} for who, row in table.items()} for name, table in results.items()},
+        print(json.dumps({
+            'machine': processor().split()[0], 'python': platform.python_version(),
+            'compiled': HAVE_NUMBA,
+            'runs': {name: {who: {f'{goal:.0e}': cell for goal, cell in row.items()}
+                            for who, row in table.items()} for name, table in results.items()},
             'dense': dense}, indent=2))
 
 
