@@ -1,12 +1,16 @@
-"""Make the picture and the table of docs/accuracy.md, and the README's picture, of what `work_precision --suite --peers --output DIR` wrote.
+# SPDX-License-Identifier: Apache-2.0
+"""Make the pictures and the table of docs/accuracy.md, and the README's picture.
+
+They show what `work_precision --suite --peers --output DIR` wrote.
 
 ::
 
     .venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
     .venv/bin/python docs/make_accuracy.py study-full/work_precision.json
 
-The table stands between ``<!-- work_precision -->`` and ``<!-- end -->``. `make study-full` does both. Of several files, studies of single
-problems say, the last that has a problem counts.
+The table stands between ``<!-- work_precision -->`` and ``<!-- end -->``. `make study-full` does
+both. The arguments may be several files, studies of single problems for example; the last one with
+a problem counts.
 """
 
 import json
@@ -23,34 +27,43 @@ ONE_MORE = runner.ONE_MORE
 
 
 def rows(result):
-    """Yield the rows of a problem: the best of ours and of the peers at each accuracy, in CPU microseconds per simulated second."""
+    """Yield the rows of a problem: its best cost at each accuracy, ours and the peers'.
+
+    Costs are CPU microseconds per simulated second.
+    """
     about = f'{result["problem"].replace("_", " ")}, {result["duration"]:g} s'
     ours = [line for line in result['lines'] if not line['is_peer'] and line['name'] != ONE_MORE]
     theirs = [line for line in result['lines'] if line['is_peer']]
     more = [line for line in result['lines'] if line['name'] == ONE_MORE]
     for label, lines in ((f'**{about}**: ours', ours), (ONE_MORE, more), ('best peer', theirs)):
         if lines:
-            yield label, [_cell(lines, level, label.endswith(('ours', 'peer')), result['floor']) for level in table.LEVELS]
+            yield label, [_cell(lines, level, label.endswith(('ours', 'peer')), result['floor'])
+                          for level in table.LEVELS]
 
 
 def _cell(lines, level, named, floor):
-    found = min(((cost, line['name']) for line in lines if (cost := table.cost_at(line, level)) is not None), default=None)
+    found = min(((cost, line['name']) for line in lines
+                 if (cost := table.cost_at(line, level)) is not None), default=None)
     if found is None:
         return 'not reached' if level > floor else 'below the floor'
     return f'{found[0] * 1e6:.2g}' + (f' ({found[1]})' if named else '')
 
 
 def _study(one):
-    machine, peers = one['machine'], ', '.join(f'{name} {version}' for name, version in one['peers'].items())
-    return (f'{one["cores"]} cores ({machine["processor"].split()[0]}), Python {machine["python"].split()[0]}, numba {machine["numba"]}, '
-            f'{one["made"][:10]}; medians of {one["repeats"]}; sweeps end at runs of {one["limit"]:g} s. Peers: {peers}.')
+    machine, peers = one['machine'], ', '.join(
+        f'{name} {version}' for name, version in one['peers'].items())
+    return (f'{one["cores"]} cores ({machine["processor"].split()[0]}), '
+            f'Python {machine["python"].split()[0]}, numba {machine["numba"]}, '
+            f'{one["made"][:10]}; medians of {one["repeats"]}; '
+            f'sweeps end at runs of {one["limit"]:g} s. Peers: {peers}.')
 
 
 def text(found):
-    """Return the table and what it was measured with."""
+    """Return the table, and the conditions of its measurement."""
     studies = [_study(one) for one in found['studies']]
     lines = [*dict.fromkeys(studies), '',
-             f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |', f'|---|{"---|" * len(table.LEVELS)}']
+             f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |',
+             f'|---|{"---|" * len(table.LEVELS)}']
     for result in found['results']:
         lines += [f'| {label} | {" | ".join(cells)} |' for label, cells in rows(result)]
     refusals = {}
@@ -58,22 +71,26 @@ def text(found):
         for name, reason in result['refused'].items():
             refusals.setdefault((name, reason), []).append(result['problem'].replace('_', ' '))
     lines += ['', 'What was refused, and why:', '']
-    lines += [f'- {name}: {reason} ({", ".join(problems)})' for (name, reason), problems in refusals.items()]
-    notes = {}    # one of each kind
-    for line in (line for result in found['results'] for line in result['lines'] if line['is_peer']):
+    lines += [f'- {name}: {reason} ({", ".join(problems)})'
+              for (name, reason), problems in refusals.items()]
+    notes = {}    # one note of each kind
+    for line in (line for result in found['results']
+                 for line in result['lines'] if line['is_peer']):
         for note in line['notes']:
-            notes.setdefault((line['name'], re.sub(r'[0-9.e+-]*[0-9]', '', note)), note.split('. ')[0])
+            notes.setdefault((line['name'], re.sub(r'[0-9.e+-]*[0-9]', '', note)),
+                             note.split('. ')[0])
     lines += ['', 'What peers get wrong, or give up on, at some settings:', '']
     lines += [f'- {name}: {note}' for (name, _), note in notes.items()]
     return '\n'.join(lines) + '\n'
 
 
 def main(*paths):
-    """Write page, pictures and data."""
+    """Write the page, the pictures and the data."""
     read = [json.loads(pathlib.Path(path).read_text()) for path in paths]
     measured = {result['problem']: result for one in read for result in one['results']}
     results = [measured[name] for name in suite.NAMES if name in measured]
-    found = {'studies': [{key: value for key, value in one.items() if key != 'results'} for one in read], 'results': results}
+    found = {'studies': [{key: value for key, value in one.items() if key != 'results'}
+                         for one in read], 'results': results}
     page = DOCS / 'accuracy.md'
     page.write_text(MARK.sub(lambda match: f'{match[1]}{text(found)}{match[2]}', page.read_text()))
     DOCS.joinpath('work_precision.json').write_text(json.dumps(found) + '\n')

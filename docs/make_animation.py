@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make docs/images/view.webp, the picture that opens the README: ``python docs/make_animation.py``.
+"""Make docs/images/view.webp, the README's first picture: ``python docs/make_animation.py``.
 
 A T-handle is simulated, and the body that reports and notebooks show is drawn frame by frame in a
 headless Chromium. It needs playwright, Pillow and Debian's or Ubuntu's package chromium.
@@ -19,7 +19,7 @@ from rigid_body_sim import Simulation
 
 HERE = pathlib.Path(__file__).resolve().parent
 SECONDS, SLOWER, BETWEEN = 4.0, 2.0, 66
-"""Simulated time (s), how much slower than real time it plays, ms between two pictures."""
+"""Simulated time (s), slow-motion factor, time between two pictures (ms)."""
 SIZE = (640, 360)
 BACKGROUND = (243, 244, 246)
 DRAW = """k => {
@@ -60,7 +60,8 @@ def main():
     path = HERE / 'images' / 'view.webp'
     made[0].save(path, save_all=True, append_images=made[1:], duration=BETWEEN, loop=0,
                  quality=50, method=3)
-    print(f'{path.relative_to(HERE.parent)}: {len(made)} pictures, {path.stat().st_size // 1000} kB')
+    print(f'{path.relative_to(HERE.parent)}: {len(made)} pictures, '
+          f'{path.stat().st_size // 1000} kB')
 
 
 if __name__ == '__main__':

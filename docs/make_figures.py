@@ -1,4 +1,7 @@
-"""Make the figures of README and docs anew (docs/images/*.png), and the tables of docs/systems and docs/corrections.md.
+# SPDX-License-Identifier: Apache-2.0
+"""Make the figures of README and docs, and the tables of the pages.
+
+The figures are docs/images/*.png; the tables are those of docs/systems and docs/corrections.md.
 
 ::
 
@@ -20,21 +23,24 @@ from figures.style import IMAGES, save  # noqa: E402
 
 # image -> scene, seconds, figure of the report
 RUNS = {'run': ('tennis_racket', 20, 'overview'), 'recordings': ('heavy_top', 20, 'spectrum')}
-DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py') if path.stem not in ('__init__', 'style', 'tables'))
+DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py')
+               if path.stem not in ('__init__', 'style', 'tables'))
 
 
 def command(*arguments):
     """Run a command of the package."""
-    subprocess.run([sys.executable, '-m', 'rigid_body_sim', *arguments], check=True, cwd=HERE.parent)
+    subprocess.run([sys.executable, '-m', 'rigid_body_sim', *arguments], check=True,
+                   cwd=HERE.parent)
 
 
 def main(names):
-    """Make the figures of these names, all by default; then the tables."""
+    """Make the figures of these names, all by default, and then the tables."""
     for name, (scene, seconds, figure) in RUNS.items():
         if not names or name in names:
             with tempfile.TemporaryDirectory() as folder:
                 recording = pathlib.Path(folder) / 'recording'
-                command('simulate', '--scene', scene, '--duration', str(seconds), '--output', str(recording))
+                command('simulate', '--scene', scene, '--duration', str(seconds),
+                        '--output', str(recording))
                 command('analyze', str(recording), '--output', folder)
                 shutil.copy(pathlib.Path(folder) / f'{figure}.png', IMAGES / f'{name}.png')
     for name in DRAWN:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the table at the end of docs/machines.md from what `make test-machines` measured.
+"""Write the table at the end of docs/machines.md from the results of `make test-machines`.
 
 ::
 

@@ -1,4 +1,5 @@
-"""Euler's angles of the heavy top, and omega from their rates."""
+# SPDX-License-Identifier: Apache-2.0
+"""Euler angles of the heavy top, and omega from their rates."""
 
 import numpy as np
 
@@ -12,14 +13,17 @@ def draw():
     figure, axes = panels(2)
     times = np.linspace(0.0, 1.0, 2001)
     states = run('heavy_top', 'initial.spin=30').states(times)
-    angles = [np.unwrap(angle(states)) for angle in (instruments.alpha, instruments.beta, instruments.gamma)]
-    for angle, name, line in zip((angles[0], angles[1], angles[2] / 10.0), ('α', 'β', 'γ/10'), LINES[:3], strict=True):
+    angles = [np.unwrap(angle(states))
+              for angle in (instruments.alpha, instruments.beta, instruments.gamma)]
+    for angle, name, line in zip(
+            (angles[0], angles[1], angles[2] / 10.0), ('α', 'β', 'γ/10'), LINES[:3], strict=True):
         axes[0].plot(times, angle, label=name, **line)
     label(axes[0], 'time (s)', 'angle (rad)')
     rates = [np.gradient(angle, times) for angle in angles]
     omega = euler_angles.body_rates(*rates, angles[1], angles[2])
     axes[1].plot(times, states.angular_velocity[:, 0], label='ω$_1$ of the body', **LINES[0])
-    axes[1].plot(times[1:-1:60], omega[0, 1:-1:60], label='−α′ sin β cos γ + β′ sin γ', **MEASURED | {'color': LINES[1]['color']})
+    axes[1].plot(times[1:-1:60], omega[0, 1:-1:60], label='−α′ sin β cos γ + β′ sin γ',
+                 **MEASURED | {'color': LINES[1]['color']})
     axes[1].set_ylim(-10.0, 14.0)
     label(axes[1], 'time (s)', 'ω$_1$ (rad/s)', loc='upper right')
     return figure

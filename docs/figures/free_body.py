@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Angular velocity of a free body within the bounds that E and L^2 set."""
 
 import numpy as np
@@ -15,11 +16,14 @@ def draw():
     omega = simulation.states(times).angular_velocity
     start = omega[0]
     by_energy = theory.bounds_from_energy(moments, theory.kinetic_energy(moments, start))
-    by_momentum = theory.bounds_from_angular_momentum(moments, theory.angular_momentum_squared(moments, start))
+    by_momentum = theory.bounds_from_angular_momentum(
+        moments, theory.angular_momentum_squared(moments, start))
     for k, one in enumerate(axes):
         one.plot(times, omega[:, k], **LINES[0])
         for sign in (1.0, -1.0):
-            one.axhline(sign * by_energy[k], label='√(2T/I$_i$)' if sign > 0.0 else None, **LINES[1])
+            one.axhline(sign * by_energy[k], label='√(2T/I$_i$)' if sign > 0.0 else None,
+                        **LINES[1])
             one.axhline(sign * by_momentum[k], label='L/I$_i$' if sign > 0.0 else None, **LINES[2])
-        label(one, 'time (s)', f'ω$_{k + 1}$ (rad/s)', legend=k == 1, loc='lower center', bbox_to_anchor=(0.5, 1.0), ncols=2)
+        label(one, 'time (s)', f'ω$_{k + 1}$ (rad/s)', legend=k == 1, loc='lower center',
+              bbox_to_anchor=(0.5, 1.0), ncols=2)
     return figure

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Effective potential with turning points, and the trace of the axis: cusps, loops, waves."""
 
 import numpy as np
@@ -17,20 +18,24 @@ def draw():
     P_alpha = theory.p_alpha(0.0, TILT, P_gamma, I1)
     tilts = np.linspace(0.4, 1.3, 300)
     E = theory.energy(TILT, 0.0, P_alpha, P_gamma, I1, I3, MGL)
-    axes[0].plot(tilts, theory.effective_potential(tilts, P_alpha, P_gamma, I1, I3, MGL), label='V$_{eff}$', **LINES[0])
+    axes[0].plot(tilts, theory.effective_potential(tilts, P_alpha, P_gamma, I1, I3, MGL),
+                 label='V$_{eff}$', **LINES[0])
     axes[0].axhline(E, color=GREY, linewidth=0.8, label='E')
     turns = np.array(theory.turning_points(E, P_alpha, P_gamma, I1, I3, MGL))
     axes[0].plot(turns, [E, E], 'o', color=BLACK, label='turning points')
     beta_0 = theory.equilibrium_tilt(P_alpha, P_gamma, I1, MGL)
-    axes[0].plot(beta_0, theory.effective_potential(beta_0, P_alpha, P_gamma, I1, I3, MGL), 'D', color=LINES[1]['color'], label='β$_0$')
+    axes[0].plot(beta_0, theory.effective_potential(beta_0, P_alpha, P_gamma, I1, I3, MGL), 'D',
+                 color=LINES[1]['color'], label='β$_0$')
     states = run('heavy_top', f'initial.spin={SPIN}').states(np.linspace(0.0, 1.0, 41))
     beta, rate = instruments.beta(states), instruments.beta_rate(states)
-    axes[0].plot(beta, E - 0.5 * I1 * rate**2, '.', color=LINES[2]['color'], label='E − I$_1$β′²/2 of the motion')
+    axes[0].plot(beta, E - 0.5 * I1 * rate**2, '.', color=LINES[2]['color'],
+                 label='E − I$_1$β′²/2 of the motion')
     axes[0].set_ylim(top=E + 0.35)
     label(axes[0], 'tilt β (rad)', 'energy (J)')
     for (name, start), line in zip(STARTS, LINES, strict=False):
         omega = [float(-start * np.sin(TILT)), 0.0, SPIN]
-        e3 = instruments.axes(run('heavy_top', f'initial.angular_velocity={omega}').states(np.linspace(0.0, 1.6, 800)))[:, :, 2]
+        e3 = instruments.axes(run('heavy_top', f'initial.angular_velocity={omega}').states(
+            np.linspace(0.0, 1.6, 800)))[:, :, 2]
         axes[1].plot(e3[:, 0], e3[:, 1], label=name, **line | {'linestyle': '-', 'linewidth': 1.2})
     axes[1].plot(0.0, 0.0, 'k+')
     axes[1].set_aspect('equal')

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Energy on the way to the largest axis, and the path of L in the body."""
 
 import numpy as np
@@ -19,7 +20,8 @@ def draw():
     axes[0].plot(times[early], euler_equations.kinetic_energy(MOMENTS, omega[early]), **LINES[0])
     for moment, name in zip(MOMENTS, '123', strict=True):
         axes[0].axhline(0.5 * L**2 / moment, color=GREY, linewidth=0.8, linestyle=':')
-        axes[0].annotate(f'L²/(2I$_{name}$)', (60.0, 0.5 * L**2 / moment), xytext=(0, 3), textcoords='offset points', ha='right', fontsize=8)
+        axes[0].annotate(f'L²/(2I$_{name}$)', (60.0, 0.5 * L**2 / moment), xytext=(0, 3),
+                         textcoords='offset points', ha='right', fontsize=8)
     label(axes[0], 'time (s)', 'T (J)', legend=False)
     axes[1].semilogy(times, largest_axis.excess_energy(MOMENTS, m), **LINES[0])
     label(axes[1], 'time (s)', 'T − L²/(2I$_3$) (J)', legend=False)

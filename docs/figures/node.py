@@ -1,4 +1,8 @@
-"""What the node costs beside the floor, and how late its ticks are; drawn from docs/node.json, as bench/node.py --json gave it."""
+# SPDX-License-Identifier: Apache-2.0
+"""Cost of the node beside the floor, and the lateness of its ticks.
+
+The data are docs/node.json, as written by bench/node.py --json.
+"""
 
 import json
 import pathlib
@@ -21,8 +25,10 @@ def draw():
     for k, (row, colour) in enumerate(COLOURS.items()):
         found = [case['rows'][row] for case in cases]
         at = places + 0.27 * (k - 1)
-        cost.bar(at, [one['tick_us'] for one in found], 0.25, color=colour, hatch=HATCHES[row], edgecolor='white', label=row)
-        lateness.vlines(at, [one['p50'] for one in found], [one['p99'] for one in found], color=colour, linewidth=3.0, label=row)
+        cost.bar(at, [one['tick_us'] for one in found], 0.25, color=colour, hatch=HATCHES[row],
+                 edgecolor='white', label=row)
+        lateness.vlines(at, [one['p50'] for one in found], [one['p99'] for one in found],
+                        color=colour, linewidth=3.0, label=row)
         lateness.plot(at, [one['p50'] for one in found], color=BLACK, marker='_', linestyle='')
     for axes in (cost, lateness):
         axes.set_xticks(places, names, fontsize=8)

@@ -1,4 +1,5 @@
-"""One look for all figures: readable in print, in grey and by the colour-blind; small files."""
+# SPDX-License-Identifier: Apache-2.0
+"""The common style of all figures: readable in print, in grey and by the colour-blind."""
 
 import pathlib
 
@@ -10,9 +11,11 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 IMAGES = pathlib.Path(__file__).resolve().parent.parent / 'images'
 
-# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); line styles tell the lines apart without colour
+# Okabe and Ito's colours (https://jfly.uni-koeln.de/color/); line styles tell the lines apart
+# without colour
 BLUE, ORANGE, GREEN, BLACK, GREY = '#0072B2', '#D55E00', '#009E73', '#000000', '#777777'
-LINES = ({'color': BLUE}, {'color': ORANGE, 'linestyle': '--'}, {'color': GREEN, 'linestyle': '-.'}, {'color': BLACK, 'linestyle': ':'})
+LINES = ({'color': BLUE}, {'color': ORANGE, 'linestyle': '--'},
+         {'color': GREEN, 'linestyle': '-.'}, {'color': BLACK, 'linestyle': ':'})
 THEORY = {'color': GREY, 'linewidth': 1.0}
 WRONG = {'color': ORANGE, 'linestyle': '--', 'linewidth': 1.2}
 MEASURED = {'color': BLUE, 'marker': 'o', 'markersize': 4, 'linestyle': ''}
@@ -30,7 +33,7 @@ def panels(count=1, height=3.2, **options):
 
 
 def label(axes, x, y, legend=True, **options):
-    """Name the axes, and the lines where they have names."""
+    """Name the axes, and add a legend of the lines that have names."""
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     if legend:

@@ -1,7 +1,9 @@
-"""Tables of docs/systems/*.md and docs/corrections.md, from what check_scenes finds.
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of docs/systems/*.md and docs/corrections.md, made from the results of check_scenes.
 
-A page marks the place of a table by ``<!-- check_scenes: SCENE -->``, or ``<!-- corrections -->``; the lines up to ``<!-- end -->`` are
-made anew. Numbers are shown to the digits that their tolerance vouches for, so they are the same on every machine.
+A page marks the place of a table by ``<!-- check_scenes: SCENE -->``, or ``<!-- corrections -->``;
+the lines up to ``<!-- end -->`` are generated. Numbers have the digits that their tolerance
+guarantees, so they are the same on every machine.
 """
 
 import functools
@@ -16,25 +18,33 @@ from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent
 MARK = re.compile(r'(<!-- (check_scenes: (\w+)|corrections) -->\n).*?(<!-- end -->)', re.DOTALL)
-ERRATA = (      # section of the notes, what it is about, scene and quantity that tell the two apart
-    ('Symmetric top (no gravity)', 'Ω = ω3 (I3 − I1)/**I1**, not /I3', 'symmetric_top', 'Omega of omega round e3 in the body'),
-    ('Chandler wobble', 'the same, for the Earth', 'chandler_wobble', 'period of the wobble (turns of the Earth)'),
-    ('Asymmetric top', '**I2** η2′ = (I3 − I1) ω0 η1, not I1 η2′', 'asymmetric_top', "eta1', eta2' of the linear equations"),
-    ('Asymmetric top', 'Ω² has I1 I2 below (right in the notes), not I1² as their equations give', 'asymmetric_top',
-     'Omega, over the formula, in the limit'),
-    ('Billiard ball, struck above 2a/5', 't = (2 v0/(**7** μ g)) (5h/(2a) − 1), not 2 v0/(μ g)', 'billiard_follow', 'onset of rolling'),
-    ("Kater's pendulum", 'I_Q = M **l l′** = M (l² + a²), not M (l + a²/l)', 'kater_pendulum', 'I_Q = M g l/Omega^2'),
-    ('Baseball bat', '**l l′** = l² + a², not l′² = l² + a²', 'baseball_bat', 'centre of percussion'),
+ERRATA = (      # section of the notes, subject, scene, and the quantity that tells the two apart
+    ('Symmetric top (no gravity)', 'Ω = ω3 (I3 − I1)/**I1**, not /I3', 'symmetric_top',
+     'Omega of omega round e3 in the body'),
+    ('Chandler wobble', 'the same, for the Earth', 'chandler_wobble',
+     'period of the wobble (turns of the Earth)'),
+    ('Asymmetric top', '**I2** η2′ = (I3 − I1) ω0 η1, not I1 η2′', 'asymmetric_top',
+     "eta1', eta2' of the linear equations"),
+    ('Asymmetric top', 'Ω² has I1 I2 below (right in the notes), not I1² as their equations give',
+     'asymmetric_top', 'Omega, over the formula, in the limit'),
+    ('Billiard ball, struck above 2a/5', 't = (2 v0/(**7** μ g)) (5h/(2a) − 1), not 2 v0/(μ g)',
+     'billiard_follow', 'onset of rolling'),
+    ("Kater's pendulum", 'I_Q = M **l l′** = M (l² + a²), not M (l + a²/l)', 'kater_pendulum',
+     'I_Q = M g l/Omega^2'),
+    ('Baseball bat', '**l l′** = l² + a², not l′² = l² + a²', 'baseball_bat',
+     'centre of percussion'),
     ('Small oscillations about equilibrium', 'V_eff″ of the notes holds at β0 only', 'heavy_top',
      "V_eff'' off equilibrium, at 0.5219 rad"),
-    ('Fast top', 'precession **M g l/P_γ**, not I1 M g l/P_γ', 'fast_top', 'mean precession M g l/P_gamma, over the formula, in the limit'),
-    ('Fast top', 'nutation **P_γ/I1**, not its square', 'fast_top', 'nutation P_gamma/I1, over the formula, in the limit'),
+    ('Fast top', 'precession **M g l/P_γ**, not I1 M g l/P_γ', 'fast_top',
+     'mean precession M g l/P_gamma, over the formula, in the limit'),
+    ('Fast top', 'nutation **P_γ/I1**, not its square', 'fast_top',
+     'nutation P_gamma/I1, over the formula, in the limit'),
 )
 
 
 @functools.cache
 def rows(scene):
-    """Return {name with unit: Quantity} of a scene, as the first way of solving it measured it."""
+    """Return {name with unit: Quantity} of a scene, measured by its first method."""
     found = confirm_shapes() if scene == 'inertia_tensors' else confirm(load_scene(scene))
     return {name(quantity): quantity for row in found for quantity in list(row.values())[:1]}
 
@@ -56,12 +66,13 @@ def pages():
 
 
 def filled(text, scenes=None):
-    """Return a page with its tables made anew; with `scenes`, only those of these scenes."""
+    """Return a page with new tables; with `scenes`, only those of these scenes are new."""
     def table(match):
         scene = match[3]
         if scenes is not None and scene not in scenes:
             return match[0]
-        return match[1] + ('\n'.join(scene_table(scene)) if scene else '\n'.join(corrections())) + '\n' + match[4]
+        return (match[1] + ('\n'.join(scene_table(scene)) if scene else '\n'.join(corrections()))
+                + '\n' + match[4])
     return MARK.sub(table, text)
 
 
@@ -77,28 +88,34 @@ def scene_table(scene):
         if quantity.detail.startswith(('deviation', 'change over')):
             measured += f': {quantity.detail}'
         kind = ' absolute' if quantity.absolute else ''
-        cells = (title.replace('|', '\\|'), relation + shown(quantity.predicted, digits), measured, f'{quantity.tolerance:.0e}{kind}')
+        cells = (title.replace('|', '\\|'), relation + shown(quantity.predicted, digits), measured,
+                 f'{quantity.tolerance:.0e}{kind}')
         lines.append(f'| {" | ".join(cells)} |')
     return lines
 
 
 def correction(section, right, scene, title):
     """Return one row of the page of corrections."""
-    quantity = next(quantity for full, quantity in rows(scene).items() if title in (full, quantity.name))
+    quantity = next(quantity for full, quantity in rows(scene).items()
+                    if title in (full, quantity.name))
     digits = min(digits_of(quantity), 9)
     measured, written = shown(quantity.measured, digits), shown(quantity.as_written, digits)
-    return f'| {section} | {right} | `{scene}`: {name(quantity)} | {measured} | {shown(quantity.predicted, digits)} | {written} |'
+    return (f'| {section} | {right} | `{scene}`: {name(quantity)} | {measured} '
+            f'| {shown(quantity.predicted, digits)} | {written} |')
 
 
 def corrections():
     """Return the lines of the table of corrections."""
-    return ['| section | correction | scene: quantity | measured | corrected formula | the notes |', '|---|---|---|---|---|---|',
+    return ['| section | correction | scene: quantity | measured | corrected formula '
+            '| the notes |',
+            '|---|---|---|---|---|---|',
             *(correction(*erratum) for erratum in ERRATA)]
 
 
 def digits_of(quantity):
-    """Return the digits that the tolerance vouches for, 2 to 10."""
-    return min(10, max(2, math.ceil(-math.log10(quantity.tolerance)) if quantity.tolerance else 10))
+    """Return the digits that the tolerance guarantees, 2 to 10."""
+    return min(10, max(
+        2, math.ceil(-math.log10(quantity.tolerance)) if quantity.tolerance else 10))
 
 
 def shown(value, digits, inside=False):
@@ -109,8 +126,10 @@ def shown(value, digits, inside=False):
             return shown(entries[0], digits)
         size = np.abs(entries).max()
         first = [0.0 if abs(entry) < 10.0 ** -digits * size else entry for entry in entries[:3]]
-        return f'({", ".join(shown(entry, digits, True) for entry in first)}{", ..." if len(entries) > 3 else ""})'
+        return (f'({", ".join(shown(entry, digits, True) for entry in first)}'
+                f'{", ..." if len(entries) > 3 else ""})')
     text = f'{value:.{digits}g}'
     if 'e' in text:
         return f'{value:.{digits - 1}e}'
-    return text if inside or not value else f'{value:#.{digits}g}'      # 1.000000000 says how well it is 1
+    # the zeros of 1.000000000 tell how close the number is to 1
+    return text if inside or not value else f'{value:#.{digits}g}'
