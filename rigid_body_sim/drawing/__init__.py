@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies as triangles: what every picture of a scene draws, in a browser, a report or a marker.
+"""Bodies as triangles, for every picture of a scene: in a browser, a report or a marker.
 
-Nothing here knows who draws it. It may import ``scene`` and what lies below.
+Nothing here depends on the medium. It may import ``scene`` and what lies below.
 """

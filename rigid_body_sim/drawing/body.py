@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What to draw for the body of a scene: its true shape where the scene file gives one."""
+"""The drawing of a scene's body: its true shape if the scene file gives one."""
 
 import math
 from typing import NamedTuple
@@ -25,7 +25,7 @@ class Drawing(NamedTuple):
     surfaces : list of Surface
         In metres, about the body's origin.
     about : str
-        What the picture shows, in words: the shape, or what stands for it.
+        Description of the picture: the shape, or what stands for it.
     """
 
     surfaces: list
@@ -38,7 +38,7 @@ class Drawing(NamedTuple):
 
 
 def drawing_of(scene):
-    """Return the Drawing of a Scene, or of None: a plain box."""
+    """Return the Drawing of a Scene, or a plain box for None."""
     if scene is None:
         return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown')
     mapping = yaml.safe_load(scene.text)['body']

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What surrounds a drawn body: its point of reference, the ground below it, what holds it."""
+"""The surroundings of a drawn body: point of reference, ground, and what holds it."""
 
 import math
 
@@ -30,7 +30,7 @@ def follows(scene):
 
 
 def start_of(scene):
-    """Return where the point of reference is at the start, world, m."""
+    """Return the initial place of the point of reference, world, m."""
     if scene is None:
         return np.zeros(3)
     turn = Rotation.from_quat(scene.initial.orientation)
@@ -38,7 +38,7 @@ def start_of(scene):
 
 
 def ground_of(scene, reach):
-    """Return the height of the ground, m: the table, or just below all that turns."""
+    """Return the height of the ground, m: that of the table, or just below all that turns."""
     start = float(start_of(scene)[2])
     if scene is not None and scene.constraint.mechanism is Mechanism.TABLE:
         return start - scene.body.radius
@@ -46,7 +46,7 @@ def ground_of(scene, reach):
 
 
 def holder_of(scene, reach):
-    """Return what holds the body as surfaces in the world: a column to a fixed point, an axle."""
+    """Return the surfaces of what holds the body, in the world: a column or an axle."""
     kind = scene.constraint.kind if scene else 'free'
     start = start_of(scene)
     if kind == 'pivot':
@@ -61,6 +61,6 @@ def holder_of(scene, reach):
 
 
 def cell_of(reach):
-    """Return the distance of the lines of the ground, m: 1, 2 or 5 times a power of ten."""
+    """Return the spacing of the lines of the ground, m: 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(reach))
     return next(power * factor for factor in (5.0, 2.0, 1.0) if power * factor <= reach)

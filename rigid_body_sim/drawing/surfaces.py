@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surfaces of the shapes of a scene file as triangles, in metres, about their own centre of mass.
 
-The symmetry axis of a shape, where it has one, is z, as in ``scene.bodies``. Every surface has two
-colours, so that a turn about a symmetry axis can be seen.
+The symmetry axis of a shape that has one is z, as in ``scene.bodies``. Every surface has two
+colours, which make a turn about a symmetry axis visible.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 AROUND, ALONG = 48, 24
 """Number of segments around an axis and along it."""
 THIN = 0.01
-"""Drawn thickness of what has none, relative to its length."""
+"""Drawn thickness of thin shapes, relative to their length."""
 
 
 class Surface(NamedTuple):
@@ -67,7 +67,7 @@ def sphere(radius):
 
 
 def torus(radius, tube):
-    """Return a torus about z: `radius` to the middle of the tube, `tube` its own radius."""
+    """Return a torus about z; `radius` is that of the tube's centre line, `tube` the tube's."""
     around = np.linspace(0.0, 2.0 * np.pi, ALONG + 1)
     return _turned(radius + tube * np.sin(around), tube * np.cos(around))
 
@@ -94,7 +94,7 @@ def rod(length):
 
 
 def cone(radius, height):
-    """Return a cone along z, its base a quarter of the height below the centre of mass."""
+    """Return a cone along z, with its base a quarter of the height below the centre of mass."""
     return _lathe([0.0, radius, 0.0], [0.75 * height, -0.25 * height, -0.25 * height])
 
 
@@ -106,7 +106,7 @@ SURFACES = {
 
 
 def _lathe(radii, heights):
-    """Return the solid of a profile with sharp edges: each line gets vertices of its own."""
+    """Return the solid of a profile with sharp edges; each line has its own vertices."""
     pieces = [_turned(np.array(radii[k:k + 2]), np.array(heights[k:k + 2]))
               for k in range(len(radii) - 1)]
     return joined(pieces)

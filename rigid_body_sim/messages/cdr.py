@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages as bytes: little-endian CDR (XCDR1), the wire form of ROS 2.
+"""Messages as bytes: little-endian CDR (XCDR1), the wire format of ROS 2.
 
-It is packed by hand, so padding is zero and bytes are repeatable.
+The encoder is our own, so padding is zero and bytes are repeatable.
 
-Four bytes of encapsulation (00 01 00 00), then the fields in order, each aligned to its size
-(counted after the encapsulation); a string is its length including the final zero byte, its UTF-8
-text and that zero; a sequence is its length and its elements. (OMG DDS-RTPS 2.3, section 10; ROS 2
-design, "Interface definition mapping".)
+A message begins with four bytes of encapsulation (00 01 00 00). The fields follow in order, each
+aligned to its size (counted after the encapsulation). A string is its length including the final
+zero byte, its UTF-8 text and that zero; a sequence is its length and its elements. (OMG DDS-RTPS
+2.3, section 10; ROS 2 design, "Interface definition mapping".)
 """
 
 import struct
@@ -37,7 +37,10 @@ def encode(type_name, values):
 
     `values` is a nested dict; fields that it leaves out are zero, empty or "".
 
-    BadInput for a field that does not exist or a value that does not fit.
+    Raises
+    ------
+    BadInput
+        If a field does not exist or a value does not fit.
     """
     out = bytearray(ENCAPSULATION)
     try:
@@ -106,12 +109,17 @@ def _encode_elements(schemas, field, elements, out):
 
 
 def decode(schemas, type_name, data, leaves=None):
-    """Return a message as a nested dict; BadInput where the bytes are no such message.
+    """Return a message as a nested dict.
 
-    `schemas` comes from :mod:`rigid_body_sim.messages.definitions`. If `leaves` is a list, what
-    was met is appended in wire order as (path, code, offset, count): `code` as in :mod:`struct`,
-    ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a string. Text that is
-    not UTF-8 (ROS does not forbid it) gets replacement characters.
+    `schemas` comes from :mod:`rigid_body_sim.messages.definitions`. If `leaves` is a list, the
+    parts of the message are appended in wire order as (path, code, offset, count): `code` as in
+    :mod:`struct`, ``'#'`` for the length of a string or sequence, ``'s'`` for the bytes of a
+    string. Text that is not UTF-8 (ROS does not forbid it) gets replacement characters.
+
+    Raises
+    ------
+    BadInput
+        If the bytes are not such a message.
     """
     if bytes(data[:2]) != ENCAPSULATION[:2]:
         raise BadInput(

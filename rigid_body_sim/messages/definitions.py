@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Message definitions: those of the installed ROS 2 or of rosbags, and a parser of their text.
+"""Message definitions, from the installed ROS 2 or from rosbags, and a parser of their text.
 
-The text is ``ros2msg``, as recordings carry it, so the parser reads those of strangers as well. A
-schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.
+The text is ``ros2msg``, as recordings contain it, so the parser reads foreign recordings as well.
+A schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.
 """
 
 import functools
@@ -49,7 +49,10 @@ class Definition(typing.NamedTuple):
 def definition(type_name):
     """Return the Definition of a type, from the installed ROS 2 or else from rosbags.
 
-    Raises BadInput where neither knows the type.
+    Raises
+    ------
+    BadInput
+        If neither knows the type.
     """
     found = _of_ros(type_name) or _of_rosbags(type_name)
     if found is None:
@@ -71,12 +74,12 @@ def _of_ros(type_name):
 def _message_file(type_name):
     """Return the path of the .msg file of a type, or None.
 
-    ROS keeps it in the share folder of the prefix in which the package's Python modules are; this
+    ROS keeps it in the share folder of the prefix that contains the package's Python modules. This
     holds for ROS from apt, for wheels and for a colcon workspace, sourced or not.
     """
     match = re.fullmatch(r'(\w+)/msg/(\w+)', type_name)
     spec = importlib.util.find_spec(match[1]) if match else None
-    # prefix/lib/python3.12/site-packages/package/__init__.py
+    # spec.origin is prefix/lib/python3.12/site-packages/package/__init__.py
     for prefix in pathlib.Path(spec.origin).parents[4:5] if spec and spec.origin else ():
         path = prefix / 'share' / match[1] / 'msg' / f'{match[2]}.msg'
         if path.is_file() and path.with_suffix('.json').is_file():
@@ -85,10 +88,10 @@ def _message_file(type_name):
 
 
 def _complete_text(type_name, seen):
-    """Return the text of a .msg file followed by those it depends on, as rosbag2 writes it.
+    """Return the text of a .msg file and of those it depends on, as rosbag2 writes it.
 
-    They come sorted, depth first, each once (`seen` collects the names), each after a line of 80
-    ``=`` and a line ``MSG: package/Name``.
+    The latter are sorted, depth first, and come once each (`seen` collects the names), after a
+    line of 80 ``=`` and a line ``MSG: package/Name``.
     """
     text = _message_file(type_name).read_text(encoding='utf-8')
     package = type_name.split('/')[0]
@@ -121,9 +124,14 @@ def schema(type_name):
 
 
 def parse(type_name, text):
-    """Return the schema in a complete ``ros2msg`` text; BadInput where the text makes no sense.
+    """Return the schema in a complete ``ros2msg`` text.
 
     Every type that is reached from `type_name` must be there, and none may contain itself.
+
+    Raises
+    ------
+    BadInput
+        If the text is not such a definition.
     """
     schemas = {}
     current = type_name

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixed layouts: where in a message each number lies.
+"""Fixed layouts: the place of each number in a message.
 
-A message whose strings and sequences keep their lengths has the same layout each time. Its numbers
+A message whose strings and sequences keep their lengths always has the same layout. Its numbers
 are then *columns*, named by their path:
 
 =================== ======================================== ====================================
@@ -30,21 +30,21 @@ class Layout:
     Parameters
     ----------
     schemas : dict
-        See :mod:`rigid_body_sim.messages.definitions`.
+        Schemas of :mod:`rigid_body_sim.messages.definitions`.
     type_name : str
     sample : bytes
-        One such message.
+        One of the messages.
 
     Attributes
     ----------
     size : int
-        Bytes.
+        Number of bytes.
     leaves : list
-        See :func:`rigid_body_sim.messages.cdr.decode`.
+        Parts of the message, see :func:`rigid_body_sim.messages.cdr.decode`.
     dtype : numpy.dtype
-        View of one message.
+        Format of one message.
     components : dict
-        A column that is a struct of doubles -> the names of its numbers.
+        Column that is a struct of doubles -> names of its numbers.
     """
 
     def __init__(self, schemas, type_name, sample):
@@ -69,7 +69,7 @@ class Layout:
         self._shape = np.frombuffer(bytes(sample), np.uint8)[self._shape_bytes]
 
     def _fields(self):
-        """Return (column, NumPy format, offset) for each column; structs of doubles are one."""
+        """Return (column, NumPy format, offset) of each column; a struct of doubles is one."""
         siblings, sequences = {}, {path for path, code, _, _ in self.leaves if code == '#'}
         for path, code, _, count in self.leaves:
             parent, _, last = path.rpartition('.')
@@ -115,7 +115,7 @@ class Layout:
         return names
 
     def fits(self, rows):
-        """Return which of the messages, uint8 (n, size), have this layout, as (n,) bool."""
+        """Return whether each message has this layout, (n,) bool; messages are uint8 (n, size)."""
         return (rows[:, self._shape_bytes] == self._shape).all(axis=1)
 
     def unpack(self, rows, names=None):

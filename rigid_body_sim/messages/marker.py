@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body as a marker for RViz: its true shape where the scene gives one.
+"""The body as a marker for RViz: its true shape if the scene gives one.
 
 A body that is one box, ellipsoid or cylinder is that marker; any other shape is a list of
-triangles, in two colours so that a turn can be seen. Without a shape it is a box with the body's
-mass and moments.
+triangles, in two colours that make a turn visible. Without a shape it is a box with the body's
+mass and moments of inertia.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ COLOUR, ACCENT = (
 
 
 def solid_of(scene) -> Solid | None:
-    """Return the one solid that a body is drawn as; None where it takes triangles."""
+    """Return the one solid that shows the body, or None if it needs triangles."""
     mapping = solids_of(scene)
     if mapping and len(mapping) == 1:
         return mapping[0]
@@ -35,7 +35,7 @@ def solid_of(scene) -> Solid | None:
 
 
 def shape_fields(scene) -> dict:
-    """Return the constant fields of the marker that say what is drawn."""
+    """Return the constant fields of the marker, which describe its shape."""
     solid = solid_of(scene)
     if solid:
         return {
@@ -58,6 +58,6 @@ def shape_fields(scene) -> dict:
 
 
 def place_of(scene) -> tuple[tuple, tuple]:
-    """Return centre (m) and axes (quaternion) in the body of what is drawn."""
+    """Return the centre (m) and the axes (quaternion) of the marker in the body."""
     solid = solid_of(scene)
     return (solid.at, solid.orientation) if solid else ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body as a robot: a URDF text made from the scene, as RViz and robot_state_publisher read it.
+"""The body as a robot: the URDF text of a scene, for RViz and robot_state_publisher.
 
 The links have the names of the frames. A hinge is a continuous joint with the name and the angle
-of ``joint_states``; any other body has a floating joint, whose place ``tf`` tells.
+of ``joint_states``; any other body has a floating joint, whose place ``tf`` gives.
 """
 
 import xml.etree.ElementTree as ElementTree
@@ -52,7 +52,7 @@ def urdf(scene, frames) -> str:
 
 
 def _solids(scene):
-    """Return the solids of the visual: those of the true shape if URDF has them, else a box."""
+    """Return the solids of the visual: the true shape if URDF has them, otherwise a box."""
     solids = solids_of(scene)
     if solids and all(one.kind != SPHERE or len(set(one.size)) == 1 for one in solids):
         return solids
@@ -61,7 +61,7 @@ def _solids(scene):
 
 
 def _hinge(robot, scene, frames):
-    """Add the hinge: a joint at `through`, and from there the body's origin at a fixed place."""
+    """Add the hinge: a joint at `through`, and the body's origin at a fixed place from there."""
     axis, through = np.array(scene.constraint.axis), np.array(scene.constraint.through)
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
     attitude = Rotation.from_quat(scene.initial.orientation)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body of a scene as the simple solids that markers and robot descriptions know."""
+"""The body of a scene as simple solids, for markers and robot descriptions."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -49,11 +49,11 @@ SOLIDS: dict[str, Callable] = {
     'disk': lambda radius: _cylinder(radius, 2.0 * THIN * radius),
     'rod': lambda length: _cylinder(THIN * length, length),
 }
-"""Kind and size of those shapes of a scene file that are solids; thin as in drawing/."""
+"""Kind and size of the shapes of a scene file that are solids; thin ones as in drawing/."""
 
 
 def solids_of(scene) -> list[Solid] | None:
-    """Return the solids of a scene's body; None where they are not its true shape."""
+    """Return the solids of a scene's body, or None if solids cannot show its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
     if 'parts' in mapping:
         found = [

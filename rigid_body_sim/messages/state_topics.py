@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics that a simulation fills: types, frames, and the sources of their numbers.
 
-The node publishes and records them, ``simulate`` records them: tick_messages.py makes the bytes
-for both.
+The node publishes and records them, and ``simulate`` records them; tick_messages.py makes the
+bytes for both.
 """
 
 import dataclasses
@@ -48,19 +48,19 @@ class Output:
     ----------
     name, type : str
     constants : callable
-        (scene, frames) -> the fields that never change, and the lengths of sequences; BadInput
-        where the topic has no meaning for a scene.
+        Takes (scene, frames) and returns the fields that never change, and the lengths of
+        sequences; raises BadInput if the topic has no meaning for a scene.
     variable : tuple of str
-        Paths of the doubles that change, in wire order. The stamp, if there is one, always does.
+        Paths of the doubles that change, in wire order. A stamp always changes.
     places : tuple of (int or slice)
-        Where they are in the sample (tick_messages.py), in the same order.
+        Places of these doubles in the sample (tick_messages.py), in the same order.
     derive : callable, optional
-        scene -> function (samples, held wrench) that fills its part of samples, shape (n,
-        SAMPLE_SIZE), from their states.
+        Takes a scene and returns a function (samples, held wrench) that computes its part of the
+        samples, shape (n, SAMPLE_SIZE), from their states.
     absolute : bool
-        Whether the name is outside of the node's namespace.
+        Whether the name is outside the node's namespace.
     paced : bool
-        Whether it has a rate of its own instead of that of the ticks.
+        Whether the topic has a rate of its own instead of the tick rate.
     """
 
     name: str
@@ -120,7 +120,7 @@ def _held(scene, frames):
 
 
 def _reaction(scene):
-    """Derive force and torque of the constraint.
+    """Derive the force and the torque of the constraint.
 
     The torque is about the fixed point, the point `through` of the hinge, or the point of contact.
     """
@@ -152,7 +152,7 @@ def _joint(scene, frames):
 def _hinge(scene):
     """Derive the hinge's angle as the scene file counts it.
 
-    Whole turns are known as far as the sign of q tells them: one either way.
+    Whole turns are known only as far as the sign of q tells them: one either way.
     """
     axis = np.array(scene.constraint.axis)
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
@@ -252,7 +252,7 @@ ON_REQUEST = (
     Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
 )
 DISPLAY_RATE = 30.0
-"""Rate of paced outputs by default (Hz of simulated time): for eyes, not for controllers."""
+"""Default rate of paced outputs (Hz of simulated time), which are for display, not control."""
 OUTPUTS = {output.name: output for output in EVERY_TICK + ON_REQUEST}
 
 
@@ -264,7 +264,7 @@ class Outputs(NamedTuple):
 
 
 def chosen(names) -> Outputs:
-    """Return the outputs of every tick, and those on request that are named."""
+    """Return the outputs of every tick and the named ones on request."""
     named = [output for output in ON_REQUEST if output.name in names]
     return Outputs(
         [*EVERY_TICK, *(output for output in named if not output.paced)],
@@ -273,14 +273,14 @@ def chosen(names) -> Outputs:
 
 
 class SceneMessages(NamedTuple):
-    """What makes the messages of a scene.
+    """The makers of a scene's messages.
 
     Attributes
     ----------
     ticking : TickMessages
-        Of every tick.
+        Messages of every tick.
     paced : TickMessages or None
-        Of the outputs with a rate of their own; None where there are none.
+        Messages of the outputs with a rate of their own; None if there are none.
     """
 
     ticking: TickMessages
@@ -288,6 +288,6 @@ class SceneMessages(NamedTuple):
 
 
 def scene_messages(outputs: Outputs, scene, frames: Frames) -> SceneMessages:
-    """Return the SceneMessages of a scene; BadInput where a topic has no meaning for it."""
+    """Return the SceneMessages of a scene; BadInput if a topic has no meaning for it."""
     paced = TickMessages(outputs.paced, scene, frames) if outputs.paced else None
     return SceneMessages(TickMessages(outputs.ticking, scene, frames), paced)

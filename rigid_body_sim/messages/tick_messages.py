@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The serialisation of ticks: from states to the bytes of every topic.
 
-The node and ``simulate`` both use it, so a topic has the same bytes wherever it goes. The numbers
-of a tick, of all topics, come from one array of doubles, the *sample* (its places are named
-below); they are copied to their places in a buffer that holds the messages of the tick end to end.
+The node and ``simulate`` both use it, so a topic has the same bytes in both. The numbers of a
+tick, for all topics, come from one array of doubles, the *sample* (its places are named below).
+They are copied to their places in a buffer that holds the messages of the tick end to end.
 """
 
 import numpy as np
@@ -38,8 +38,8 @@ NO_WRENCH = Wrench()
 class TickMessages:
     """The messages of some topics for one scene, made for one tick or for many at once.
 
-    Each message lies in the buffer such that its doubles are at multiples of eight bytes (CDR
-    aligns them so, counted after its four bytes of encapsulation).
+    Each message is placed in the buffer so that its doubles are at multiples of eight bytes (CDR
+    aligns them, counted after its four bytes of encapsulation).
 
     Parameters
     ----------
@@ -50,12 +50,12 @@ class TickMessages:
     Attributes
     ----------
     sizes : list of int
-        Bytes of the messages, in the order of the outputs.
+        Numbers of bytes of the messages, in the order of the outputs.
 
     Raises
     ------
     BadInput
-        Where a topic has no meaning for the scene.
+        If a topic has no meaning for the scene.
     """
 
     def __init__(self, outputs, scene, frames):
@@ -91,9 +91,9 @@ class TickMessages:
         energies, squares : array (n,)
             Energy (J) and L . L ((kg m^2/s)^2).
         stamps : sequence of int
-            ns.
+            Stamps, ns.
         wrench : Wrench
-            Held at these ticks.
+            Wrench held at these ticks.
         """
         words = self._words(vectors, energies, squares, stamps, wrench)
         data, size = words.tobytes(), words.itemsize * len(self._blank)
@@ -105,7 +105,7 @@ class TickMessages:
     def columns(
         self, vectors: np.ndarray, energies, squares, stamps, wrench: Wrench = NO_WRENCH
     ) -> list[np.ndarray]:
-        """Return the messages of each output, uint8 (n, size); parameters as of `messages`."""
+        """Return the messages of each output, uint8 (n, size), for the same parameters."""
         words = self._words(vectors, energies, squares, stamps, wrench)
         data = words.view(np.uint8).reshape(len(words), -1)
         return [data[:, part] for part in self._parts]
@@ -135,8 +135,8 @@ class TickMessages:
 def _fill(samples, sources, targets, stamps, seconds, words, halves):
     """Copy the doubles of samples and the stamps (ns) into messages.
 
-    `words` are the messages as doubles, `halves` the same bytes as 32-bit integers. Mostly there
-    is one tick: then a few calls of numpy would take longer than everything else.
+    `words` are the messages as doubles, `halves` the same bytes as 32-bit integers. Usually there
+    is one tick, for which a few calls of numpy would take longer than everything else.
     """
     for k in range(len(samples)):
         for j in range(len(targets)):

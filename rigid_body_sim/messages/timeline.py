@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Instants of ticks in integer nanoseconds: origin + ticks / rate, exact for any number.
 
-A rate is a double, hence a ratio of integers; with integers throughout, nothing drifts: the
-instant of tick k does not depend on the way there. Stamps are such instants, and so are the
+A rate is a double, hence a ratio of integers. All arithmetic is in integers, so nothing drifts:
+the instant of tick k does not depend on the way there. Stamps are such instants, and so are the
 deadlines of the tick thread.
 """
 
@@ -11,7 +11,7 @@ from fractions import Fraction
 
 NANOSECONDS = 1_000_000_000
 ROUND_OFF = Fraction(1, 2**51)
-"""Two factors, each known to half an ulp, and their product."""
+"""Relative error of a product of two factors, each known to half an ulp."""
 
 
 class Timeline:
@@ -40,7 +40,7 @@ class Timeline:
         )
 
     def instants(self, tick, count):
-        """Return the instants of a tick and those after it, `count` in all, ns."""
+        """Return the instants of `count` ticks, of which `tick` is the first, ns."""
         first, period, divisor = tick - self.tick, self._double_period, 2 * self._rate_numerator
         origin, half = self.origin, self._rate_numerator
         return [origin + (k * period + half) // divisor for k in range(first, first + count)]
@@ -48,14 +48,14 @@ class Timeline:
     def ticks_in(self, seconds):
         """Return the number of ticks after which at least `seconds` have passed.
 
-        Ticks of 100 Hz in 0.07 s are 7, though the double is above 0.07.
+        0.07 s at 100 Hz are 7 ticks, though the double is above 0.07.
         """
         exact = Fraction(seconds) * self.rate
         nearest = round(exact)
         return nearest if abs(exact - nearest) <= nearest * ROUND_OFF else math.ceil(exact)
 
     def from_tick(self, tick, rate):
-        """Return the timeline that goes on from a tick of this one at another rate."""
+        """Return the timeline that continues this one from a tick, at another rate."""
         return Timeline(self.instant(tick), rate, tick)
 
 
@@ -67,15 +67,15 @@ class Pace:
     Parameters
     ----------
     rate, tick_rate : float
-        How often it is due, and ticks, per second. It is due at every tick if `rate` is the
-        larger.
+        Times due per second, and ticks per second. The topic is due at every tick if `rate` is
+        the larger.
     """
 
     def __init__(self, rate: float, tick_rate: float):
         self._ratio = min(Fraction(rate) / Fraction(tick_rate), Fraction(1)).as_integer_ratio()
 
     def due(self, tick: int, count: int) -> list[int]:
-        """Return the ticks at which it is due, among `count` ticks from `tick` on."""
+        """Return the ticks at which the topic is due, among `count` ticks from `tick` on."""
         numerator, denominator = self._ratio
         return [
             k
