@@ -81,8 +81,7 @@ def writing(folder, seconds, block=None, scene='tennis_racket'):
         for first in range(0, len(late), block or 4096):
             part = slice(first, first + (block or 4096))
             writer.ticks(
-                first, racket.stamps[part], late[part], [rows[part] for rows in racket.rows]
-            )
+                first, racket.stamps[part], late[part], [rows[part] for rows in racket.rows])
             if block:
                 writer.flush()
     spent = time.perf_counter() - began
@@ -211,18 +210,12 @@ def analysing(folder, seconds):
     command = [sys.executable, '-m', 'rigid_body_sim']
     simulated = subprocess.run(
         [*command, 'simulate', '--duration', str(seconds), '--output', folder, '--json'],
-        capture_output=True,
-        check=True,
-        env=ENVIRONMENT,
-    )
+        capture_output=True, check=True, env=ENVIRONMENT)
     cost = json.loads(simulated.stdout)['cost']
     began = time.perf_counter()
-    _, status, usage = os.wait4(
-        subprocess.Popen(
-            [*command, 'analyze', folder, '--json'], stdout=subprocess.DEVNULL, env=ENVIRONMENT
-        ).pid,
-        0,
-    )
+    _, status, usage = os.wait4(subprocess.Popen(
+        [*command, 'analyze', folder, '--json'], stdout=subprocess.DEVNULL,
+        env=ENVIRONMENT).pid, 0)
     if status:
         raise RuntimeError('analyze failed')
     return {
@@ -240,9 +233,8 @@ def ticking(folder, rate, seconds):
     Return the cost of a tick in us (median, p99), dropped ticks, and the recorder's CPU share.
     """
     racket = Racket(min(round(rate * seconds), 40_000), rate)
-    messages = [
-        [rows[index].tobytes() for rows in racket.rows] for index in range(len(racket.stamps))
-    ]
+    messages = [[rows[index].tobytes() for rows in racket.rows]
+                for index in range(len(racket.stamps))]
     recorder = Recorder(folder, racket.ticking, [], journal_topic(), {})
     costs, start, period = [], time.perf_counter(), round(1e9 / rate)
     for k in range(round(rate * seconds)):
@@ -251,15 +243,8 @@ def ticking(folder, rate, seconds):
         stamp, begun = int(racket.stamps[0]) + k * period, time.perf_counter()
         recorder.tick(stamp, time.time_ns(), messages[k % len(messages)])
         costs.append(time.perf_counter() - begun)
-    cpu = sum(
-        map(
-            int,
-            pathlib.Path(f'/proc/{recorder.process_id}/stat')
-            .read_text()
-            .rpartition(')')[2]
-            .split()[11:13],
-        )
-    )
+    cpu = sum(map(int, pathlib.Path(f'/proc/{recorder.process_id}/stat').read_text()
+                  .rpartition(')')[2].split()[11:13]))
     status = recorder.close()
     return {
         'median_us': statistics.median(costs) * 1e6,
@@ -294,9 +279,8 @@ def killing(folder, runs=10):
     lost = []
     for number in range(runs):
         path = folder / f'killed{number}'
-        with subprocess.Popen(
-            [sys.executable, '-c', _NODE, str(path)], stdout=subprocess.PIPE, env=ENVIRONMENT
-        ) as node:
+        with subprocess.Popen([sys.executable, '-c', _NODE, str(path)], stdout=subprocess.PIPE,
+                              env=ENVIRONMENT) as node:
             recorder = int(node.stdout.readline())
             said = 0
             while said < 500 + 37 * number:
@@ -316,39 +300,28 @@ def main():
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description='Figures of recordings.')
     parser.add_argument(
-        '--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)'
-    )
+        '--seconds', type=float, default=60.0, help='length of the recording at 4 kHz (60)')
     parser.add_argument(
-        '--hour',
-        action='store_true',
-        help='simulate and analyse an hour, not a minute: 14.4 million messages, 0.5 GB',
-    )
+        '--hour', action='store_true',
+        help='simulate and analyse an hour, not a minute: 14.4 million messages, 0.5 GB')
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder, figures = pathlib.Path(name), {}
         for title, block in (('simulate', None), ('node', 100)):
             speed, ratio = writing(folder / title, 60.0, block)
             figures[f'writer as {title}'] = {
-                'messages_per_second': speed,
-                'size_by_payload': ratio,
-            }
+                'messages_per_second': speed, 'size_by_payload': ratio}
         figures['size by payload'] = {
-            scene: writing(
-                folder / f'size{number}',
-                20.0,
-                100,
-                load_scene(scene.split()[0], scene.split()[1:]),
-            )[1]
-            for number, scene in enumerate(SCENES)
-        }
+            scene: writing(folder / f'size{number}', 20.0, 100,
+                           load_scene(scene.split()[0], scene.split()[1:]))[1]
+            for number, scene in enumerate(SCENES)}
         figures['ours and the library: CPU seconds'] = beside_the_library(folder / 'node')
         figures['reader'] = {'messages_per_second': reading(folder / 'node')}
         figures['4 topics at 1 kHz'] = ticking(folder / 'slow', 1000.0, 10.0)
         figures['4 topics at 4 kHz'] = ticking(folder / 'fast', 4000.0, options.seconds)
         figures['node and recorder killed: ms lost'] = killing(folder)
         figures['simulate and analyze'] = analysing(
-            folder / 'run', 3600.0 if options.hour else 60.0
-        )
+            folder / 'run', 3600.0 if options.hour else 60.0)
     print(json.dumps(figures, indent=2))
 
 

@@ -46,11 +46,8 @@ def encode(type_name, values):
     try:
         _encode_fields(schema(type_name), type_name, values, out)
     except (struct.error, TypeError, AttributeError, OverflowError) as error:
-        raise BadInput(
-            type_name,
-            f'a value does not fit its field ({error})',
-            'values of the types in the definition',
-        ) from error
+        raise BadInput(type_name, f'a value does not fit its field ({error})',
+                       'values of the types in the definition') from error
     return bytes(out)
 
 
@@ -62,11 +59,8 @@ def _encode_fields(schemas, type_name, values, out):
     fields = schemas[type_name]
     unknown = set(values) - {field.name for field in fields}
     if unknown:
-        raise BadInput(
-            type_name,
-            f'no field {sorted(unknown)[0]!r}',
-            f'one of {", ".join(field.name for field in fields)}',
-        )
+        raise BadInput(type_name, f'no field {sorted(unknown)[0]!r}',
+                       f'one of {", ".join(field.name for field in fields)}')
     for field in fields:
         value = values.get(field.name)
         if field.array is None:
@@ -79,11 +73,8 @@ def _encode_fields(schemas, type_name, values, out):
         else:
             elements = (None,) * field.array if value is None else value
             if len(elements) != field.array:
-                raise BadInput(
-                    f'{type_name}: {field.name}',
-                    f'{len(elements)} elements',
-                    f'{field.array} elements',
-                )
+                raise BadInput(f'{type_name}: {field.name}', f'{len(elements)} elements',
+                               f'{field.array} elements')
             _encode_elements(schemas, field, elements, out)
 
 
@@ -92,12 +83,8 @@ def _encode_elements(schemas, field, elements, out):
     if base in SIZES:
         if len(elements):
             _align(out, SIZES[base])
-            out.extend(
-                struct.pack(
-                    f'<{len(elements)}{CODES[base]}',
-                    *(0 if element is None else element for element in elements),
-                )
-            )
+            out.extend(struct.pack(f'<{len(elements)}{CODES[base]}',
+                                   *(0 if element is None else element for element in elements)))
     elif base == 'string':
         for element in elements:
             text = (element or '').encode() + b'\0'
@@ -122,11 +109,8 @@ def decode(schemas, type_name, data, leaves=None):
         If the bytes are not such a message.
     """
     if bytes(data[:2]) != ENCAPSULATION[:2]:
-        raise BadInput(
-            type_name,
-            f'a message that starts with {bytes(data[:4]).hex()}',
-            'little-endian CDR (00 01)',
-        )
+        raise BadInput(type_name, f'a message that starts with {bytes(data[:4]).hex()}',
+                       'little-endian CDR (00 01)')
     reader = _Reader(schemas, data, leaves)
     try:
         return reader.fields(type_name, '')
@@ -140,9 +124,8 @@ class _Reader:
         self.schemas, self.data, self.position, self.leaves = schemas, data, 4, leaves
 
     def fields(self, type_name, above):
-        return {
-            field.name: self.field(field, above + field.name) for field in self.schemas[type_name]
-        }
+        return {field.name: self.field(field, above + field.name)
+                for field in self.schemas[type_name]}
 
     def field(self, field, path):
         if field.array is None:
@@ -151,8 +134,7 @@ class _Reader:
         if count > len(self.data) - self.position:
             raise struct.error(f'{path} claims {count} elements')
         return self.elements(
-            field.base, count, path, (f'{path}[{index}]' for index in range(count))
-        )
+            field.base, count, path, (f'{path}[{index}]' for index in range(count)))
 
     def length(self, path):
         return self.numbers('I', 1, path, '#')[0]

@@ -54,17 +54,11 @@ class Layout:
         self.size = len(sample)
         self._times, self.components = [], {}
         fields = self._fields()
-        self.dtype = np.dtype(
-            {
-                'names': [name for name, _, _ in fields],
-                'formats': [form for _, form, _ in fields],
-                'offsets': [offset for _, _, offset in fields],
-                'itemsize': self.size,
-            }
-        )
-        lengths = [
-            np.arange(offset, offset + 4) for _, code, offset, _ in self.leaves if code == '#'
-        ]
+        self.dtype = np.dtype({
+            'names': [name for name, _, _ in fields], 'formats': [form for _, form, _ in fields],
+            'offsets': [offset for _, _, offset in fields], 'itemsize': self.size})
+        lengths = [np.arange(offset, offset + 4)
+                   for _, code, offset, _ in self.leaves if code == '#']
         self._shape_bytes = np.concatenate([np.arange(2), *lengths]).astype(int)
         self._shape = np.frombuffer(bytes(sample), np.uint8)[self._shape_bytes]
 
@@ -79,11 +73,8 @@ class Layout:
             parent, _, last = path.rpartition('.')
             if code == '#' or count == 0:
                 continue
-            if (
-                parent
-                and len(siblings[parent]) > 1
-                and all(leaf[1:] == ('d', 1) for leaf in siblings[parent])
-            ):
+            if (parent and len(siblings[parent]) > 1
+                    and all(leaf[1:] == ('d', 1) for leaf in siblings[parent])):
                 if parent not in self.components:
                     self.components[parent] = []
                     fields.append((parent, ('<f8', (len(siblings[parent]),)), offset))
@@ -93,13 +84,9 @@ class Layout:
                 fields.append((path, '<i4', offset))
             else:
                 shape = (count,) if count > 1 or path in sequences else ()
-                fields.append(
-                    (
-                        path,
-                        f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, shape),
-                        offset,
-                    )
-                )
+                fields.append((
+                    path, f'S{count}' if code == 's' else (np.dtype(f'<{code}').str, shape),
+                    offset))
         return fields
 
     @property
@@ -124,9 +111,8 @@ class Layout:
         columns = {}
         for name in self.columns if names is None else names:
             if name in self._times:
-                columns[name] = (
-                    view[f'{name}.sec'].astype(np.int64) * NANOSECONDS + view[f'{name}.nanosec']
-                )
+                columns[name] = (view[f'{name}.sec'].astype(np.int64) * NANOSECONDS
+                                 + view[f'{name}.nanosec'])
             else:
                 columns[name] = view[name].copy()
         return columns

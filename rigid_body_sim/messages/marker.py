@@ -15,9 +15,7 @@ TYPES = {BOX: 1, SPHERE: 2, CYLINDER: 3}
 """Numbers of visualization_msgs/Marker."""
 TRIANGLE_LIST = 11
 COLOUR, ACCENT = (
-    {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0},
-    {'r': 0.95, 'g': 0.9, 'b': 0.8, 'a': 1.0},
-)
+    {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}, {'r': 0.95, 'g': 0.9, 'b': 0.8, 'a': 1.0})
 
 
 def solid_of(scene) -> Solid | None:

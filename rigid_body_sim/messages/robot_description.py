@@ -45,8 +45,7 @@ def urdf(scene, frames) -> str:
             ElementTree.SubElement(geometry, 'sphere', radius=repr(0.5 * solid.size[0]))
         else:
             ElementTree.SubElement(
-                geometry, 'cylinder', radius=repr(0.5 * solid.size[0]), length=repr(solid.size[2])
-            )
+                geometry, 'cylinder', radius=repr(0.5 * solid.size[0]), length=repr(solid.size[2]))
     ElementTree.indent(robot)
     return ElementTree.tostring(robot, encoding='unicode') + '\n'
 
@@ -72,11 +71,8 @@ def _hinge(robot, scene, frames):
     joint = _joint(robot, f'{frames.prefix}hinge', 'continuous', frames.world, turning)
     _origin(joint, place, unturned.as_quat())
     ElementTree.SubElement(joint, 'axis', xyz=_numbers(axis))
-    _origin(
-        _joint(robot, f'{frames.body}_joint', 'fixed', turning, frames.body),
-        -through,
-        (0.0, 0.0, 0.0, 1.0),
-    )
+    _origin(_joint(robot, f'{frames.body}_joint', 'fixed', turning, frames.body), -through,
+            (0.0, 0.0, 0.0, 1.0))
 
 
 def _joint(robot, name, kind, parent, child):
@@ -100,8 +96,7 @@ def _inertial(link, body):
         'izz': (2, 2),
     }
     ElementTree.SubElement(
-        inertial, 'inertia', {name: repr(float(tensor[place])) for name, place in names.items()}
-    )
+        inertial, 'inertia', {name: repr(float(tensor[place])) for name, place in names.items()})
 
 
 def _origin(element, at, orientation):

@@ -56,14 +56,9 @@ def solids_of(scene) -> list[Solid] | None:
     """Return the solids of a scene's body, or None if solids cannot show its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
     if 'parts' in mapping:
-        found = [
-            _solid(
-                part.get('shape'),
-                part.get('at', (0.0, 0.0, 0.0)),
-                part.get('orientation', IDENTITY),
-            )
-            for part in mapping['parts']
-        ]
+        found = [_solid(part.get('shape'), part.get('at', (0.0, 0.0, 0.0)),
+                        part.get('orientation', IDENTITY))
+                 for part in mapping['parts']]
     elif 'shape' in mapping:
         found = [_solid(mapping['shape'], scene.body.center_of_mass, IDENTITY)]
     elif scene.body.radius is not None:
@@ -85,5 +80,4 @@ def _solid(shape, at, orientation):
 def equal_box(scene, edges: tuple) -> Solid:
     """Return a box of these edges at the centre of mass, along the body's principal axes."""
     return Solid(
-        BOX, tuple(edges), tuple(scene.body.center_of_mass), tuple(scene.body.about_center.axes)
-    )
+        BOX, tuple(edges), tuple(scene.body.center_of_mass), tuple(scene.body.about_center.axes))

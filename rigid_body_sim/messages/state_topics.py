@@ -114,8 +114,7 @@ def _proper_acceleration(scene):
 def _held(scene, frames):
     if scene.constraint.mechanism is Mechanism.FREE:
         raise BadInput(
-            'parameter publish', 'got reaction with constraint free', 'nothing holds a free body'
-        )
+            'parameter publish', 'got reaction with constraint free', 'nothing holds a free body')
     return _in_world(scene, frames)
 
 
@@ -137,10 +136,8 @@ def _reaction(scene):
 def _joint(scene, frames):
     if scene.constraint.axis is None:
         raise BadInput(
-            'parameter publish',
-            f'got joint_states with constraint {scene.constraint.kind!r}',
-            'only a hinge is a joint',
-        )
+            'parameter publish', f'got joint_states with constraint {scene.constraint.kind!r}',
+            'only a hinge is a joint')
     return {
         **_in_world(scene, frames),
         'name': [f'{frames.prefix}hinge'],
@@ -162,9 +159,7 @@ def _hinge(scene):
         for sample in samples:
             *turn, cosine = rotations.multiply(-x, -y, -z, w, *sample[ORIENTATION])
             sample[HINGE] = (
-                start + 2.0 * math.atan2(axis @ turn, cosine),
-                axis @ sample[ANGULAR_VELOCITY],
-            )
+                start + 2.0 * math.atan2(axis @ turn, cosine), axis @ sample[ANGULAR_VELOCITY])
 
     return derive
 
@@ -179,10 +174,8 @@ def _marker_pose(scene):
     def derive(samples, wrench):
         for sample in samples:
             q = sample[ORIENTATION]
-            sample[SHAPE] = (
-                *(sample[POSITION] + rotations.rotate(*q, *center)),
-                *rotations.multiply(*q, *axes),
-            )
+            sample[SHAPE] = (*(sample[POSITION] + rotations.rotate(*q, *center)),
+                             *rotations.multiply(*q, *axes))
 
     return derive
 
@@ -266,10 +259,8 @@ class Outputs(NamedTuple):
 def chosen(names) -> Outputs:
     """Return the outputs of every tick and the named ones on request."""
     named = [output for output in ON_REQUEST if output.name in names]
-    return Outputs(
-        [*EVERY_TICK, *(output for output in named if not output.paced)],
-        [output for output in named if output.paced],
-    )
+    return Outputs([*EVERY_TICK, *(output for output in named if not output.paced)],
+                   [output for output in named if output.paced])
 
 
 class SceneMessages(NamedTuple):

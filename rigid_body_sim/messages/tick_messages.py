@@ -71,17 +71,15 @@ class TickMessages:
             seconds += [(start + place) // 4 for place in stamps]
             sources += [place for entry in output.places for place in _range(entry)]
         self._blank = np.frombuffer(buffer + bytes(-len(buffer) % 8), dtype=np.float64)
-        self._targets, self._sources, self._seconds = (
-            np.array(places, dtype=np.intp) for places in (targets, sources, seconds)
-        )
+        self._targets, self._sources, self._seconds = (np.array(places, dtype=np.intp)
+                                                       for places in (targets, sources, seconds))
         if len(self._targets) != len(self._sources):
             raise TypeError('an Output names more or fewer places than it has doubles')
         self.sizes = [part.stop - part.start for part in self._parts]
         self._derive = [output.derive(scene) for output in outputs if output.derive]
 
-    def messages(
-        self, vectors: np.ndarray, energies, squares, stamps, wrench: Wrench = NO_WRENCH
-    ) -> list[list[bytes]]:
+    def messages(self, vectors: np.ndarray, energies, squares, stamps,
+                 wrench: Wrench = NO_WRENCH) -> list[list[bytes]]:
         """Return the messages of each tick, a list in the order of the outputs.
 
         Parameters
@@ -97,14 +95,11 @@ class TickMessages:
         """
         words = self._words(vectors, energies, squares, stamps, wrench)
         data, size = words.tobytes(), words.itemsize * len(self._blank)
-        return [
-            [data[start + part.start : start + part.stop] for part in self._parts]
-            for start in range(0, len(words) * size, size)
-        ]
+        return [[data[start + part.start : start + part.stop] for part in self._parts]
+                for start in range(0, len(words) * size, size)]
 
-    def columns(
-        self, vectors: np.ndarray, energies, squares, stamps, wrench: Wrench = NO_WRENCH
-    ) -> list[np.ndarray]:
+    def columns(self, vectors: np.ndarray, energies, squares, stamps,
+                wrench: Wrench = NO_WRENCH) -> list[np.ndarray]:
         """Return the messages of each output, uint8 (n, size), for the same parameters."""
         words = self._words(vectors, energies, squares, stamps, wrench)
         data = words.view(np.uint8).reshape(len(words), -1)
@@ -119,15 +114,8 @@ class TickMessages:
             derive(samples, wrench)
         words = np.empty((count, len(self._blank)))
         words[:] = self._blank
-        _fill(
-            samples,
-            self._sources,
-            self._targets,
-            np.array(stamps, dtype=np.int64),
-            self._seconds,
-            words,
-            words.view(np.uint32),
-        )
+        _fill(samples, self._sources, self._targets, np.array(stamps, dtype=np.int64),
+              self._seconds, words, words.view(np.uint32))
         return words
 
 
@@ -156,9 +144,8 @@ def _places(output, blank):
     doubles, stamps = [], []
     schema = definitions.schema(output.type)
     for path, code, offset, count in Layout(schema, output.type, blank).leaves:
-        below = any(
-            path == name or path.startswith((f'{name}.', f'{name}[')) for name in output.variable
-        )
+        below = any(path == name or path.startswith((f'{name}.', f'{name}['))
+                    for name in output.variable)
         if code == 'd' and below:
             doubles += range(offset, offset + 8 * count, 8)
         elif path in STAMPS:

@@ -36,8 +36,7 @@ class Timeline:
     def instant(self, tick):
         """Return the instant of a tick, ns, rounded to the nearest."""
         return self.origin + ((tick - self.tick) * self._double_period + self._rate_numerator) // (
-            2 * self._rate_numerator
-        )
+            2 * self._rate_numerator)
 
     def instants(self, tick, count):
         """Return the instants of `count` ticks, of which `tick` is the first, ns."""
@@ -77,8 +76,5 @@ class Pace:
     def due(self, tick: int, count: int) -> list[int]:
         """Return the ticks at which the topic is due, among `count` ticks from `tick` on."""
         numerator, denominator = self._ratio
-        return [
-            k
-            for k in range(tick, tick + count)
-            if k * numerator // denominator > (k - 1) * numerator // denominator
-        ]
+        return [k for k in range(tick, tick + count)
+                if k * numerator // denominator > (k - 1) * numerator // denominator]

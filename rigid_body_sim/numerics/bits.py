@@ -11,16 +11,6 @@ from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_inline
 
 LOWER = 181 / 256     # about sqrt(1/2)
 
-
-def _balanced(x):
-    m, e = math.frexp(x)
-    return (m, e) if m >= LOWER else (m + m, e - 1)
-
-
-def _power_of_two(k):
-    return math.ldexp(1.0, k)
-
-
 if HAVE_NUMBA:
     from llvmlite import ir
     from numba.core import types
@@ -51,6 +41,13 @@ if HAVE_NUMBA:
     @compiled_inline
     def _power_of_two(k):
         return _double((k + 1023) << 52)
+else:
+    def _balanced(x):
+        m, e = math.frexp(x)
+        return (m, e) if m >= LOWER else (m + m, e - 1)
+
+    def _power_of_two(k):
+        return math.ldexp(1.0, k)
 
 
 @compiled_inline

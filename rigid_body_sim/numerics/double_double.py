@@ -19,18 +19,6 @@ SPLITTER = 134217729.0     # 2^27 + 1
 LEAST, MOST = 1e-270, 1e290    # between them Dekker's split is exact
 HAVE_FMA = hasattr(math, 'fma')
 
-
-def _product_error(a, b, product):
-    """Return a b - product exactly, for product = a b rounded: fma(a, b, -product)."""
-    if HAVE_FMA or not (LEAST < abs(product) < MOST and abs(a) < MOST and abs(b) < MOST):
-        return python_fma(a, b, -product)
-    # splits both factors into halves of 26 bits, in half the time of an emulated fma
-    c, d = SPLITTER * a, SPLITTER * b
-    ah, bh = c - (c - a), d - (d - b)
-    al, bl = a - ah, b - bh
-    return al * bl - (((product - ah * bh) - al * bh) - ah * bl)
-
-
 if HAVE_NUMBA:
     from numba.core import types
     from numba.extending import intrinsic
@@ -42,6 +30,16 @@ if HAVE_NUMBA:
             a, b, product = arguments
             return builder.fma(a, b, builder.fneg(product))
         return types.float64(types.float64, types.float64, types.float64), generate
+else:
+    def _product_error(a, b, product):
+        """Return a b - product exactly, for product = a b rounded: fma(a, b, -product)."""
+        if HAVE_FMA or not (LEAST < abs(product) < MOST and abs(a) < MOST and abs(b) < MOST):
+            return python_fma(a, b, -product)
+        # splits both factors into halves of 26 bits, in half the time of an emulated fma
+        c, d = SPLITTER * a, SPLITTER * b
+        ah, bh = c - (c - a), d - (d - b)
+        al, bl = a - ah, b - bh
+        return al * bl - (((product - ah * bh) - al * bh) - ah * bl)
 
 
 @compiled_inline

@@ -25,21 +25,11 @@ def main(arguments=None):
         'check_scenes',
         'Run every scene by its exact motion and by dop8 on the full equations, measure what the '
         'notes predict, compare.',
-        'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80',
-    )
-    parser.add_argument(
-        '--scene',
-        action='append',
-        metavar='NAME',
-        help=f'only this scene (name or .yaml file), or {SHAPES}; may be repeated',
-    )
-    parser.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        help='change of the scene, key.path=value; may be repeated',
-    )
+        'python -m rigid_body_sim check_scenes --scene heavy_top --set initial.spin=80')
+    parser.add_argument('--scene', action='append', metavar='NAME',
+                        help=f'only this scene (name or .yaml file), or {SHAPES}; may be repeated')
+    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE',
+                        help='change of the scene, key.path=value; may be repeated')
     parser.add_argument('--json', action='store_true', help='every quantity with 17 digits')
     return command_line.run(_check, parser.parse_args(arguments))
 
@@ -47,14 +37,10 @@ def main(arguments=None):
 def _check(options):
     if options.set and (options.scene is None or SHAPES in options.scene):
         raise BadInput(
-            '--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME'
-        )
+            '--set', f'got {options.set[0]!r}', 'name the scene it changes: --scene NAME')
     names = options.scene or [SHAPES, *SYSTEMS]
-    held = {
-        name: name != SHAPES
-        and load_scene(name, options.set).constraint.holds_a_point
-        for name in names
-    }
+    held = {name: name != SHAPES and load_scene(name, options.set).constraint.holds_a_point
+            for name in names}
     began, tables = time.perf_counter(), []
     for table in _tables(held, options.set):
         tables.append(table)
@@ -63,20 +49,12 @@ def _check(options):
     quantities = [quantity for table in tables for quantity in table['quantities']]
     failed = sum(quantity['verdict'] != CONFIRMED for quantity in quantities)
     if options.json:
-        command_line.print_json(
-            {
-                'scenes': tables,
-                'quantities': len(quantities),
-                'failed': failed,
-                'seconds': time.perf_counter() - began,
-            }
-        )
+        command_line.print_json({'scenes': tables, 'quantities': len(quantities), 'failed': failed,
+                                 'seconds': time.perf_counter() - began})
     else:
-        print(
-            f'{len(quantities)} quantities of {len(tables)} systems: '
-            f'{len(quantities) - failed} confirmed, {failed} not; '
-            f'{time.perf_counter() - began:.1f} s'
-        )
+        print(f'{len(quantities)} quantities of {len(tables)} systems: '
+              f'{len(quantities) - failed} confirmed, {failed} not; '
+              f'{time.perf_counter() - began:.1f} s')
     return command_line.CHECK_FAILED if failed else command_line.GOOD
 
 
@@ -91,19 +69,14 @@ def _tables(held, overrides):
             pending = [functools.partial(_table, name, overrides) for name in held]
         else:
             spawn = multiprocessing.get_context('spawn')
-            workers = [
-                stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn))
-                for _ in range(2)
-            ]
+            workers = [stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn))
+                       for _ in range(2)]
             futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
             for worker in workers:
                 stack.callback(worker.shutdown, cancel_futures=True)
             pending = [future.result for future in futures]
-        progress = stack.enter_context(
-            tqdm(
-                zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'
-            )
-        )
+        progress = stack.enter_context(tqdm(
+            zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'))
         for name, result in progress:
             progress.set_postfix_str(name)
             table = result()
@@ -120,11 +93,8 @@ def _table(name, overrides):
         rows = confirm(scene) if scene else confirm_shapes()
     except BadInput as error:
         return error.where, error.problem, error.remedy
-    about = (
-        scene.about
-        if scene
-        else 'Moments of inertia of simple bodies (notes, Some inertia tensors)'
-    )
+    about = (scene.about if scene
+             else 'Moments of inertia of simple bodies (notes, Some inertia tensors)')
     return {
         'scene': scene.name if scene else name,
         'about': about,
@@ -151,10 +121,8 @@ def _plain(row):
         'verdict': CONFIRMED if all(quantity.passed for quantity in row.values()) else REFUTED,
     }
     if first.as_written is not None:
-        plain |= {
-            'as_written': _number(first.as_written),
-            'error_as_written': _finite(first.error_as_written),
-        }
+        plain |= {'as_written': _number(first.as_written),
+                  'error_as_written': _finite(first.error_as_written)}
     return plain | ({'detail': first.detail} if first.detail else {})
 
 
@@ -177,16 +145,12 @@ def _tell(table):
         measured = next(iter(row['measured'].values()))
         errors = ', '.join(f'{way} {_short(error)}' for way, error in row['error'].items())
         print(f'  {row["quantity"]}{unit}')
-        print(
-            f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  '
-            f'{row["kind"]} error: {errors}  '
-            f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}'
-        )
+        print(f'      predicted {_digits(row["predicted"])}  measured {_digits(measured)}  '
+              f'{row["kind"]} error: {errors}  '
+              f'tolerance {row["tolerance"]:.0e}  {row["verdict"]}')
         if 'as_written' in row:
-            print(
-                f'      uncorrected, the notes give {_digits(row["as_written"])}: '
-                f'off by {_short(row["error_as_written"])}'
-            )
+            print(f'      uncorrected, the notes give {_digits(row["as_written"])}: '
+                  f'off by {_short(row["error_as_written"])}')
         if 'detail' in row:
             print(f'      {row["detail"]}')
     print()

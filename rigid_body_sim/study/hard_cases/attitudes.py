@@ -32,17 +32,10 @@ def scene_of(record):
     body = {'mass': record.get('mass', 1.0), 'inertia': record['moments']}
     if top:
         body |= {'inertia_about': 'origin', 'center_of_mass': record['center']}
-    return parse_scene(
-        json.dumps(
-            {
-                'scene': 'hard_case',
-                'body': body,
-                'constraint': record['kind'],
-                'effects': [{'gravity': {'g': record['g']}}] if top else [],
-                'initial': {key: record[key] for key in ('orientation', 'angular_velocity')},
-            }
-        )
-    )
+    return parse_scene(json.dumps({
+        'scene': 'hard_case', 'body': body, 'constraint': record['kind'],
+        'effects': [{'gravity': {'g': record['g']}}] if top else [],
+        'initial': {key: record[key] for key in ('orientation', 'angular_velocity')}}))
 
 
 def attitude(record):
@@ -53,16 +46,12 @@ def attitude(record):
     found = [(beside.angle(q, state['orientation']), FLOOR + 0.5 * EPSILON * size * state['time'])
              for q, state in zip(states, record['states'], strict=True)]
     error, bound = max(
-        found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf
-    )
+        found, key=lambda pair: pair[0] / pair[1] if pair[0] == pair[0] else math.inf)
     last = record['states'][-1]['time']
     return Outcome(
-        error,
-        bound,
-        'rad',
+        error, bound, 'rad',
         f'two roundings of q{" and half an ulp of the angle turned over" if size else ""}, '
-        f'up to {last:g} s',
-    )
+        f'up to {last:g} s')
 
 
 def flips(record):
@@ -72,33 +61,20 @@ def flips(record):
     simulation.advance(math.ceil(min(last, 1e15)) + 1)
     times = [event.time for event in simulation.events if event.name == 'flip']
     with mp.workdps(40):
-        errors = [
-            float(abs(mpf(times[flip['count'] - 1]) / mpf(flip['time']) - 1))
-            for flip in record['flips']
-        ]
-    return Outcome(
-        max(errors),
-        4.0 * EPSILON,
-        'of the time',
-        f'rounding of the times of flips {[flip["count"] for flip in record["flips"]]}',
-    )
+        errors = [float(abs(mpf(times[flip['count'] - 1]) / mpf(flip['time']) - 1))
+                  for flip in record['flips']]
+    return Outcome(max(errors), 4.0 * EPSILON, 'of the time',
+                   f'rounding of the times of flips {[flip["count"] for flip in record["flips"]]}')
 
 
 def cases():
     """Yield the cases."""
     for record in RECORDS:
-        yield Case(
-            record['group'],
-            record['name'],
-            record['why'],
-            functools.partial(attitude, record),
-            beside.attitude(scene_of(record), record),
-        )
+        yield Case(record['group'], record['name'], record['why'],
+                   functools.partial(attitude, record), beside.attitude(scene_of(record), record))
         if record['group'] == 1 and record['flips']:
             yield Case(
-                1,
-                f'flips: {record["name"]}',
+                1, f'flips: {record["name"]}',
                 'energy says nothing of them; each is the time of a passage through the middle '
                 'axis',
-                functools.partial(flips, record),
-            )
+                functools.partial(flips, record))

@@ -19,16 +19,12 @@ from rigid_body_sim.study.hard_cases.case import Case, Outcome
 from rigid_body_sim.study.hard_cases.contact import A, G, Shot, question
 
 EPSILON = np.finfo(float).eps
-RELAXING = (
-    'scene: relaxing\nbody: {{mass: 1.0, inertia: {inertia}}}\nconstraint: free\n'
-    'effects: [internal_dissipation: {{coefficient: {c!r}}}]\n'
-    'initial: {{angular_velocity: {omega}}}\n'
-)
-BALL = (
-    'scene: ball\nbody: {{mass: 0.17, shape: {{solid_sphere: {{radius: 0.028575}}}}}}\n'
-    'constraint: table\n'
-    'effects: [{strike}sliding_friction: {{mu: {mu!r}, g: 9.81}}]\ninitial: {initial}\n'
-)
+RELAXING = ('scene: relaxing\nbody: {{mass: 1.0, inertia: {inertia}}}\nconstraint: free\n'
+            'effects: [internal_dissipation: {{coefficient: {c!r}}}]\n'
+            'initial: {{angular_velocity: {omega}}}\n')
+BALL = ('scene: ball\nbody: {{mass: 0.17, shape: {{solid_sphere: {{radius: 0.028575}}}}}}\n'
+        'constraint: table\n'
+        'effects: [{strike}sliding_friction: {{mu: {mu!r}, g: 9.81}}]\ninitial: {initial}\n')
 WOBBLING, ON_SMALLEST, OFF_SMALLEST = (2.0, 0.1, 0.2), (5.0, 0.0, 0.0), (5.0, 0.0, 1e-300)
 LEAVES = (math.log(1e300) - math.log(3.0)) / (175.0 / 12.0)
 ENDED = 100.0
@@ -44,12 +40,8 @@ OPPOSITE = tuple((0.1 * sign, 1e100 * sign, 5e-324 * sign) for sign in (1.0, -1.
 
 def _same_bits(*vectors):
     first = vectors[0].tobytes()
-    return Outcome(
-        float(sum(vector.tobytes() != first for vector in vectors[1:])),
-        0.0,
-        'runs that differ',
-        'the same bits',
-    )
+    return Outcome(float(sum(vector.tobytes() != first for vector in vectors[1:])), 0.0,
+                   'runs that differ', 'the same bits')
 
 
 def million_ticks():
@@ -60,8 +52,7 @@ def million_ticks():
     last = ticking.advance_through(1_000_000)[-1].vector
     jumping.advance(1_000_000)
     return _same_bits(
-        last, ticking.vector, jumping.vector, shuffled.states([3.0, 1e6, 2.0]).vector[1]
-    )
+        last, ticking.vector, jumping.vector, shuffled.states([3.0, 1e6, 2.0]).vector[1])
 
 
 def composed_jumps():
@@ -69,8 +60,7 @@ def composed_jumps():
     simulation, random = Simulation(load_scene('free_body')), np.random.default_rng(10)
     motion, start = simulation.choice.solver, simulation.vector.copy()
     times = np.append(
-        np.cumsum(random.choice([-1.0, 1.0], 1000) * 10.0 ** random.uniform(-9.0, 1.0, 1000)), 0.0
-    )
+        np.cumsum(random.choice([-1.0, 1.0], 1000) * 10.0 ** random.uniform(-9.0, 1.0, 1000)), 0.0)
     state, out = start.copy(), np.empty(14)
     wrench = simulation.wrench
     for time in times:
@@ -81,12 +71,8 @@ def composed_jumps():
     # reached 0.04 to 1.5 of it).
     left = float(np.linalg.norm(start[5:8])) * float(np.linalg.norm(times))
     bound = 3.0 * EPSILON * (4.0 * math.sqrt(len(times)) + left)
-    return Outcome(
-        angle_between(*state[1:5], *start[1:5]),
-        bound,
-        'rad',
-        'a walk: each anchor rounds omega, which turns for what is left',
-    )
+    return Outcome(angle_between(*state[1:5], *start[1:5]), bound, 'rad',
+                   'a walk: each anchor rounds omega, which turns for what is left')
 
 
 def random_bits():
@@ -105,25 +91,13 @@ def two_processes():
     """Run one scene with commands in this process twice, and in another one."""
     here = random_bits()
     code = (
-        'from rigid_body_sim.study.hard_cases.behaviour import random_bits; print(random_bits())'
-    )
-    root = os.path.dirname(
-        os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    )
-    there = subprocess.run(
-        [sys.executable, '-c', code],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-        cwd=root,
-    ).stdout.strip()
-    return Outcome(
-        float(here != random_bits()) + float(here != there),
-        0.0,
-        'runs that differ',
-        'the same bits',
-    )
+        'from rigid_body_sim.study.hard_cases.behaviour import random_bits; print(random_bits())')
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(
+        __file__)))))
+    there = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                           check=True, timeout=300, cwd=root).stdout.strip()
+    return Outcome(float(here != random_bits()) + float(here != there), 0.0, 'runs that differ',
+                   'the same bits')
 
 
 def ball(mu=0.2, initial='{}', strike=''):
@@ -135,25 +109,16 @@ def two_fifths():
     """Strike a ball at 2a/5: it rolls at once, without slip or event, at a constant speed."""
     simulation = ball(strike=f'strike: {{impulse: [0.255, 0, 0], height: {2.0 * A / 5.0!r}}}, ')
     speeds = simulation.states(np.linspace(0.0, 10.0, 1001)).velocity[:, 0]
-    return Outcome(
-        float(np.ptp(speeds)) + len(simulation.events),
-        0.0,
-        'm/s',
-        'rolling at once, no chatter: the speed has one value',
-    )
+    return Outcome(float(np.ptp(speeds)) + len(simulation.events), 0.0, 'm/s',
+                   'rolling at once, no chatter: the speed has one value')
 
 
 def frictionless():
     """Let a ball slip with mu = 0, for ever."""
     states = ball(mu=0.0, initial='{velocity: [1.0, 0, 0], angular_velocity: [0, -50, 3]}').states(
-        [0.1, 1e3, 1e6]
-    )
-    return Outcome(
-        float(np.abs(states.velocity[:, 0] - 1.0).max()),
-        0.0,
-        'm/s',
-        'nothing slows it: the speed to the last bit',
-    )
+        [0.1, 1e3, 1e6])
+    return Outcome(float(np.abs(states.velocity[:, 0] - 1.0).max()), 0.0, 'm/s',
+                   'nothing slows it: the speed to the last bit')
 
 
 def restruck_at_onset():
@@ -164,12 +129,8 @@ def restruck_at_onset():
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
     simulation.advance(1000)
     expected = np.array([SPEED, 0.5]) * 5.0 / 7.0
-    return Outcome(
-        float(np.abs(simulation.vector[11:13] - expected).max()),
-        8.0 * EPSILON,
-        'm/s',
-        'some roundings of speeds of 1 m/s',
-    )
+    return Outcome(float(np.abs(simulation.vector[11:13] - expected).max()), 8.0 * EPSILON, 'm/s',
+                   'some roundings of speeds of 1 m/s')
 
 
 def draw_shot():
@@ -177,11 +138,8 @@ def draw_shot():
     simulation = ball(initial='{velocity: [1.0, 0, 0], angular_velocity: [0, -140.0, 0]}')
     simulation.advance(3000)
     v, q = simulation.state.velocity[0], simulation.state
-    slip = (
-        v - A * q.angular_velocity[1]
-        if abs(q.orientation[0]) + abs(q.orientation[2]) == 0.0
-        else math.inf
-    )
+    slip = (v - A * q.angular_velocity[1] if abs(q.orientation[0]) + abs(q.orientation[2]) == 0.0
+            else math.inf)
     return Outcome(abs(v - DRAWN) + abs(slip), 8.0 * EPSILON, 'm/s', 'rounding of speed and slip')
 
 
@@ -203,21 +161,14 @@ def never_rises(c, omega, seconds, **more):
     excess, _ = relaxing(c, omega, seconds, **more)
     return Outcome(
         max(float(np.diff(excess).max()), float(abs(excess[-1])) if c * seconds > ENDED else 0.0),
-        20.0 * EPSILON,
-        'of the energy',
-        'rounding of energy and L^2; at the end nothing is left',
-    )
+        20.0 * EPSILON, 'of the energy', 'rounding of energy and L^2; at the end nothing is left')
 
 
 def stays_on_smallest():
     """Start exactly on the smallest axis, which is an exact solution, however unstable."""
     _, states = relaxing(1.0, ON_SMALLEST, 100.0)
-    return Outcome(
-        float(np.abs(states.angular_velocity - ON_SMALLEST).max()),
-        0.0,
-        'rad/s',
-        'nothing moves it',
-    )
+    return Outcome(float(np.abs(states.angular_velocity - ON_SMALLEST).max()), 0.0, 'rad/s',
+                   'nothing moves it')
 
 
 def leaves_smallest():
@@ -234,12 +185,8 @@ def leaves_smallest():
             )
         )
     ]
-    return Outcome(
-        abs(float(time) - LEAVES),
-        0.3,
-        's',
-        f'it leaves after {LEAVES:.1f} s; seen every 0.2 s, the spiral is not round',
-    )
+    return Outcome(abs(float(time) - LEAVES), 0.3, 's',
+                   f'it leaves after {LEAVES:.1f} s; seen every 0.2 s, the spiral is not round')
 
 
 def impulses_cancel():
@@ -258,12 +205,8 @@ def impulses_cancel():
             refused += 1
     for each in (one, quiet):
         each.advance(100)
-    return Outcome(
-        float(one.vector.tobytes() != quiet.vector.tobytes()) + 3 - refused,
-        0.0,
-        'runs that differ',
-        'the same bits',
-    )
+    return Outcome(float(one.vector.tobytes() != quiet.vector.tobytes()) + 3 - refused, 0.0,
+                   'runs that differ', 'the same bits')
 
 
 def energy_is_no_proof():
@@ -271,95 +214,53 @@ def energy_is_no_proof():
 
     The energy holds to 1e-14 and better while the attitude is wrong by more than 1e-6 rad.
     """
-    text = (
-        'scene: beside\nbody: {{mass: 1.0, inertia: [3.0, 4.0, 6.0]}}\n'
-        'constraint: {0}\neffects: {1}\n'
-        'initial: {{angular_velocity: [2.0, 0.7, 1.0000000000000002]}}\n'
-    )
+    text = ('scene: beside\nbody: {{mass: 1.0, inertia: [3.0, 4.0, 6.0]}}\n'
+            'constraint: {0}\neffects: {1}\n'
+            'initial: {{angular_velocity: [2.0, 0.7, 1.0000000000000002]}}\n')
     # held at its centre of mass the body turns like a free one, by the kernels of any top
     exact = Simulation(parse_scene(text.format('free', '[]')))
     stepped = Simulation(
-        parse_scene(text.format('pivot', '[gravity: {g: 9.81}]')), 'rk4', step=1e-3
-    )
+        parse_scene(text.format('pivot', '[gravity: {g: 9.81}]')), 'rk4', step=1e-3)
     for each in (exact, stepped):
         each.advance(60_000)
-    held, wrong = abs(stepped.energy / exact.energy - 1.0), angle_between(
-        *exact.vector[1:5], *stepped.vector[1:5]
-    )
-    return Outcome(
-        held / wrong,
-        1e-6,
-        'energy error/attitude error',
-        f'energy held to {held:.0e}, attitude wrong by {wrong:.0e} rad',
-    )
+    held, wrong = (abs(stepped.energy / exact.energy - 1.0),
+                   angle_between(*exact.vector[1:5], *stepped.vector[1:5]))
+    return Outcome(held / wrong, 1e-6, 'energy error/attitude error',
+                   f'energy held to {held:.0e}, attitude wrong by {wrong:.0e} rad')
 
 
 def cases():
     """Yield the cases."""
     yield Case(
-        4,
-        'a jump of 1e6 s, a million ticks, any order',
-        'sums of time steps round; states that depend on the way do not repeat',
-        million_ticks,
-    )
+        4, 'a jump of 1e6 s, a million ticks, any order',
+        'sums of time steps round; states that depend on the way do not repeat', million_ticks)
     yield Case(
-        1,
-        'energy is no proof',
+        1, 'energy is no proof',
         'a stepper holds energy to round-off beside the separatrix, and is wrong all the same',
-        energy_is_no_proof,
-    )
-    yield Case(
-        7,
-        'struck at 2a/5',
-        'no slip at all: rounding makes a slip that sign functions chatter on',
-        two_fifths,
-        question(Shot(0.2, (SPEED, 0.0), (0.0, SPEED / A, 0.0), 10.0, (SPEED, 0.0))),
-    )
+        energy_is_no_proof)
+    yield Case(7, 'struck at 2a/5',
+               'no slip at all: rounding makes a slip that sign functions chatter on', two_fifths,
+               question(Shot(0.2, (SPEED, 0.0), (0.0, SPEED / A, 0.0), 10.0, (SPEED, 0.0))))
     yield Case(7, 'no friction', 'the time to rolling is infinite', frictionless,
                question(Shot(0.0, (1.0, 0.0), (0.0, -50.0, 3.0), 10.0, (1.0, 0.0))))
-    yield Case(
-        7,
-        'restruck twice at the very tick of rolling onset',
-        'two events in one tick, at the end of a phase',
-        restruck_at_onset,
-        question(
-            Shot(
-                RESTRUCK,
-                (SPEED, 0.0),
-                (0.0, 0.0, 0.0),
-                1.25,
-                (SPEED * 5.0 / 7.0, 0.5 * 5.0 / 7.0),
-                (0.25, (0.0, 0.5)),
-            )
-        ),
-    )
+    yield Case(7, 'restruck twice at the very tick of rolling onset',
+               'two events in one tick, at the end of a phase', restruck_at_onset,
+               question(Shot(RESTRUCK, (SPEED, 0.0), (0.0, 0.0, 0.0), 1.25,
+                             (SPEED * 5.0 / 7.0, 0.5 * 5.0 / 7.0), (0.25, (0.0, 0.5)))))
     yield Case(7, 'draw shot', 'the speed passes through zero while friction does not', draw_shot,
                question(Shot(0.2, (1.0, 0.0), (0.0, -140.0, 0.0), 3.0, (DRAWN, 0.0))))
     for name, why, c, seconds in (
-        (
-            'through the separatrix',
-            'from the smallest to the largest axis, past the orbit of infinite period',
-            0.05,
-            200.0,
-        ),
-        *(
-            (
-                f'stiff: c dt = {c * 1e-3:g}',
-                'the wobble dies within a fraction of a tick; '
-                'explicit steps would follow it for ever',
-                c,
-                1.0,
-            )
-            for c in (1e3, 1e6, 1e9)
-        ),
-    ):
+            ('through the separatrix',
+             'from the smallest to the largest axis, past the orbit of infinite period', 0.05,
+             200.0),
+            *((f'stiff: c dt = {c * 1e-3:g}',
+               'the wobble dies within a fraction of a tick; '
+               'explicit steps would follow it for ever',
+               c, 1.0)
+              for c in (1e3, 1e6, 1e9))):
         yield Case(
-            8,
-            name,
-            why,
-            functools.partial(never_rises, c, WOBBLING, seconds),
-            questions.never_rises(relaxing_scene(c, WOBBLING), seconds, c * seconds > ENDED),
-        )
+            8, name, why, functools.partial(never_rises, c, WOBBLING, seconds),
+            questions.never_rises(relaxing_scene(c, WOBBLING), seconds, c * seconds > ENDED))
     for inertia, accuracy in (
         ((1.0, 1.0, 2.0), 1e-12),
         ((1.0, 2.0, 2.0), 1e-12),
@@ -371,33 +272,15 @@ def cases():
             f'asked for {accuracy:g} rad',
             'a rate that ends at once is chattered on; with loose steps a wobble stays above its '
             'end, and the steps at 1/rate for ever',
-            functools.partial(never_rises, 1e9, WOBBLING, 1.0, inertia=inertia, accuracy=accuracy),
-        )
+            functools.partial(never_rises, 1e9, WOBBLING, 1.0, inertia=inertia, accuracy=accuracy))
     yield Case(8, 'exactly on the smallest axis', 'unstable, yet it must stay', stays_on_smallest,
                questions.stays(relaxing_scene(1.0, ON_SMALLEST), 100.0))
-    yield Case(
-        8,
-        '1e-300 off the smallest axis',
-        'absolute tolerances keep it there for ever, or noise throws it off early',
-        leaves_smallest,
-        questions.leaves(relaxing_scene(1.0, OFF_SMALLEST), 80.0, LEAVES),
-    )
-    yield Case(
-        9,
-        'opposite impulses, denormal and 1e100; 1e300 refused',
-        'one overflow and every number is NaN',
-        impulses_cancel,
-        questions.cancel(OPPOSITE),
-    )
-    yield Case(
-        10,
-        'a thousand jumps there and back',
-        'every jump begins at a rounded state',
-        composed_jumps,
-    )
-    yield Case(
-        10,
-        'the same bits in two processes',
-        'caches, hashes, threads and fast mathematics differ',
-        two_processes,
-    )
+    yield Case(8, '1e-300 off the smallest axis',
+               'absolute tolerances keep it there for ever, or noise throws it off early',
+               leaves_smallest, questions.leaves(relaxing_scene(1.0, OFF_SMALLEST), 80.0, LEAVES))
+    yield Case(9, 'opposite impulses, denormal and 1e100; 1e300 refused',
+               'one overflow and every number is NaN', impulses_cancel, questions.cancel(OPPOSITE))
+    yield Case(10, 'a thousand jumps there and back', 'every jump begins at a rounded state',
+               composed_jumps)
+    yield Case(10, 'the same bits in two processes',
+               'caches, hashes, threads and fast mathematics differ', two_processes)

@@ -82,11 +82,8 @@ def attitude(scene, record):
     It asks for the last of the record's times that peers can reach.
     """
     size = math.hypot(*record['angular_velocity'])
-    near = [
-        state
-        for state in record['states']
-        if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS
-    ]
+    near = [state for state in record['states']
+            if state['time'] <= LONGEST and size * state['time'] <= MOST_RADIANS]
     state = (near or record['states'][:1])[-1]
 
     def measure(run):
@@ -102,14 +99,8 @@ def smooth(scene, time, unit, measure):
     """
     def ask(module):
         from rigid_body_sim.study.precision.suite import Problem
-        runner = next(
-            iter(
-                module.runners(
-                    Problem(scene.name, scene.about, time, scene),
-                    _Rates([scene.initial.angular_velocity]),
-                )
-            )
-        )
+        runner = next(iter(module.runners(Problem(scene.name, scene.about, time, scene),
+                                          _Rates([scene.initial.angular_velocity]))))
         step = time / max(1, round(time / STEP))
         run = runner.make(step if runner.control == 'step' else TOLERANCE)
         run.start()
@@ -130,12 +121,8 @@ def angle(found, expected):
         p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
         size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
         sign = 1 if mp.fdot(p, q) > 0 else -1
-        across = mp.sqrt(
-            sum(
-                (sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2
-                for a, b in zip(p, q)
-            )
-        )
+        across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2
+                             for a, b in zip(p, q)))
         return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
 
 

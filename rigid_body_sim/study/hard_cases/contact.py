@@ -103,14 +103,8 @@ class _Scipy(_Equations):
     def to(self, time):
         from scipy.integrate import solve_ivp
         if time > self.time:
-            found = solve_ivp(
-                lambda _, y: rates(y, self.drive),
-                (self.time, time),
-                self.y,
-                'DOP853',
-                rtol=TOLERANCE,
-                atol=TOLERANCE,
-            )
+            found = solve_ivp(lambda _, y: rates(y, self.drive), (self.time, time), self.y,
+                              'DOP853', rtol=TOLERANCE, atol=TOLERANCE)
             if not found.success:
                 raise NotConverged(found.message)
             self.time, self.y = time, found.y[:, -1].copy()
@@ -121,12 +115,10 @@ class _Heyoka(_Equations):
         import heyoka
         super().__init__(shot)
         names = heyoka.make_vars('vx', 'vy', 'awx', 'awy')
-        right = (
-            rates(names, self.drive, heyoka.sqrt) if self.drive else [0.0 * name for name in names]
-        )
+        right = (rates(names, self.drive, heyoka.sqrt) if self.drive
+                 else [0.0 * name for name in names])
         self._integrator = heyoka.taylor_adaptive(
-            list(zip(names, right, strict=True)), self.y, tol=TOLERANCE
-        )
+            list(zip(names, right, strict=True)), self.y, tol=TOLERANCE)
 
     def to(self, time):
         if time > self.time:
@@ -147,9 +139,8 @@ class _Mujoco:
     def __init__(self, shot):
         import mujoco
         mujoco.set_mju_user_warning(lambda text: None)
-        model = mujoco.MjModel.from_xml_string(
-            self.SCENE.format(step=STEP, g=G, mu=shot.mu, a=A, mass=MASS)
-        )
+        model = mujoco.MjModel.from_xml_string(self.SCENE.format(
+            step=STEP, g=G, mu=shot.mu, a=A, mass=MASS))
         self._data, self._done = mujoco.MjData(model), 0
         # the body's axes coincide with the world's at first
         self._data.qvel[:] = *shot.v, 0.0, *shot.omega
@@ -178,23 +169,13 @@ class _Bullet:
         engine.setGravity(0.0, 0.0, -G)
         plane = engine.createMultiBody(0.0, engine.createCollisionShape(engine.GEOM_PLANE))
         self._ball = engine.createMultiBody(
-            MASS,
-            engine.createCollisionShape(engine.GEOM_SPHERE, radius=A),
-            basePosition=[0.0, 0.0, A],
-        )
+            MASS, engine.createCollisionShape(engine.GEOM_SPHERE, radius=A),
+            basePosition=[0.0, 0.0, A])
         # PyBullet multiplies the two coefficients
         for body, mu in ((plane, 1.0), (self._ball, shot.mu)):
             engine.changeDynamics(
-                body,
-                -1,
-                lateralFriction=mu,
-                rollingFriction=0.0,
-                spinningFriction=0.0,
-                restitution=0.0,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                maxJointVelocity=1e9,
-            )
+                body, -1, lateralFriction=mu, rollingFriction=0.0, spinningFriction=0.0,
+                restitution=0.0, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=1e9)
         engine.resetBaseVelocity(self._ball, [*shot.v, 0.0], list(shot.omega))
 
     def to(self, time):
@@ -224,20 +205,16 @@ class _Drake:
         self._plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=STEP)
         friction = CoulombFriction(shot.mu, shot.mu)
         self._plant.RegisterCollisionGeometry(
-            self._plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction
-        )
+            self._plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction)
         self._ball = self._plant.AddRigidBody(
-            'ball', SpatialInertia(MASS, np.zeros(3), UnitInertia.SolidSphere(A))
-        )
+            'ball', SpatialInertia(MASS, np.zeros(3), UnitInertia.SolidSphere(A)))
         self._plant.RegisterCollisionGeometry(
-            self._ball, RigidTransform(), Sphere(A), 'ball', friction
-        )
+            self._ball, RigidTransform(), Sphere(A), 'ball', friction)
         self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -G])
         self._plant.Finalize()
         self._simulator = Simulator(builder.Build())
         self._context = self._plant.GetMyMutableContextFromRoot(
-            self._simulator.get_mutable_context()
-        )
+            self._simulator.get_mutable_context())
         self._plant.SetPositions(self._context, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, A])
         self._plant.SetVelocities(self._context, [*shot.omega, *shot.v, 0.0])
 

@@ -19,8 +19,7 @@ stand beside ours."""
 def main(arguments=None):
     """Run the command; return the exit status: 1 if one of ours fails."""
     parser = command_line.parser(
-        'hard_cases', ABOUT, 'python -m rigid_body_sim hard_cases --peers'
-    )
+        'hard_cases', ABOUT, 'python -m rigid_body_sim hard_cases --peers')
     parser.add_argument('--peers', action='store_true', help='run the peers too, some minutes')
     parser.add_argument('--json', action='store_true', help='machine-readable')
     return command_line.run(_run, parser.parse_args(arguments))
@@ -32,11 +31,9 @@ def _run(options):
         command_line.print_json({'cases': rows, 'peers_not_installed': missing})
     else:
         for row in rows:
-            print(
-                f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  '
-                f'{row["case"]}: {row["error"]:.1e} {row["unit"]}'
-                f' (bound {row["bound"]:.1e}: {row["reason"]})'
-            )
+            print(f'{"good" if row["good"] else "FAILS":5}  {row["group"]:11}  '
+                  f'{row["case"]}: {row["error"]:.1e} {row["unit"]}'
+                  f' (bound {row["bound"]:.1e}: {row["reason"]})')
             for name, value in row['peers'].items():
                 said = value if isinstance(value, str) else f'{value:.1e} {row["peer_unit"]}'
                 print(f'           {name} after {row["peer_time"]:g} s: {said or "not asked"}')

@@ -47,12 +47,8 @@ def _excess(omega):
 def stays(scene, seconds):
     """Ask how far omega has moved from the value that it must keep (rad/s)."""
     def measure(run):
-        return float(
-            max(
-                np.abs(omega - scene.initial.angular_velocity).max()
-                for _, omega in _passed(run, seconds)
-            )
-        )
+        return float(max(np.abs(omega - scene.initial.angular_velocity).max()
+                         for _, omega in _passed(run, seconds)))
     return beside.smooth(scene, seconds, 'rad/s', measure)
 
 
@@ -76,8 +72,7 @@ def cancel(impulses):
     def ask(module):
         def omega_after(omega):
             scene = load_scene(
-                'tennis_racket', [f'initial.angular_velocity={[float(x) for x in omega]}']
-            )
+                'tennis_racket', [f'initial.angular_velocity={[float(x) for x in omega]}'])
             found = []
 
             def measure(run):

@@ -3,9 +3,8 @@
 
 from rigid_body_sim.study.hard_cases import attitudes, behaviour, trends
 
-CASES = tuple(
-    sorted([*attitudes.cases(), *trends.cases(), *behaviour.cases()], key=lambda case: case.group)
-)
+CASES = tuple(sorted(
+    [*attitudes.cases(), *trends.cases(), *behaviour.cases()], key=lambda case: case.group))
 
 
 def of_group(group):

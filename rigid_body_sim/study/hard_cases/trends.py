@@ -32,11 +32,8 @@ def slope_in_sigmas(means, scatter):
     """
     place = np.linspace(-1.0, 1.0, len(means))
     slope = place @ means / (place @ place)
-    return (
-        abs(slope) / (scatter / math.sqrt(place @ place))
-        if scatter > 0.0
-        else (0.0 if slope == 0.0 else math.inf)
-    )
+    return (abs(slope) / (scatter / math.sqrt(place @ place)) if scatter > 0.0
+            else (0.0 if slope == 0.0 else math.inf))
 
 
 def residuals(simulation, states):
@@ -53,10 +50,8 @@ def residuals(simulation, states):
     g = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), (z * z + w * w) - (x * x + y * y)
     P_alpha, P_gamma = I1 * (o1 * g[0] + o2 * g[1]) + I3 * o3 * g[2], I3 * o3
     # relative to the mean: the first value is rounded too
-    return found | {
-        'p_alpha': P_alpha / P_alpha.mean() - 1.0,
-        'p_gamma': P_gamma / P_gamma[0] - 1.0,
-    }
+    return (found
+            | {'p_alpha': P_alpha / P_alpha.mean() - 1.0, 'p_gamma': P_gamma / P_gamma[0] - 1.0})
 
 
 def anchored(name):
@@ -86,13 +81,9 @@ def anchored(name):
         # independent roundings
         scatter = max(values.std(), math.sqrt(max(within, 0.0) / in_block))
         worst = max(worst, slope_in_sigmas(values, scatter))
-    return Outcome(
-        worst,
-        SIGMAS,
-        'sigma',
-        f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, '
-        'stationary noise',
-    )
+    return Outcome(worst, SIGMAS, 'sigma',
+                   f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, '
+                   'stationary noise')
 
 
 @compiled_allocating
@@ -106,18 +97,10 @@ def walk(parameters, start, ticks, every, moments, out):
             row = (k + 1) // every - 1
             w1, w2, w3 = state[5], state[6], state[7]
             out[row, 0] = moments[0] * w1 * w1 + moments[1] * w2 * w2 + moments[2] * w3 * w3
-            out[row, 1] = (
-                moments[0] * moments[0] * w1 * w1
-                + moments[1] * moments[1] * w2 * w2
-                + moments[2] * moments[2] * w3 * w3
-            )
-            out[row, 2] = (
-                state[1] * state[1]
-                + state[2] * state[2]
-                + state[3] * state[3]
-                + state[4] * state[4]
-                - 1.0
-            )
+            out[row, 1] = (moments[0] * moments[0] * w1 * w1 + moments[1] * moments[1] * w2 * w2
+                           + moments[2] * moments[2] * w3 * w3)
+            out[row, 2] = (state[1] * state[1] + state[2] * state[2] + state[3] * state[3]
+                           + state[4] * state[4] - 1.0)
 
 
 def anchored_anew():
@@ -125,25 +108,16 @@ def anchored_anew():
     scene = load_scene('free_body')
     ticks = 100_000_000 if LONG else 64_000
     out = np.empty((BLOCKS, 3))
-    walk(
-        free_body.parameters(scene),
-        scene.initial.vector,
-        ticks,
-        ticks // BLOCKS,
-        np.array(scene.body.about_center.moments),
-        out,
-    )
+    walk(free_body.parameters(scene), scene.initial.vector, ticks, ticks // BLOCKS,
+         np.array(scene.body.about_center.moments), out)
     worst = 0.0
     for column in (0, 1):
         steps = np.diff(out[:, column] / out[0, column])
         worst = max(worst, abs(steps.mean()) / (steps.std() / math.sqrt(len(steps))))
     assert np.abs(out[:, 2]).max() < 1e-14
     return Outcome(
-        worst,
-        SIGMAS,
-        'sigma',
-        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a walk at random',
-    )
+        worst, SIGMAS, 'sigma',
+        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a walk at random')
 
 
 def cases():
@@ -152,9 +126,5 @@ def cases():
            'while noise hides it from the eye')
     for name in ('free_body', 'heavy_top'):
         yield Case(5, f'{name.replace("_", " ")}, a day', why, lambda name=name: anchored(name))
-    yield Case(
-        5,
-        'free body, anchored anew at each tick',
-        f'{why}; every tick rounds the state',
-        anchored_anew,
-    )
+    yield Case(5, 'free body, anchored anew at each tick', f'{why}; every tick rounds the state',
+               anchored_anew)

@@ -47,17 +47,15 @@ class Ball:
             behind = mp.sqrt(given.radius ** 2 - height ** 2) / size
             lever = (-behind * impulse[0], -behind * impulse[1], height)
         self._v = tuple(v + j / given.mass for v, j in zip(self._v, impulse))
-        self._omega = tuple(
-            w + x / given.moments[0] for w, x in zip(self._omega, cross(lever, impulse))
-        )
+        self._omega = tuple(w + x / given.moments[0]
+                            for w, x in zip(self._omega, cross(lever, impulse)))
 
     def _until(self, end):
         given, a = self._given, self._given.radius
         u = self._v[0] - a * self._omega[1], self._v[1] + a * self._omega[0]
         slip = mp.sqrt(u[0] ** 2 + u[1] ** 2)
-        speed = mp.sqrt(self._v[0] ** 2 + self._v[1] ** 2) + a * mp.sqrt(
-            self._omega[0] ** 2 + self._omega[1] ** 2
-        )
+        speed = (mp.sqrt(self._v[0] ** 2 + self._v[1] ** 2)
+                 + a * mp.sqrt(self._omega[0] ** 2 + self._omega[1] ** 2))
         push = given.mu * given.g
         # inputs are doubles, so a slip below their rounding counts as zero
         if slip > 4e-16 * speed and push:
@@ -76,9 +74,8 @@ class Ball:
 
     def _turn(self, duration, change):
         """Turn the attitude for a duration while omega changes at a constant rate."""
-        largest = mp.sqrt(
-            mp.fsum((abs(w) + abs(c) * duration) ** 2 for w, c in zip(self._omega, change))
-        )
+        largest = mp.sqrt(mp.fsum((abs(w) + abs(c) * duration) ** 2
+                                  for w, c in zip(self._omega, change)))
         count = int(largest * duration) + 1
         h = duration / count
         for _ in range(count):
@@ -87,10 +84,8 @@ class Ball:
                 first = product((*self._omega, mpf(0)), terms[n])
                 second = product((*change, mpf(0)), terms[n - 1]) if n else (mpf(0),) * 4
                 terms.append(tuple((x + y) / (2 * (n + 1)) for x, y in zip(first, second)))
-                if (
-                    n > 8
-                    and max(abs(x) for x in (*terms[-1], *terms[-2])) * h**n < mpf(2) ** -self.bits
-                ):
+                if (n > 8 and max(abs(x) for x in (*terms[-1], *terms[-2])) * h**n
+                        < mpf(2) ** -self.bits):
                     break
             power, total = mpf(1), [mpf(0)] * 4
             for term in terms:

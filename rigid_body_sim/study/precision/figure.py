@@ -30,12 +30,8 @@ def draw(results):
     FigureCanvasAgg(figure)
     looks = {}    # method -> number; a method looks the same in all panels
     for peers in (False, True):
-        names = dict.fromkeys(
-            family(line['name'])
-            for result in results
-            for line in result['lines']
-            if line['is_peer'] == peers
-        )
+        names = dict.fromkeys(family(line['name']) for result in results
+                              for line in result['lines'] if line['is_peer'] == peers)
         looks |= {name: number for number, name in enumerate(names)}
     for result, axes in zip(results, figure.subplots(rows, columns, squeeze=False).flat):
         panel(axes, result, looks)
@@ -48,15 +44,8 @@ def panel(axes, result, looks):
     """Draw one problem; `looks` gives the number that selects a method's colour and marker."""
     floor = result['floor']
     axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
-    axes.text(
-        0.01,
-        floor,
-        'half an ulp on the inputs',
-        ha='left',
-        va='top',
-        fontsize=7.5,
-        transform=axes.get_yaxis_transform(),
-    )
+    axes.text(0.01, floor, 'half an ulp on the inputs', ha='left', va='top', fontsize=7.5,
+              transform=axes.get_yaxis_transform())
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
     for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
@@ -71,39 +60,22 @@ def panel(axes, result, looks):
             single = line['control'] == 'none'
             size = 15 if line['name'] == 'exact' else 9 if single else 3 if fixed else 5
             axes.errorbar(
-                times,
-                errors,
-                xerr=spread,
-                linestyle=':' if fixed else dashes,
-                color=colour,
-                label=line['name'],
-                marker='*' if single else MARKERS[k % len(MARKERS)],
-                markersize=size,
-                markerfacecolor=colour if filled else 'white',
-                linewidth=2.4 if line['name'] in leading else 0.9,
-                elinewidth=0.6,
-                zorder=4 if single else 3,
-            )
+                times, errors, xerr=spread, linestyle=':' if fixed else dashes, color=colour,
+                label=line['name'], marker='*' if single else MARKERS[k % len(MARKERS)],
+                markersize=size, markerfacecolor=colour if filled else 'white',
+                linewidth=2.4 if line['name'] in leading else 0.9, elinewidth=0.6,
+                zorder=4 if single else 3)
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.set_ylim(LEAST / 4.0, MOST)
-    axes.set_title(
-        textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76),
-        fontsize=10,
-        loc='left',
-    )
+    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76),
+                   fontsize=10, loc='left')
     axes.set_xlabel('CPU seconds per simulated second')
     axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
     axes.grid(color='#dddddd', linewidth=0.5)
     axes.spines[['top', 'right']].set_visible(False)
-    axes.legend(
-        loc='center left',
-        bbox_to_anchor=(1.0, 0.5),
-        frameon=False,
-        fontsize=7.5,
-        handlelength=3.0,
-        labelspacing=0.3,
-    )
+    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5,
+                handlelength=3.0, labelspacing=0.3)
 
 
 def family(name):
@@ -115,10 +87,7 @@ def leaders(lines):
     """Return the names of the lines to draw thick: the cheapest at some level of the table."""
     names = set()
     for level in table.LEVELS:
-        costs = [
-            (cost, line['name'])
-            for line in lines
-            if (cost := table.cost_at(line, level)) is not None
-        ]
+        costs = [(cost, line['name'])
+                 for line in lines if (cost := table.cost_at(line, level)) is not None]
         names |= {min(costs)[1]} if costs else set()
     return names

@@ -101,52 +101,28 @@ def of(scene, move):
     through = tuple(map(move, constraint.point(body))) if held else ZERO
     arm = tuple(c - p for c, p in zip(center, through)) if held else ZERO
     gravity, drag, inner, friction = map(
-        scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction')
-    )
-    couples = tuple(
-        (effect.times, tuple(tuple(map(move, value)) for value in effect.values), effect.frame)
-        for effect in scene.effects
-        if effect.name == 'torque'
-    )
+        scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction'))
+    couples = tuple((effect.times, tuple(tuple(map(move, value)) for value in effect.values),
+                     effect.frame)
+                    for effect in scene.effects if effect.name == 'torque')
     strikes = []
-    for strike in sorted(
-        (effect for effect in scene.effects if effect.name == 'strike'),
-        key=lambda effect: effect.time,
-    ):
-        lever = (
-            ZERO
-            if strike.point is None
-            else tuple(p - c for p, c in zip(map(move, strike.point), center))
-        )
-        strikes.append(
-            (
-                strike.time,
-                tuple(map(move, strike.impulse)),
-                lever,
-                move(strike.height),
-                strike.frame,
-            )
-        )
+    for strike in sorted((effect for effect in scene.effects if effect.name == 'strike'),
+                         key=lambda effect: effect.time):
+        lever = (ZERO if strike.point is None
+                 else tuple(p - c for p, c in zip(map(move, strike.point), center)))
+        strikes.append((strike.time, tuple(map(move, strike.impulse)), lever, move(strike.height),
+                        strike.frame))
     initial = scene.initial
     return Inputs(
-        kind,
-        move(body.mass),
-        tuple(map(move, inertia.moments)),
-        unit(tuple(map(move, inertia.axes))),
-        arm,
+        kind, move(body.mass), tuple(map(move, inertia.moments)),
+        unit(tuple(map(move, inertia.axes))), arm,
         unit(tuple(map(move, constraint.axis))) if kind == 'hinge' else None,
         move(gravity.g if gravity else friction.g if friction else 0.0),
-        move(drag.linear if drag else 0.0),
-        move(drag.angular if drag else 0.0),
-        move(inner.coefficient if inner else 0.0),
-        move(friction.mu if friction else 0.0),
-        move(body.radius if kind == 'table' else 0.0),
-        couples,
-        tuple(strikes),
-        unit(tuple(map(move, initial.orientation))),
-        tuple(map(move, initial.angular_velocity)),
-        tuple(map(move, initial.velocity)),
-    )
+        move(drag.linear if drag else 0.0), move(drag.angular if drag else 0.0),
+        move(inner.coefficient if inner else 0.0), move(friction.mu if friction else 0.0),
+        move(body.radius if kind == 'table' else 0.0), couples, tuple(strikes),
+        unit(tuple(map(move, initial.orientation))), tuple(map(move, initial.angular_velocity)),
+        tuple(map(move, initial.velocity)))
 
 
 def cross(a, b):

@@ -38,31 +38,19 @@ def main(only=()):
         found = measure.measure(problem, truth, controlled, LIMIT, REPEATS)
         for line in found['lines']:
             rows = gathered.setdefault(measured.kind(problem.scene), {}).setdefault(
-                line['name'], {}
-            )
+                line['name'], {})
             for point in line['points']:
-                rows.setdefault(point['setting'], []).append(
-                    (point['largest_error'], point['cpu']['median'] / measured.pace(problem.scene))
-                )
-    kinds = {
-        kind: {
-            method: [
-                entry
-                for tolerance, found in sorted(rows.items(), reverse=True)
-                if (entry := _entry(tolerance, found))
-            ]
-            for method, rows in methods.items()
-        }
-        for kind, methods in gathered.items()
-    }
+                rows.setdefault(point['setting'], []).append((
+                    point['largest_error'], point['cpu']['median'] / measured.pace(problem.scene)))
+    kinds = {kind: {method: [entry for tolerance, found in sorted(rows.items(), reverse=True)
+                             if (entry := _entry(tolerance, found))]
+                    for method, rows in methods.items()}
+             for kind, methods in gathered.items()}
     if only:
         kinds = measured.table()['kinds'] | kinds
-    measured.FILE.write_text(
-        json.dumps(
-            {'made': time.strftime('%Y-%m-%d'), 'machine': machine(), 'kinds': kinds}, indent=1
-        )
-        + '\n'
-    )
+    measured.FILE.write_text(json.dumps(
+        {'made': time.strftime('%Y-%m-%d'), 'machine': machine(), 'kinds': kinds},
+        indent=1) + '\n')
 
 
 def _entry(tolerance, found):

@@ -49,12 +49,8 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
     """
     balance = Balance(problem.scene)
     lines, refused, timed = [], {}, []
-    for runner in tqdm(
-        runners,
-        desc=f'{problem.name}: errors',
-        disable=None if watch is None else not watch,
-        leave=False,
-    ):
+    for runner in tqdm(runners, desc=f'{problem.name}: errors',
+                       disable=None if watch is None else not watch, leave=False):
         points, notes = [], []
         try:
             for point, run in _sweep(problem, reference, runner, limit, balance, notes):
@@ -63,26 +59,15 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
         except (RefusedError, BadInput) as error:
             notes.append(str(error))
         if points:
-            lines.append(
-                {
-                    'name': runner.name,
-                    'control': runner.control,
-                    'is_peer': runner.is_peer,
-                    'points': points,
-                    'notes': notes,
-                }
-            )
+            lines.append({'name': runner.name, 'control': runner.control,
+                          'is_peer': runner.is_peer, 'points': points, 'notes': notes})
         else:
             refused[runner.name] = notes[0]
     gc.collect()
     gc.disable()
     try:
-        for _ in tqdm(
-            range(repeats),
-            desc=f'{problem.name}: times',
-            disable=None if watch is None else not watch,
-            leave=False,
-        ):
+        for _ in tqdm(range(repeats), desc=f'{problem.name}: times',
+                      disable=None if watch is None else not watch, leave=False):
             for one in timed:
                 one.sample()
     finally:
@@ -195,27 +180,21 @@ class Balance:
     def __init__(self, scene):
         body, kind = scene.body, scene.constraint.kind
         inertia, gravity = (
-            body.about_origin if kind == 'pivot' else body.about_center
-        ), scene.effect('gravity')
+            (body.about_origin if kind == 'pivot' else body.about_center), scene.effect('gravity'))
         self._moments, self._axes = inertia.moments, inertia.axes
         # the centre of mass of a hinged body moves too
-        self._arm = (
-            np.subtract(body.center_of_mass, scene.constraint.through)
-            if kind == 'hinge'
-            else np.array(body.center_of_mass)
-        )
+        self._arm = (np.subtract(body.center_of_mass, scene.constraint.through) if kind == 'hinge'
+                     else np.array(body.center_of_mass))
         self._mass = body.mass if kind == 'hinge' else 0.0
         self._weight = body.mass * gravity.g if gravity and kind in ('pivot', 'hinge') else 0.0
 
     def of(self, q, omega):
         """Return energy (J) and angular momentum about the point of reference (world axes)."""
-        m = np.array(
-            rotate(*self._axes, *np.multiply(self._moments, rotate_back(*self._axes, *omega)))
-        )
+        m = np.array(rotate(
+            *self._axes, *np.multiply(self._moments, rotate_back(*self._axes, *omega))))
         m += self._mass * np.cross(self._arm, np.cross(omega, self._arm))
-        return 0.5 * np.dot(m, omega) + self._weight * rotate(*q, *self._arm)[2], np.array(
-            rotate(*q, *m)
-        )
+        return (0.5 * np.dot(m, omega) + self._weight * rotate(*q, *self._arm)[2],
+                np.array(rotate(*q, *m)))
 
     def residuals(self, final, reference):
         """Return the residuals of a final state.
@@ -225,12 +204,8 @@ class Balance:
         energy, momentum = self.of(final[:4] / np.linalg.norm(final[:4]), final[4:])
         omega = np.array([float(x) for x in reference.omega[-1]])
         true_energy, true_momentum = self.of(
-            np.array([float(x) for x in reference.orientation[-1]]), omega
-        )
+            np.array([float(x) for x in reference.orientation[-1]]), omega)
         size = max(abs(true_energy), self._weight * float(np.linalg.norm(self._arm)))
-        return {
-            'energy_residual': abs(energy - true_energy) / size if size else 0.0,
-            'momentum_residual': float(
-                np.linalg.norm(momentum - true_momentum) / (np.linalg.norm(true_momentum) or 1.0)
-            ),
-        }
+        return {'energy_residual': abs(energy - true_energy) / size if size else 0.0,
+                'momentum_residual': float(np.linalg.norm(momentum - true_momentum)
+                                           / (np.linalg.norm(true_momentum) or 1.0))}

@@ -91,10 +91,8 @@ def compute(scene, duration, draws=8, progress=lambda part: None):
 
     best, check = run(0, BITS, inputs.exactly), run(1, CHECK_BITS, inputs.exactly)
     with mp.workprec(BITS):
-        apart = max(
-            max(angle, float(w / max(1, mp.norm(omega))))
-            for (angle, w), omega in zip(zip(*_distances(*check, *best)), best[1])
-        )
+        apart = max(max(angle, float(w / max(1, mp.norm(omega))))
+                    for (angle, w), omega in zip(zip(*_distances(*check, *best)), best[1]))
         moved = [_distances(*run(2 + k, FLOOR_BITS, inputs.Moved(k)), *best) for k in range(draws)]
         floor, floor_omega = (np.max([one[k] for one in moved], axis=0) for k in (0, 1))
         digits = float(-mp.log10(max(apart, mpf(10) ** -60)))
@@ -117,22 +115,13 @@ def save(name, problem, reference):
     """Write a reference to its file, with its scene and duration."""
     def text(rows):
         return [[mp.nstr(x, DIGITS) for x in row] for row in rows]
-    FOLDER.joinpath(f'{name}.json').write_text(
-        json.dumps(
-            {
-                'scene': problem.scene.text,
-                'duration': problem.duration,
-                'digits': round(reference.digits, 1),
-                'times': reference.times.tolist(),
-                'orientation': text(reference.orientation),
-                'omega': text(reference.omega),
-                'floor': [float(f'{x:.3e}') for x in reference.floor],
-                'floor_omega': [float(f'{x:.3e}') for x in reference.floor_omega],
-            },
-            indent=1,
-        )
-        + '\n'
-    )
+    FOLDER.joinpath(f'{name}.json').write_text(json.dumps(
+        {'scene': problem.scene.text, 'duration': problem.duration,
+         'digits': round(reference.digits, 1), 'times': reference.times.tolist(),
+         'orientation': text(reference.orientation), 'omega': text(reference.omega),
+         'floor': [float(f'{x:.3e}') for x in reference.floor],
+         'floor_omega': [float(f'{x:.3e}') for x in reference.floor_omega]},
+        indent=1) + '\n')
 
 
 def load(problem):
@@ -148,10 +137,5 @@ def load(problem):
         return None
     with mp.workdps(DIGITS + 6):
         rows = [[tuple(map(mpf, row)) for row in found[name]] for name in ('orientation', 'omega')]
-    return Reference(
-        np.array(found['times']),
-        *rows,
-        np.array(found['floor']),
-        np.array(found['floor_omega']),
-        found['digits'],
-    )
+    return Reference(np.array(found['times']), *rows, np.array(found['floor']),
+                     np.array(found['floor_omega']), found['digits'])

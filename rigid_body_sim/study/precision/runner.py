@@ -69,13 +69,10 @@ def steps_for(problem, reference):
     They are shares of a radian at the fastest rate of the motion.
     """
     fastest = max(float(sum(x * x for x in omega)) ** 0.5 for omega in reference.omega)
-    fastest = (
-        max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity)))
-        + swing_rate(problem.scene) / 2.0
-    )
-    counts = {
-        GRID * max(1, round(problem.duration * fastest * k / GRID)) for k in STEPS_OF_A_RADIAN
-    }
+    fastest = (max(fastest, float(np.linalg.norm(problem.scene.initial.angular_velocity)))
+               + swing_rate(problem.scene) / 2.0)
+    counts = {GRID * max(1, round(problem.duration * fastest * k / GRID))
+              for k in STEPS_OF_A_RADIAN}
     return tuple(problem.duration / count for count in sorted(counts))
 
 
@@ -86,23 +83,14 @@ def ours(problem, reference):
         if name == 'exact':
             yield Runner(name, 'none', (None,), lambda _: _our_run(problem, 'exact', {}))
             yield Runner(
-                ONE_MORE, 'none', (None,), lambda _: _one_more(_our_run(problem, 'exact', {}))
-            )
+                ONE_MORE, 'none', (None,), lambda _: _one_more(_our_run(problem, 'exact', {})))
             continue
         for control in METHODS[name].TAKES:
-            label = (
-                name
-                if len(METHODS[name].TAKES) == 1 or control == 'accuracy'
-                else f'{name}, fixed step'
-            )
-            yield Runner(
-                label,
-                control,
-                TOLERANCES if control == 'accuracy' else steps,
-                lambda setting, name=name, control=control: _our_run(
-                    problem, name, {control: setting}
-                ),
-            )
+            label = (name if len(METHODS[name].TAKES) == 1 or control == 'accuracy'
+                     else f'{name}, fixed step')
+            yield Runner(label, control, TOLERANCES if control == 'accuracy' else steps,
+                         lambda setting, name=name, control=control: _our_run(
+                             problem, name, {control: setting}))
 
 
 def begun(scene):

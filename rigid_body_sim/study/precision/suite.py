@@ -24,8 +24,7 @@ def _written(body, constraint, effects, initial):
 
 
 HEAVY = (
-    '{mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}'
-)
+    '{mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}')
 FREE = '{mass: 1.0, inertia: [1.0, 2.0, 3.0]}'
 WEIGHT = '[gravity: {g: 9.81}]'
 
@@ -189,8 +188,7 @@ def problem(name):
     """Return a problem of the suite."""
     about, duration, text = (_PROBLEMS | _TRAINING)[name]
     return Problem(
-        name, about, duration, parse_scene(f'scene: {name}\n{text}', where=f'suite: {name}')
-    )
+        name, about, duration, parse_scene(f'scene: {name}\n{text}', where=f'suite: {name}'))
 
 
 def of_scene(scene, overrides, duration):

@@ -53,17 +53,14 @@ class Turning:
         if self._hinged:
             n = turned_back(inputs.axes, inputs.axis)
             across = cross(inputs.axis, self._arm)
-            self._moment = dot(n, [i * x for i, x in zip(inputs.moments, n)]) + inputs.mass * dot(
-                across, across
-            )
+            self._moment = (dot(n, [i * x for i, x in zip(inputs.moments, n)])
+                            + inputs.mass * dot(across, across))
         self._strikes = list(inputs.strikes)
         self.time = 0.0
-        self._q, self._omega = product(inputs.orientation, self._frame), turned_back(
-            self._frame, inputs.omega
-        )
-        self._breaks = sorted(
-            {time for times, _, _ in inputs.couples for time in times if time > 0.0}
-        )
+        self._q, self._omega = (
+            product(inputs.orientation, self._frame), turned_back(self._frame, inputs.omega))
+        self._breaks = sorted({time for times, _, _ in inputs.couples
+                               for time in times if time > 0.0})
 
     def state(self):
         """Return the attitude of the body (unit quaternion) and omega in body axes, mpf."""
@@ -74,9 +71,8 @@ class Turning:
         """Go on to a time (s, a double, not before the present); strikes at it have acted."""
         with mp.workprec(self.bits + 64):
             while True:
-                stops = [t for t in self._breaks if self.time < t <= time] + [
-                    strike[0] for strike in self._strikes if strike[0] <= time
-                ]
+                stops = ([t for t in self._breaks if self.time < t <= time]
+                         + [strike[0] for strike in self._strikes if strike[0] <= time])
                 until = min([*stops, time])
                 self._march(until)
                 while self._strikes and self._strikes[0][0] <= until:
@@ -110,9 +106,8 @@ class Turning:
     def _strike(self, impulse, lever, _, frame):
         """Change omega by an impulse of force at a point."""
         lever = tuple(r + x for r, x in zip(self._arm, turned_back(self._frame, lever)))
-        force = (
-            turned_back(self._frame, impulse) if frame == 'body' else turned_back(self._q, impulse)
-        )
+        force = (turned_back(self._frame, impulse) if frame == 'body'
+                 else turned_back(self._q, impulse))
         self._omega = tuple(w + x for w, x in zip(self._omega, self._answer(cross(lever, force))))
 
     def _answer(self, torque):
@@ -135,32 +130,24 @@ class Turning:
                 continue
             if frame == 'body':
                 constant = tuple(
-                    a + b for a, b in zip(constant, turned_back(self._frame, values[place]))
-                )
+                    a + b for a, b in zip(constant, turned_back(self._frame, values[place])))
             else:
                 size = mp.sqrt(dot(values[place], values[place]))
                 self._directions.append(turned_back(self._q, unit(values[place])))
                 columns.append(_matrix(lambda e, size=size: [size * x for x in e]))
         if given.g and any(self._arm) and given.kind in ('pivot', 'hinge'):
             self._directions.append(turned_back(self._q, (mpf(0), mpf(0), mpf(1))))
-            columns.append(
-                _matrix(lambda e: [-given.mass * given.g * x for x in cross(self._arm, e)])
-            )
+            columns.append(_matrix(lambda e: [-given.mass * given.g * x
+                                              for x in cross(self._arm, e)]))
         held = given.linear if given.kind in ('pivot', 'hinge') else mpf(0)
-        damping = _matrix(
-            lambda e: [
-                -given.angular * a - held * b
-                for a, b in zip(e, cross(self._arm, cross(e, self._arm)))
-            ]
-        )
-        weight = max(
-            (abs(x) for matrix in columns for row in matrix for x in row), default=mpf(0)
-        ) + max(map(abs, constant))
+        damping = _matrix(lambda e: [-given.angular * a - held * b
+                                     for a, b in zip(e, cross(self._arm, cross(e, self._arm)))])
+        weight = max((abs(x) for matrix in columns for row in matrix for x in row),
+                     default=mpf(0)) + max(map(abs, constant))
         heavy = [i for i in ([self._moment] if self._hinged else given.moments) if i]
         # in this unit of time rates are of order one
-        fastest = mp.sqrt(dot(self._omega, self._omega)) + mp.sqrt(
-            weight / sorted(heavy)[len(heavy) // 2]
-        )
+        fastest = (mp.sqrt(dot(self._omega, self._omega))
+                   + mp.sqrt(weight / sorted(heavy)[len(heavy) // 2]))
         self._unit = U = mpf(2) ** (-int(mp.ceil(mp.log(fastest, 2)))) if fastest else mpf(1)
 
         def answered(matrix, factor):
@@ -170,23 +157,12 @@ class Turning:
         self._damping = answered(damping, U) if any(x for row in damping for x in row) else None
         self._pull = [answered(matrix, U * U) for matrix in columns]
         i1, i2, i3 = given.moments
-        self._gyro = (
-            [0, 0, 0]
-            if self._hinged
-            else [
-                fixed(d / i) if i else 0
-                for d, i in zip((i2 - i3, i3 - i1, i1 - i2), given.moments)
-            ]
-        )
-        self._inner = (
-            [fixed(given.inner * d / U) for d in (i2 - i3, i3 - i1, i1 - i2)]
-            if given.inner
-            else None
-        )
-        self._lag = [
-            [fixed(a / i) if i else 0 for a in pair]
-            for pair, i in zip(((i2, i3), (i3, i1), (i1, i2)), given.moments)
-        ]
+        self._gyro = ([0, 0, 0] if self._hinged else [fixed(d / i) if i else 0 for d, i in zip(
+            (i2 - i3, i3 - i1, i1 - i2), given.moments)])
+        self._inner = ([fixed(given.inner * d / U) for d in (i2 - i3, i3 - i1, i1 - i2)]
+                       if given.inner else None)
+        self._lag = [[fixed(a / i) if i else 0 for a in pair]
+                     for pair, i in zip(((i2, i3), (i3, i1), (i1, i2)), given.moments)]
 
     def _series(self, state):
         """Return the Taylor coefficients of q, omega and the directions."""
@@ -219,9 +195,8 @@ class Turning:
                 for i in range(3):
                     j, l = (i + 1) % 3, (i + 2) % 3
                     a, b = self._lag[i]
-                    rates[i] += a * (times(omega[j], lag[l]) >> bits) - b * (
-                        times(omega[l], lag[j]) >> bits
-                    )
+                    rates[i] += (a * (times(omega[j], lag[l]) >> bits)
+                                 - b * (times(omega[l], lag[j]) >> bits))
             else:
                 turn = back
             if k == 0:
@@ -229,9 +204,8 @@ class Turning:
             for matrix, vector in zip((self._damping, *self._pull), (omega, *directions)):
                 if matrix:
                     x, y, z = vector[0][k], vector[1][k], vector[2][k]
-                    rates = [
-                        rate + a * x + b * y + c * z for rate, (a, b, c) in zip(rates, matrix)
-                    ]
+                    rates = [rate + a * x + b * y + c * z
+                             for rate, (a, b, c) in zip(rates, matrix)]
             b1, b2, b3 = turn
             new = [(times(qw, b1) + times(qy, b3) - times(qz, b2)) // n >> half,
                    (times(qw, b2) + times(qz, b1) - times(qx, b3)) // n >> half,

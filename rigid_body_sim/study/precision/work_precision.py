@@ -26,41 +26,23 @@ def main(arguments=None):
     parser = command_line.parser(
         'work_precision',
         'Error against CPU time of every method that can run a scene, and of peers.',
-        'python -m rigid_body_sim work_precision --scene heavy_top --duration 20 --output study',
-    )
+        'python -m rigid_body_sim work_precision --scene heavy_top --duration 20 --output study')
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
-        '--scene', help='a problem of the suite, the name of a scene that ships, or a .yaml file'
-    )
-    what.add_argument(
-        '--suite',
-        action='store_true',
-        help='all problems of the suite (default: the four of the quick form)',
-    )
+        '--scene', help='a problem of the suite, the name of a scene that ships, or a .yaml file')
+    what.add_argument('--suite', action='store_true',
+                      help='all problems of the suite (default: the four of the quick form)')
+    parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE',
+                        help='change of the scene, key.path=value; may be repeated')
     parser.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        help='change of the scene, key.path=value; may be repeated',
-    )
+        '--duration', type=float, help='simulated seconds of a scene outside the suite (20)')
+    parser.add_argument('--peers', action='store_true',
+                        help='run the peers that are installed too (requirements/peers.txt)')
+    parser.add_argument('--quick', action='store_true',
+                        help=f'end sweeps at {QUICK_LIMIT} s a run instead of {FULL_LIMIT} s, '
+                        f'{QUICK_REPEATS} samples instead of {FULL_REPEATS}')
     parser.add_argument(
-        '--duration', type=float, help='simulated seconds of a scene outside the suite (20)'
-    )
-    parser.add_argument(
-        '--peers',
-        action='store_true',
-        help='run the peers that are installed too (requirements/peers.txt)',
-    )
-    parser.add_argument(
-        '--quick',
-        action='store_true',
-        help=f'end sweeps at {QUICK_LIMIT} s a run instead of {FULL_LIMIT} s, '
-        f'{QUICK_REPEATS} samples instead of {FULL_REPEATS}',
-    )
-    parser.add_argument(
-        '--output', metavar='DIR', help='write work_precision.json, .txt and .png there'
-    )
+        '--output', metavar='DIR', help='write work_precision.json, .txt and .png there')
     parser.add_argument('--json', action='store_true', help='print everything as JSON')
     return command_line.run(_run, parser.parse_args(arguments))
 
@@ -73,15 +55,13 @@ def _run(options):
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise BadInput(
-                '--output', f'{folder} cannot be made ({error.strerror})', 'another folder'
-            ) from None
+            raise BadInput('--output', f'{folder} cannot be made ({error.strerror})',
+                           'another folder') from None
     results, began, versions, missing = [], time.time(), {}, []
     if options.peers:
         with peers.quiet():
-            versions, missing = {
-                module.NAME: module.version() for module in peers.installed()
-            }, peers.missing()
+            versions, missing = (
+                {module.NAME: module.version() for module in peers.installed()}, peers.missing())
     for problem in problems:
         with peers.quiet() if options.peers else contextlib.nullcontext():
             results.append(study(problem, options.peers, limit, repeats))
@@ -115,20 +95,15 @@ def _run(options):
 
 
 def _problems(options):
-    if options.scene and not (
-        options.scene in suite.NAMES and not options.set and options.duration is None
-    ):
+    if options.scene and not (options.scene in suite.NAMES and not options.set
+                              and options.duration is None):
         duration = 20.0 if options.duration is None else options.duration
         if not 0.0 < duration <= 1e6:
             raise BadInput(
-                '--duration', f'got {duration!r}', 'simulated seconds, above 0, at most 1e6'
-            )
+                '--duration', f'got {duration!r}', 'simulated seconds, above 0, at most 1e6')
         if options.scene in suite.NAMES:
-            raise BadInput(
-                '--scene',
-                f'{options.scene} is a problem of the suite',
-                'it takes no --set and no --duration',
-            )
+            raise BadInput('--scene', f'{options.scene} is a problem of the suite',
+                           'it takes no --set and no --duration')
         return [suite.of_scene(options.scene, options.set, duration)]
     if options.set or options.duration is not None:
         raise BadInput('--set, --duration', 'are for one scene', 'name it: --scene NAME')
@@ -166,9 +141,8 @@ def write(folder, found):
     # matplotlib takes a second to import
     from rigid_body_sim.study.precision.figure import draw
     folder.joinpath('work_precision.json').write_text(json.dumps(found, indent=1) + '\n')
-    folder.joinpath('work_precision.txt').write_text(
-        '\n\n'.join('\n'.join(table.lines(result)) for result in found['results']) + '\n'
-    )
+    folder.joinpath('work_precision.txt').write_text('\n\n'.join('\n'.join(table.lines(
+        result)) for result in found['results']) + '\n')
     draw(found['results']).savefig(folder / 'work_precision.png')
 
 

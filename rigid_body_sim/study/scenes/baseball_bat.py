@@ -17,15 +17,13 @@ SHARES = (0.5, 1.0, 1.3)            # of l': where it is hit besides the scene's
 def check(run):
     """Yield the quantities of a bat at rest that is hit at the scene's distance and at others."""
     scene = run.scene
-    n, arm = np.array(scene.constraint.axis), np.subtract(
-        scene.body.center_of_mass, scene.constraint.through
-    )
+    n, arm = (np.array(scene.constraint.axis),
+              np.subtract(scene.body.center_of_mass, scene.constraint.through))
     arm -= n * (n @ arm)
     length, M = float(np.linalg.norm(arm)), scene.body.mass
     a = float(np.sqrt(n @ scene.body.about_center.matrix @ n / M))
-    J, conjugate = float(
-        np.linalg.norm(scene.effect('strike').impulse)
-    ), theory.center_of_percussion(length, a)
+    J, conjugate = (float(np.linalg.norm(scene.effect('strike').impulse)),
+                    theory.center_of_percussion(length, a))
     own = float(np.subtract(scene.effect('strike').point, scene.constraint.through) @ arm) / length
 
     def hit(d):
@@ -37,29 +35,13 @@ def check(run):
     for d in (own, *(share * conjugate for share in SHARES)):
         where = f'd = {d:.4g} m'
         yield Quantity(
-            f"phi' after the blow, {where}",
-            theory.angular_acceleration(J, d, M, length, a),
-            hit(d).at(0.0).angular_velocity @ n * np.sign(_sense(scene, n, arm)),
-            1e-12,
-            'rad/s',
-        )
-        yield Quantity(
-            f'F_R/F, {where}',
-            theory.reaction_ratio(d, length, a),
-            reaction(d),
-            1e-12,
-            absolute=True,
-            as_written=theory.reaction_ratio_as_written(d, length, a),
-        )
+            f"phi' after the blow, {where}", theory.angular_acceleration(J, d, M, length, a),
+            hit(d).at(0.0).angular_velocity @ n * np.sign(_sense(scene, n, arm)), 1e-12, 'rad/s')
+        yield Quantity(f'F_R/F, {where}', theory.reaction_ratio(d, length, a), reaction(d), 1e-12,
+                       absolute=True, as_written=theory.reaction_ratio_as_written(d, length, a))
     found = brentq(reaction, 0.5 * conjugate, 1.5 * conjugate, xtol=1e-15, rtol=8.9e-16)
-    yield Quantity(
-        'centre of percussion',
-        conjugate,
-        found,
-        1e-12,
-        'm',
-        as_written=theory.center_of_percussion_as_written(length, a),
-    )
+    yield Quantity('centre of percussion', conjugate, found, 1e-12, 'm',
+                   as_written=theory.center_of_percussion_as_written(length, a))
 
 
 def _sense(scene, n, arm):

@@ -22,40 +22,23 @@ def check(run):
     ellipticity = (I3 - I1) / I1
     predicted = theory.period_in_sidereal_days(ellipticity)
     rises = run.crossings(
-        instruments.omega(0), 0.0, (PERIODS + 1.1) * predicted * day, 200, rising=True
-    )
+        instruments.omega(0), 0.0, (PERIODS + 1.1) * predicted * day, 200, rising=True)
     measured = (rises[-1] - rises[0]) / (len(rises) - 1) / day
     written = theory.period_in_sidereal_days_as_written(ellipticity)
-    yield Quantity(
-        'period of the wobble', predicted, measured, 1e-9, 'turns of the Earth', as_written=written
-    )
-    yield Quantity(
-        'period of the wobble',
-        theory.period_in_solar_days(ellipticity) * day / theory.SIDEREAL_DAY,
-        measured * day / theory.SOLAR_DAY,
-        1e-9,
-        'days',
-        as_written=written * day / theory.SOLAR_DAY,
-    )
+    yield Quantity('period of the wobble', predicted, measured, 1e-9, 'turns of the Earth',
+                   as_written=written)
+    yield Quantity('period of the wobble',
+                   theory.period_in_solar_days(ellipticity) * day / theory.SIDEREAL_DAY,
+                   measured * day / theory.SOLAR_DAY, 1e-9, 'days',
+                   as_written=written * day / theory.SOLAR_DAY)
     times = np.linspace(0.0, PERIODS * predicted * day, 301)
     omega = run.states(times).angular_velocity
     amplitude = np.hypot(omega[:, 0], omega[:, 1])
-    yield Quantity(
-        'amplitude at 301 times over 3 periods',
-        np.full(len(times), amplitude[0]),
-        amplitude,
-        1e-9,
-        'rad/s',
-    )
-    yield Quantity(
-        'omega3 at 301 times over 3 periods',
-        np.full(len(times), omega[0, 2]),
-        omega[:, 2],
-        1e-14,
-        'rad/s',
-    )
+    yield Quantity('amplitude at 301 times over 3 periods', np.full(len(times), amplitude[0]),
+                   amplitude, 1e-9, 'rad/s')
+    yield Quantity('omega3 at 301 times over 3 periods', np.full(len(times), omega[0, 2]),
+                   omega[:, 2], 1e-14, 'rad/s')
     lambda_ = theory.wobble_angle(*OFFSET)
     if np.isclose(amplitude[0] / omega[0, 2], lambda_, rtol=1e-6):
         yield Quantity(
-            'lambda = 6 m/6356 km', lambda_, np.arctan2(amplitude[-1], omega[-1, 2]), 1e-9, 'rad'
-        )
+            'lambda = 6 m/6356 km', lambda_, np.arctan2(amplitude[-1], omega[-1, 2]), 1e-9, 'rad')

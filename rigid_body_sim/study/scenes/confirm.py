@@ -23,22 +23,14 @@ def confirm(scene):
     ``both`` heads their comparison.
     """
     if scene.name not in SYSTEMS:
-        raise BadInput(
-            scene.name,
-            'no formula of the notes is about it',
-            f'the scenes that are checked: {", ".join(SYSTEMS)}',
-        )
+        raise BadInput(scene.name, 'no formula of the notes is about it',
+                       f'the scenes that are checked: {", ".join(SYSTEMS)}')
     system, shipped = SYSTEMS[scene.name], load_scene(scene.name)
-    for what, own, meant in (
-        ('constraint', scene.constraint.kind, shipped.constraint.kind),
-        ('effects', _effects(scene), _effects(shipped)),
-    ):
+    for what, own, meant in (('constraint', scene.constraint.kind, shipped.constraint.kind),
+                             ('effects', _effects(scene), _effects(shipped))):
         if own != meant:
-            raise BadInput(
-                scene.name,
-                f'the {what} here: {own}',
-                f'the formulas of this scene are for {meant}',
-            )
+            raise BadInput(scene.name, f'the {what} here: {own}',
+                           f'the formulas of this scene are for {meant}')
     ways = [method for method in ('exact', SMOOTH) if method in methods_for(scene)]
     rows = _rows({way: system.check(Experiment(scene, way, system.accuracy)) for way in ways})
     return rows + ([{'both': _agreement(scene, system, ways)}] if len(ways) == 2 else [])
@@ -67,17 +59,10 @@ def _agreement(scene, system, ways):
     """
     times = np.linspace(0.0, system.seconds, TIMES)
     first, second = (Experiment(scene, way, system.accuracy).states(times) for way in ways)
-    angle = max(
-        angle_between(*p, *q) for p, q in zip(first.orientation, second.orientation, strict=True)
-    )
+    angle = max(angle_between(*p, *q)
+                for p, q in zip(first.orientation, second.orientation, strict=True))
     size = np.linalg.norm(first.angular_velocity, axis=1).max()
-    rate = np.linalg.norm(first.angular_velocity - second.angular_velocity, axis=1).max() / (
-        size or 1.0
-    )
-    return Quantity(
-        f'attitude and omega, {ways[0]} against {ways[1]}, {system.seconds:g} s',
-        0.0,
-        float(max(angle, rate)),
-        system.tolerance,
-        absolute=True,
-    )
+    rate = (np.linalg.norm(first.angular_velocity - second.angular_velocity, axis=1).max()
+            / (size or 1.0))
+    return Quantity(f'attitude and omega, {ways[0]} against {ways[1]}, {system.seconds:g} s', 0.0,
+                    float(max(angle, rate)), system.tolerance, absolute=True)

@@ -27,12 +27,8 @@ def check(run):
         times = np.linspace(0.0, SECONDS, 41)
         predicted = theory.angular_velocity(times, start, Gamma[2], I1, I3)
         yield Quantity(
-            'omega at 41 times',
-            predicted.ravel(),
-            run.read(lambda states: states.angular_velocity, times).ravel(),
-            1e-12,
-            'rad/s',
-        )
+            'omega at 41 times', predicted.ravel(),
+            run.read(lambda states: states.angular_velocity, times).ravel(), 1e-12, 'rad/s')
         yield from _turn(run, start, Gamma[2], I1, I3)
     yield from equations_of_euler(run, Gamma, SECONDS)
     yield from momentum(run, Gamma, SECONDS)
@@ -46,23 +42,14 @@ def _turn(run, start, Gamma3, I1, I3):
     """Yield the time when the spin passes through zero, and the angle that omega has turned."""
     reversal = theory.spin_reversal_time(start[2], Gamma3, I3)
     if 0.0 < reversal < SECONDS:
-        yield Quantity(
-            'omega3 runs through zero',
-            reversal,
-            run.crossings(instruments.omega(2), 0.0, SECONDS, 50)[0],
-            1e-12,
-            's',
-        )
+        yield Quantity('omega3 runs through zero', reversal,
+                       run.crossings(instruments.omega(2), 0.0, SECONDS, 50)[0], 1e-12, 's')
     times = np.linspace(0.0, SECONDS, 2001)
     omega = run.states(times).angular_velocity
     turned = np.unwrap(np.arctan2(omega[:, 1], omega[:, 0]))
     yield Quantity(
-        'angle that omega turned in the body',
-        theory.phase(SECONDS, start[2], Gamma3, I1, I3),
-        turned[-1] - turned[0],
-        1e-11,
-        'rad',
-    )
+        'angle that omega turned in the body', theory.phase(SECONDS, start[2], Gamma3, I1, I3),
+        turned[-1] - turned[0], 1e-11, 'rad')
 
 
 def equations_of_euler(run, Gamma, seconds, about=''):
@@ -70,20 +57,12 @@ def equations_of_euler(run, Gamma, seconds, about=''):
     moments = np.array(run.scene.body.about_center.moments)
     times = seconds * np.array([0.21, 0.53, 0.88])
     predicted = euler_equations.angular_acceleration(
-        moments, run.states(times).angular_velocity, Gamma
-    )
+        moments, run.states(times).angular_velocity, Gamma)
     pace = np.linalg.norm(run.states(times).angular_velocity, axis=1).max()
-    measured = [
-        [run.derivative(instruments.omega(k), time, 0.3 / pace) for k in range(3)]
-        for time in times
-    ]
-    yield Quantity(
-        f"omega'/omega^2 by Euler's equations, 3 times{about}",
-        predicted.ravel() / pace**2,
-        np.ravel(measured) / pace**2,
-        1e-10,
-        absolute=True,
-    )
+    measured = [[run.derivative(instruments.omega(k), time, 0.3 / pace) for k in range(3)]
+                for time in times]
+    yield Quantity(f"omega'/omega^2 by Euler's equations, 3 times{about}",
+                   predicted.ravel() / pace**2, np.ravel(measured) / pace**2, 1e-10, absolute=True)
 
 
 def momentum(run, Gamma, seconds, about=''):
@@ -98,8 +77,6 @@ def momentum(run, Gamma, seconds, about=''):
     torque = instruments.axes(run.states(times.ravel())) @ Gamma
     integral = np.sum(torque * (half * weights).ravel()[:, np.newaxis], axis=0)
     L = run.read(
-        instruments.momentum_in_world(run.scene.body.about_center.moments), [0.0, seconds]
-    )
+        instruments.momentum_in_world(run.scene.body.about_center.moments), [0.0, seconds])
     yield Quantity(
-        f'change of L in {seconds:g} s{about}', integral, L[1] - L[0], 1e-11, 'kg m^2/s'
-    )
+        f'change of L in {seconds:g} s{about}', integral, L[1] - L[0], 1e-11, 'kg m^2/s')

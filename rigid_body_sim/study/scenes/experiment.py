@@ -32,8 +32,7 @@ class Experiment:
         """Return the same experiment with changes to the scene, {key.path: numbers}."""
         overrides = [f'{key}={np.asarray(value).tolist()}' for key, value in changes.items()]
         return Experiment(
-            parse_scene(self.scene.text, overrides, self.scene.name), self.method, self._accuracy
-        )
+            parse_scene(self.scene.text, overrides, self.scene.name), self.method, self._accuracy)
 
     def states(self, times):
         """Return the States at times (s)."""
@@ -64,23 +63,12 @@ class Experiment:
         times = np.linspace(begin, end, samples + 1)
         readings = self.read(value, times)
         above = readings > 0.0
-        places = [
-            k
-            for k in np.flatnonzero(above[1:] != above[:-1])
-            if rising is None or above[k + 1] == rising
-        ]
-        return np.array(
-            [
-                brentq(
-                    lambda time: self.read(value, time)[0],
-                    times[k],
-                    times[k + 1],
-                    xtol=1e-300,
-                    rtol=8.9e-16,
-                )
-                for k in places
-            ]
-        )
+        places = [k
+                  for k in np.flatnonzero(above[1:] != above[:-1])
+                  if rising is None or above[k + 1] == rising]
+        return np.array([brentq(lambda time: self.read(value, time)[0], times[k], times[k + 1],
+                                xtol=1e-300, rtol=8.9e-16)
+                         for k in places])
 
     def derivative(self, value, time, width, order=1):
         """Return the time derivative of a reading.

@@ -23,33 +23,19 @@ def check(run):
     spin, height = top.P_gamma / top.I3, np.cos(top.beta)
     found = []
     for faster in FASTER:
-        one = run.variant(
-            {
-                'initial.euler_zyz': [0.0, np.arccos(height / faster), 0.0],
-                'initial.angular_velocity': [0.0, 0.0, spin * faster],
-            }
-        )
+        one = run.variant({'initial.euler_zyz': [0.0, np.arccos(height / faster), 0.0],
+                           'initial.angular_velocity': [0.0, 0.0, spin * faster]})
         found.append(_measure(one, Top(one)))
     epsilon, precession, nutation, written = np.transpose(found)
-    slowness = [
-        1.0 / faster**2 * theory.slowness(top.P_gamma, top.I1, top.Mgl) for faster in FASTER
-    ]
+    slowness = [1.0 / faster**2 * theory.slowness(top.P_gamma, top.I1, top.Mgl)
+                for faster in FASTER]
     name = 'I1 M g l/P_gamma^2'
     yield from limit('epsilon = -I1 M g l/P_gamma^2', name, slowness, epsilon, 1, 0.05, 1e-5)
     yield from limit(
-        'mean precession M g l/P_gamma', name, slowness, precession, 1.5, 0.1, 1e-7, written[-1]
-    )
-    yield from limit(
-        'nutation P_gamma/I1',
-        name,
-        slowness,
-        nutation,
-        1.5,
-        0.1,
-        1e-7,
-        theory.nutation_frequency_as_written(top.P_gamma, top.I1)
-        / theory.nutation_frequency(top.P_gamma, top.I1),
-    )
+        'mean precession M g l/P_gamma', name, slowness, precession, 1.5, 0.1, 1e-7, written[-1])
+    yield from limit('nutation P_gamma/I1', name, slowness, nutation, 1.5, 0.1, 1e-7,
+                     theory.nutation_frequency_as_written(top.P_gamma, top.I1)
+                     / theory.nutation_frequency(top.P_gamma, top.I1))
 
 
 def _measure(run, top):
@@ -59,8 +45,7 @@ def _measure(run, top):
     """
     half = np.pi * top.I1 / top.P_gamma
     turns = run.crossings(
-        instruments.beta_rate, 0.05 * half, (2 * SWINGS + 1.5) * half, 80 * SWINGS
-    )
+        instruments.beta_rate, 0.05 * half, (2 * SWINGS + 1.5) * half, 80 * SWINGS)
     turns = turns[:2 * SWINGS + 1]
     turned = np.unwrap(instruments.alpha(run.states(turns)))
     mean = (turned[-1] - turned[0]) / (turns[-1] - turns[0])

@@ -27,29 +27,21 @@ class Top:
         self.Mgl = scene.body.mass * scene.effect('gravity').g * length
         if self.I1 != I2 or x or y or not self.Mgl > 0.0:
             raise BadInput(
-                scene.name,
-                f'moments {[self.I1, I2, self.I3]}, centre of mass {[x, y, length]}',
+                scene.name, f'moments {[self.I1, I2, self.I3]}, centre of mass {[x, y, length]}',
                 'the formulas are for I1 = I2, a centre of mass above the pivot on axis 3, '
-                'and gravity',
-            )
+                'and gravity')
         start = run.states([0.0])
-        self.beta, self.beta_rate = float(instruments.beta(start)[0]), float(
-            instruments.beta_rate(start)[0]
-        )
+        self.beta, self.beta_rate = (
+            float(instruments.beta(start)[0]), float(instruments.beta_rate(start)[0]))
         self.P_gamma = float(self.I3 * start.angular_velocity[0, 2])
         self.P_alpha = (
-            float(
-                theory.p_alpha(instruments.alpha_rate(start)[0], self.beta, self.P_gamma, self.I1)
-            )
-            if self.beta
-            else self.P_gamma
-        )
+            float(theory.p_alpha(
+                instruments.alpha_rate(start)[0], self.beta, self.P_gamma, self.I1))
+            if self.beta else self.P_gamma)
         self.momenta = self.P_alpha, self.P_gamma
         self.E = (
             theory.energy(self.beta, self.beta_rate, *self.momenta, self.I1, self.I3, self.Mgl)
-            if self.beta
-            else None
-        )
+            if self.beta else None)
 
     def moments_of_motion(self, run):
         """Return the instrument that reads (p_alpha, p_gamma) = (L_z, I3 omega3)."""
@@ -63,29 +55,21 @@ def check(run):
     """Yield the quantities of a nutating top."""
     top = Top(run)
     I1, I3, Mgl, momenta = top.I1, top.I3, top.Mgl, top.momenta
-    if not np.sin(top.beta) > 0.02 or abs(abs(top.P_alpha) - abs(top.P_gamma)) < 1e-6 * np.sqrt(
-        I1 * Mgl
-    ):
+    if (not np.sin(top.beta) > 0.02
+            or abs(abs(top.P_alpha) - abs(top.P_gamma)) < 1e-6 * np.sqrt(I1 * Mgl)):
         raise BadInput(
             run.scene.name,
             f'tilt {top.beta:.6g} rad, p_alpha {top.P_alpha:.6g}, p_gamma {top.P_gamma:.6g}',
             'needs a top off the vertical that never reaches it '
-            '(sleeping_top is about the upright one)',
-        )
+            '(sleeping_top is about the upright one)')
     half = theory.time_between_turning_points(
-        run.at(0.0).angular_velocity, instruments.axes(run.states([0.0]))[0, 2], I1, I3, Mgl
-    )
+        run.at(0.0).angular_velocity, instruments.axes(run.states([0.0]))[0, 2], I1, I3, Mgl)
     span = 2.0 * SWINGS * half
-    kept = run.read(top.moments_of_motion(run), np.linspace(0.0, 100.0, 501)) / np.linalg.norm(
-        momenta
-    )
+    kept = (run.read(top.moments_of_motion(run), np.linspace(0.0, 100.0, 501))
+            / np.linalg.norm(momenta))
     yield Quantity(
         'p_alpha, p_gamma over 100 s, over their size',
-        np.tile(momenta, 501) / np.linalg.norm(momenta),
-        kept.ravel(),
-        1e-12,
-        absolute=True,
-    )
+        np.tile(momenta, 501) / np.linalg.norm(momenta), kept.ravel(), 1e-12, absolute=True)
     yield from rates(run, top, half * np.array([0.13, 0.55, 1.31]))
     yield from turning_points(run, top, half, span)
     yield from at_equilibrium(run, top, half)
@@ -99,10 +83,8 @@ def window(run, top, time):
     It serves differentiation and does not reach back before the start.
     """
     state = run.states([time])
-    pace = (
-        np.abs(instruments.alpha_rate(state))
-        + np.abs(instruments.beta_rate(state)) / np.sin(instruments.beta(state))
-    )[0]
+    pace = (np.abs(instruments.alpha_rate(state))
+            + np.abs(instruments.beta_rate(state)) / np.sin(instruments.beta(state)))[0]
     pace = max(pace, np.hypot(top.P_gamma / top.I1, np.sqrt(top.Mgl / top.I1)))
     return min(0.4 / pace, time)
 
@@ -114,39 +96,22 @@ def rates(run, top, times):
     beta = instruments.beta(states)
 
     def slope(angle):
-        return [
-            run.derivative(lambda s: np.unwrap(angle(s)), time, window(run, top, time))
-            for time in times
-        ]
+        return [run.derivative(lambda s: np.unwrap(angle(s)), time, window(run, top, time))
+                for time in times]
 
+    yield Quantity("alpha' at 3 times", theory.alpha_rate(beta, *top.momenta, I1),
+                   slope(instruments.alpha), 1e-9, 'rad/s')
+    yield Quantity("gamma' at 3 times", theory.gamma_rate(beta, *top.momenta, I1, I3),
+                   slope(instruments.gamma), 1e-9, 'rad/s')
     yield Quantity(
-        "alpha' at 3 times",
-        theory.alpha_rate(beta, *top.momenta, I1),
-        slope(instruments.alpha),
-        1e-9,
-        'rad/s',
-    )
-    yield Quantity(
-        "gamma' at 3 times",
-        theory.gamma_rate(beta, *top.momenta, I1, I3),
-        slope(instruments.gamma),
-        1e-9,
-        'rad/s',
-    )
-    yield Quantity(
-        "beta'' at 3 times",
-        theory.beta_acceleration(beta, *top.momenta, I1, Mgl),
+        "beta'' at 3 times", theory.beta_acceleration(beta, *top.momenta, I1, Mgl),
         [run.derivative(instruments.beta_rate, time, window(run, top, time)) for time in times],
-        1e-9,
-        'rad/s^2',
-    )
+        1e-9, 'rad/s^2')
     many = run.states(np.linspace(0.0, 20.0 * times[-1], 301))
     energies = theory.energy(
-        instruments.beta(many), instruments.beta_rate(many), *top.momenta, I1, I3, Mgl
-    )
+        instruments.beta(many), instruments.beta_rate(many), *top.momenta, I1, I3, Mgl)
     yield Quantity(
-        "E = I1 beta'^2/2 + V_eff at 301 times", np.full(301, top.E), energies, 1e-12, 'J'
-    )
+        "E = I1 beta'^2/2 + V_eff at 301 times", np.full(301, top.E), energies, 1e-12, 'J')
 
 
 def turning_points(run, top, half, span):
@@ -155,15 +120,9 @@ def turning_points(run, top, half, span):
     tilts = run.read(instruments.beta, turns)
     predicted = theory.turning_points(top.E, *top.momenta, top.I1, top.I3, top.Mgl)
     yield Quantity(
-        'least and greatest tilt, V_eff = E', predicted, [tilts.min(), tilts.max()], 1e-9, 'rad'
-    )
-    yield Quantity(
-        'time between turning points (elliptic)',
-        np.full(len(turns) - 1, half),
-        np.diff(turns),
-        1e-9,
-        's',
-    )
+        'least and greatest tilt, V_eff = E', predicted, [tilts.min(), tilts.max()], 1e-9, 'rad')
+    yield Quantity('time between turning points (elliptic)', np.full(len(turns) - 1, half),
+                   np.diff(turns), 1e-9, 's')
 
 
 def at_equilibrium(run, top, half):
@@ -176,50 +135,28 @@ def at_equilibrium(run, top, half):
     states = run.states([time])
     beta, beta_rate = instruments.beta(states)[0], instruments.beta_rate(states)[0]
     yield Quantity("tilt at which beta' is largest: beta_0", beta_0, beta, 1e-9, 'rad')
+    yield Quantity("least V_eff = E - I1 beta'^2/2 there",
+                   theory.effective_potential(beta_0, *momenta, I1, I3, Mgl),
+                   top.E - 0.5 * I1 * beta_rate**2, 1e-12, 'J')
+    yield Quantity('cos(beta_0) in the quartic, over its scale', 0.0,
+                   abs(np.polyval(theory.equilibrium_quartic(*momenta, I1, Mgl), np.cos(beta)))
+                   / (top.P_alpha**2 + top.P_gamma**2 + I1 * Mgl),
+                   1e-9, absolute=True)
     yield Quantity(
-        "least V_eff = E - I1 beta'^2/2 there",
-        theory.effective_potential(beta_0, *momenta, I1, I3, Mgl),
-        top.E - 0.5 * I1 * beta_rate**2,
-        1e-12,
-        'J',
-    )
-    yield Quantity(
-        'cos(beta_0) in the quartic, over its scale',
-        0.0,
-        abs(np.polyval(theory.equilibrium_quartic(*momenta, I1, Mgl), np.cos(beta)))
-        / (top.P_alpha**2 + top.P_gamma**2 + I1 * Mgl),
-        1e-9,
-        absolute=True,
-    )
-    yield Quantity(
-        "V_eff'' at beta_0",
-        theory.curvature_at_equilibrium(beta_0, *momenta, I1, Mgl),
-        -I1 * run.derivative(instruments.beta_rate, time, width, 2) / beta_rate,
-        1e-8,
-        'J/rad^2',
-    )
-    yield Quantity(
-        "main precession alpha' at beta_0",
-        theory.alpha_rate(beta_0, *momenta, I1),
-        instruments.alpha_rate(states)[0],
-        1e-9,
-        'rad/s',
-    )
-    yield Quantity(
-        "variation of precession d alpha'/d beta at beta_0",
-        theory.precession_variation(beta_0, *momenta, I1),
-        run.derivative(instruments.alpha_rate, time, width) / beta_rate,
-        1e-9,
-        '1/s',
-    )
+        "V_eff'' at beta_0", theory.curvature_at_equilibrium(beta_0, *momenta, I1, Mgl),
+        -I1 * run.derivative(instruments.beta_rate, time, width, 2) / beta_rate, 1e-8, 'J/rad^2')
+    yield Quantity("main precession alpha' at beta_0", theory.alpha_rate(beta_0, *momenta, I1),
+                   instruments.alpha_rate(states)[0], 1e-9, 'rad/s')
+    yield Quantity("variation of precession d alpha'/d beta at beta_0",
+                   theory.precession_variation(beta_0, *momenta, I1),
+                   run.derivative(instruments.alpha_rate, time, width) / beta_rate, 1e-9, '1/s')
 
 
 def where_beta_rate_turns(run, near, width):
     """Return the time of the nearest extreme of beta', s."""
     for _ in range(4):
-        near -= run.derivative(instruments.beta_rate, near, width) / run.derivative(
-            instruments.beta_rate, near, width, 2
-        )
+        near -= (run.derivative(instruments.beta_rate, near, width)
+                 / run.derivative(instruments.beta_rate, near, width, 2))
     return near
 
 
@@ -227,61 +164,37 @@ def _curvature(run, top, time):
     """Yield V_eff'' off equilibrium; the notes' formula holds at equilibrium only."""
     states = run.states([time])
     beta, beta_rate = instruments.beta(states)[0], instruments.beta_rate(states)[0]
-    measured = (
-        -top.I1
-        * run.derivative(instruments.beta_rate, time, window(run, top, time), 2)
-        / beta_rate
-    )
+    measured = (-top.I1 * run.derivative(instruments.beta_rate, time, window(run, top, time), 2)
+                / beta_rate)
     yield Quantity(
         f"V_eff'' off equilibrium, at {beta:.4f} rad",
-        theory.curvature(beta, *top.momenta, top.I1, top.Mgl),
-        measured,
-        1e-8,
-        'J/rad^2',
-        as_written=theory.curvature_at_equilibrium(beta, *top.momenta, top.I1, top.Mgl),
-    )
+        theory.curvature(beta, *top.momenta, top.I1, top.Mgl), measured, 1e-8, 'J/rad^2',
+        as_written=theory.curvature_at_equilibrium(beta, *top.momenta, top.I1, top.Mgl))
 
 
 def in_euler_angles(run, top, time):
     """Yield omega and T from differentiated Euler angles, and R and e3 from the angles."""
     states = run.states([time])
-    angles = [
-        angle(states)[0] for angle in (instruments.alpha, instruments.beta, instruments.gamma)
-    ]
-    rates = [
-        run.derivative(lambda s, angle=angle: np.unwrap(angle(s)), time, window(run, top, time))
-        for angle in (instruments.alpha, instruments.beta, instruments.gamma)
-    ]
+    angles = [angle(states)[0]
+              for angle in (instruments.alpha, instruments.beta, instruments.gamma)]
+    rates = [run.derivative(
+                 lambda s, angle=angle: np.unwrap(angle(s)), time, window(run, top, time))
+             for angle in (instruments.alpha, instruments.beta, instruments.gamma)]
     yield Quantity(
-        'R = Rz(alpha) Ry(beta) Rz(gamma)',
-        euler_angles.rotation_matrix(*angles).ravel(),
-        instruments.axes(states).ravel(),
-        1e-14,
-    )
+        'R = Rz(alpha) Ry(beta) Rz(gamma)', euler_angles.rotation_matrix(*angles).ravel(),
+        instruments.axes(states).ravel(), 1e-14)
     e3 = instruments.axes(states)[0, :, 2]
     yield Quantity(
         'e3 in the world by its polar angles (beta, alpha)',
         euler_angles.axis_direction(angles[0], angles[1]),
-        [np.arctan2(np.hypot(e3[0], e3[1]), e3[2]), np.arctan2(e3[1], e3[0])],
-        1e-13,
-        'rad',
-    )
+        [np.arctan2(np.hypot(e3[0], e3[1]), e3[2]), np.arctan2(e3[1], e3[0])], 1e-13, 'rad')
     omega = states.angular_velocity[0]
-    yield Quantity(
-        "omega from alpha', beta', gamma'",
-        euler_angles.body_rates(*rates, angles[1], angles[2]),
-        omega,
-        1e-10,
-        'rad/s',
-    )
+    yield Quantity("omega from alpha', beta', gamma'",
+                   euler_angles.body_rates(*rates, angles[1], angles[2]), omega, 1e-10, 'rad/s')
     T = 0.5 * (top.I1 * (omega[0] ** 2 + omega[1] ** 2) + top.I3 * omega[2] ** 2)
     yield Quantity(
         "T from alpha', beta', gamma'",
-        euler_angles.kinetic_energy_symmetric(*rates, angles[1], top.I1, top.I3),
-        T,
-        1e-10,
-        'J',
-    )
+        euler_angles.kinetic_energy_symmetric(*rates, angles[1], top.I1, top.I3), T, 1e-10, 'J')
 
 
 def small_nutation(run, top, rate):
@@ -293,24 +206,12 @@ def small_nutation(run, top, rate):
     tilt, Omega = top.beta, theory.nutation_frequency(top.beta, *top.momenta, top.I1, top.Mgl)
     ratios = []
     for small in SMALL:
-        pushed = run.variant(
-            {
-                'initial.euler_zyz': [0.0, tilt, 0.0],
-                'initial.angular_velocity': [
-                    -rate * np.sin(tilt),
-                    small * Omega * tilt,
-                    top.P_gamma / top.I3,
-                ],
-            }
-        )
-        rises = pushed.crossings(
-            instruments.beta_rate,
-            0.1 / Omega,
-            (SWINGS + 1.2) * 2.0 * np.pi / Omega,
-            60 * SWINGS,
-            rising=True,
-        )
+        pushed = run.variant({
+            'initial.euler_zyz': [0.0, tilt, 0.0],
+            'initial.angular_velocity': [
+                -rate * np.sin(tilt), small * Omega * tilt, top.P_gamma / top.I3]})
+        rises = pushed.crossings(instruments.beta_rate, 0.1 / Omega,
+                                 (SWINGS + 1.2) * 2.0 * np.pi / Omega, 60 * SWINGS, rising=True)
         ratios.append(2.0 * np.pi * (len(rises) - 1) / (rises[-1] - rises[0]) / Omega)
     yield from limit(
-        "nutation sqrt(V_eff''/I1)", "the push in beta'", SMALL, ratios, 2, 0.05, 1e-8
-    )
+        "nutation sqrt(V_eff''/I1)", "the push in beta'", SMALL, ratios, 2, 0.05, 1e-8)

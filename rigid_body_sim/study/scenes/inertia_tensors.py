@@ -21,25 +21,16 @@ TURN = np.arange(8) * 0.25 * np.pi
 def check(method):
     """Yield the moments of each shape, measured by one of METHODS."""
     for name, shape, predicted, points in _shapes():
-        measured = (
-            _by_quadrature(*points) if method == 'quadrature' else _by_a_blow(shape, predicted)
-        )
+        measured = (_by_quadrature(*points) if method == 'quadrature'
+                    else _by_a_blow(shape, predicted))
         yield Quantity(name, predicted, measured, 1e-14, 'kg m^2')
     end = _rod(0.0, L)
-    measured = (
-        _by_quadrature(*end)
-        if method == 'quadrature'
-        else _by_a_blow({'rod': {'length': L}}, theory.rod_about_end(M, L), L / 2.0)
-    )
+    measured = (_by_quadrature(*end) if method == 'quadrature'
+                else _by_a_blow({'rod': {'length': L}}, theory.rod_about_end(M, L), L / 2.0))
     yield Quantity('rod about its end', theory.rod_about_end(M, L), measured, 1e-14, 'kg m^2')
     center = theory.rod_about_center(M, L)[0]
-    yield Quantity(
-        'rod about its end, by the parallel axis',
-        theory.parallel_axis(center, M, L / 2.0),
-        measured[0],
-        1e-14,
-        'kg m^2',
-    )
+    yield Quantity('rod about its end, by the parallel axis',
+                   theory.parallel_axis(center, M, L / 2.0), measured[0], 1e-14, 'kg m^2')
 
 
 def _shapes():
@@ -49,33 +40,26 @@ def _shapes():
     """
     lamina = _box(A, B, 0.0)
     own = _by_quadrature(*lamina)
-    yield 'rod about its centre', {'rod': {'length': L}}, theory.rod_about_center(M, L), _rod(
-        -L / 2.0, L / 2.0
-    )
-    yield 'lamina, I_zz = I_xx + I_yy', {'lamina': {'width': A, 'height': B}}, theory.lamina(
-        own[0], own[1]
-    ), lamina
-    yield 'hoop', {'hoop': {'radius': R}}, theory.hoop(M, R), _round(
-        np.array([R]), np.zeros(1), np.ones(1)
-    )
+    yield ('rod about its centre', {'rod': {'length': L}}, theory.rod_about_center(M, L),
+           _rod(-L / 2.0, L / 2.0))
+    yield ('lamina, I_zz = I_xx + I_yy', {'lamina': {'width': A, 'height': B}},
+           theory.lamina(own[0], own[1]), lamina)
+    yield ('hoop', {'hoop': {'radius': R}}, theory.hoop(M, R),
+           _round(np.array([R]), np.zeros(1), np.ones(1)))
     r, w = 0.5 * R * (POINTS + 1.0), WEIGHTS
     yield 'disk', {'disk': {'radius': R}}, theory.disk(M, R), _round(r, np.zeros(8), r * w)
     z = R * POINTS
     # Archimedes: equal heights of a sphere have equal areas
-    yield 'spherical shell', {'spherical_shell': {'radius': R}}, theory.spherical_shell(
-        M, R
-    ), _round(np.sqrt(R**2 - z**2), z, WEIGHTS)
-    yield 'solid sphere', {'solid_sphere': {'radius': R}}, theory.solid_sphere(M, R), _ellipsoid(
-        R, R, R
-    )
+    yield ('spherical shell', {'spherical_shell': {'radius': R}}, theory.spherical_shell(M, R),
+           _round(np.sqrt(R**2 - z**2), z, WEIGHTS))
+    yield ('solid sphere', {'solid_sphere': {'radius': R}}, theory.solid_sphere(M, R),
+           _ellipsoid(R, R, R))
     yield 'box', {'box': {'size': [A, B, C]}}, theory.box(M, A, B, C), _box(A, B, C)
     rr, zz = (grid.ravel() for grid in np.meshgrid(r, 0.5 * L * POINTS))
-    yield 'cylinder', {'cylinder': {'radius': R, 'length': L}}, theory.cylinder(M, R, L), _round(
-        rr, zz, rr * np.outer(WEIGHTS, w).ravel()
-    )
-    yield 'ellipsoid', {'ellipsoid': {'semi_axes': [A, B, C]}}, theory.ellipsoid(
-        M, A, B, C
-    ), _ellipsoid(A, B, C)
+    yield ('cylinder', {'cylinder': {'radius': R, 'length': L}}, theory.cylinder(M, R, L),
+           _round(rr, zz, rr * np.outer(WEIGHTS, w).ravel()))
+    yield ('ellipsoid', {'ellipsoid': {'semi_axes': [A, B, C]}}, theory.ellipsoid(M, A, B, C),
+           _ellipsoid(A, B, C))
 
 
 def _rod(low, high):
@@ -124,11 +108,9 @@ def _by_a_blow(shape, predicted, to_end=0.0):
     It is 0 for an axis without moment, which takes no blow.
     """
     center = f', center_of_mass: [0, 0, {to_end!r}]' if to_end else ''
-    scene = parse_scene(
-        f'scene: shape\nbody: {{mass: {M}, shape: {shape}{center}}}\n'
-        f'constraint: {"pivot" if to_end else "free"}\n'
-        'effects: []\ninitial: {}\n'
-    )
+    scene = parse_scene(f'scene: shape\nbody: {{mass: {M}, shape: {shape}{center}}}\n'
+                        f'constraint: {"pivot" if to_end else "free"}\n'
+                        'effects: []\ninitial: {}\n')
     moments = np.zeros(3)
     for axis in range(3):
         if predicted[axis]:

@@ -32,8 +32,7 @@ def omega_in_world(states):
 def momentum_in_world(moments):
     """Return the instrument that reads L = R I omega, shape (n, 3), kg m^2/s."""
     return lambda states: np.einsum(
-        'nij,nj->ni', axes(states), np.asarray(moments) * states.angular_velocity
-    )
+        'nij,nj->ni', axes(states), np.asarray(moments) * states.angular_velocity)
 
 
 def alpha(states):
@@ -57,18 +56,15 @@ def gamma(states):
 def beta_rate(states):
     """Return beta', rad/s, read from omega across e3: omega1 sin(gamma) + omega2 cos(gamma)."""
     angle = gamma(states)
-    return states.angular_velocity[:, 0] * np.sin(angle) + states.angular_velocity[:, 1] * np.cos(
-        angle
-    )
+    return (states.angular_velocity[:, 0] * np.sin(angle)
+            + states.angular_velocity[:, 1] * np.cos(angle))
 
 
 def alpha_rate(states):
     """Return alpha', rad/s: (omega2 sin(gamma) - omega1 cos(gamma))/sin(beta)."""
     angle = gamma(states)
-    return (
-        states.angular_velocity[:, 1] * np.sin(angle)
-        - states.angular_velocity[:, 0] * np.cos(angle)
-    ) / np.sin(beta(states))
+    return ((states.angular_velocity[:, 1] * np.sin(angle)
+             - states.angular_velocity[:, 0] * np.cos(angle)) / np.sin(beta(states)))
 
 
 def angle_between(u, v):

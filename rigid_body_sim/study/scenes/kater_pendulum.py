@@ -36,8 +36,7 @@ class Pendulum:
             raise BadInput(
                 scene.name,
                 f'the suspension distance l is {self.length!r} m, g is {self.g!r} m/s^2',
-                'it does not swing: both are above 0',
-            )
+                'it does not swing: both are above 0')
         self.a = float(np.sqrt(self.axis @ scene.body.about_center.matrix @ self.axis / self.mass))
 
     def angle(self, states):
@@ -66,61 +65,39 @@ def check(run):
     g, length, a, n = here.g, here.length, here.a, here.axis
     conjugate = theory.conjugate_length(length, a)
     Omega = theory.frequency_from_q(g, length, a)
-    turned = run.variant(
-        {
-            'constraint.hinge.through': np.array(scene.constraint.through)
-            + here.arm / length * conjugate,
-            'initial.orientation': multiply(*scene.initial.orientation, *n, 0.0),
-            'initial.angle': 0.0,
-            'initial.rate': n @ scene.initial.angular_velocity,
-        }
-    )
+    turned = run.variant({
+        'constraint.hinge.through': np.array(scene.constraint.through)
+        + here.arm / length * conjugate,
+        'initial.orientation': multiply(*scene.initial.orientation, *n, 0.0), 'initial.angle': 0.0,
+        'initial.rate': n @ scene.initial.angular_velocity})
     reach = _reach(here, run, Omega)
     amplitude = here.amplitude(run, theory.period(Omega, reach))
     period = here.period(run, theory.period(Omega, reach))
     other = Pendulum(turned.scene).period(turned, theory.period(Omega, reach))
     yield Quantity('period at this amplitude', theory.period(Omega, amplitude), period, 1e-11, 's')
-    yield Quantity(
-        "Omega_P over Omega_Q, P at l' = l + a^2/l",
-        theory.frequency_from_p(g, length, a, conjugate) / Omega,
-        period / other,
-        1e-11,
-    )
+    yield Quantity("Omega_P over Omega_Q, P at l' = l + a^2/l",
+                   theory.frequency_from_p(g, length, a, conjugate) / Omega, period / other, 1e-11)
     yield Quantity("l' Omega^2/g at this amplitude: the bias of g", theory.gravity_bias(amplitude),
                    theory.gravity_recovered(conjugate, 2.0 * np.pi / period) / g, 1e-11)
     small = 2.0 * np.pi / period * theory.period(1.0, amplitude) / (2.0 * np.pi)
-    yield Quantity(
-        'I_Q = M g l/Omega^2',
-        theory.moment_about_suspension(here.mass, length, a),
-        here.mass * g * length / small**2,
-        1e-11,
-        'kg m^2',
-        as_written=theory.moment_about_suspension_as_written(here.mass, length, a),
-    )
+    yield Quantity('I_Q = M g l/Omega^2', theory.moment_about_suspension(here.mass, length, a),
+                   here.mass * g * length / small**2, 1e-11, 'kg m^2',
+                   as_written=theory.moment_about_suspension_as_written(here.mass, length, a))
     time = 0.3 * period
-    yield Quantity(
-        "phi'' 0.3 periods after the start",
-        theory.angular_acceleration(here.angle(run.states([time]))[0], Omega),
-        run.derivative(here.rate, time, 0.02 * period),
-        1e-10,
-        'rad/s^2',
-    )
+    yield Quantity("phi'' 0.3 periods after the start",
+                   theory.angular_acceleration(here.angle(run.states([time]))[0], Omega),
+                   run.derivative(here.rate, time, 0.02 * period), 1e-10, 'rad/s^2')
     yield from _small_swings(run, here, Omega)
 
 
 def _reach(pendulum, run, Omega):
     """Return the approximate amplitude, rad, from the energy."""
     start = run.states([0.0])
-    reach = (
-        np.sin(0.5 * pendulum.angle(start)[0]) ** 2
-        + (pendulum.rate(start)[0] / (2.0 * Omega)) ** 2
-    )
+    reach = (np.sin(0.5 * pendulum.angle(start)[0]) ** 2
+             + (pendulum.rate(start)[0] / (2.0 * Omega)) ** 2)
     if not 0.0 < reach < 1.0:
-        raise BadInput(
-            run.scene.name,
-            'the pendulum does not swing to and fro',
-            'release it at an angle, with less rate',
-        )
+        raise BadInput(run.scene.name, 'the pendulum does not swing to and fro',
+                       'release it at an angle, with less rate')
     return 2.0 * np.arcsin(np.sqrt(reach))
 
 
@@ -130,9 +107,8 @@ def _small_swings(run, pendulum, Omega):
     hanging = list(multiply(*run.scene.initial.orientation, *back))
     ratios = []
     for amplitude in AMPLITUDES:
-        swing = run.variant(
-            {'initial.orientation': hanging, 'initial.angle': amplitude, 'initial.rate': 0.0}
-        )
+        swing = run.variant({
+            'initial.orientation': hanging, 'initial.angle': amplitude, 'initial.rate': 0.0})
         ratios.append(2.0 * np.pi / pendulum.period(swing, 2.0 * np.pi / Omega) / Omega)
     ratios = np.array(ratios)
     yield from limit('Omega', 'the amplitude', AMPLITUDES, ratios, 2, 0.02, 1e-8)

@@ -30,27 +30,12 @@ def limit(name, parameter, values, ratios, order, order_tolerance, tolerance, as
     """
     values, deviations = np.asarray(values, dtype=float), np.asarray(ratios, dtype=float) - 1.0
     measured = math.log(abs(deviations[1] / deviations[2])) / math.log(values[1] / values[2])
-    detail = ', '.join(
-        f'{deviation:.3g} at {value:.3g}'
-        for value, deviation in zip(values, deviations, strict=True)
-    )
+    detail = ', '.join(f'{deviation:.3g} at {value:.3g}'
+                       for value, deviation in zip(values, deviations, strict=True))
     # deviation = a p^n + b p^(2 n) + c: three values give the constant c
     powers = np.stack([np.ones(3), values**order, values ** (2 * order)], axis=1)
     left = np.linalg.solve(powers, deviations)[0]
-    return [
-        Quantity(
-            f'{name}: order of its deviation in {parameter}',
-            float(order),
-            measured,
-            order_tolerance,
-            absolute=True,
-            detail=f'deviation {detail}',
-        ),
-        Quantity(
-            f'{name}, over the formula, in the limit',
-            1.0,
-            1.0 + left,
-            tolerance,
-            as_written=as_written,
-        ),
-    ]
+    return [Quantity(f'{name}: order of its deviation in {parameter}', float(order), measured,
+                     order_tolerance, absolute=True, detail=f'deviation {detail}'),
+            Quantity(f'{name}, over the formula, in the limit', 1.0, 1.0 + left, tolerance,
+                     as_written=as_written)]

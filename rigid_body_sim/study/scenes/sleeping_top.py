@@ -25,18 +25,14 @@ def check(run):
     top = Top(run)
     if top.beta > 1e-6:
         raise BadInput(
-            run.scene.name, f'it starts at a tilt of {top.beta!r} rad', 'an upright start, tilt 0'
-        )
+            run.scene.name, f'it starts at a tilt of {top.beta!r} rad', 'an upright start, tilt 0')
     seed = float(np.hypot(*run.at(0.0).angular_velocity[:2])) or SEED
     threshold = theory.threshold(top.I1, top.Mgl)
     own = top.P_gamma / threshold
     ratios = [ratio for ratio in (round(own**2, 9), *SIDES) if abs(ratio - 1.0) > 1e-6]
     for ratio in dict.fromkeys(ratios):
-        spin = (
-            top.P_gamma / top.I3
-            if ratio == round(own**2, 9)
-            else threshold * np.sqrt(ratio) / top.I3
-        )
+        spin = (top.P_gamma / top.I3 if ratio == round(own**2, 9)
+                else threshold * np.sqrt(ratio) / top.I3)
         stable = theory.is_stable(top.I3 * spin, top.I1, top.Mgl)
         yield from (_stable if stable else _falling)(run, top, float(spin), seed, ratio)
     yield from _at_the_threshold(run, top, threshold, seed)
@@ -56,25 +52,14 @@ def _stable(run, top, spin, seed, ratio):
         tilts.append(upright.read(instruments.beta, turn)[0] * rate / one)
         rates.append(0.5 * np.pi / turn / rate)
     where = f'at {ratio:.6g} of the threshold'
-    longest = (
-        run.variant(_upright(seed, spin))
-        .read(instruments.beta, np.linspace(0.0, 100.0 / rate, 4001))
-        .max()
-    )
-    yield Quantity(
-        f'the seed stays small {where}: largest tilt in {100.0 / rate:.0f} s',
-        seed / rate,
-        longest,
-        1e-4,
-        'rad',
-        bound=True,
-    )
+    longest = (run.variant(_upright(seed, spin)).read(
+        instruments.beta, np.linspace(0.0, 100.0 / rate, 4001)).max())
+    yield Quantity(f'the seed stays small {where}: largest tilt in {100.0 / rate:.0f} s',
+                   seed / rate, longest, 1e-4, 'rad', bound=True)
     yield from limit(
-        f'largest tilt seed/sqrt(stiffness/I1) {where}', 'the seed', seeds, tilts, 2, 0.05, 1e-9
-    )
+        f'largest tilt seed/sqrt(stiffness/I1) {where}', 'the seed', seeds, tilts, 2, 0.05, 1e-9)
     yield from limit(
-        f'rate of the swing sqrt(stiffness/I1) {where}', 'the seed', seeds, rates, 2, 0.05, 1e-9
-    )
+        f'rate of the swing sqrt(stiffness/I1) {where}', 'the seed', seeds, rates, 2, 0.05, 1e-9)
 
 
 def _falling(run, top, spin, seed, ratio):
@@ -96,34 +81,16 @@ def _falling(run, top, spin, seed, ratio):
         tilts.append(upright.read(instruments.beta, turn)[0] / nod)
     where = f'at {ratio:.6g} of the threshold'
     late = seed * np.sinh(3.0) / rate
-    yield Quantity(
-        f"growth rate {where}, the scene's seed",
-        rate,
-        growth[0] * rate,
-        late**2 / abs(1.0 - ratio),
-        '1/s',
-        detail=f'while beta^2 < {late**2:.1e}',
-    )
+    yield Quantity(f"growth rate {where}, the scene's seed", rate, growth[0] * rate,
+                   late**2 / abs(1.0 - ratio), '1/s', detail=f'while beta^2 < {late**2:.1e}')
     yield from limit(f'growth rate {where}', 'the seed', seeds, growth[1:], 2, 0.05, 1e-9)
     yield Quantity(
-        f"farthest tilt {where}, the scene's seed",
-        nod,
-        tilts[0] * nod,
-        (seed / rate) ** 2 / abs(1.0 - ratio),
-        'rad',
-        detail=f'{np.degrees(nod):.4f} degrees',
-    )
+        f"farthest tilt {where}, the scene's seed", nod, tilts[0] * nod,
+        (seed / rate) ** 2 / abs(1.0 - ratio), 'rad', detail=f'{np.degrees(nod):.4f} degrees')
     if nod > 3.0:
         return      # it passes the lowest point for every seed
-    yield from limit(
-        f'farthest tilt {where}, cos(beta_max) = P_gamma^2/(2 I1 M g l) - 1',
-        'the seed',
-        seeds,
-        tilts[1:],
-        2,
-        0.05,
-        1e-9,
-    )
+    yield from limit(f'farthest tilt {where}, cos(beta_max) = P_gamma^2/(2 I1 M g l) - 1',
+                     'the seed', seeds, tilts[1:], 2, 0.05, 1e-9)
 
 
 def _seeds(rate, ratio):
@@ -145,25 +112,12 @@ def _at_the_threshold(run, top, threshold, seed):
     upright = run.variant(_upright(seed, spin))
     # from V_eff = const + M g l beta^4/8: I1 seed^2/2 at the turning point
     expected = float((4.0 * top.I1 * seed**2 / top.Mgl) ** 0.25)
-    exact = (
-        brentq(
-            lambda beta: theory.effective_potential(beta, threshold, top.I1, top.Mgl)
-            - top.Mgl
-            - 0.5 * top.I1 * seed**2,
-            0.5 * expected,
-            2.0 * expected,
-        )
-        if expected > 1e-2
-        else expected
-    )
+    exact = (brentq(lambda beta: theory.effective_potential(beta, threshold, top.I1, top.Mgl)
+                    - top.Mgl - 0.5 * top.I1 * seed**2,
+                    0.5 * expected, 2.0 * expected)
+             if expected > 1e-2 else expected)
     turn = upright.crossings(
-        instruments.beta_rate, 0.2 * expected / seed, 4.0 * expected / seed, 200
-    )[0]
+        instruments.beta_rate, 0.2 * expected / seed, 4.0 * expected / seed, 200)[0]
     yield Quantity(
-        'farthest tilt at the threshold itself',
-        exact,
-        upright.read(instruments.beta, turn)[0],
-        1e-3,
-        'rad',
-        detail='by the quartic term alone',
-    )
+        'farthest tilt at the threshold itself', exact, upright.read(instruments.beta, turn)[0],
+        1e-3, 'rad', detail='by the quartic term alone')

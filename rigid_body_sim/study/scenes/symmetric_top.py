@@ -20,52 +20,29 @@ def check(run):
     start = run.at(0.0).angular_velocity.copy()
     across = float(np.hypot(start[0], start[1]))
     if I1 != I2 or I1 == I3 or not across * start[2]:
-        raise BadInput(
-            run.scene.name,
-            f'moments {[I1, I2, I3]}, omega {start.tolist()}',
-            'needs I1 = I2, another I3, omega oblique',
-        )
-    yield from round_the_axis(
-        run,
-        theory.precession_rate(start[2], I1, I3),
-        theory.precession_rate_as_written(start[2], I1, I3),
-    )
+        raise BadInput(run.scene.name, f'moments {[I1, I2, I3]}, omega {start.tolist()}',
+                       'needs I1 = I2, another I3, omega oblique')
+    yield from round_the_axis(run, theory.precession_rate(start[2], I1, I3),
+                              theory.precession_rate_as_written(start[2], I1, I3))
     times = np.linspace(0.0, 20.0, 101)
     states = run.states(times)
     first = np.arctan2(start[1], start[0])
     wave = theory.angular_velocity(
-        times, np.hypot(across, start[2]), np.arctan2(across, start[2]), I1, I3
-    )
-    turned = np.stack(
-        [
-            wave[:, 0] * np.cos(first) - wave[:, 1] * np.sin(first),
-            wave[:, 0] * np.sin(first) + wave[:, 1] * np.cos(first),
-            wave[:, 2],
-        ],
-        axis=1,
-    )
+        times, np.hypot(across, start[2]), np.arctan2(across, start[2]), I1, I3)
+    turned = np.stack([wave[:, 0] * np.cos(first) - wave[:, 1] * np.sin(first),
+                       wave[:, 0] * np.sin(first) + wave[:, 1] * np.cos(first), wave[:, 2]],
+                      axis=1)
     yield Quantity(
-        'omega at 101 times', turned.ravel(), states.angular_velocity.ravel(), 1e-11, 'rad/s'
-    )
+        'omega at 101 times', turned.ravel(), states.angular_velocity.ravel(), 1e-11, 'rad/s')
     yield from cones(run, times, 1e-12)
     # e3 seen along L goes round at L/I1
     L = run.read(instruments.momentum_in_world((I1, I2, I3)), [0.0])[0]
     rate = theory.precession_rate_in_space(np.linalg.norm(L), I1)
     upright = np.cross(L, np.eye(3)[np.argmin(np.abs(L))])
-    rises = run.crossings(
-        lambda s: instruments.axes(s)[:, :, 2] @ upright,
-        0.0,
-        (TURNS + 1.1) * 2.0 * np.pi / rate,
-        40 * TURNS,
-        rising=True,
-    )
-    yield Quantity(
-        'rate of e3 about L in space',
-        rate,
-        2.0 * np.pi * (len(rises) - 1) / (rises[-1] - rises[0]),
-        1e-11,
-        'rad/s',
-    )
+    rises = run.crossings(lambda s: instruments.axes(s)[:, :, 2] @ upright, 0.0,
+                          (TURNS + 1.1) * 2.0 * np.pi / rate, 40 * TURNS, rising=True)
+    yield Quantity('rate of e3 about L in space', rate,
+                   2.0 * np.pi * (len(rises) - 1) / (rises[-1] - rises[0]), 1e-11, 'rad/s')
 
 
 def round_the_axis(run, Omega, as_written, tolerance=1e-11):
@@ -75,19 +52,12 @@ def round_the_axis(run, Omega, as_written, tolerance=1e-11):
     """
     period = 2.0 * np.pi / abs(Omega)
     rises = run.crossings(
-        instruments.omega(0), 0.0, (TURNS + 1.1) * period, 40 * TURNS, rising=True
-    )
+        instruments.omega(0), 0.0, (TURNS + 1.1) * period, 40 * TURNS, rising=True)
     after = run.states(rises[:1]).angular_velocity[0, 1]
     # where omega1 rises through zero, omega2 < 0 for a turn from 1 to 2
     measured = -np.sign(after) * 2.0 * np.pi * (len(rises) - 1) / (rises[-1] - rises[0])
-    yield Quantity(
-        'Omega of omega round e3 in the body',
-        Omega,
-        measured,
-        tolerance,
-        'rad/s',
-        as_written=as_written,
-    )
+    yield Quantity('Omega of omega round e3 in the body', Omega, measured, tolerance, 'rad/s',
+                   as_written=as_written)
 
 
 def cones(run, times, tolerance):
@@ -114,6 +84,5 @@ def cones(run, times, tolerance):
             instruments.angle_between(omega, L),
         ),
     ):
-        yield Quantity(
-            f'half-angle of the {name}', np.full(len(times), predicted), measured, tolerance, 'rad'
-        )
+        yield Quantity(f'half-angle of the {name}', np.full(len(times), predicted), measured,
+                       tolerance, 'rad')

@@ -21,17 +21,13 @@ def check(run):
     middle = int(np.argsort(moments)[1])
     omega0 = float(run.at(0.0).angular_velocity[middle])
     if len(set(moments)) < 3 or not omega0:
-        raise BadInput(
-            run.scene.name,
-            f'moments {moments.tolist()}',
-            'needs three different moments and rotation about the middle one',
-        )
+        raise BadInput(run.scene.name, f'moments {moments.tolist()}',
+                       'needs three different moments and rotation about the middle one')
     # the axis of rotation is the third of the formulas: the cyclic order keeps their signs
     cyclic = [(middle + 1) % 3, (middle + 2) % 3, middle]
     I1, I2, I3 = moments[cyclic]
-    rate, ratio = theory.growth_rate(omega0, I1, I2, I3), theory.growing_ratio(
-        I1, I2, I3
-    ) * np.sign(omega0)
+    rate, ratio = (
+        theory.growth_rate(omega0, I1, I2, I3), theory.growing_ratio(I1, I2, I3) * np.sign(omega0))
     growth, direction = [], []
     span = 1.0 / rate
     for seed in SEEDS:
@@ -43,16 +39,8 @@ def check(run):
         growth.append(np.log(eta[1, 0] / eta[0, 0]) / span)
         direction.append(eta[1, 1] / eta[1, 0] / ratio)
     yield from limit(
-        'growth rate sqrt(-Omega^2)',
-        'the seed',
-        SEEDS,
-        np.array(growth) / rate,
-        2,
-        0.05,
-        1e-8,
-        np.sqrt(-theory.frequency_squared_as_written(omega0, I1, I2, I3)) / rate,
-    )
+        'growth rate sqrt(-Omega^2)', 'the seed', SEEDS, np.array(growth) / rate, 2, 0.05, 1e-8,
+        np.sqrt(-theory.frequency_squared_as_written(omega0, I1, I2, I3)) / rate)
     yield Quantity(
-        'eta2/eta1 while it grows, over the formula', 1.0, direction[-1], 10.0 * SEEDS[-1] ** 2
-    )
+        'eta2/eta1 while it grows, over the formula', 1.0, direction[-1], 10.0 * SEEDS[-1] ** 2)
     yield from flips(run, 40.0)

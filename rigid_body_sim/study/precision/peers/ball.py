@@ -62,14 +62,10 @@ def of(scene):
     ex, ey = u / size if slides else (0.0, 0.0)
     turn = mu * g / (ratio * a)
     return Ball(
-        a,
-        mu,
-        g,
+        a, mu, g,
         np.array([0.0, 0.0, 0.0, 0.0, -turn * ey, turn * ex, 0.0, -mu * g * ex, -mu * g * ey]),
         np.array([0.0, 0.0, 0.0, 0.0, a * ey, -a * ex, 0.0, ex, ey]),
-        np.array([*q, wx, wy, wz, *velocity[:2]]),
-        slides,
-    )
+        np.array([*q, wx, wy, wz, *velocity[:2]]), slides)
 
 
 @numba.njit(cache=True)

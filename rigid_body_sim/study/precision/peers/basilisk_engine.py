@@ -30,43 +30,24 @@ def runners(problem, reference):
         raise RefusedError(f'{HELD[kind]}: its hub flies free')
     given = body.of(problem.scene)
     if given.inner or np.any(given.damping) or np.any(given.push):
-        raise RefusedError(
-            'drag, internal dissipation or a torque fixed in the world: '
-            'modules of its own would have to be written'
-        )
-    steps = tuple(
-        dict.fromkeys(_whole(problem.duration, step) for step in steps_for(problem, reference))
-    )
-    yield Runner(
-        f'{NAME} RK4',
-        'step',
-        steps,
-        lambda step: _run(problem, given, 'svIntegratorRK4', step, None),
-        True,
-    )
-    yield Runner(
-        f'{NAME} RKF78',
-        'tolerance',
-        tuple(10.0**-k for k in range(2, 16)),
-        lambda tolerance: _run(
-            problem, given, 'svIntegratorRKF78', problem.duration / GRID, tolerance
-        ),
-        True,
-    )
+        raise RefusedError('drag, internal dissipation or a torque fixed in the world: '
+                           'modules of its own would have to be written')
+    steps = tuple(dict.fromkeys(_whole(problem.duration, step)
+                                for step in steps_for(problem, reference)))
+    yield Runner(f'{NAME} RK4', 'step', steps,
+                 lambda step: _run(problem, given, 'svIntegratorRK4', step, None), True)
+    yield Runner(f'{NAME} RKF78', 'tolerance', tuple(10.0**-k for k in range(2, 16)),
+                 lambda tolerance: _run(
+                     problem, given, 'svIntegratorRKF78', problem.duration / GRID, tolerance),
+                 True)
 
 
 def _whole(duration, step):
     """Return the nearest step of whole nanoseconds that divides the reference's intervals."""
     grid = round(duration / GRID * NANOSECONDS)
     count = max(1, round(duration / GRID / step))
-    return (
-        grid
-        // min(
-            (k for k in range(1, 2 * count + 1) if grid % k == 0),
-            key=lambda k: abs(math.log(k / count)),
-        )
-        / NANOSECONDS
-    )
+    return (grid // min((k for k in range(1, 2 * count + 1) if grid % k == 0),
+                        key=lambda k: abs(math.log(k / count))) / NANOSECONDS)
 
 
 def _run(problem, given, method, step, tolerance):
@@ -109,9 +90,8 @@ def _run(problem, given, method, step, tolerance):
         found = hub.scStateOutMsg.read()
         s = np.array(found.sigma_BN)
         square = s @ s
-        return given.state(
-            (*(2.0 * s / (1.0 + square)), (1.0 - square) / (1.0 + square), *found.omega_BN_B)
-        )
+        return given.state((
+            *(2.0 * s / (1.0 + square)), (1.0 - square) / (1.0 + square), *found.omega_BN_B))
     run = Run(begin, to, state)
     run.keeps = simulation, process, integrator, push    # C++ holds no references
     return run

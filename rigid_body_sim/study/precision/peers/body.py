@@ -75,17 +75,8 @@ class Body:
     def numbers(self):
         """Return all but the start as one flat array for compiled right-hand sides."""
         i = self.moments
-        return np.concatenate(
-            [
-                i,
-                1.0 / i,
-                self.torque,
-                self.push,
-                self.weight_arm,
-                self.damping.ravel(),
-                [self.inner],
-            ]
-        )
+        return np.concatenate([i, 1.0 / i, self.torque, self.push, self.weight_arm,
+                               self.damping.ravel(), [self.inner]])
 
 
 def of(scene):
@@ -103,27 +94,17 @@ def of(scene):
             else:
                 push += effect.values[0]
     gravity, drag, inner = map(scene.effect, ('gravity', 'drag', 'internal_dissipation'))
-    arm = (
-        np.array(rotate_back(*inertia.axes, *body.center_of_mass))
-        if kind == 'pivot'
-        else np.zeros(3)
-    )
+    arm = (np.array(rotate_back(*inertia.axes, *body.center_of_mass)) if kind == 'pivot'
+           else np.zeros(3))
     damping = np.zeros((3, 3))
     if drag:
-        damping = drag.angular * np.eye(3) + drag.linear * (
-            arm @ arm * np.eye(3) - np.outer(arm, arm)
-        )
+        damping = (drag.angular * np.eye(3)
+                   + drag.linear * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
     q = multiply(*orientation, *inertia.axes) if tuple(inertia.axes) != IDENTITY else orientation
     return Body(
-        np.array(inertia.moments),
-        tuple(inertia.axes),
-        torque,
-        push,
-        body.mass * (gravity.g if gravity else 0.0) * arm,
-        damping,
-        inner.coefficient if inner else 0.0,
-        np.array([*q, *rotate_back(*inertia.axes, *omega)]),
-    )
+        np.array(inertia.moments), tuple(inertia.axes), torque, push,
+        body.mass * (gravity.g if gravity else 0.0) * arm, damping,
+        inner.coefficient if inner else 0.0, np.array([*q, *rotate_back(*inertia.axes, *omega)]))
 
 
 @numba.njit(cache=True)
@@ -139,30 +120,12 @@ def rates(p, x, y, z, w, w1, w2, w3):
     r11, r12, r13 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
     r21, r22, r23 = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
     r31, r32, r33 = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
-    m1 = (
-        p[6]
-        + r11 * p[9]
-        + r21 * p[10]
-        + r31 * p[11]
-        - (p[13] * r33 - p[14] * r32)
-        - (p[15] * w1 + p[16] * w2 + p[17] * w3)
-    )
-    m2 = (
-        p[7]
-        + r12 * p[9]
-        + r22 * p[10]
-        + r32 * p[11]
-        - (p[14] * r31 - p[12] * r33)
-        - (p[18] * w1 + p[19] * w2 + p[20] * w3)
-    )
-    m3 = (
-        p[8]
-        + r13 * p[9]
-        + r23 * p[10]
-        + r33 * p[11]
-        - (p[12] * r32 - p[13] * r31)
-        - (p[21] * w1 + p[22] * w2 + p[23] * w3)
-    )
+    m1 = (p[6] + r11 * p[9] + r21 * p[10] + r31 * p[11] - (p[13] * r33 - p[14] * r32)
+          - (p[15] * w1 + p[16] * w2 + p[17] * w3))
+    m2 = (p[7] + r12 * p[9] + r22 * p[10] + r32 * p[11] - (p[14] * r31 - p[12] * r33)
+          - (p[18] * w1 + p[19] * w2 + p[20] * w3))
+    m3 = (p[8] + r13 * p[9] + r23 * p[10] + r33 * p[11] - (p[12] * r32 - p[13] * r31)
+          - (p[21] * w1 + p[22] * w2 + p[23] * w3))
     return (
         0.5 * (w * a1 + y * a3 - z * a2),
         0.5 * (w * a2 + z * a1 - x * a3),

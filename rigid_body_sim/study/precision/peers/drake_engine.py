@@ -29,29 +29,20 @@ def runners(problem, reference):
     numbers = given.of(problem)
     if isinstance(numbers, ball.Ball):
         steps = steps_for(problem, reference)
-        yield Runner(
-            f'{NAME} discrete',
-            'step',
-            steps,
-            lambda step: _run(problem.scene, numbers, step, None, None),
-            True,
-        )
+        yield Runner(f'{NAME} discrete', 'step', steps,
+                     lambda step: _run(problem.scene, numbers, step, None, None), True)
         return
     if isinstance(numbers, body.Body):
         if numbers.inner:
             raise RefusedError('internal dissipation: it has no such effect')
         if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
             raise RefusedError(
-                'drag on the centre of mass of a pivoted body: its joints damp all axes alike'
-            )
+                'drag on the centre of mass of a pivoted body: its joints damp all axes alike')
     for label, scheme in (('RK5', 'runge_kutta5'), ('RK3', 'runge_kutta3')):
         yield Runner(
-            f'{NAME} {label}',
-            'accuracy',
-            ACCURACIES,
+            f'{NAME} {label}', 'accuracy', ACCURACIES,
             lambda accuracy, scheme=scheme: _run(problem.scene, numbers, 0.0, scheme, accuracy),
-            True,
-        )
+            True)
 
 
 def _run(scene, numbers, step, scheme, accuracy):
@@ -98,9 +89,8 @@ def _run(scene, numbers, step, scheme, accuracy):
         quaternion = pose.rotation().ToQuaternion()
         spin = plant.EvalBodySpatialVelocityInWorld(context, turning).rotational()
         omega = spin if isinstance(numbers, ball.Ball) else pose.rotation().matrix().T @ spin
-        return numbers.state(
-            (quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *omega)
-        )
+        return numbers.state((
+            quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *omega))
     run = Run(begin, to, state)
     run.keeps = simulator, diagram
     return run
@@ -111,8 +101,7 @@ def _spatial(mass, arm, inertia):
     about = np.asarray(inertia) + (mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
     try:
         unit = UnitInertia().SetFromRotationalInertia(
-            RotationalInertia(*np.diag(about), about[0, 1], about[0, 2], about[1, 2]), mass
-        )
+            RotationalInertia(*np.diag(about), about[0, 1], about[0, 2], about[1, 2]), mass)
         return SpatialInertia(mass, arm, unit)
     except RuntimeError as error:
         raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
@@ -134,20 +123,17 @@ def _joined(plant, turning, scene, numbers):
         through = np.array(scene.constraint.through)
         held = plant.AddFrame(FixedOffsetFrame('held', frame, RigidTransform(through)))
         turn = _rotation(numbers.orientation)
-        base = plant.AddFrame(
-            FixedOffsetFrame('base', world, RigidTransform(turn, turn.matrix() @ through))
-        )
+        base = plant.AddFrame(FixedOffsetFrame(
+            'base', world, RigidTransform(turn, turn.matrix() @ through)))
         joint = plant.AddJoint(RevoluteJoint('hinge', base, held, numbers.axis, numbers.friction))
         plant.AddJointActuator('motor', joint)
         return joint
     if isinstance(numbers, ball.Ball):
         friction = CoulombFriction(numbers.mu, numbers.mu)
         plant.RegisterCollisionGeometry(
-            plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction
-        )
+            plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction)
         plant.RegisterCollisionGeometry(
-            turning, RigidTransform(), Sphere(numbers.radius), 'ball', friction
-        )
+            turning, RigidTransform(), Sphere(numbers.radius), 'ball', friction)
         return plant.AddJoint(QuaternionFloatingJoint('flight', world, frame))
     damping = numbers.damping[0, 0]
     if scene.constraint.kind == 'free':
@@ -165,32 +151,26 @@ def _drive(builder, plant, turning, numbers):
     from pydrake.multibody.plant import ExternallyAppliedSpatialForce, Propeller
     if isinstance(numbers, pendulum.Pendulum):
         return lambda whole: plant.get_actuation_input_port().FixValue(
-            plant.GetMyMutableContextFromRoot(whole), [numbers.torque]
-        )
+            plant.GetMyMutableContextFromRoot(whole), [numbers.torque])
     if isinstance(numbers, ball.Ball) or not (np.any(numbers.torque) or np.any(numbers.push)):
         return lambda whole: None
     if np.any(numbers.torque) and np.any(numbers.push):
-        raise RefusedError(
-            'a couple in the body and one in the world at once: '
-            'its one port would have to be fed by a system of its user'
-        )
+        raise RefusedError('a couple in the body and one in the world at once: '
+                           'its one port would have to be fed by a system of its user')
     if np.any(numbers.push):
         applied = ExternallyAppliedSpatialForce()
-        applied.body_index, applied.F_Bq_W = turning.index(), SpatialForce(
-            numbers.push, np.zeros(3)
-        )
+        applied.body_index, applied.F_Bq_W = (
+            turning.index(), SpatialForce(numbers.push, np.zeros(3)))
         port = plant.get_applied_spatial_force_input_port()
         return lambda whole: port.FixValue(plant.GetMyMutableContextFromRoot(whole), [applied])
     place = RigidTransform(RotationMatrix.MakeFromOneVector(numbers.torque, 2), np.zeros(3))
     propeller = builder.AddSystem(Propeller(turning.index(), place, 0.0, 1.0))
     builder.Connect(
-        propeller.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port()
-    )
+        propeller.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
     builder.Connect(plant.get_body_poses_output_port(), propeller.get_body_poses_input_port())
     size = float(np.linalg.norm(numbers.torque))
     return lambda whole: propeller.get_command_input_port().FixValue(
-        propeller.GetMyMutableContextFromRoot(whole), [size]
-    )
+        propeller.GetMyMutableContextFromRoot(whole), [size])
 
 
 def _beginning(plant, context, turning, joint, numbers):
@@ -204,13 +184,12 @@ def _beginning(plant, context, turning, joint, numbers):
     x, y, z, w = numbers.start[:4]
     rotation = _rotation(numbers.start[:4])
     if isinstance(numbers, ball.Ball):
-        positions, velocities = np.array([w, x, y, z, 0.0, 0.0, numbers.radius]), np.array(
-            [*numbers.start[4:], 0.0]
-        )
+        positions, velocities = (
+            np.array([w, x, y, z, 0.0, 0.0, numbers.radius]), np.array([*numbers.start[4:], 0.0]))
     else:
-        positions, velocities = np.array([w, x, y, z, 0.0, 0.0, 0.0]), np.concatenate(
-            [rotation.matrix() @ numbers.start[4:], np.zeros(3)]
-        )
+        positions, velocities = (
+            np.array([w, x, y, z, 0.0, 0.0, 0.0]),
+            np.concatenate([rotation.matrix() @ numbers.start[4:], np.zeros(3)]))
     if plant.num_positions() == 3:
         positions, velocities = RollPitchYaw(rotation).vector(), velocities[:3]
 
@@ -223,12 +202,7 @@ def _beginning(plant, context, turning, joint, numbers):
 def _rotation(q):
     from pydrake.math import RotationMatrix
     x, y, z, w = q
-    return RotationMatrix(
-        np.array(
-            [
-                [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-                [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-                [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-            ]
-        )
-    )
+    return RotationMatrix(np.array([
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]]))

@@ -22,27 +22,20 @@ def runners(problem, reference):
     """Yield heyoka in doubles and, except for a ball, in 80-bit numbers."""
     numbers = given.of(problem)
     made = _rolling if isinstance(numbers, ball.Ball) else smooth_run
-    yield Runner(
-        NAME, 'tolerance', TOLERANCES, lambda tolerance: made(numbers, tolerance, np.float64), True
-    )
+    yield Runner(NAME, 'tolerance', TOLERANCES,
+                 lambda tolerance: made(numbers, tolerance, np.float64), True)
     if made is smooth_run:
         finer = (1e-12, 1e-15, 1e-18)
-        yield Runner(
-            f'{NAME}, 80 bit',
-            'tolerance',
-            finer,
-            lambda tolerance: smooth_run(numbers, tolerance, np.longdouble),
-            True,
-        )
+        yield Runner(f'{NAME}, 80 bit', 'tolerance', finer,
+                     lambda tolerance: smooth_run(numbers, tolerance, np.longdouble), True)
 
 
 def smooth_run(numbers, tolerance, number):
     """Return the Run of a Body or Pendulum in numbers of a type (float64 or longdouble)."""
     import heyoka
     swings = isinstance(numbers, pendulum.Pendulum)
-    variables = heyoka.make_vars(
-        *(('phi', 'rate') if swings else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3'))
-    )
+    variables = heyoka.make_vars(*(('phi', 'rate') if swings
+                                   else ('x', 'y', 'z', 'w', 'w1', 'w2', 'w3')))
     system = list(zip(variables, (swinging if swings else turning)(numbers, number, *variables)))
     start = numbers.start.astype(number)
     integrator = heyoka.taylor_adaptive(system, start, tol=number(tolerance), fp_type=number)
@@ -74,18 +67,14 @@ def _rolling(numbers, tolerance, _):
     def integrator(push, **events):
         system = [*turn, *(heyoka.expression(float(c)) for c in push[4:])]
         return heyoka.taylor_adaptive(
-            list(zip(variables, system)), numbers.start, tol=tolerance, **events
-        )
+            list(zip(variables, system)), numbers.start, tol=tolerance, **events)
     rolling = sliding = integrator(np.zeros(9))
     if numbers.slides:
-        onset = sum(
-            (c * one for c, one in zip(numbers.slip[5:], variables[5:])),
-            numbers.slip[4] * variables[4],
-        )
+        onset = sum((c * one for c, one in zip(numbers.slip[5:], variables[5:])),
+                    numbers.slip[4] * variables[4])
         sliding = integrator(
             numbers.push,
-            t_events=[heyoka.t_event(onset, direction=heyoka.event_direction.negative)],
-        )
+            t_events=[heyoka.t_event(onset, direction=heyoka.event_direction.negative)])
     now = sliding
 
     def begin():
@@ -111,9 +100,8 @@ def swinging(numbers, number, phi, rate):
     """Return the right-hand sides of a pendulum, without terms that are zero."""
     import heyoka
     a, b, k, d = numbers.numbers.astype(number)
-    parts = [
-        c * e for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0
-    ]
+    parts = [c * e
+             for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0]
     right = sum(parts[1:], parts[0]) if parts else 0.0 * rate
     return [rate, right + k if k else right]
 
@@ -130,35 +118,23 @@ def turning(numbers, number, x, y, z, w, *omega):
     # constants are formed in the precision of the run
     i, c = numbers.moments.astype(number), number(numbers.inner)
     products = [omega[1] * omega[2], omega[2] * omega[0], omega[0] * omega[1]]
-    a = (
-        omega
-        if not numbers.inner
-        else [
-            plus(omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k])))
-            for k in range(3)
-        ]
-    )
+    a = (omega if not numbers.inner else [plus(
+        omega[k], total((c * (i[(k + 1) % 3] - i[(k + 2) % 3]), products[k]))) for k in range(3)])
     columns = [[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
                [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
                [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)]]
     rates = []
     for k in range(3):
         j, l = (k + 1) % 3, (k + 2) % 3
-        inertia = (
-            total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j]))
-            if numbers.inner
-            else total(((i[j] - i[l]) / i[k], products[k]))
-        )
-        couple = total(
-            (numbers.weight_arm[l] / i[k], columns[j][2]),
-            (-numbers.weight_arm[j] / i[k], columns[l][2]),
-            *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
-            *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)),
-        )
+        inertia = (total((i[j] / i[k], omega[j] * a[l]), (-i[l] / i[k], omega[l] * a[j]))
+                   if numbers.inner else total(((i[j] - i[l]) / i[k], products[k])))
+        couple = total((numbers.weight_arm[l] / i[k], columns[j][2]),
+                       (-numbers.weight_arm[j] / i[k], columns[l][2]),
+                       *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
+                       *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)))
         constant = number(numbers.torque[k]) / i[k]
-        parts = (
-            plus(inertia, couple) if inertia is not None or couple is not None else 0.0 * omega[k]
-        )
+        parts = (plus(inertia, couple) if inertia is not None or couple is not None
+                 else 0.0 * omega[k])
         rates.append(parts + constant if constant else parts)
     return [
         0.5 * (w * a[0] + y * a[2] - z * a[1]),

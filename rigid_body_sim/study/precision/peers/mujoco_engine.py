@@ -36,17 +36,13 @@ def runners(problem, reference):
             raise RefusedError('internal dissipation: it has no such effect')
         if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
             raise RefusedError(
-                'drag on the centre of mass of a pivoted body: its joints damp all axes alike'
-            )
+                'drag on the centre of mass of a pivoted body: its joints damp all axes alike')
     steps = steps_for(problem, reference)
     for label, integrator in (('RK4', 'RK4'), ('default (Euler)', 'Euler')):
         yield Runner(
-            f'{NAME} {label}',
-            'step',
-            steps,
+            f'{NAME} {label}', 'step', steps,
             lambda step, integrator=integrator: _run(problem.scene, numbers, integrator, step),
-            True,
-        )
+            True)
 
 
 def _text(scene, numbers, integrator, step):
@@ -55,11 +51,8 @@ def _text(scene, numbers, integrator, step):
     Its body frame is that of the peer's numbers, which for a hinge and a ball is the scene's.
     """
     kind, gravity = scene.constraint.kind, scene.effect('gravity')
-    g = (
-        gravity.g
-        if gravity and kind in ('pivot', 'hinge')
-        else numbers.g if kind == 'table' else 0.0
-    )
+    g = (gravity.g if gravity and kind in ('pivot', 'hinge') else numbers.g if kind == 'table'
+         else 0.0)
     attitude, origin, table, shape = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), '', ''
     if isinstance(numbers, body.Body):
         inertia, arm = numbers.about_center(scene)
@@ -78,21 +71,12 @@ def _text(scene, numbers, integrator, step):
             BALL.format(numbers.mu, numbers.radius),
         )
     return SCENE.format(
-        integrator=integrator,
-        step=step,
-        gravity=-g,
-        contact='enable' if kind == 'table' else 'disable',
-        table=table,
-        joint=joint,
-        shape=shape,
-        mass=scene.body.mass,
-        origin=_spaced(origin),
-        attitude=_spaced((attitude[3], *attitude[:3])),
-        place=_spaced(arm),
-        inertia=_spaced(
-            inertia[pair] for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-        ),
-    )
+        integrator=integrator, step=step, gravity=-g,
+        contact='enable' if kind == 'table' else 'disable', table=table, joint=joint, shape=shape,
+        mass=scene.body.mass, origin=_spaced(origin),
+        attitude=_spaced((attitude[3], *attitude[:3])), place=_spaced(arm),
+        inertia=_spaced(inertia[pair]
+                        for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))))
 
 
 def _spaced(values):
@@ -139,21 +123,14 @@ def _run(scene, numbers, integrator, step):
         if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
             raise NotConverged(
                 f'{NAME}: at a step of {step:.3g} s it finds NaN and starts anew from its first '
-                'pose, with a warning'
-            )
+                'pose, with a warning')
 
     def state():
         if isinstance(numbers, pendulum.Pendulum):
             return numbers.state((data.qpos[0], data.qvel[0]))
         w, x, y, z = data.qpos[-4:]
         omega = data.qvel[-3:]
-        return numbers.state(
-            (
-                x,
-                y,
-                z,
-                w,
-                *(rotate(x, y, z, w, *omega) if isinstance(numbers, ball.Ball) else omega),
-            )
-        )
+        return numbers.state((
+            x, y, z, w,
+            *(rotate(x, y, z, w, *omega) if isinstance(numbers, ball.Ball) else omega)))
     return Run(begin, to, state)

@@ -23,36 +23,12 @@ def march(p, values, h, steps):
     for _ in range(steps):
         a = rates(p, x, y, z, w, w1, w2, w3)
         g = 0.5 * h
-        b = rates(
-            p,
-            x + g * a[0],
-            y + g * a[1],
-            z + g * a[2],
-            w + g * a[3],
-            w1 + g * a[4],
-            w2 + g * a[5],
-            w3 + g * a[6],
-        )
-        c = rates(
-            p,
-            x + g * b[0],
-            y + g * b[1],
-            z + g * b[2],
-            w + g * b[3],
-            w1 + g * b[4],
-            w2 + g * b[5],
-            w3 + g * b[6],
-        )
-        d = rates(
-            p,
-            x + h * c[0],
-            y + h * c[1],
-            z + h * c[2],
-            w + h * c[3],
-            w1 + h * c[4],
-            w2 + h * c[5],
-            w3 + h * c[6],
-        )
+        b = rates(p, x + g * a[0], y + g * a[1], z + g * a[2], w + g * a[3], w1 + g * a[4],
+                  w2 + g * a[5], w3 + g * a[6])
+        c = rates(p, x + g * b[0], y + g * b[1], z + g * b[2], w + g * b[3], w1 + g * b[4],
+                  w2 + g * b[5], w3 + g * b[6])
+        d = rates(p, x + h * c[0], y + h * c[1], z + h * c[2], w + h * c[3], w1 + h * c[4],
+                  w2 + h * c[5], w3 + h * c[6])
         s = h / 6.0
         x += s * (a[0] + 2.0 * (b[0] + c[0]) + d[0])
         y += s * (a[1] + 2.0 * (b[1] + c[1]) + d[1])
@@ -112,8 +88,7 @@ def runners(problem, reference):
     numbers = given.of(problem)
     made = {body.Body: _turning, pendulum.Pendulum: _swinging, ball.Ball: _rolling}[type(numbers)]
     yield Runner(
-        NAME, 'step', steps_for(problem, reference), lambda step: made(numbers, step), True
-    )
+        NAME, 'step', steps_for(problem, reference), lambda step: made(numbers, step), True)
 
 
 def _turning(numbers, step):
@@ -150,7 +125,5 @@ def _rolling(numbers, step):
         nonlocal sliding, done
         steps = body.whole_steps(time, step)
         sliding, done = (
-            roll(numbers.push, numbers.slip, values, sliding, step, steps - done),
-            steps,
-        )
+            roll(numbers.push, numbers.slip, values, sliding, step, steps - done), steps)
     return Run(begin, to, lambda: numbers.state(values))

@@ -43,9 +43,8 @@ class Pendulum:
     def state(self, values):
         """Return q and omega (body axes) from phi and phi'."""
         half, rate = 0.5 * values[0], values[1]
-        return *multiply(*self.orientation, *(math.sin(half) * self.axis), math.cos(half)), *(
-            rate * self.axis
-        )
+        return (*multiply(*self.orientation, *(math.sin(half) * self.axis), math.cos(half)),
+                *(rate * self.axis))
 
 
 def of(scene):
@@ -53,9 +52,8 @@ def of(scene):
     body, constraint = scene.body, scene.constraint
     q, omega, _ = start.of(scene)
     long = np.longdouble
-    axis, arm = np.array(constraint.axis, long), np.subtract(
-        body.center_of_mass, constraint.through, dtype=long
-    )
+    axis, arm = (np.array(constraint.axis, long),
+                 np.subtract(body.center_of_mass, constraint.through, dtype=long))
     out = arm - axis * (axis @ arm)
     moment = axis @ body.about_center.matrix.astype(long) @ axis + body.mass * (out @ out)
     # vertical in the body at phi = 0; the weight's torque about the axis is M g n . (z x r)
@@ -65,30 +63,13 @@ def of(scene):
     torque, friction = long(0), drag.angular + drag.linear * (out @ out) if drag else long(0)
     for effect in scene.effects:
         if effect.name == 'torque':
-            torque += (
-                axis @ effect.values[0]
-                if effect.frame == 'body'
-                else np.dot(rotate(*q, *axis.astype(float)), effect.values[0])
-            )
-    numbers = (
-        np.array(
-            [
-                weight * (axis @ np.cross(up, out)),
-                weight * (axis @ np.cross(up, np.cross(axis, out))),
-                torque,
-                friction,
-            ]
-        )
-        / moment
-    )
-    return Pendulum(
-        axis.astype(float),
-        numbers,
-        float(torque),
-        float(friction),
-        q,
-        np.array([0.0, np.dot(constraint.axis, omega)]),
-    )
+            torque += (axis @ effect.values[0] if effect.frame == 'body'
+                       else np.dot(rotate(*q, *axis.astype(float)), effect.values[0]))
+    numbers = (np.array([weight * (axis @ np.cross(up, out)),
+                         weight * (axis @ np.cross(up, np.cross(axis, out))), torque, friction])
+               / moment)
+    return Pendulum(axis.astype(float), numbers, float(torque), float(friction), q,
+                    np.array([0.0, np.dot(constraint.axis, omega)]))
 
 
 @numba.njit(cache=True)

@@ -29,12 +29,8 @@ def runners(problem, reference):
     made = _turning if isinstance(numbers, body.Body) else _swinging
     for label, step_of in (('RK4', _rk4), ('semi-implicit Euler', _euler)):
         yield Runner(
-            f'{NAME} {label}',
-            'step',
-            steps_for(problem, reference),
-            lambda step, step_of=step_of: made(problem.scene, numbers, step_of, step),
-            True,
-        )
+            f'{NAME} {label}', 'step', steps_for(problem, reference),
+            lambda step, step_of=step_of: made(problem.scene, numbers, step_of, step), True)
 
 
 def _model(scene, joint, placement, arm, inertia):
@@ -43,11 +39,9 @@ def _model(scene, joint, placement, arm, inertia):
     model = pinocchio.Model()
     one = model.addJoint(0, joint, placement, 'joint')
     model.appendBodyToJoint(
-        one, pinocchio.Inertia(scene.body.mass, arm, inertia), pinocchio.SE3.Identity()
-    )
-    model.gravity.linear = np.array(
-        [0.0, 0.0, 0.0 if kind == 'free' or not gravity else -gravity.g]
-    )
+        one, pinocchio.Inertia(scene.body.mass, arm, inertia), pinocchio.SE3.Identity())
+    model.gravity.linear = np.array([
+        0.0, 0.0, 0.0 if kind == 'free' or not gravity else -gravity.g])
     return pinocchio, model, model.createData()
 
 
@@ -55,28 +49,16 @@ def _turning(scene, numbers, step_of, step):
     import pinocchio
     inertia, arm = numbers.about_center(scene)
     pinocchio, model, data = _model(
-        scene, pinocchio.JointModelSpherical(), pinocchio.SE3.Identity(), arm, inertia
-    )
+        scene, pinocchio.JointModelSpherical(), pinocchio.SE3.Identity(), arm, inertia)
     still = not (np.any(numbers.torque) or np.any(numbers.push) or np.any(numbers.damping))
     nothing = np.zeros(3)
 
     def rate(q, v):
-        torque = (
-            nothing
-            if still
-            else numbers.torque + rotate_back(*q, *numbers.push) - numbers.damping @ v
-        )
+        torque = (nothing if still
+                  else numbers.torque + rotate_back(*q, *numbers.push) - numbers.damping @ v)
         return pinocchio.aba(model, data, q, v, torque)
-    return _looped(
-        pinocchio,
-        model,
-        rate,
-        numbers.start[:4],
-        numbers.start[4:],
-        step_of,
-        step,
-        lambda q, v: numbers.state((*q, *v)),
-    )
+    return _looped(pinocchio, model, rate, numbers.start[:4], numbers.start[4:], step_of, step,
+                   lambda q, v: numbers.state((*q, *v)))
 
 
 def _swinging(scene, numbers, step_of, step):
@@ -85,25 +67,14 @@ def _swinging(scene, numbers, step_of, step):
     through = np.array(scene.constraint.through)
     turn = pinocchio.Quaternion(np.array(numbers.orientation)).matrix()
     pinocchio, model, data = _model(
-        scene,
-        pinocchio.JointModelRevoluteUnaligned(*numbers.axis),
-        pinocchio.SE3(turn, turn @ through),
-        np.subtract(scene.body.center_of_mass, through),
-        scene.body.about_center.matrix,
-    )
+        scene, pinocchio.JointModelRevoluteUnaligned(*numbers.axis),
+        pinocchio.SE3(turn, turn @ through), np.subtract(scene.body.center_of_mass, through),
+        scene.body.about_center.matrix)
 
     def rate(q, v):
         return pinocchio.aba(model, data, q, v, numbers.torque - numbers.friction * v)
-    return _looped(
-        pinocchio,
-        model,
-        rate,
-        numbers.start[:1],
-        numbers.start[1:],
-        step_of,
-        step,
-        lambda q, v: numbers.state((q[0], v[0])),
-    )
+    return _looped(pinocchio, model, rate, numbers.start[:1], numbers.start[1:], step_of, step,
+                   lambda q, v: numbers.state((q[0], v[0])))
 
 
 def _looped(pinocchio, model, rate, start_q, start_v, step_of, step, state):

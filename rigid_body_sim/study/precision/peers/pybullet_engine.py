@@ -33,13 +33,8 @@ def runners(problem, reference):
     if isinstance(numbers, body.Body) and numbers.inner:
         raise RefusedError('internal dissipation: it has no such effect')
     made = {body.Body: _turning, pendulum.Pendulum: _swinging, ball.Ball: _rolling}[type(numbers)]
-    yield Runner(
-        NAME,
-        'step',
-        steps_for(problem, reference),
-        lambda step: made(problem.scene, numbers, step),
-        True,
-    )
+    yield Runner(NAME, 'step', steps_for(problem, reference),
+                 lambda step: made(problem.scene, numbers, step), True)
 
 
 def _engine(step, g):
@@ -57,15 +52,8 @@ def _spaced(values):
 
 def _undamped(engine, world, one, moments, **more):
     engine.changeDynamics(
-        one,
-        -1,
-        localInertiaDiagonal=list(map(float, moments)),
-        linearDamping=0.0,
-        angularDamping=0.0,
-        maxJointVelocity=1e9,
-        **more,
-        **world,
-    )
+        one, -1, localInertiaDiagonal=list(map(float, moments)), linearDamping=0.0,
+        angularDamping=0.0, maxJointVelocity=1e9, **more, **world)
 
 
 def _stepping(engine, world, step, again, push, state):
@@ -97,23 +85,13 @@ def _turning(scene, numbers, step):
     if np.abs(inertia - np.diag(np.diag(inertia))).max() > 1e-12 * inertia.max():
         raise RefusedError(
             'the principal axes about the centre of mass are not those about the pivot: '
-            'it takes three moments only'
-        )
+            'it takes three moments only')
     engine, world = _engine(step, 0.0 if free or not gravity else gravity.g)
     one = engine.createMultiBody(baseMass=scene.body.mass, **world)
     _undamped(engine, world, one, np.diag(inertia))
     if not free:
-        engine.createConstraint(
-            one,
-            -1,
-            -1,
-            -1,
-            engine.JOINT_POINT2POINT,
-            [0, 0, 0],
-            (-arm).tolist(),
-            [0, 0, 0],
-            **world,
-        )
+        engine.createConstraint(one, -1, -1, -1, engine.JOINT_POINT2POINT, [0, 0, 0],
+                                (-arm).tolist(), [0, 0, 0], **world)
     q, omega = numbers.start[:4], numbers.start[4:]
     spin, place = rotate(*q, *omega), np.array(rotate(*q, *arm))
 
@@ -124,16 +102,10 @@ def _turning(scene, numbers, step):
     def push():
         now, torque = engine.getBasePositionAndOrientation(one, **world)[1], numbers.torque
         if np.any(numbers.damping):
-            torque = torque - numbers.damping @ rotate_back(
-                *now, *engine.getBaseVelocity(one, **world)[1]
-            )
-        engine.applyExternalTorque(
-            one,
-            -1,
-            np.add(rotate(*now, *torque), numbers.push).tolist(),
-            engine.WORLD_FRAME,
-            **world,
-        )
+            torque = (torque - numbers.damping @ rotate_back(
+                *now, *engine.getBaseVelocity(one, **world)[1]))
+        engine.applyExternalTorque(one, -1, np.add(rotate(*now, *torque), numbers.push).tolist(),
+                                   engine.WORLD_FRAME, **world)
 
     def state():
         q = engine.getBasePositionAndOrientation(one, **world)[1]
@@ -147,36 +119,17 @@ def _swinging(scene, numbers, step):
     gravity, body_, through = scene.effect('gravity'), scene.body, scene.constraint.through
     engine, world = _engine(step, gravity.g if gravity else 0.0)
     inertia = body_.about_center.matrix
-    text = URDF.format(
-        axis=_spaced(numbers.axis),
-        through=_spaced(through),
-        place=_spaced(np.subtract(body_.center_of_mass, through)),
-        mass=body_.mass,
-        inertia=' '.join(
-            f'i{"xyz"[i]}{"xyz"[j]}="{float(inertia[i, j])!r}"'
-            for i in range(3)
-            for j in range(i, 3)
-        ),
-    )
+    text = URDF.format(axis=_spaced(numbers.axis), through=_spaced(through),
+                       place=_spaced(np.subtract(body_.center_of_mass, through)), mass=body_.mass,
+                       inertia=' '.join(f'i{"xyz"[i]}{"xyz"[j]}="{float(inertia[i, j])!r}"'
+                                        for i in range(3) for j in range(i, 3)))
     with tempfile.NamedTemporaryFile('w', suffix='.urdf') as file:
         file.write(text)
         file.flush()
-        one = engine.loadURDF(
-            file.name,
-            baseOrientation=list(map(float, numbers.orientation)),
-            useFixedBase=True,
-            flags=engine.URDF_USE_INERTIA_FROM_FILE,
-            **world,
-        )
-    engine.changeDynamics(
-        one,
-        0,
-        linearDamping=0.0,
-        angularDamping=0.0,
-        jointDamping=0.0,
-        maxJointVelocity=1e9,
-        **world,
-    )
+        one = engine.loadURDF(file.name, baseOrientation=list(map(float, numbers.orientation)),
+                              useFixedBase=True, flags=engine.URDF_USE_INERTIA_FROM_FILE, **world)
+    engine.changeDynamics(one, 0, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0,
+                          maxJointVelocity=1e9, **world)
     # otherwise a motor brakes it
     engine.setJointMotorControl2(one, 0, engine.VELOCITY_CONTROL, force=0.0, **world)
 
@@ -184,14 +137,10 @@ def _swinging(scene, numbers, step):
         torque = numbers.torque - numbers.friction * engine.getJointState(one, 0, **world)[1]
         engine.setJointMotorControl2(one, 0, engine.TORQUE_CONTROL, force=torque, **world)
 
-    return _stepping(
-        engine,
-        world,
-        step,
-        lambda: engine.resetJointState(one, 0, 0.0, float(numbers.start[1]), **world),
-        push if numbers.torque or numbers.friction else None,
-        lambda: numbers.state(engine.getJointState(one, 0, **world)[:2]),
-    )
+    return _stepping(engine, world, step,
+                     lambda: engine.resetJointState(one, 0, 0.0, float(numbers.start[1]), **world),
+                     push if numbers.torque or numbers.friction else None,
+                     lambda: numbers.state(engine.getJointState(one, 0, **world)[:2]))
 
 
 def _rolling(scene, numbers, step):
@@ -201,37 +150,21 @@ def _rolling(scene, numbers, step):
     """
     engine, world = _engine(step, numbers.g)
     table = engine.createMultiBody(
-        0.0, engine.createCollisionShape(engine.GEOM_PLANE, **world), **world
-    )
+        0.0, engine.createCollisionShape(engine.GEOM_PLANE, **world), **world)
     engine.changeDynamics(table, -1, lateralFriction=1.0, restitution=0.0, **world)
     one = engine.createMultiBody(
         scene.body.mass,
-        engine.createCollisionShape(engine.GEOM_SPHERE, radius=numbers.radius, **world),
-        **world,
-    )
-    _undamped(
-        engine,
-        world,
-        one,
-        scene.body.about_center.moments,
-        lateralFriction=numbers.mu,
-        rollingFriction=0.0,
-        spinningFriction=0.0,
-        restitution=0.0,
-    )
+        engine.createCollisionShape(engine.GEOM_SPHERE, radius=numbers.radius, **world), **world)
+    _undamped(engine, world, one, scene.body.about_center.moments, lateralFriction=numbers.mu,
+              rollingFriction=0.0, spinningFriction=0.0, restitution=0.0)
     x, y, z, w, wx, wy, wz, vx, vy = numbers.start.tolist()
 
     def again():
         engine.resetBasePositionAndOrientation(
-            one, [0.0, 0.0, numbers.radius], [x, y, z, w], **world
-        )
+            one, [0.0, 0.0, numbers.radius], [x, y, z, w], **world)
         engine.resetBaseVelocity(one, [vx, vy, 0.0], [wx, wy, wz], **world)
 
     def state():
-        return numbers.state(
-            (
-                *engine.getBasePositionAndOrientation(one, **world)[1],
-                *engine.getBaseVelocity(one, **world)[1],
-            )
-        )
+        return numbers.state((*engine.getBasePositionAndOrientation(one, **world)[1],
+                              *engine.getBaseVelocity(one, **world)[1]))
     return _stepping(engine, world, step, again, None, state)

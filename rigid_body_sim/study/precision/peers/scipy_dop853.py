@@ -23,9 +23,8 @@ def version():
 @numba.njit(cache=True)
 def turning(_, values, p):
     """Return the rates of the unknowns of a turning body."""
-    return np.array(
-        body.rates(p, values[0], values[1], values[2], values[3], values[4], values[5], values[6])
-    )
+    return np.array(body.rates(
+        p, values[0], values[1], values[2], values[3], values[4], values[5], values[6]))
 
 
 @numba.njit(cache=True)
@@ -45,13 +44,8 @@ def rolling(_, values, p):
 def runners(problem, reference):
     """Yield the method."""
     numbers = given.of(problem)
-    yield Runner(
-        NAME,
-        'tolerance',
-        tuple(t for t in TOLERANCES if t > 2.3e-14),
-        lambda tolerance: _run(numbers, tolerance),
-        True,
-    )
+    yield Runner(NAME, 'tolerance', tuple(t for t in TOLERANCES if t > 2.3e-14),
+                 lambda tolerance: _run(numbers, tolerance), True)
 
 
 def _run(numbers, tolerance):
@@ -89,17 +83,8 @@ def _run(numbers, tolerance):
 
 def _solved(side, began, time, values, p, tolerance, event):
     from scipy.integrate import solve_ivp
-    found = solve_ivp(
-        side,
-        (began, time),
-        values,
-        'DOP853',
-        t_eval=(time,),
-        args=(p,),
-        rtol=tolerance,
-        atol=tolerance,
-        events=event,
-    )
+    found = solve_ivp(side, (began, time), values, 'DOP853', t_eval=(time,), args=(p,),
+                      rtol=tolerance, atol=tolerance, events=event)
     if not found.success:
         raise NotConverged(f'{NAME}: {found.message}')
     return found

@@ -18,10 +18,8 @@ def of(scene):
     """
     if any(effect.name == 'strike' and effect.time > 0.0 for effect in scene.effects):
         raise RefusedError('a strike on the way: the harness gives peers smooth motions only')
-    if any(
-        effect.name == 'torque' and (len(effect.times) > 1 or effect.times[0] > 0.0)
-        for effect in scene.effects
-    ):
+    if any(effect.name == 'torque' and (len(effect.times) > 1 or effect.times[0] > 0.0)
+           for effect in scene.effects):
         raise RefusedError('a torque that jumps: the harness gives peers smooth motions only')
     vector = begun(scene)
     return tuple(vector[ORIENTATION]), tuple(vector[ANGULAR_VELOCITY]), tuple(vector[VELOCITY])
