@@ -1,4 +1,8 @@
-"""What `auto` chooses: it meets the accuracy on scenes outside its table, says what it expects, and a recorded choice is taken again."""
+# SPDX-License-Identifier: Apache-2.0
+"""The choices of `auto`: accuracy on scenes outside its table, expected errors, and replay.
+
+A recorded choice is taken again.
+"""
 
 import json
 import pathlib
@@ -19,7 +23,8 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
-REFERENCE = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'choice.json').read_text())
+REFERENCE = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
+                        / 'choice.json').read_text())
 
 
 def scene_of(name):
@@ -44,14 +49,19 @@ def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, m
     monkeypatch.setattr(trial, 'settle', measured.pick)
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)
-    assert [choice.expected_error for choice in choices] == sorted((choice.expected_error for choice in choices), reverse=True)
-    assert all(choice.expected_error <= asked for choice, asked in zip(choices, (1e-2, 1e-6, 1e-10), strict=True))
+    assert [choice.expected_error for choice in choices] == sorted(
+        (choice.expected_error for choice in choices), reverse=True)
+    assert all(choice.expected_error <= asked
+               for choice, asked in zip(choices, (1e-2, 1e-6, 1e-10), strict=True))
 
 
 def test_the_cheapest_that_is_good_enough_is_taken(monkeypatch):
     def rows(*costs):
-        return [{'tolerance': 10.0 ** -k, 'error': 10.0 ** -k, 'cost': cost} for k, cost in zip((3, 6, 9), costs, strict=True)]
-    monkeypatch.setattr(measured, 'table', lambda: {'kinds': {'pivot': {'one': rows(1.0, 4.0, 9.0), 'other': rows(2.0, 3.0, 8.0)}}})
+        return [{'tolerance': 10.0 ** -k, 'error': 10.0 ** -k, 'cost': cost}
+                for k, cost in zip((3, 6, 9), costs, strict=True)]
+    monkeypatch.setattr(
+        measured, 'table',
+        lambda: {'kinds': {'pivot': {'one': rows(1.0, 4.0, 9.0), 'other': rows(2.0, 3.0, 8.0)}}})
     scene = scene_of('slow_top')
     assert measured.pick(scene, ['one', 'other'], 1e-3, 1.0)[:2] == ('one', 1e-3)
     assert measured.pick(scene, ['one', 'other'], 1e-5, 1.0)[:2] == ('other', 1e-6)
@@ -60,9 +70,11 @@ def test_the_cheapest_that_is_good_enough_is_taken(monkeypatch):
     assert measured.pick(scene, ['one', 'other'], 1e-9, 1e12)[2] > 1e-4
 
 
-def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_of_the_scene(monkeypatch):
+def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_of_the_scene(
+        monkeypatch):
     honest = measured.table()
-    rows = {method: [entry | {'error': 1e-5 * entry['error']} for entry in found] for method, found in honest['kinds']['pivot'].items()}
+    rows = {method: [entry | {'error': 1e-5 * entry['error']} for entry in found]
+            for method, found in honest['kinds']['pivot'].items()}
     monkeypatch.setattr(measured, 'table', lambda: {'kinds': {'pivot': rows}})
     scene, duration, out = scene_of('slow_top'), choice_cases.CASES['slow_top'][-1], np.empty(14)
     choice = choose(scene, accuracy=1e-6, horizon=duration)
@@ -80,7 +92,8 @@ def test_closed_forms_cost_no_choice():
 def test_a_recorded_choice_is_taken_whatever_the_table_says(monkeypatch):
     now = choose(scene_of('slow_top'), accuracy=1e-6)
     monkeypatch.setattr(trial, 'settle', lambda *_: pytest.fail('it looked into the table'))
-    then = choose(scene_of('slow_top'), accuracy=1e-6, settled=(now.method, now.tolerance, now.expected_error))
+    then = choose(scene_of('slow_top'), accuracy=1e-6,
+                  settled=(now.method, now.tolerance, now.expected_error))
     assert (then.method, then.tolerance) == (now.method, now.tolerance)
 
 
@@ -93,7 +106,8 @@ def test_the_horizon_is_the_duration_and_counts():
 
 def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch):
     (tmp_path / 'top.yaml').write_text(choice_cases.text('slow_top'))
-    asked = ['--scene', str(tmp_path / 'top.yaml'), '--duration', '0.2', '--accuracy', '1e-6', '--output', str(tmp_path / 'run'), '--json']
+    asked = ['--scene', str(tmp_path / 'top.yaml'), '--duration', '0.2', '--accuracy', '1e-6',
+             '--output', str(tmp_path / 'run'), '--json']
     assert simulate.main(asked) == 0
     method = json.loads(capsys.readouterr().out)['method']
     assert method['horizon'] == 0.2
