@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `run`: node, recording and report in one go, as `make run` starts it."""
 
 import json
@@ -20,19 +21,22 @@ def options(domain, folder):
 
 
 def recorded(folder):
-    [path] = [path for path in (folder / 'recordings').iterdir() if not path.name.endswith('_report')]
+    [path] = [path
+              for path in (folder / 'recordings').iterdir() if not path.name.endswith('_report')]
     return path
 
 
 def test_it_records_and_reports(ros_domain, tmp_path):
-    done = ros_domain.run('-m', 'rigid_body_sim', 'run', '--rate', '500', '--duration', '2', **options(ros_domain, tmp_path))
+    done = ros_domain.run('-m', 'rigid_body_sim', 'run', '--rate', '500', '--duration', '2',
+                          **options(ros_domain, tmp_path))
     assert done.returncode == 0, done.stderr
     path = recorded(tmp_path)
     assert path.name.startswith('tennis_racket_')
     report = path.with_name(f'{path.name}_report')
     text = (report / 'report.txt').read_text()
     assert text in done.stdout and text.startswith('tennis_racket: exact, 500 Hz, by sim_node')
-    files = [report.relative_to(tmp_path) / name for name in ('report.txt', 'report.json', 'overview.png')]
+    files = [report.relative_to(tmp_path) / name
+             for name in ('report.txt', 'report.json', 'overview.png')]
     *_, first, second, third, heading, analyze, view = done.stdout.splitlines()
     assert [first, second, third] == [f'  {file}' for file in files]
     assert heading == 'next:'
@@ -48,9 +52,11 @@ def test_it_records_and_reports(ros_domain, tmp_path):
 
 @pytest.mark.parametrize(('number', 'status'), [(signal.SIGINT, 0), (signal.SIGTERM, 143)])
 def test_a_signal_ends_the_node_and_leaves_a_whole_recording(ros_domain, tmp_path, number, status):
-    with ros_domain.process('-m', 'rigid_body_sim', 'run', '--duration', '0', **options(ros_domain, tmp_path)) as process:
+    with ros_domain.process('-m', 'rigid_body_sim', 'run', '--duration', '0',
+                            **options(ros_domain, tmp_path)) as process:
         deadline = time.monotonic() + 60.0
-        while not any(file.stat().st_size > 200_000 for file in tmp_path.glob('recordings/*/*.mcap')):
+        while not any(file.stat().st_size > 200_000
+                      for file in tmp_path.glob('recordings/*/*.mcap')):
             assert process.poll() is None and time.monotonic() < deadline, process.stderr.read()
             time.sleep(0.1)
         process.send_signal(number)     # to this process alone: it passes it on
@@ -58,12 +64,14 @@ def test_a_signal_ends_the_node_and_leaves_a_whole_recording(ros_domain, tmp_pat
     assert process.returncode == status, error
     path = recorded(tmp_path)
     assert Recording(path).topics['/pose'].count > 1000
-    assert ('drops' in output) == (number == signal.SIGINT)     # who presses Ctrl-C wants the report
+    # who presses Ctrl-C wants the report
+    assert ('drops' in output) == (number == signal.SIGINT)
     assert path.with_name(f'{path.name}_report').is_dir() == (number == signal.SIGINT)
 
 
 def test_bad_input_is_the_node_s_one_line(ros_domain, tmp_path):
-    done = ros_domain.run('-m', 'rigid_body_sim', 'run', '--scene', 'racket', **options(ros_domain, tmp_path))
+    done = ros_domain.run(
+        '-m', 'rigid_body_sim', 'run', '--scene', 'racket', **options(ros_domain, tmp_path))
     assert done.returncode == 2
     [line] = done.stderr.splitlines()
     assert 'did you mean tennis_racket?' in line

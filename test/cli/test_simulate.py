@@ -1,4 +1,5 @@
-"""The command `simulate`: its recording is read by rosbags, which nobody here wrote; its numbers are those of Simulation."""
+# SPDX-License-Identifier: Apache-2.0
+"""The command `simulate`: rosbags reads its recording, and its numbers are those of Simulation."""
 
 import contextlib
 import fcntl
@@ -32,7 +33,8 @@ scene: flipping
 body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
 constraint: free
 effects: []
-initial: {orientation: [0, 0, 0, 1], angular_velocity: [0.3, 5.0, 0.2], position: [1, 2, 3], velocity: [0.1, 0.2, 0.3]}
+initial: {orientation: [0, 0, 0, 1], angular_velocity: [0.3, 5.0, 0.2],
+          position: [1, 2, 3], velocity: [0.1, 0.2, 0.3]}
 """
 
 
@@ -41,8 +43,8 @@ def flipping(tmp_path_factory):
     """Return the path of a recording of 2 s at 500 Hz, in several blocks and chunks."""
     folder = tmp_path_factory.mktemp('simulate')
     (folder / 'flipping.yaml').write_text(FLIPPING)
-    assert main(['--scene', str(folder / 'flipping.yaml'), '--set', 'body.mass=2.0', '--duration', '10', '--rate', '500',
-                 '--output', str(folder / 'run')]) == 0
+    assert main(['--scene', str(folder / 'flipping.yaml'), '--set', 'body.mass=2.0', '--duration',
+                 '10', '--rate', '500', '--output', str(folder / 'run')]) == 0
     return folder / 'run'
 
 
@@ -51,16 +53,19 @@ def read(path):
     found = {}
     with rosbags.AnyReader([path]) as reader:
         for connection, stamp, data in reader.messages():
-            found.setdefault(connection.topic, []).append((stamp, reader.deserialize(data, connection.msgtype)))
+            found.setdefault(connection.topic, []).append((
+                stamp, reader.deserialize(data, connection.msgtype)))
     return found
 
 
 def test_a_stranger_reads_every_tick_with_all_its_bits(flipping):
     found = read(flipping)
-    assert set(found) == {'/pose', '/angular_velocity', '/energy', '/angular_momentum_squared', '/scene', '/events', '/journal'}
+    assert set(found) == {'/pose', '/angular_velocity', '/energy', '/angular_momentum_squared',
+                          '/scene', '/events', '/journal'}
     scene = yaml.safe_load(found['/scene'][0][1].data)
     assert scene['body']['mass'] == 2.0
-    simulation = Simulation(load_scene(flipping.parent / 'flipping.yaml', ['body.mass=2.0']), rate=500.0)
+    simulation = Simulation(
+        load_scene(flipping.parent / 'flipping.yaml', ['body.mass=2.0']), rate=500.0)
     epoch = found['/pose'][0][0]
     for name in ('/pose', '/angular_velocity', '/energy', '/angular_momentum_squared'):
         assert [stamp - epoch for stamp, _ in found[name]] == [k * 2_000_000 for k in range(5001)]
@@ -70,7 +75,8 @@ def test_a_stranger_reads_every_tick_with_all_its_bits(flipping):
         assert (pose.header.frame_id, omega.header.frame_id) == ('world', 'body')
         assert pose.header.stamp.sec * 10**9 + pose.header.stamp.nanosec == found['/pose'][k][0]
         q, p = pose.pose.orientation, pose.pose.position
-        recorded = [simulation.time, q.x, q.y, q.z, q.w, omega.vector.x, omega.vector.y, omega.vector.z, p.x, p.y, p.z]
+        recorded = [simulation.time, q.x, q.y, q.z, q.w, omega.vector.x, omega.vector.y,
+                    omega.vector.z, p.x, p.y, p.z]
         assert recorded == simulation.vector[:11].tolist()
         assert found['/energy'][k][1].data == simulation.energy
         assert found['/angular_momentum_squared'][k][1].data == simulation.angular_momentum_squared
@@ -85,24 +91,30 @@ def test_events_stand_at_their_ticks(flipping):
     assert len(events) == len(simulation.events) == 3
     for (stamp, message), event in zip(events, simulation.events, strict=True):
         values = {pair.key: pair.value for pair in message.values}
-        assert (message.name, values['tick'], values['time']) == (event.name, str(event.tick), repr(event.time))
+        assert (message.name, values['tick'], values['time']) == (
+            event.name, str(event.tick), repr(event.time))
         assert stamp == found['/pose'][event.tick][0]
 
 
 def test_it_says_all_that_is_needed_to_run_it_again(flipping):
     recording = Recording(flipping)
-    about = {key: json.loads(recording.about[key]) for key in ('simulation', 'parameters', 'machine')}
+    about = {key: json.loads(recording.about[key])
+             for key in ('simulation', 'parameters', 'machine')}
     assert recording.about['made_by'] == 'simulate' and recording.about['version']
-    assert about['simulation'] == {'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact',
-                                   'horizon': 10.0, 'tolerance': 1e-12, 'expected_error': about['simulation']['expected_error']}
+    assert about['simulation'] == {
+        'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact',
+        'horizon': 10.0, 'tolerance': 1e-12,
+        'expected_error': about['simulation']['expected_error']}
     assert 0.0 < about['simulation']['expected_error'] < 1e-13
-    assert about['parameters'] == {'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'], 'rate': 500.0,
-                                   'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0, 'publish': []}
+    assert about['parameters'] == {
+        'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'],
+        'rate': 500.0, 'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0, 'publish': []}
     assert {'processor', 'libc', 'python', 'numpy', 'numba', 'sources'} <= set(about['machine'])
     begin, state = recording.journal()
     assert begin['kind'] == 'begin' and begin['scene'] == recording.about['scene']
     pose = recording.read('/pose', ['pose.orientation'])
-    assert state['kind'] == 'state' and state['tick'] == 0 and state['vector'][1:5] == pose['pose.orientation'][0].tolist()
+    assert (state['kind'] == 'state' and state['tick'] == 0
+            and state['vector'][1:5] == pose['pose.orientation'][0].tolist())
     assert pose['sequence'].tolist() == list(range(5001))
 
 
@@ -113,8 +125,8 @@ def test_json_is_the_state_to_the_last_bit_with_and_without_a_recording(tmp_path
     simulation = Simulation('tennis_racket', rate=333.0)
     simulation.advance(1166)    # the first tick at 3.5 s or later
     state = result['state']
-    assert [state['time'], *state['orientation'], *state['angular_velocity'], *state['position'], *state['velocity']] == \
-        simulation.vector.tolist()
+    assert [state['time'], *state['orientation'], *state['angular_velocity'], *state['position'],
+            *state['velocity']] == simulation.vector.tolist()
     assert result['ledger'] == simulation.ledger()
     assert result['method']['method'] == 'exact'
     assert result['cost']['ticks'] == 1166 and result['cost']['messages'] == 0
@@ -125,9 +137,10 @@ def test_json_is_the_state_to_the_last_bit_with_and_without_a_recording(tmp_path
 
 
 def test_topics_on_request_are_recorded_with_every_tick(tmp_path):
-    """A top: its reaction and proper acceleration are what the simulation tells of the same ticks."""
+    """The reaction and the proper acceleration of a top are those of the simulation's ticks."""
     path = tmp_path / 'top'
-    assert main(['--scene', 'heavy_top', '--duration', '0.2', '--output', str(path), '--publish', 'imu', 'odom', 'reaction', 'clock', 'tf']) == 0
+    assert main(['--scene', 'heavy_top', '--duration', '0.2', '--output', str(path), '--publish',
+                 'imu', 'odom', 'reaction', 'clock', 'tf']) == 0
     simulation = Simulation('heavy_top')
     times = np.arange(201) / 1000.0
     states, reactions = simulation.states(times), simulation.reactions(times)
@@ -137,10 +150,13 @@ def test_topics_on_request_are_recorded_with_every_tick(tmp_path):
     assert recording.topics['/tf'].count == 7
     force = recording.read('/reaction', ['wrench.force', 'header.stamp'])
     assert np.array_equal(force['wrench.force'], reactions.force)
-    assert np.array_equal(recording.read('/pose', ['header.stamp'])['header.stamp'], force['header.stamp'])
+    assert np.array_equal(
+        recording.read('/pose', ['header.stamp'])['header.stamp'], force['header.stamp'])
     assert np.array_equal(recording.read('/clock', ['clock'])['clock'], force['header.stamp'])
-    assert np.array_equal(recording.read('/odom', ['twist.twist.angular'])['twist.twist.angular'], states.angular_velocity)
-    assert np.array_equal(recording.read('/imu', ['angular_velocity'])['angular_velocity'], states.angular_velocity)
+    assert np.array_equal(recording.read('/odom', ['twist.twist.angular'])['twist.twist.angular'],
+                          states.angular_velocity)
+    assert np.array_equal(
+        recording.read('/imu', ['angular_velocity'])['angular_velocity'], states.angular_velocity)
     with pytest.raises(SystemExit):
         main(['--output', str(tmp_path / 'other'), '--publish', 'imo'])
 
@@ -175,8 +191,9 @@ def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
 
 
 def start(*arguments, **options):
-    return subprocess.Popen([sys.executable, '-m', 'rigid_body_sim', 'simulate', *arguments], cwd=ROOT, text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, **options)
+    return subprocess.Popen(
+        [sys.executable, '-m', 'rigid_body_sim', 'simulate', *arguments], cwd=ROOT, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
@@ -206,7 +223,8 @@ def test_a_full_disk_loses_nothing_recorded(tmp_path):
         _, error = process.communicate(timeout=60)
     assert process.returncode == 1
     [line] = [line for line in error.splitlines() if not line.startswith('numba is not')]
-    assert line.startswith(f'{path}: the disk refuses (File too large) at t = ') and 'recover' in line
+    assert (line.startswith(f'{path}: the disk refuses (File too large) at t = ')
+            and 'recover' in line)
     recover(path)
     count = Recording(path).topics['/pose'].count
     assert count > 5000
@@ -216,13 +234,17 @@ def test_a_full_disk_loses_nothing_recorded(tmp_path):
 
 def test_files_are_split_and_compressed_as_asked(tmp_path, capsys):
     run = ['--duration', '3', '--rate', '100', '--output', str(tmp_path / 'run')]
-    assert main([*run, '--split-seconds', '-1']) == 2 and '--split-seconds: got -1; a number from 0' in capsys.readouterr().err
+    assert (main([*run, '--split-seconds', '-1']) == 2
+            and '--split-seconds: got -1; a number from 0' in capsys.readouterr().err)
     assert main([*run, '--split-seconds', '0.5', '--compression', 'lz4']) == 0
     names = sorted(path.name for path in (tmp_path / 'run').glob('*.mcap'))
     assert len(names) > 1
     with rosbags.AnyReader([tmp_path / 'run']) as reader:
-        assert sum(connection.msgcount for connection in reader.connections if connection.topic == '/pose') == 301
-    assert len([entry for entry in Recording(tmp_path / 'run').journal() if entry['kind'] == 'state']) == len(names)
+        assert sum(connection.msgcount
+                   for connection in reader.connections if connection.topic == '/pose') == 301
+    assert len([entry
+                for entry in Recording(tmp_path / 'run').journal()
+                if entry['kind'] == 'state']) == len(names)
 
 
 def test_a_terminal_sees_from_the_first_moment_what_is_done(tmp_path):
