@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fused multiply-add: one rounding, whatever way it is computed."""
 
 import itertools

@@ -1,4 +1,8 @@
-"""Compiled code and its cache: no stale answers after an edit, no need for a writable home, the same code without numba."""
+# SPDX-License-Identifier: Apache-2.0
+"""Compiled code and its cache: the same code without numba, and no stale answers after an edit.
+
+The home folder need not be writable.
+"""
 
 import os
 import pathlib
@@ -13,41 +17,48 @@ from rigid_body_sim.compilation import environment, jit, templates
 from rigid_body_sim.motions import loops
 
 PACKAGE = pathlib.Path(jit.__file__).parents[1]
-TURN = 'from rigid_body_sim.numerics.rotations import rotate\nprint(rotate(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0))'
+TURN = ('from rigid_body_sim.numerics.rotations import rotate\n'
+        'print(rotate(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0))')
 needs_numba = pytest.mark.skipif(not jit.HAVE_NUMBA, reason='about the cache of compiled code')
 
 
 def run(code, folder, **environment):
     """Run code in a fresh process on the package in `folder` and return what it printed."""
     # Python's own bytecode goes by the time stamp, which is not what is tested here
-    settings = {**os.environ, 'PYTHONPATH': str(folder), 'PYTHONDONTWRITEBYTECODE': '1', **environment}
-    return subprocess.run([sys.executable, '-c', code], env=settings, cwd=folder, capture_output=True, text=True, timeout=100,
-                          check=True).stdout
+    settings = {
+        **os.environ, 'PYTHONPATH': str(folder), 'PYTHONDONTWRITEBYTECODE': '1', **environment}
+    return subprocess.run([sys.executable, '-c', code], env=settings, cwd=folder,
+                          capture_output=True, text=True, timeout=100, check=True).stdout
 
 
 @pytest.fixture
 def copy_of_package(tmp_path):
     """Return a copy of the package with a cache of its own."""
-    shutil.copytree(PACKAGE, tmp_path / 'rigid_body_sim', ignore=shutil.ignore_patterns('__pycache__'))
+    shutil.copytree(
+        PACKAGE, tmp_path / 'rigid_body_sim', ignore=shutil.ignore_patterns('__pycache__'))
     return tmp_path
 
 
 @needs_numba
 def test_editing_a_callee_changes_the_answer_of_its_cached_caller(copy_of_package):
     cache = {'XDG_CACHE_HOME': str(copy_of_package / 'cache')}
-    caller = 'from rigid_body_sim.numerics.rotations import rotate_back\nprint(rotate_back(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0)[0])'
+    caller = ('from rigid_body_sim.numerics.rotations import rotate_back\n'
+              'print(rotate_back(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0)[0])')
     before = run(caller, copy_of_package, **cache)
     assert run(caller, copy_of_package, **cache) == before
     module = copy_of_package / 'rigid_body_sim' / 'numerics' / 'rotations.py'
     stamp = module.stat()
-    module.write_text(module.read_text().replace('+ qy * tz - qz * ty,', '- qy * tz + qz * ty,', 1))
-    os.utime(module, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))    # as an unpacked archive may leave it
+    module.write_text(module.read_text().replace(
+        '+ qy * tz - qz * ty,', '- qy * tz + qz * ty,', 1))
+    # as an unpacked archive may leave it
+    os.utime(module, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert run(caller, copy_of_package, **cache) != before
 
 
 @needs_numba
 def test_two_processes_on_a_cold_cache_agree(copy_of_package):
-    settings = {**os.environ, 'PYTHONPATH': str(copy_of_package), 'XDG_CACHE_HOME': str(copy_of_package / 'cache')}
+    settings = {**os.environ, 'PYTHONPATH': str(copy_of_package),
+                'XDG_CACHE_HOME': str(copy_of_package / 'cache')}
     both = [subprocess.Popen([sys.executable, '-c', TURN], env=settings, cwd=copy_of_package,
                              stdout=subprocess.PIPE, text=True) for _ in range(2)]
     answers = [process.communicate(timeout=100)[0] for process in both]
@@ -55,8 +66,10 @@ def test_two_processes_on_a_cold_cache_agree(copy_of_package):
     assert all(process.returncode == 0 for process in both)
     # what is installed elsewhere from the same sources finds it all compiled
     found = set((copy_of_package / 'cache').rglob('*.nbc'))
-    shutil.copytree(copy_of_package / 'rigid_body_sim', copy_of_package / 'elsewhere' / 'rigid_body_sim')
-    assert run(TURN, copy_of_package / 'elsewhere', XDG_CACHE_HOME=str(copy_of_package / 'cache')) == answers[0]
+    shutil.copytree(
+        copy_of_package / 'rigid_body_sim', copy_of_package / 'elsewhere' / 'rigid_body_sim')
+    assert run(TURN, copy_of_package / 'elsewhere',
+               XDG_CACHE_HOME=str(copy_of_package / 'cache')) == answers[0]
     if hasattr(jit.numba.config, 'CACHE_LOCATOR_CLASSES'):
         assert set((copy_of_package / 'cache').rglob('*.nbc')) == found
 
@@ -70,13 +83,16 @@ def test_without_a_writable_home_the_cache_is_in_the_temporary_folder(copy_of_pa
 
 def test_no_kernel_lives_where_the_cache_does_not_look():
     for path in set(PACKAGE.rglob('*.py')) - set(environment.kernel_sources()):
-        assert not re.search(r'compilation\.(jit|templates) import (?!HAVE_NUMBA)|@compiled', path.read_text()), path
+        assert not re.search(r'compilation\.(jit|templates) import (?!HAVE_NUMBA)|@compiled',
+                             path.read_text()), path
 
 
 @needs_numba
 def test_importing_writes_nothing_and_the_first_kernel_does(copy_of_package):
-    cache = {'XDG_CACHE_HOME': str(copy_of_package / 'cache'), 'TMPDIR': str(copy_of_package / 'cache')}
-    run('import rigid_body_sim.simulation.simulation, rigid_body_sim.study.check_scenes', copy_of_package, **cache)
+    cache = {
+        'XDG_CACHE_HOME': str(copy_of_package / 'cache'), 'TMPDIR': str(copy_of_package / 'cache')}
+    run('import rigid_body_sim.simulation.simulation, rigid_body_sim.study.check_scenes',
+        copy_of_package, **cache)
     assert not (copy_of_package / 'cache').exists()
     (copy_of_package / 'cache').mkdir()
     run(TURN, copy_of_package, **cache)
@@ -87,7 +103,8 @@ def test_importing_writes_nothing_and_the_first_kernel_does(copy_of_package):
 def test_an_edit_to_the_shell_recompiles_nothing(copy_of_package):
     key = 'from rigid_body_sim.compilation.environment import sources_key\nprint(sources_key())'
     before = run(key, copy_of_package)
-    for place in ('cli/simulate.py', 'study/check_scenes.py', 'node/qos.py', 'simulation/simulation.py'):
+    for place in (
+            'cli/simulate.py', 'study/check_scenes.py', 'node/qos.py', 'simulation/simulation.py'):
         path = copy_of_package / 'rigid_body_sim' / place
         path.write_text(path.read_text() + '# edited\n')
     assert run(key, copy_of_package) == before
