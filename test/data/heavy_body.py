@@ -1,10 +1,12 @@
-"""High-precision reference for a body with a fixed point in a uniform field: Taylor series of the full equations of motion.
+# SPDX-License-Identifier: Apache-2.0
+"""High-precision reference for a body with a fixed point in a uniform field, by Taylor series.
 
     q' = q omega / 2,   gamma' = gamma x omega,   I omega' = I omega x omega - M g c x gamma
 
-q attitude (x, y, z, w), omega and gamma (the vertical) in body axes, which are principal; c centre of mass from the fixed point. Nothing
-here knows of a closed form. Numbers are integers in units of 2^-bits, so that a convolution is one loop of integer products: every product
-is exact, only its sum is cut.
+These full equations of motion are solved. q is the attitude (x, y, z, w), omega and gamma (the
+vertical) are in body axes, which are principal, and c is the centre of mass from the fixed point.
+No closed form is used. Numbers are integers in units of 2^-bits, so that a convolution is one loop
+of integer products: every product is exact, and only the sum is truncated.
 """
 
 from operator import mul
@@ -42,12 +44,13 @@ class Flow:
             fastest = mp.sqrt(mp.fsum(rate * rate for rate in omega)) + mp.sqrt(pull)
             self.unit = mpf(2) ** (-int(mp.ceil(mp.log(fastest, 2))))
             self._prepare()
-            self._state = [self._fixed(x) for x in (*q, *gamma, *(rate * self.unit for rate in omega))]
+            self._state = [self._fixed(x)
+                           for x in (*q, *gamma, *(rate * self.unit for rate in omega))]
         self._now = 0
         return self
 
     def go(self, time):
-        """Go to a time (s, any number) from wherever the flow is; return q and omega there (mpf)."""
+        """Go to a time (s, any number) from the current one; return q and omega there (mpf)."""
         with mp.workprec(2 * self.bits + 2200):
             end = self._fixed(mpf(time) / self.unit)
         while self._now != end:
@@ -65,7 +68,8 @@ class Flow:
         self.go(time)
         _, first, second, *_ = self._series(self._state)[6]
         with mp.workprec(self.bits + 64):
-            return mp.ldexp(mpf(first), -self.bits) / self.unit, 2 * mp.ldexp(mpf(second), -self.bits) / self.unit ** 2
+            return (mp.ldexp(mpf(first), -self.bits) / self.unit,
+                    2 * mp.ldexp(mpf(second), -self.bits) / self.unit ** 2)
 
     def _fixed(self, x):
         return int(mp.nint(mp.ldexp(mpf(x), self.bits)))
@@ -75,8 +79,10 @@ class Flow:
         i1, i2, i3 = (mpf(moment) for moment in self.moments)
         x, y, z = (mpf(component) * self.unit ** 2 for component in self.weight_arm)
         u, v, w = (1 / moment if moment > 0 else mpf(0) for moment in (i1, i2, i3))
-        self._gyro = [self._fixed((i2 - i3) * u), self._fixed((i3 - i1) * v), self._fixed((i1 - i2) * w)]
-        rows = ((0, z * u, -y * u), (-z * v, 0, x * v), (y * w, -x * w, 0))      # of -(M g c x) / I
+        self._gyro = [
+            self._fixed((i2 - i3) * u), self._fixed((i3 - i1) * v), self._fixed((i1 - i2) * w)]
+        # of -(M g c x) / I
+        rows = ((0, z * u, -y * u), (-z * v, 0, x * v), (y * w, -x * w, 0))
         self._pull = [[self._fixed(entry) for entry in row] for row in rows]
 
     def _series(self, state):
@@ -130,10 +136,11 @@ class Flow:
 
 
 class Nutation:
-    """One period of a symmetric body's nutation, by which a state at any time follows from one within the first period.
+    """One period of a symmetric body's nutation, which determines the states at all times.
 
-    Turning the start about the vertical and about the body's third axis turns the motion with it, and after a period the axis is where it
-    was relative to the vertical: so Cayley's and Klein's a = w + i z, b = y - i x are multiplied by constants of modulus 1 in a period.
+    Turning the start about the vertical and about the body's third axis turns the motion with it,
+    and after a period the axis is where it was relative to the vertical. So Cayley's and Klein's
+    a = w + i z, b = y - i x are multiplied by constants of modulus 1 in a period.
 
     Parameters
     ----------
@@ -147,10 +154,12 @@ class Nutation:
         self._flow, self._bits = flow, flow().bits
         with mp.workprec(self._bits + 64):
             self.turning_points = [self._turning_point(mpf(step) / 8, mpf(step))]
-            self.turning_points.append(self._turning_point(self.turning_points[0] + mpf(step) / 2, mpf(step)))
+            self.turning_points.append(self._turning_point(
+                self.turning_points[0] + mpf(step) / 2, mpf(step)))
             self.period = 2 * (self.turning_points[1] - self.turning_points[0])
             base = self.period / 7
-            before, after = self._klein(*flow().go(base)), self._klein(*flow().go(base + self.period))
+            before, after = (
+                self._klein(*flow().go(base)), self._klein(*flow().go(base + self.period)))
             a, b = after[0] / before[0], after[1] / before[1]
             self._turns = [mp.arg(a), mp.arg(b), mp.arg(b * mp.conj(a))]
 
@@ -178,5 +187,6 @@ class Nutation:
         with mp.workprec(self._bits + 64):
             count = mp.floor(mpf(time) / self.period)
             q, omega = self._flow().go(mpf(time) - count * self.period)
-            a, b, o = (f * mp.expj(count * turn) for f, turn in zip(self._klein(q, omega), self._turns))
+            a, b, o = (f * mp.expj(count * turn)
+                       for f, turn in zip(self._klein(q, omega), self._turns))
             return [-b.imag, b.real, a.imag, a.real], [-o.imag, o.real, omega[2]]

@@ -1,7 +1,10 @@
-"""The free rigid body with as many digits as mpmath is told to carry, in two ways that share nothing with the package.
+# SPDX-License-Identifier: Apache-2.0
+"""The free rigid body with any number of digits, in two ways.
 
-`closed_form` is the textbook solution: Jacobi's functions for omega, Euler angles z-x-z about L and Legendre's incomplete integral of the third
-kind for the precession (Whittaker, Analytical Dynamics, section 69). `taylor` integrates Euler's equations and the quaternion by power series.
+The number is mpmath's, and neither way shares code with the package. `closed_form` is the textbook
+solution: Jacobi's functions for omega, Euler angles z-x-z about L and Legendre's incomplete
+integral of the third kind for the precession (Whittaker, Analytical Dynamics, section 69).
+`taylor` integrates Euler's equations and the quaternion by power series.
 """
 
 import mpmath as mp
@@ -11,15 +14,17 @@ def rotation_matrix(q):
     """Return the 3 x 3 matrix of a quaternion (x, y, z, w), which need not be normalised."""
     x, y, z, w = q
     n = x * x + y * y + z * z + w * w
-    return mp.matrix([[(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n],
-                      [2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n],
-                      [2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n]])
+    return mp.matrix([
+        [(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n],
+        [2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n],
+        [2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n]])
 
 
 def quaternion(R):
     """Return the quaternion (x, y, z, w) of a rotation matrix, by its largest component."""
     trace = R[0, 0] + R[1, 1] + R[2, 2]
-    squares = [1 + 2 * R[0, 0] - trace, 1 + 2 * R[1, 1] - trace, 1 + 2 * R[2, 2] - trace, 1 + trace]
+    squares = [
+        1 + 2 * R[0, 0] - trace, 1 + 2 * R[1, 1] - trace, 1 + 2 * R[2, 2] - trace, 1 + trace]
     largest = max(range(4), key=lambda k: squares[k])
     rows = [[squares[0], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
             [R[0, 1] + R[1, 0], squares[1], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
@@ -45,15 +50,17 @@ def _tilt(m, L):
 
 
 def closed_form(moments, q, omega, t):
-    """Return (quaternion, omega) after the time t of a body with principal axes along its own axes."""
+    """Return (quaternion, omega) after the time t; the principal axes are the body's own axes."""
     moments, omega, t = [mp.mpf(x) for x in moments], [mp.mpf(x) for x in omega], mp.mpf(t)
     R = rotation_matrix([mp.mpf(x) for x in q])
     m = [I * w for I, w in zip(moments, omega)]
-    across = [m[1] * omega[2] - m[2] * omega[1], m[2] * omega[0] - m[0] * omega[2], m[0] * omega[1] - m[1] * omega[0]]
+    across = [m[1] * omega[2] - m[2] * omega[1], m[2] * omega[0] - m[0] * omega[2],
+              m[0] * omega[1] - m[1] * omega[0]]
     if not any(across):
         return quaternion(R * _spin(omega, t)), omega
     small, middle, large = sorted(range(3), key=lambda k: moments[k])
-    other, polar = (small, large) if _gap(moments, omega, small, middle, large) >= 0 else (large, small)
+    other, polar = ((small, large) if _gap(moments, omega, small, middle, large) >= 0
+                    else (large, small))
     P = mp.zeros(3)
     sign = -1 if omega[polar] < 0 else 1
     P[other, 0], P[polar, 2] = 1, sign
@@ -77,22 +84,28 @@ def _spin(omega, t):
 
 
 def flip_time(moments, omega, count):
-    """Return the time of the count-th change of sign (1, 2, ...) of omega along the middle axis; infinite if there are not so many."""
+    """Return the time of the count-th (1, 2, ...) sign change of omega along the middle axis.
+
+    It is infinite if there are not so many.
+    """
     moments, omega = [mp.mpf(x) for x in moments], [mp.mpf(x) for x in omega]
     small, middle, large = sorted(range(3), key=lambda k: moments[k])
-    other, polar = (small, large) if _gap(moments, omega, small, middle, large) >= 0 else (large, small)
+    other, polar = ((small, large) if _gap(moments, omega, small, middle, large) >= 0
+                    else (large, small))
     (I1, w1), (I2, w2), (I3, w3) = ((moments[k], omega[k]) for k in (other, middle, polar))
     A3 = mp.sqrt(w3 * w3 + (I2 * (I2 - I1) / (I3 * (I3 - I1)) * w2 * w2))
     A2 = mp.sqrt(w2 * w2 + I1 * (I1 - I3) / (I2 * (I2 - I3)) * w1 * w1)
     rate = mp.sqrt((I1 - I3) * (I2 - I3) / (I1 * I2)) * A3
     kc2 = abs(_gap(moments, omega, small, middle, large) * (I3 - I1) / (I1 * I2 * I3)) / rate ** 2
     # |omega_2| grows if e2 omega_3 omega_1 omega_2 > 0
-    grows = (I3 - I1) * (w3 * w1 if (other, middle, polar) in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -w3 * w1) * w2 > 0
+    grows = ((I3 - I1) * (w3 * w1 if (other, middle, polar) in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+                          else -w3 * w1) * w2 > 0)
     if kc2 == 0:
         return mp.atanh(abs(w2) / A2) / rate if count == 1 and not grows else mp.inf
     k2 = 1 - kc2
     since = mp.ellipf(mp.asin(abs(w2) / A2), k2)       # of a zero of sn
-    return (2 * mp.ellipk(k2) * (count if grows else count - 1) + (-since if grows else since)) / rate
+    return ((2 * mp.ellipk(k2) * (count if grows else count - 1) + (-since if grows else since))
+            / rate)
 
 
 def _gap(moments, omega, small, middle, large):
@@ -101,7 +114,10 @@ def _gap(moments, omega, small, middle, large):
 
 
 def _in_polar_frame(I, omega, t):
-    """Return (angle about L, omega) after t in a frame with the polar axis third and the middle axis second."""
+    """Return (angle about L, omega) after t in a frame of its own.
+
+    Its third axis is the polar axis, its second one the middle axis.
+    """
     I1, I2, I3 = I
     w1, w2, w3 = omega
     L = mp.sqrt((I1 * w1) ** 2 + (I2 * w2) ** 2 + (I3 * w3) ** 2)
@@ -110,7 +126,9 @@ def _in_polar_frame(I, omega, t):
     A3 = mp.sqrt(w3 * w3 + (I2 * (I2 - I1) / (I3 * (I3 - I1)) * w2 * w2))
     rate = mp.sqrt((I1 - I3) * (I2 - I3) / (I1 * I2)) * A3
     if I3 < I2:
-        A2 = -A2                        # w1' = (I2 - I3)/I1 w2 w3 with w1 = A1 cn, w2 = A2 sn, w3 = A3 dn, all of a growing argument
+        # w1' = (I2 - I3)/I1 w2 w3 with w1 = A1 cn, w2 = A2 sn, w3 = A3 dn, all of a growing
+        # argument
+        A2 = -A2
     phi0 = mp.atan2(w2 / A2, w1 / A1)
     n = 1 - (I2 * A2 / (I1 * A1)) ** 2
     along = L / I1 * t
@@ -135,7 +153,8 @@ def _in_polar_frame(I, omega, t):
         if turns % 2:
             sn, cn = -sn, -cn
         rise = mp.ellippi(n, phi, k2) + 2 * turns * third - mp.ellippi(n, phi0, k2)
-    along += L * (1 / I2 - 1 / I1) * (1 - n) * (rise / rate - t) / n      # integral of sn^2/(1 - n sn^2) is (Pi - u)/n
+    # integral of sn^2/(1 - n sn^2) is (Pi - u)/n
+    along += L * (1 / I2 - 1 / I1) * (1 - n) * (rise / rate - t) / n
     return along, [A1 * cn, A2 * sn, A3 * dn]
 
 
@@ -146,7 +165,7 @@ def _third_kind_on_separatrix(n, u):
 
 
 def taylor(moments, q, omega, t, order=40):
-    """Return (quaternion, omega) after t by power series; for horizons of up to some hundred radians."""
+    """Return (quaternion, omega) after t by power series, for up to some hundred radians."""
     I = [mp.mpf(x) for x in moments]
     ratios = [(I[(k + 1) % 3] - I[(k + 2) % 3]) / I[k] if I[k] else mp.mpf(0) for k in range(3)]
     w, q, t = [mp.mpf(x) for x in omega], [mp.mpf(x) for x in q], mp.mpf(t)

@@ -1,6 +1,8 @@
-"""Make ramped_rotation.json: turns under the angular velocity (c + w t, p, 0), to 34 digits, by Taylor series in 80-digit arithmetic.
+# SPDX-License-Identifier: Apache-2.0
+"""Make ramped_rotation.json: turns under the angular velocity (c + w t, p, 0), to 34 digits.
 
-Every step covers 20 rad of half-angle, so the terms grow to e^20 before they shrink: 80 digits leave more than 60.
+They are Taylor series in 80-digit arithmetic. Every step covers 20 rad of half-angle, so the terms
+grow to e^20 before they shrink: 80 digits leave more than 60.
 
     python test/data/make_ramped_rotation.py
 """
@@ -42,7 +44,8 @@ CASES = {
 def turn(c, p, w, time):
     """Return the turn (x, y, z, w) as mpf."""
     c, p, w, time = mpf(c), mpf(p), mpf(w), mpf(time)
-    total, remaining, direction = [mpf(0), mpf(0), mpf(0), mpf(1)], abs(time), 1 if time > 0 else -1
+    total, remaining, direction = (
+        [mpf(0), mpf(0), mpf(0), mpf(1)], abs(time), 1 if time > 0 else -1)
     while remaining > 0:
         speed = hypot(c, p)
         step = min(4 * HALF_ANGLE / (speed + sqrt(speed * speed + 4 * w * HALF_ANGLE)), remaining)
@@ -53,8 +56,8 @@ def turn(c, p, w, time):
         while n < 4 * HALF_ANGLE or sum(abs(value) for value in (*now, *before)) > mpf(10) ** -75:
             n += 1
             (x, y, z, s), (bx, by, bz, bs) = now, before
-            before, now = now, [(a * s + b * z + ramp * bs) / n, (b * s - a * z - ramp * bz) / n, (a * y - b * x + ramp * by) / n,
-                                (-a * x - b * y - ramp * bx) / n]
+            before, now = now, [(a * s + b * z + ramp * bs) / n, (b * s - a * z - ramp * bz) / n,
+                                (a * y - b * x + ramp * by) / n, (-a * x - b * y - ramp * bx) / n]
             total = [one + two for one, two in zip(total, now, strict=True)]
         c += w * step
     return total
@@ -63,6 +66,7 @@ def turn(c, p, w, time):
 if __name__ == '__main__':
     records = []
     for name, case in CASES.items():
-        records.append({'name': name, 'case': [value.hex() for value in case], 'turn': [nstr(value, 36) for value in turn(*case)]})
+        records.append({'name': name, 'case': [value.hex() for value in case],
+                        'turn': [nstr(value, 36) for value in turn(*case)]})
         print(name, flush=True)
     OUT.write_text(json.dumps(records, indent=1) + '\n')

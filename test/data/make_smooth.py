@@ -1,10 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """Make smooth.json: states and ledger of the cases of smooth_cases.py, to 34 digits.
 
     PYTHONPATH=. python test/data/make_smooth.py
 
-Another way than the package's: the unknowns are the attitude and the angular momentum in the world (there: omega in the body), the method
-is Gragg's extrapolation of order 40 (there: Runge-Kutta), 60 digits are carried. Only the input is shared: the doubles of the scene as the
-package reads them. For a needle the momentum would be stiff (L/I3 is large), so there the unknown is omega too.
+The method differs from the package's: the unknowns are the attitude and the angular momentum in
+the world (there: omega in the body), and Gragg's extrapolation of order 40 (there: Runge-Kutta)
+carries 60 digits. Only the input is shared: the doubles of the scene as the package reads them.
+For a needle the momentum would be stiff (L/I3 is large), so there the unknown is omega too.
 """
 
 import json
@@ -48,9 +50,10 @@ def turn(q):
     """Return the rows of the matrix of a quaternion (x, y, z, w)."""
     x, y, z, w = q
     n = x * x + y * y + z * z + w * w
-    return [[(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n],
-            [2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n],
-            [2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n]]
+    return [
+        [(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n],
+        [2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n],
+        [2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n]]
 
 
 def out(R, v):
@@ -65,12 +68,15 @@ def back(R, v):
 
 def product(q, p):
     (ax, ay, az, aw), (bx, by, bz, bw) = q, p
-    return [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz]
+    return [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz]
 
 
 def extrapolated(rates, y, h):
-    """Return y after h by Gragg's method: the modified midpoint rule with 2, 4, ... substeps, extrapolated in the squared step."""
+    """Return y after h by Gragg's method.
+
+    It is the modified midpoint rule with 2, 4, ... substeps, extrapolated in the squared step.
+    """
     first = rates(y)
     rows = []
     for column in range(1, COLUMNS + 1):
@@ -93,15 +99,20 @@ class Body:
         body, constraint = scene.body, scene.constraint
         self.kind = constraint.kind
         inertia = body.about_origin if self.kind == 'pivot' else body.about_center
-        self.M, self.I, self.axes = mp.mpf(body.mass), numbers(inertia.moments), numbers(inertia.axes)
+        self.M, self.I, self.axes = (
+            mp.mpf(body.mass), numbers(inertia.moments), numbers(inertia.axes))
         center = numbers(body.center_of_mass)
-        self.point = center if self.kind == 'free' else numbers(constraint.through) if self.kind == 'hinge' else ZERO
+        self.point = (center if self.kind == 'free' else numbers(constraint.through)
+                      if self.kind == 'hinge' else ZERO)
         self.arm = plus(center, times(-1, self.point))    # body axes
         self.axis = numbers(constraint.axis)
-        self.wrench, self.torques = wrench, [effect for effect in scene.effects if effect.name == 'torque']
-        gravity, drag, inner = scene.effect('gravity'), scene.effect('drag'), scene.effect('internal_dissipation')
+        self.wrench, self.torques = (
+            wrench, [effect for effect in scene.effects if effect.name == 'torque'])
+        gravity, drag, inner = (
+            scene.effect('gravity'), scene.effect('drag'), scene.effect('internal_dissipation'))
         self.weight = [mp.mpf(0), mp.mpf(0), -self.M * mp.mpf(gravity.g) if gravity else mp.mpf(0)]
-        self.linear, self.angular = (mp.mpf(drag.linear), mp.mpf(drag.angular)) if drag else (mp.mpf(0), mp.mpf(0))
+        self.linear, self.angular = ((mp.mpf(drag.linear), mp.mpf(drag.angular)) if drag
+                                     else (mp.mpf(0), mp.mpf(0)))
         self.inner = mp.mpf(inner.coefficient) if inner else mp.mpf(0)
         self.vector = numbers(scene.initial.vector)
         self.needle = 0 < min(self.I) < max(self.I) / 1000
@@ -109,24 +120,29 @@ class Body:
     def tensor(self, power):
         """Return v -> I^power v, body axes (0 where the moment is 0)."""
         A = turn(self.axes)
-        return lambda v: out(A, [(moment ** power if moment else 0) * c for moment, c in zip(self.I, back(A, v))])
+        return lambda v: out(
+            A, [(moment ** power if moment else 0) * c for moment, c in zip(self.I, back(A, v))])
 
     def start(self):
         """Return q, L, x, v (point of reference), books."""
         q, omega = self.vector[1:5], self.vector[5:8]
         R = turn(q)
         p = out(R, self.point)
-        x, v = plus(self.vector[8:11], p), plus(self.vector[11:14], out(R, cross(omega, self.point)))
+        x, v = (
+            plus(self.vector[8:11], p), plus(self.vector[11:14], out(R, cross(omega, self.point))))
         if self.kind == 'hinge':
             return [mp.mpf(0), dot(self.axis, omega), *[mp.mpf(0)] * 5], (q, x)
-        return [*q, *(omega if self.needle else out(R, self.tensor(1)(omega))), *x, *v, *[mp.mpf(0)] * 5], None
+        return [*q, *(omega if self.needle else out(R, self.tensor(1)(omega))), *x, *v,
+                *[mp.mpf(0)] * 5], None
 
     def given(self, time, R):
         """Return force and couple of commands and torque effects, world axes."""
         force, couple = ZERO, ZERO
-        for f, c, frame in [(ZERO, torque.value(time), torque.frame) for torque in self.torques] + ([self.wrench] if self.wrench else []):
+        for f, c, frame in [(ZERO, torque.value(time), torque.frame)
+                            for torque in self.torques] + ([self.wrench] if self.wrench else []):
             f, c = numbers(f), numbers(c)
-            force, couple = plus(force, f if frame == 'world' else out(R, f)), plus(couple, c if frame == 'world' else out(R, c))
+            force, couple = (plus(force, f if frame == 'world' else out(R, f)),
+                             plus(couple, c if frame == 'world' else out(R, c)))
         return force, couple
 
     def acting(self, time, R, spin, velocity):
@@ -139,7 +155,8 @@ class Body:
         drag, resist = times(-self.linear, velocity), times(-self.angular, spin)
         total = plus(force, drag, self.weight)
         torque = plus(couple, resist, cross(r, total))
-        return total, torque, dot(force, velocity) + dot(couple, spin), -dot(drag, velocity) - dot(resist, spin)
+        return (total, torque, dot(force, velocity) + dot(couple, spin),
+                -dot(drag, velocity) - dot(resist, spin))
 
     def rates(self, time):
         inverse = self.tensor(-1)
@@ -155,12 +172,16 @@ class Body:
             force, torque, work, heat = self.acting(time, R, spin, velocity)
             if not all(self.I):    # no couple about an axis without moment
                 A = turn(self.axes)
-                torque = out(R, out(A, [c if moment else mp.mpf(0) for moment, c in zip(self.I, back(A, back(R, torque)))]))
+                torque = out(R,
+                             out(A,
+                                 [c if moment else mp.mpf(0)
+                                  for moment, c in zip(self.I, back(A, back(R, torque)))]))
                 work = dot(torque, spin)
             heat += dot(u, cross(m, omega))
             moving = self.kind == 'free'
-            return [*times(mp.mpf(1) / 2, product(q, [*plus(omega, u), mp.mpf(0)])), *torque, *(v if moving else ZERO),
-                    *(times(1 / self.M, force) if moving else ZERO), work, heat, *torque]
+            return [*times(mp.mpf(1) / 2, product(q, [*plus(omega, u), mp.mpf(0)])), *torque,
+                    *(v if moving else ZERO), *(times(1 / self.M, force) if moving else ZERO),
+                    work, heat, *torque]
 
         def hinged(y):
             phi, speed = y[0], y[1]
@@ -178,8 +199,9 @@ class Body:
             R, spin = turn(q), out(turn(q), omega)
             force, torque, work, heat = self.acting(time, R, spin, y[10:13])
             gyric = cross([moment * w for moment, w in zip(self.I, omega)], omega)
-            return [*times(mp.mpf(1) / 2, product(q, [*omega, mp.mpf(0)])), *inverse(plus(gyric, back(R, torque))), *y[10:13],
-                    *times(1 / self.M, force), work, heat, *torque]
+            return [*times(mp.mpf(1) / 2, product(q, [*omega, mp.mpf(0)])),
+                    *inverse(plus(gyric, back(R, torque))), *y[10:13], *times(1 / self.M, force),
+                    work, heat, *torque]
 
         return hinged if self.kind == 'hinge' else needle if self.needle else free_or_pivoted
 
@@ -194,7 +216,8 @@ class Body:
             q, x, v = y[0:4], y[7:10], y[10:13]
             omega = y[4:7] if self.needle else self.tensor(-1)(back(turn(q), y[4:7]))
         R, size = turn(q), mp.sqrt(dot(q, q))
-        return [*times(1 / size, q), *omega, *plus(x, times(-1, out(R, self.point))), *plus(v, times(-1, out(R, cross(omega, self.point))))]
+        return [*times(1 / size, q), *omega, *plus(x, times(-1, out(R, self.point))),
+                *plus(v, times(-1, out(R, cross(omega, self.point))))]
 
 
 def solve(name):
@@ -206,14 +229,16 @@ def solve(name):
     now, states = 0.0, {}
     for stop in sorted({*breaks, *asked}):
         while now < stop:
-            fastest = max(abs(x) for x in numbers([*scene.initial.vector[5:8], y[1] if hinge else 0])) + 3
+            fastest = (max(abs(x) for x in numbers([
+                *scene.initial.vector[5:8], y[1] if hinge else 0])) + 3)
             steps = math.ceil((stop - now) * float(fastest) / 1.2)
             h = (mp.mpf(stop) - mp.mpf(now)) / steps
             for _ in range(steps):
                 y = extrapolated(body.rates(now), y, h)
             now = stop
         if stop in asked:
-            states[repr(stop)] = {'state': [mp.nstr(x, 34) for x in body.state(y, hinge)], 'exchanged': [mp.nstr(x, 34) for x in y[-5:]]}
+            states[repr(stop)] = {'state': [mp.nstr(x, 34) for x in body.state(y, hinge)],
+                                  'exchanged': [mp.nstr(x, 34) for x in y[-5:]]}
         print(name, stop, flush=True)
     return states
 
@@ -224,4 +249,5 @@ if __name__ == '__main__':
     kept = json.loads(target.read_text()) if target.exists() else {}
     with ProcessPoolExecutor() as pool:
         kept |= dict(zip(names, pool.map(solve, names)))
-    target.write_text(json.dumps({name: kept[name] for name in smooth_cases.CASES if name in kept}, indent=1) + '\n')
+    target.write_text(json.dumps(
+        {name: kept[name] for name in smooth_cases.CASES if name in kept}, indent=1) + '\n')
