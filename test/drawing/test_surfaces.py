@@ -48,7 +48,8 @@ def test_every_surface_is_closed_and_has_two_colours(name):
     number = [place[tuple(point)] for point in np.round(surface.vertices, 9).tolist()]
     faces = np.array(number)[surface.faces]
     edges = {}
-    for one, other in np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).tolist():
+    for one, other in np.concatenate([
+        faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).tolist():
         key = (min(one, other), max(one, other))
         edges[key] = edges.get(key, 0) + (1 if one < other else -1)
     assert not any(edges.values())
@@ -97,6 +98,7 @@ initial: {}
 """)
     drawing = drawing_of(scene)
     assert drawing.about == 'the true shape, 2 parts'
-    assert np.ptp(drawing.surfaces[0].vertices, axis=0) == pytest.approx([0.02, 0.2, 0.02], abs=1e-3)
+    assert np.ptp(drawing.surfaces[0].vertices, axis=0) == pytest.approx(
+        [0.02, 0.2, 0.02], abs=1e-3)
     assert drawing.surfaces[1].vertices[:, 2].min() == pytest.approx(0.0, abs=1e-12)
     assert drawing.surfaces[1].vertices[:, 2].max() == pytest.approx(0.1)
