@@ -1,4 +1,9 @@
-"""Accelerations and reactions against differences of states, momentum balance, the closed forms' own kernels and hand calculations."""
+# SPDX-License-Identifier: Apache-2.0
+"""Accelerations and reactions, compared with independent results.
+
+These are differences of states, momentum balance, the closed forms' own kernels and hand
+calculations.
+"""
 
 import math
 
@@ -17,14 +22,16 @@ from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.scene.state import State
 from rigid_body_sim.simulation.simulation import Simulation
 
-SKEW = '{mass: 2.0, inertia: [[0.05, 0.004, -0.002], [0.004, 0.06, 0.003], [-0.002, 0.003, 0.03]], center_of_mass: [0.02, -0.01, 0.1]}'
+SKEW = ('{mass: 2.0, inertia: [[0.05, 0.004, -0.002], [0.004, 0.06, 0.003], [-0.002, 0.003, '
+        '0.03]], center_of_mass: [0.02, -0.01, 0.1]}')
 HINGE = '{hinge: {axis: [1, 2, 0.5], through: [0.05, 0, -0.1]}}'
 WRENCH = Wrench((3.0, -1.0, 2.0), (0.2, 0.5, 0.1), 'body')
 G = 9.81
 
 
 def scene(constraint, effects='[gravity: {g: 9.81}]', body=SKEW):
-    return parse_scene(f'scene: test\nbody: {body}\nconstraint: {constraint}\neffects: {effects}\ninitial: {{}}\n')
+    return parse_scene(f'scene: test\nbody: {body}\nconstraint: {constraint}\neffects: {effects}\n'
+                       f'initial: {{}}\n')
 
 
 def state(constraint):
@@ -34,11 +41,15 @@ def state(constraint):
     if constraint == 'pivot':
         return State.of(0.0, q, (1.0, -2.0, 3.0))
     omega = 4.0 * np.array([1.0, 2.0, 0.5]) / math.sqrt(5.25)
-    return State.of(0.0, q, omega, velocity=-np.array(rotate(*q, *np.cross(omega, (0.05, 0.0, -0.1)))))
+    return State.of(
+        0.0, q, omega, velocity=-np.array(rotate(*q, *np.cross(omega, (0.05, 0.0, -0.1)))))
 
 
 def moved(vector, balance, h):
-    """Return the state a time h later by velocities and accelerations: to second order, so a central difference is right to h^2."""
+    """Return the state a time h later by velocities and accelerations.
+
+    It is right to second order, so a central difference is right to h^2.
+    """
     out = vector.copy()
     omega, growth = vector[5:8], balance.angular_acceleration
     out[1:5] = multiply(*vector[1:5], *from_rotation_vector(*(h * omega + 0.5 * h * h * growth)))
@@ -58,12 +69,18 @@ def momentum(body, vector, point):
 
 
 @pytest.mark.parametrize('constraint', ['free', 'pivot', HINGE])
-@pytest.mark.parametrize('effects', ['[gravity: {g: 9.81}]', '[gravity: {g: 9.81}, drag: {linear: 0.5, angular: 0.01}]'])
+@pytest.mark.parametrize(
+    'effects',
+    ['[gravity: {g: 9.81}]', '[gravity: {g: 9.81}, drag: {linear: 0.5, angular: 0.01}]'])
 def test_momentum_changes_by_all_forces_and_torques(constraint, effects):
-    """Newton and Euler for the whole body, with the reaction: d p/dt = sum of forces, d L/dt = sum of torques about a fixed point."""
+    """Newton and Euler hold for the whole body, with the reaction.
+
+    d p/dt = sum of forces, d L/dt = sum of torques about a fixed point.
+    """
     made, vector, h = scene(constraint, effects), state(constraint).vector, 1e-5
     balance = Dynamics(made).balance(vector, WRENCH)
-    before, after = (momentum(made.body, moved(vector, balance, side * h), balance.point) for side in (-1.0, 1.0))
+    before, after = (momentum(made.body, moved(vector, balance, side * h), balance.point)
+                     for side in (-1.0, 1.0))
     q = vector[1:5]
     arm = vector[8:11] + rotate(*q, *made.body.center_of_mass) - balance.point
     force = np.array(rotate(*q, *WRENCH.force)) - [0.0, 0.0, 2.0 * G]
@@ -71,9 +88,11 @@ def test_momentum_changes_by_all_forces_and_torques(constraint, effects):
     if 'drag' in effects:
         force -= 0.5 * momentum(made.body, vector, balance.point)[0] / 2.0
         couple -= 0.01 * np.array(rotate(*q, *vector[5:8]))
-    # differences err by h^2 of rates of 60/s and by rounding over h: 5e-9 of the forces here; measured 2e-9
+    # differences err by h^2 of rates of 60/s and by rounding over h: 5e-9 of the forces here;
+    # measured 2e-9
     np.testing.assert_allclose((after[0] - before[0]) / (2 * h), force + balance.force, atol=2e-7)
-    np.testing.assert_allclose((after[1] - before[1]) / (2 * h), couple + np.cross(arm, force) + balance.torque, atol=2e-7)
+    np.testing.assert_allclose((after[1] - before[1]) / (2 * h),
+                               couple + np.cross(arm, force) + balance.torque, atol=2e-7)
 
 
 @pytest.mark.parametrize('constraint', ['pivot', HINGE])
@@ -100,11 +119,14 @@ def test_closed_forms_have_the_same_reactions():
 
 
 def test_pendulum_at_rest_at_its_lowest_point_pulls_with_its_weight_and_at_speed_with_more():
-    """By hand: a point-like bob on an arm of 0.5 m, at the bottom with rate w: tension M (g + w^2 r)."""
-    made = scene('{hinge: {axis: [0, 1, 0], through: [0, 0, 0.5]}}', body='{mass: 2.0, inertia: [0.01, 0.01, 0.01]}')
+    """A point-like bob at the bottom of an arm of 0.5 m with rate w has tension M (g + w^2 r)."""
+    made = scene('{hinge: {axis: [0, 1, 0], through: [0, 0, 0.5]}}',
+                 body='{mass: 2.0, inertia: [0.01, 0.01, 0.01]}')
     for rate in (0.0, 3.0):
-        balance = Dynamics(made).balance(State.of(0.0, angular_velocity=(0.0, rate, 0.0), velocity=(-0.5 * rate, 0.0, 0.0)).vector)
-        np.testing.assert_allclose(balance.force, [0.0, 0.0, 2.0 * (G + 0.5 * rate * rate)], rtol=1e-15)
+        balance = Dynamics(made).balance(State.of(
+            0.0, angular_velocity=(0.0, rate, 0.0), velocity=(-0.5 * rate, 0.0, 0.0)).vector)
+        np.testing.assert_allclose(
+            balance.force, [0.0, 0.0, 2.0 * (G + 0.5 * rate * rate)], rtol=1e-15)
         assert not balance.torque.any()
         np.testing.assert_allclose(balance.point, [0.0, 0.0, 0.5])
 
@@ -114,20 +136,27 @@ def test_ball_slides_rolls_and_is_pushed():
     M, a, friction = ball.body.mass, ball.body.radius, ball.effect('sliding_friction')
     dynamics, weight = Dynamics(ball), M * friction.g
     sliding = dynamics.balance(State.of(0.0, velocity=(3.0, 4.0, 0.0)).vector)
-    np.testing.assert_allclose(sliding.force, [-0.6 * friction.mu * weight, -0.8 * friction.mu * weight, weight], rtol=1e-15)
+    np.testing.assert_allclose(
+        sliding.force, [-0.6 * friction.mu * weight, -0.8 * friction.mu * weight, weight],
+        rtol=1e-15)
     rolling = State.of(0.0, angular_velocity=(0.0, 1.0 / a, 0.0), velocity=(1.0, 0.0, 0.0)).vector
     np.testing.assert_allclose(dynamics.balance(rolling).force, [0.0, 0.0, weight], atol=1e-16)
     # a force F at the centre of a rolling solid sphere: a = (5/7) F/M, friction -(2/7) F
     F = 0.1 * friction.mu * weight
     pushed = dynamics.balance(rolling, Wrench((F, 0.0, 0.0)))
     np.testing.assert_allclose(pushed.force, [-2.0 / 7.0 * F, 0.0, weight], rtol=1e-14)
-    np.testing.assert_allclose(pushed.acceleration, [5.0 / 7.0 * F / M, 0.0, 0.0], rtol=1e-14, atol=1e-16)
+    np.testing.assert_allclose(
+        pushed.acceleration, [5.0 / 7.0 * F / M, 0.0, 0.0], rtol=1e-14, atol=1e-16)
     # too strong a push makes it slide: friction is all that mu allows
-    assert abs(dynamics.balance(rolling, Wrench((100.0 * F, 0.0, 0.0))).force[0]) == pytest.approx(friction.mu * weight, rel=1e-15)
+    assert abs(dynamics.balance(rolling, Wrench((100.0 * F, 0.0, 0.0))).force[0]) == pytest.approx(
+        friction.mu * weight, rel=1e-15)
 
 
 def test_blow_is_the_limit_of_a_strong_short_push():
-    """The impulsive reaction is the integral of the continuous one: both from the same Newton and Euler, by different code."""
+    """The impulsive reaction is the integral of the continuous one.
+
+    Both follow from Newton and Euler, but by different code.
+    """
     made, vector = scene(HINGE, '[]'), state(HINGE).vector
     vector[5:8] = vector[11:14] = 0.0
     out = np.empty(RESPONSE_SIZE)
@@ -145,7 +174,8 @@ def test_acceleration_of_a_simulation_is_the_slope_of_its_velocity():
     _, angular = simulation.acceleration
     h = 1e-4
     around = simulation.states([simulation.time - h, simulation.time + h]).angular_velocity
-    assert np.abs((around[1] - around[0]) / (2 * h) - angular).max() < 1e-6    # 2e-7: h^2/6 omega'''
+    # 2e-7: h^2/6 omega'''
+    assert np.abs((around[1] - around[0]) / (2 * h) - angular).max() < 1e-6
 
 
 def test_free_body_has_no_reaction():
