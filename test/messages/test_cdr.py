@@ -1,4 +1,5 @@
-"""CDR by hand against rosbags, against rclpy's own deserialiser, and against bytes that are no message."""
+# SPDX-License-Identifier: Apache-2.0
+"""CDR against rosbags, against rclpy's own deserialiser, and against bytes that are no message."""
 
 import contextlib
 import importlib
@@ -16,32 +17,41 @@ from rigid_body_sim.messages.definitions import parse, schema
 
 HEADER = {'stamp': {'sec': -2, 'nanosec': 999_999_999}, 'frame_id': 'wörld'}
 SAMPLES = {
-    'std_msgs/msg/Float64': {'data': -math.pi},
-    'std_msgs/msg/String': {'data': 'Kreisel ⟳ \n'},
+    'std_msgs/msg/Float64': {'data': -math.pi}, 'std_msgs/msg/String': {'data': 'Kreisel ⟳ \n'},
     'rosgraph_msgs/msg/Clock': {'clock': {'sec': 7, 'nanosec': 5}},
-    'geometry_msgs/msg/PoseStamped': {'header': HEADER, 'pose': {'position': {'x': 1.0, 'y': 5e-324, 'z': -0.0},
-                                                                 'orientation': {'x': 0.1, 'y': 0.2, 'z': 0.3, 'w': math.inf}}},
-    'geometry_msgs/msg/Vector3Stamped': {'header': HEADER, 'vector': {'x': 1.0, 'y': 2.0, 'z': 3.0}},
-    'geometry_msgs/msg/WrenchStamped': {'header': HEADER, 'wrench': {'force': {'x': 1.0, 'y': 2.0, 'z': 3.0},
-                                                                     'torque': {'x': 4.0, 'y': 5.0, 'z': 6.0}}},
-    'nav_msgs/msg/Odometry': {'header': HEADER, 'child_frame_id': 'b', 'pose': {'covariance': [float(k) for k in range(36)]}},
+    'geometry_msgs/msg/PoseStamped': {
+        'header': HEADER,
+        'pose': {'position': {'x': 1.0, 'y': 5e-324, 'z': -0.0},
+                 'orientation': {'x': 0.1, 'y': 0.2, 'z': 0.3, 'w': math.inf}}},
+    'geometry_msgs/msg/Vector3Stamped': {
+        'header': HEADER, 'vector': {'x': 1.0, 'y': 2.0, 'z': 3.0}},
+    'geometry_msgs/msg/WrenchStamped': {'header': HEADER,
+                                        'wrench': {'force': {'x': 1.0, 'y': 2.0, 'z': 3.0},
+                                                   'torque': {'x': 4.0, 'y': 5.0, 'z': 6.0}}},
+    'nav_msgs/msg/Odometry': {'header': HEADER, 'child_frame_id': 'b',
+                              'pose': {'covariance': [float(k) for k in range(36)]}},
     'sensor_msgs/msg/Imu': {'header': HEADER, 'orientation_covariance': [-1.0] + [0.0] * 8,
                             'linear_acceleration': {'x': 9.81, 'y': 0.0, 'z': 0.0}},
-    'sensor_msgs/msg/JointState': {'header': HEADER, 'name': ['hinge', 'b'], 'position': [1.0, 2.0], 'velocity': [3.0, 4.0], 'effort': []},
-    'diagnostic_msgs/msg/DiagnosticStatus': {'level': 2, 'name': 'n', 'message': '',
-                                         'values': [{'key': 'a', 'value': '1'}, {'key': '', 'value': 'b'}]},
-    'diagnostic_msgs/msg/DiagnosticArray': {'header': HEADER,
-                                        'status': [{'level': 1, 'values': [{'key': 'k', 'value': 'v'}]}, {'name': 'x'}]},
-    'visualization_msgs/msg/Marker': {'header': HEADER, 'ns': 'body', 'type': 1, 'points': [{'x': 1.0, 'y': 2.0, 'z': 3.0}],
-                                      'frame_locked': True},
-    'tf2_msgs/msg/TFMessage': {'transforms': [{'header': HEADER, 'child_frame_id': 'body'}, {}]},
-}
+    'sensor_msgs/msg/JointState': {'header': HEADER, 'name': ['hinge', 'b'],
+                                   'position': [1.0, 2.0], 'velocity': [3.0, 4.0], 'effort': []},
+    'diagnostic_msgs/msg/DiagnosticStatus': {
+        'level': 2, 'name': 'n', 'message': '',
+        'values': [{'key': 'a', 'value': '1'}, {'key': '', 'value': 'b'}]},
+    'diagnostic_msgs/msg/DiagnosticArray': {
+        'header': HEADER,
+        'status': [{'level': 1, 'values': [{'key': 'k', 'value': 'v'}]}, {'name': 'x'}]},
+    'visualization_msgs/msg/Marker': {
+        'header': HEADER, 'ns': 'body', 'type': 1, 'points': [{'x': 1.0, 'y': 2.0, 'z': 3.0}],
+        'frame_locked': True},
+    'tf2_msgs/msg/TFMessage': {'transforms': [{'header': HEADER, 'child_frame_id': 'body'}, {}]}}
 
 
 def plain(message):
     """Turn a rosbags message into nested dicts and lists."""
     if hasattr(message, '__msgtype__'):
-        return {name: plain(value) for name, value in vars(message).items() if not name.isupper() and name != '__msgtype__'}
+        return {name: plain(value)
+                for name, value in vars(message).items()
+                if not name.isupper() and name != '__msgtype__'}
     if isinstance(message, np.ndarray):
         return message.tolist()
     return [plain(item) for item in message] if isinstance(message, list) else message
@@ -50,7 +60,8 @@ def plain(message):
 def in_full(message):
     """Turn a message of rclpy into nested dicts and lists."""
     if hasattr(message, 'get_fields_and_field_types'):
-        return {name: in_full(getattr(message, name)) for name in message.get_fields_and_field_types()}
+        return {name: in_full(getattr(message, name))
+                for name in message.get_fields_and_field_types()}
     if isinstance(message, bytes):
         return message[0]
     if isinstance(message, (str, bool, int, float)):
@@ -79,7 +90,8 @@ def test_rclpy_reads_the_same(type_name):
     message = serialization.deserialize_message(data, message_type)
     assert in_full(message) == decode(schema(type_name), type_name, data)
     # the other way: what rclpy packs (its padding is arbitrary) means the same to us
-    assert decode(schema(type_name), type_name, serialization.serialize_message(message)) == in_full(message)
+    assert decode(
+        schema(type_name), type_name, serialization.serialize_message(message)) == in_full(message)
 
 
 def test_padding_is_zero_and_bytes_repeat():
@@ -102,8 +114,8 @@ def test_array_of_wrong_length_is_refused():
         encode('sensor_msgs/msg/Imu', {'orientation_covariance': [0.0] * 8})
 
 
-@given(type_name=st.sampled_from(sorted(SAMPLES)), cut=st.floats(0, 1, exclude_max=True), junk=st.binary(max_size=12),
-       at=st.integers(4, 60))
+@given(type_name=st.sampled_from(sorted(SAMPLES)), cut=st.floats(0, 1, exclude_max=True),
+       junk=st.binary(max_size=12), at=st.integers(4, 60))
 @settings(deadline=None, max_examples=200)
 def test_damaged_bytes_never_do_worse_than_bad_input(type_name, cut, junk, at):
     data = encode(type_name, SAMPLES[type_name])

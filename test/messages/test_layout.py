@@ -21,7 +21,8 @@ def test_columns_come_back(case):
     packed = Packed(*case)
     random = np.random.default_rng(2)
     columns = packed.layout.unpack(packed.pack_many({packed.layout.columns[0]: np.arange(7)}))
-    given = {name: random.integers(0, 10**18, 7) if column.dtype == np.int64 else random.normal(size=column.shape)
+    given = {name: random.integers(0, 10**18, 7) if column.dtype == np.int64
+             else random.normal(size=column.shape)
              for name, column in columns.items() if column.dtype.kind != 'S'}
     back = packed.layout.unpack(packed.pack_many(given))
     for name, column in given.items():
@@ -32,16 +33,19 @@ def test_columns_are_named_and_shaped_as_documented():
     packed = Packed(*POSE)
     columns = packed.layout.unpack(packed.pack_many({'header.stamp': np.zeros(3, int)}))
     assert {name: column.shape for name, column in columns.items()} == {
-        'header.stamp': (3,), 'header.frame_id': (3,), 'pose.position': (3, 3), 'pose.orientation': (3, 4)}
+        'header.stamp': (3,), 'header.frame_id': (3,), 'pose.position': (3, 3),
+        'pose.orientation': (3, 4)}
     assert columns['header.frame_id'].tolist() == [b'world'] * 3
     assert packed.layout.components['pose.orientation'] == ['x', 'y', 'z', 'w']
 
 
 def test_messages_of_another_form_do_not_fit():
     type_name = POSE[0]
-    one, other = (encode(type_name, {'header': {'frame_id': frame}}) for frame in ('world', 'earth'))
+    one, other = (encode(type_name, {'header': {'frame_id': frame}})
+                  for frame in ('world', 'earth'))
     longer = encode(type_name, {'header': {'frame_id': 'worlds'}})
-    assert len(longer) == len(one)      # the padding hides the difference; the length of the string tells
+    # the padding hides the difference; the length of the string tells
+    assert len(longer) == len(one)
     rows = np.array([list(one), list(longer), list(other)], np.uint8)
     assert Layout(schema(type_name), type_name, one).fits(rows).tolist() == [True, False, True]
 

@@ -18,7 +18,8 @@ from rigid_body_sim.scene.state import STATE_SIZE, State, States
 
 STAMP = 1_795_263_252_907_662_526
 FRAMES = state_topics.Frames('map', 'racket', '')
-STATE = State.of(2.5, from_rotation_vector(0.3, -1.1, 2.0), (0.1, 0.2, -0.3), (4.0, 5.0, 6.0), (-7.0, 8.0, 9.0))
+STATE = State.of(
+    2.5, from_rotation_vector(0.3, -1.1, 2.0), (0.1, 0.2, -0.3), (4.0, 5.0, 6.0), (-7.0, 8.0, 9.0))
 
 
 def ros(kind, data):
@@ -45,7 +46,8 @@ def values(vector):
 
 
 def test_topics_of_every_tick():
-    pose, spin, energy, square = messages('free_body', *(output.name for output in state_topics.EVERY_TICK))
+    pose, spin, energy, square = messages(
+        'free_body', *(output.name for output in state_topics.EVERY_TICK))
     assert (seconds(pose.header.stamp), pose.header.frame_id) == (STAMP, 'map')
     assert (seconds(spin.header.stamp), spin.header.frame_id) == (STAMP, 'racket')
     assert values(pose.pose.position) == STATE.position.tolist()
@@ -70,25 +72,31 @@ EVERY_TOPIC = pytest.mark.parametrize('name', list(state_topics.OUTPUTS))
 def test_a_message_is_what_the_encoder_makes(name):
     output, scene = state_topics.OUTPUTS[name], load_scene(SCENES.get(name, 'free_body'))
     states, energies, squares, stamps = random_states(1)
-    [[data]] = TickMessages([output], scene, FRAMES).messages(states.vector, energies, squares, stamps)
+    [[data]] = TickMessages([output], scene, FRAMES).messages(
+        states.vector, energies, squares, stamps)
     values = cdr.decode(definitions.schema(output.type), output.type, data)
     assert cdr.encode(output.type, values) == data
 
 
 @EVERY_TOPIC
 def test_many_at_once_are_the_same_bytes_as_one_by_one(name):
-    outputs, scene = [*state_topics.EVERY_TICK, state_topics.OUTPUTS[name]], load_scene(SCENES.get(name, 'free_body'))
+    outputs, scene = ([*state_topics.EVERY_TICK, state_topics.OUTPUTS[name]],
+                      load_scene(SCENES.get(name, 'free_body')))
     made = TickMessages(outputs, scene, FRAMES)
     states, energies, squares, stamps = random_states(5)
     ticks = made.messages(states.vector, energies, squares, stamps)
-    assert ticks == [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1], stamps[k:k + 1])[0] for k in range(5)]
+    assert ticks == [made.messages(states.vector[k:k + 1], energies[k:k + 1], squares[k:k + 1],
+                                   stamps[k:k + 1])[0]
+                     for k in range(5)]
     columns = made.columns(states.vector, energies, squares, stamps)
-    assert [(column.dtype, column.shape) for column in columns] == [(np.uint8, (5, size)) for size in made.sizes]
+    assert [(column.dtype, column.shape) for column in columns] == [(np.uint8, (5, size))
+                                                                    for size in made.sizes]
     assert [[column[k].tobytes() for column in columns] for k in range(5)] == ticks
 
 
 def test_odometry_has_its_twist_in_body_axes():
-    quarter = State.of(0.0, from_rotation_vector(0.0, 0.0, math.pi / 2), (0.1, 0.2, 0.3), (1.0, 2.0, 3.0), (5.0, 0.0, 0.0))
+    quarter = State.of(0.0, from_rotation_vector(0.0, 0.0, math.pi / 2), (0.1, 0.2, 0.3),
+                       (1.0, 2.0, 3.0), (5.0, 0.0, 0.0))
     [odometry] = messages('free_body', 'odom', moments=[quarter])
     assert (odometry.header.frame_id, odometry.child_frame_id) == ('map', 'racket')
     np.testing.assert_allclose(values(odometry.twist.twist.linear), [0.0, -5.0, 0.0], atol=1e-15)
@@ -97,7 +105,10 @@ def test_odometry_has_its_twist_in_body_axes():
 
 
 def test_imu_measures_what_holds_the_body_up():
-    """A top stands on its point: the origin does not accelerate, so g is felt upwards, here along -x of a body turned by 90 degrees about y."""
+    """A top stands on its point, so the origin does not accelerate and g is felt upwards.
+
+    Upwards is -x here, of a body turned by 90 degrees about y.
+    """
     upset = from_rotation_vector(0.0, math.pi / 2, 0.0)
     [imu] = messages('heavy_top', 'imu', moments=[State.of(0.0, upset)])
     np.testing.assert_allclose(values(imu.linear_acceleration), [-9.81, 0.0, 0.0], atol=1e-14)
@@ -112,14 +123,16 @@ def test_imu_in_free_fall_measures_nothing_and_on_the_table_the_weight():
     ball = load_scene('billiard_center')
     friction = ball.effect('sliding_friction')
     [imu] = messages(ball, 'imu', moments=[State.of(0.0, velocity=(2.0, 0.0, 0.0))])
-    np.testing.assert_allclose(values(imu.linear_acceleration), [-friction.mu * friction.g, 0.0, friction.g], rtol=1e-15)
+    np.testing.assert_allclose(
+        values(imu.linear_acceleration), [-friction.mu * friction.g, 0.0, friction.g], rtol=1e-15)
 
 
 def test_reaction_of_a_top_that_hangs_at_rest_is_its_weight():
     hanging = from_rotation_vector(math.pi, 0.0, 0.0)
     scene = load_scene('heavy_top')
     [reaction] = messages(scene, 'reaction', moments=[State.of(0.0, hanging)])
-    np.testing.assert_allclose(values(reaction.wrench.force), [0.0, 0.0, 9.81 * scene.body.mass], atol=1e-14)
+    np.testing.assert_allclose(
+        values(reaction.wrench.force), [0.0, 0.0, 9.81 * scene.body.mass], atol=1e-14)
     assert values(reaction.wrench.torque) == [0.0, 0.0, 0.0]
     assert reaction.header.frame_id == 'map'
     with pytest.raises(BadInput, match='nothing holds a free body'):
@@ -150,18 +163,22 @@ def test_marker_of_a_body_without_a_shape_is_a_box_with_its_moments():
     [marker] = messages('free_body', 'marker')
     x, y, z = values(marker.scale)
     body = load_scene('free_body').body
-    assert np.array([y * y + z * z, x * x + z * z, x * x + y * y]) * body.mass / 12.0 == pytest.approx(body.about_center.moments, rel=1e-12)
+    assert (np.array([y * y + z * z, x * x + z * z, x * x + y * y]) * body.mass / 12.0
+            == pytest.approx(body.about_center.moments, rel=1e-12))
     assert values(marker.pose.orientation) == STATE.orientation.tolist()
     assert (marker.type, marker.action, marker.color.a) == (1, 0, 1.0)
 
 
-PARTS = ['constraint=free', 'effects=[]', 'body={parts: [{mass: 1.0, shape: {rod: {length: 1.0}}}, '
+PARTS = ['constraint=free', 'effects=[]',
+         'body={parts: [{mass: 1.0, shape: {rod: {length: 1.0}}}, '
          '{mass: 2.0, shape: {box: {size: [0.2, 0.1, 0.3]}}, at: [0, 0, 0.5]}]}']
 
 
-@pytest.mark.parametrize(('shape', 'kind', 'scale'), [
-    ('solid_sphere: {radius: 0.25}', 2, [0.5, 0.5, 0.5]), ('box: {size: [1, 2, 3]}', 1, [1.0, 2.0, 3.0]),
-    ('ellipsoid: {semi_axes: [1, 2, 3]}', 2, [2.0, 4.0, 6.0]), ('cylinder: {radius: 0.5, length: 3}', 3, [1.0, 1.0, 3.0])])
+@pytest.mark.parametrize(('shape', 'kind', 'scale'),
+                         [('solid_sphere: {radius: 0.25}', 2, [0.5, 0.5, 0.5]),
+                          ('box: {size: [1, 2, 3]}', 1, [1.0, 2.0, 3.0]),
+                          ('ellipsoid: {semi_axes: [1, 2, 3]}', 2, [2.0, 4.0, 6.0]),
+                          ('cylinder: {radius: 0.5, length: 3}', 3, [1.0, 1.0, 3.0])])
 def test_marker_of_a_solid_is_the_primitive_at_the_centre_of_mass(shape, kind, scale):
     scene = load_scene('free_body', [f'body={{mass: 1.0, shape: {{{shape}}}}}'])
     [marker] = messages(scene, 'marker')
@@ -169,13 +186,15 @@ def test_marker_of_a_solid_is_the_primitive_at_the_centre_of_mass(shape, kind, s
     assert values(marker.pose.position) == STATE.position.tolist()
 
 
-@pytest.mark.parametrize('overrides', [['body={mass: 1.0, shape: {torus: {radius: 0.5, tube: 0.1}}}'], PARTS])
+@pytest.mark.parametrize(
+    'overrides', [['body={mass: 1.0, shape: {torus: {radius: 0.5, tube: 0.1}}}'], PARTS])
 def test_marker_of_any_other_shape_is_its_surface_in_triangles(overrides):
     scene = load_scene('free_body', overrides)
     [marker] = messages(scene, 'marker')
     surfaces = drawing_of(scene).surfaces
     assert marker.type == 11
-    assert len(marker.points) == len(marker.colors) == 3 * sum(len(surface.faces) for surface in surfaces)
+    assert (len(marker.points) == len(marker.colors)
+            == 3 * sum(len(surface.faces) for surface in surfaces))
     corner = surfaces[0].vertices[surfaces[0].faces[0, 0]]
     assert values(marker.points[0]) == corner.tolist()
     # the points are in body axes
@@ -187,7 +206,8 @@ def test_paced_outputs_are_apart_from_those_of_every_tick():
     outputs = state_topics.chosen(['tf', 'odom', 'marker'])
     assert [output.name for output in outputs.paced] == ['marker', 'tf']
     assert [output.name for output in outputs.ticking][-1] == 'odom'
-    assert state_topics.scene_messages(state_topics.chosen([]), load_scene('free_body'), FRAMES).paced is None
+    assert state_topics.scene_messages(
+        state_topics.chosen([]), load_scene('free_body'), FRAMES).paced is None
 
 
 def test_clock_is_the_stamp():
@@ -198,10 +218,12 @@ def test_clock_is_the_stamp():
 def test_transform_is_the_pose():
     """No class for tf2_msgs among the wheels: decoded by our own codec."""
     kind = 'tf2_msgs/msg/TFMessage'
-    made = TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']], load_scene('free_body'), FRAMES)
+    made = TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']],
+                        load_scene('free_body'), FRAMES)
     [[_, data]] = made.messages(STATE.vector[None], [0.1], [0.2], [STAMP])
     [transform] = cdr.decode(definitions.schema(kind), kind, data)['transforms']
-    assert transform['header'] == {'stamp': {'sec': STAMP // 10**9, 'nanosec': STAMP % 10**9}, 'frame_id': 'map'}
+    assert transform['header'] == {
+        'stamp': {'sec': STAMP // 10**9, 'nanosec': STAMP % 10**9}, 'frame_id': 'map'}
     assert transform['child_frame_id'] == 'racket'
     assert list(transform['transform']['translation'].values()) == STATE.position.tolist()
     assert list(transform['transform']['rotation'].values()) == STATE.orientation.tolist()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Instants of ticks: exact for any rate."""
 
 from fractions import Fraction
@@ -30,13 +31,16 @@ def test_ticks_in_a_span_never_fall_short():
     assert Timeline(0, 1000.0).ticks_in(0.5000000001) == 501
 
 
-@pytest.mark.parametrize(('seconds', 'rate', 'ticks'), [(0.1, 1000.0, 100), (0.07, 100.0, 7), (0.3, 10.0, 3), (1e-3, 1e5, 100), (20.0, 0.1, 2)])
+@pytest.mark.parametrize(
+    ('seconds', 'rate', 'ticks'),
+    [(0.1, 1000.0, 100), (0.07, 100.0, 7), (0.3, 10.0, 3), (1e-3, 1e5, 100), (20.0, 0.1, 2)])
 def test_decimal_spans_are_whole_numbers_of_ticks(seconds, rate, ticks):
     assert Timeline(0, rate).ticks_in(seconds) == ticks
 
 
-@pytest.mark.parametrize(('rate', 'ticks', 'expected'), [
-    (30.0, 90.0, [0, 3, 6, 9]), (30.0, 100.0, [0, 4, 7, 10]), (30.0, 20.0, list(range(11))), (2.5, 10.0, [0, 4, 8])])
+@pytest.mark.parametrize(('rate', 'ticks', 'expected'),
+                         [(30.0, 90.0, [0, 3, 6, 9]), (30.0, 100.0, [0, 4, 7, 10]),
+                          (30.0, 20.0, list(range(11))), (2.5, 10.0, [0, 4, 8])])
 def test_what_is_paced_is_due_at_the_first_tick_at_or_after_each_instant(rate, ticks, expected):
     pace = Pace(rate, ticks)
     assert pace.due(0, 11) == expected
