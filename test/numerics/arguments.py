@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments for which functions are tested: the same numbers on every machine.
 
 Run as a script from the source tree, it prints, as JSON, a digest of what each function gives for

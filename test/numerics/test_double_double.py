@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pairs of doubles, phases in turns, sine, cosine and exponential function against mpmath."""
 
 import math
@@ -18,7 +19,8 @@ def pairs(seed, signs=True):
     """Yield random pairs of doubles."""
     rng = np.random.default_rng(seed)
     for _ in range(300):
-        high = float(10.0 ** rng.uniform(-20.0, 20.0)) * (rng.choice([-1.0, 1.0]) if signs else 1.0)
+        high = (float(10.0 ** rng.uniform(-20.0, 20.0))
+                * (rng.choice([-1.0, 1.0]) if signs else 1.0))
         yield high, float(rng.uniform(-0.5, 0.5)) * math.ulp(high)
 
 
@@ -26,8 +28,9 @@ def exact(pair):
     return Fraction(pair[0]) + Fraction(pair[1])
 
 
-@pytest.mark.parametrize(('name', 'operation', 'bound'), [
-    ('add', operator.add, 3.0), ('multiply', operator.mul, 7.0), ('divide', operator.truediv, 15.0)])
+@pytest.mark.parametrize(('name', 'operation', 'bound'),
+                         [('add', operator.add, 3.0), ('multiply', operator.mul, 7.0),
+                          ('divide', operator.truediv, 15.0)])
 def test_operations_on_pairs(name, operation, bound):
     """Bounds of the literature, in units of 2^-106; sums of opposite signs included."""
     for a, b in zip(pairs(1), pairs(2), strict=True):
@@ -39,11 +42,15 @@ def test_operations_on_pairs(name, operation, bound):
 
 def test_other_operations_on_pairs():
     for a, b in zip(pairs(3, False), pairs(4, False), strict=True):
-        assert abs(exact(double_double.add_alike(*a, *b)) / (exact(a) + exact(b)) - 1) <= Fraction(3, 2**106)
-        assert abs(exact(double_double.multiply_double(*a, b[0])) / (exact(a) * Fraction(b[0])) - 1) <= Fraction(3, 2**106)
+        assert abs(exact(double_double.add_alike(*a, *b)) / (exact(a) + exact(b)) - 1) <= Fraction(
+            3, 2**106)
+        assert abs(exact(double_double.multiply_double(*a, b[0])) / (exact(a) * Fraction(b[0]))
+                   - 1) <= Fraction(3, 2**106)
         assert abs(exact(double_double.root(*a)) ** 2 / exact(a) - 1) <= Fraction(8, 2**106)
-        assert sum(map(Fraction, double_double.two_product(a[0], b[0]))) == Fraction(a[0]) * Fraction(b[0])
-        assert sum(map(Fraction, double_double.two_sum(a[0], -b[0]))) == Fraction(a[0]) - Fraction(b[0])
+        assert (sum(map(Fraction, double_double.two_product(a[0], b[0])))
+                == Fraction(a[0]) * Fraction(b[0]))
+        assert (sum(map(Fraction, double_double.two_sum(a[0], -b[0])))
+                == Fraction(a[0]) - Fraction(b[0]))
     assert double_double.root(0.0, 0.0) == (0.0, 0.0)
 
 
@@ -76,7 +83,10 @@ def test_sine_and_cosine_of_turns():
 
 
 def test_sine_and_cosine_round_to_no_side():
-    """A sine short by the rounding of 2 pi (0.36 of 2^-53) would drain energy from a motion that is anchored anew at every tick."""
+    """A sine short by the rounding of 2 pi (0.36 of 2^-53) would drain energy from a motion.
+
+    It would do so where the motion is anchored anew at every tick.
+    """
     sines, squares = [], []
     rng = np.random.default_rng(6)
     with mp.workdps(30):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Elliptic integrals and functions against mpmath, near every limit."""
 
 import mpmath as mp
@@ -33,40 +34,54 @@ def forty_digits():
 
 
 def test_first_kind():
-    assert worst((carlson_rf(x, y, z), mp.elliprf(x, y, z)) for x, y, z, _ in TRIPLES) < 3.0 * EPSILON      # measured 2.0
-    assert worst((carlson_rf(0.0, y, z), mp.elliprf(0, y, z)) for _, y, z, _ in TRIPLES) < 3.0 * EPSILON
-    assert worst([(carlson_rf(0.0, 1e-300, 1.0), mp.elliprf(0, 1e-300, 1)), (carlson_rf(2.0, 2.0, 2.0), 1 / mp.sqrt(2))]) < 3.0 * EPSILON
+    # measured 2.0
+    assert (worst((carlson_rf(x, y, z), mp.elliprf(x, y, z)) for x, y, z, _ in TRIPLES)
+            < 3.0 * EPSILON)
+    assert (worst((carlson_rf(0.0, y, z), mp.elliprf(0, y, z)) for _, y, z, _ in TRIPLES)
+            < 3.0 * EPSILON)
+    assert (worst([(carlson_rf(0.0, 1e-300, 1.0), mp.elliprf(0, 1e-300, 1)),
+                   (carlson_rf(2.0, 2.0, 2.0), 1 / mp.sqrt(2))]) < 3.0 * EPSILON)
     for (x, y, z, _), (u, v, w, _) in zip(TRIPLES[:20], TRIPLES[20:40], strict=True):
         both = carlson_rf_pair(x, y, z, u, v, w)
         assert both == pytest.approx((carlson_rf(x, y, z), carlson_rf(u, v, w)), rel=3.0 * EPSILON)
 
 
 def test_elementary_limit():
-    assert worst((carlson_rc(x, y), mp.elliprc(x, y)) for x, y, _, _ in TRIPLES) < 3.0 * EPSILON            # measured 1.8
-    assert worst([(carlson_rc(0.0, 1.0), mp.pi / 2), (carlson_rc(3.0, 3.0), 1 / mp.sqrt(3))]) < 2.0 * EPSILON
+    # measured 1.8
+    assert worst((carlson_rc(x, y), mp.elliprc(x, y)) for x, y, _, _ in TRIPLES) < 3.0 * EPSILON
+    assert (worst([(carlson_rc(0.0, 1.0), mp.pi / 2), (carlson_rc(3.0, 3.0), 1 / mp.sqrt(3))])
+            < 2.0 * EPSILON)
 
 
 def test_third_kind():
     """Also for p far below the others, where the usual form of the duplication loses digits."""
-    assert worst((carlson_rj(x, y, z, p), mp.elliprj(x, y, z, p)) for x, y, z, p in TRIPLES) < 5.0 * EPSILON    # measured 3.0
-    assert worst((carlson_rj(0.0, y, z, p), mp.elliprj(0, y, z, p)) for _, y, z, p in TRIPLES) < 5.0 * EPSILON
-    assert worst((carlson_rj(x, y, z, z), mp.elliprd(x, y, z)) for x, y, z, _ in TRIPLES) < 5.0 * EPSILON
+    # measured 3.0
+    assert (worst((carlson_rj(x, y, z, p), mp.elliprj(x, y, z, p)) for x, y, z, p in TRIPLES)
+            < 5.0 * EPSILON)
+    assert (worst((carlson_rj(0.0, y, z, p), mp.elliprj(0, y, z, p)) for _, y, z, p in TRIPLES)
+            < 5.0 * EPSILON)
+    assert (worst((carlson_rj(x, y, z, z), mp.elliprd(x, y, z)) for x, y, z, _ in TRIPLES)
+            < 5.0 * EPSILON)
 
 
 def test_means_and_quarter_period():
     moduli = [*(10.0 ** np.random.default_rng(1).uniform(-20.0, 0.0, 50)), 1.0, 1e-300]
-    assert worst((complete_k(kc), mp.pi / 2 / mp.agm(1, mp.mpf(kc))) for kc in moduli) < 4.0 * EPSILON          # measured 2.3
+    # measured 2.3
+    assert (worst((complete_k(kc), mp.pi / 2 / mp.agm(1, mp.mpf(kc))) for kc in moduli)
+            < 4.0 * EPSILON)
     assert worst((agm(3.0, kc), mp.agm(3, mp.mpf(kc))) for kc in moduli) < 4.0 * EPSILON
     assert agm(1.0, 0.0) == 0.0
     for kc in moduli:
         low = kc * 1e-17
         high_part, low_part = agm_pair(1.0, 0.0, kc, low)
-        assert worst([(mp.mpf(high_part) + low_part, mp.agm(1, mp.mpf(kc) + low))]) < 1e-19     # measured 6e-20
+        # measured 6e-20
+        assert worst([(mp.mpf(high_part) + low_part, mp.agm(1, mp.mpf(kc) + low))]) < 1e-19
 
 
 def test_nome():
     with mp.workdps(90):
-        for k in [mp.mpf(float(x)) for x in (*(10.0 ** np.random.default_rng(2).uniform(-30.0, -0.01, 40)), 0.98)]:
+        for k in [mp.mpf(float(x))
+                  for x in (*(10.0 ** np.random.default_rng(2).uniform(-30.0, -0.01, 40)), 0.98)]:
             kc = mp.sqrt(1 - k * k)
             exact = mp.exp(-mp.pi * mp.ellipk(kc * kc) / mp.ellipk(k * k))
             assert abs(nome(float(k), float(kc)) / exact - 1) < 4.0 * EPSILON       # measured 1.4
@@ -74,7 +89,10 @@ def test_nome():
 
 
 def test_jacobi_functions():
-    """Absolute errors of sn, cn, dn; relative ones of cn and dn far out on a long quarter period, where they are small."""
+    """Errors of sn, cn, dn are absolute; far out those of cn and dn are relative.
+
+    There, on a long quarter period, they are small numbers.
+    """
     rng = np.random.default_rng(3)
     for kc in (1.0, 0.9, 0.5, 0.171, 0.169, 0.02, 1e-5, 1e-10, 1e-16):
         with mp.workdps(60):
@@ -83,15 +101,18 @@ def test_jacobi_functions():
             for u in rng.uniform(-5.0, 5.0, 12):
                 exact = [mp.ellipfun(name, u, m=m) for name in ('sn', 'cn', 'dn')]
                 found = jacobi(u, k, kc)
-                assert max(abs(a - b) for a, b in zip(found, exact, strict=True)) < 12.0 * EPSILON     # measured 6: phase of 3 rad and more
+                # measured 6: phase of 3 rad and more
+                assert max(abs(a - b) for a, b in zip(found, exact, strict=True)) < 12.0 * EPSILON
                 if kc < 1e-4:
                     assert worst(zip(found, exact, strict=True)) < 12.0 * EPSILON
 
 
 def test_jacobi_functions_at_their_limits():
     for u in (-3.0, 0.0, 0.5, 20.0):
-        assert jacobi(u, 1.0, 0.0) == pytest.approx((np.tanh(u), 1.0 / np.cosh(u), 1.0 / np.cosh(u)), rel=4.0 * EPSILON, abs=0.0)
-        assert jacobi(u, 0.0, 1.0) == pytest.approx((np.sin(u), np.cos(u), 1.0), rel=0.0, abs=8.0 * EPSILON)
+        assert jacobi(u, 1.0, 0.0) == pytest.approx(
+            (np.tanh(u), 1.0 / np.cosh(u), 1.0 / np.cosh(u)), rel=4.0 * EPSILON, abs=0.0)
+        assert jacobi(u, 0.0, 1.0) == pytest.approx(
+            (np.sin(u), np.cos(u), 1.0), rel=0.0, abs=8.0 * EPSILON)
     # a quarter period of 692 (k' = 1e-300): half-way dn is 1e-150, at the end it is k'
     quarter = complete_k(1e-300)
     sn, cn, dn = jacobi(quarter, 1.0, 1e-300)

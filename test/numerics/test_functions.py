@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Elementary functions: errors against mpmath, special values of C, the same bits everywhere."""
 
 import json
