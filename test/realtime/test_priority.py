@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a thread that keeps deadlines is scheduled where real-time scheduling is not allowed."""
 
 import ctypes
@@ -16,11 +17,13 @@ import ctypes, os, struct
 from rigid_body_sim.realtime import priority
 def slice():
     attributes = ctypes.create_string_buffer(48)
-    assert ctypes.CDLL(None).syscall(priority.SCHED_SETATTR[os.uname().machine] + 1, 0, attributes, 48, 0) == 0    # sched_getattr
+    number = priority.SCHED_SETATTR[os.uname().machine] + 1    # sched_getattr
+    assert ctypes.CDLL(None).syscall(number, 0, attributes, 48, 0) == 0
     return struct.unpack('=IIQiIQQQ', attributes.raw)[5]
 before = slice()
 for wanted in (True, False):
-    print(priority.ask_for_priority(wanted), slice() if wanted else slice() == before, os.getpriority(os.PRIO_PROCESS, 0))
+    print(priority.ask_for_priority(wanted), slice() if wanted else slice() == before,
+          os.getpriority(os.PRIO_PROCESS, 0))
 """
 
 
@@ -29,9 +32,10 @@ def without_priority():
     os.nice(3)
 
 
-@pytest.mark.skipif(tuple(map(int, platform.release().split('.')[:2])) < (6, 12) or platform.machine() not in ('x86_64', 'aarch64'),
+@pytest.mark.skipif(tuple(map(int, platform.release().split('.')[:2])) < (6, 12)
+                    or platform.machine() not in ('x86_64', 'aarch64'),
                     reason='Linux before 6.12 knows no slices')
 def test_who_may_not_have_real_time_asks_for_short_slices():
-    done = subprocess.run([sys.executable, '-c', SLICES], cwd=ROOT, capture_output=True, text=True, preexec_fn=without_priority, timeout=20,
-                          check=True)
+    done = subprocess.run([sys.executable, '-c', SLICES], cwd=ROOT, capture_output=True, text=True,
+                          preexec_fn=without_priority, timeout=20, check=True)
     assert done.stdout.splitlines() == ['normal 100000 3', 'normal True 3']

@@ -1,4 +1,8 @@
-"""The tick thread on a clock that the test moves: deadlines, overruns, pauses and /clock, without waiting for real time."""
+# SPDX-License-Identifier: Apache-2.0
+"""The tick thread on a clock that the test moves: deadlines, overruns, pauses and /clock.
+
+No test waits for real time.
+"""
 
 import itertools
 
@@ -117,14 +121,18 @@ def test_skip_publish_leaves_out_the_messages_of_late_ticks():
 
 @pytest.mark.parametrize('skip_publish', [False, True])
 def test_rate_that_cannot_be_held_slips_and_recovers(skip_publish):
-    """Each of 400 ticks takes 2 ms where 1 ms is allowed: ticks stay consecutive, time is lost in steps of the backlog, then none."""
+    """400 ticks take 2 ms each where 1 ms is allowed: they stay consecutive.
+
+    Time is lost in steps of the backlog, and then no more.
+    """
     clock = Clock()
     work = Work(clock, 800, dict.fromkeys(range(400), 2 * MILLISECOND))
     ticker = run(work, clock, skip_publish=skip_publish)
     lost = work.times[799] - 799 * MILLISECOND
     assert lost == ticker.slipped
     assert 3 * BACKLOG < lost <= 400 * MILLISECOND
-    assert [after - before for before, after in itertools.pairwise(work.times[700:])] == [MILLISECOND] * 99
+    assert ([after - before for before, after in itertools.pairwise(work.times[700:])]
+            == [MILLISECOND] * 99)
 
 
 def test_real_time_factor_stretches_time():
@@ -161,7 +169,8 @@ def test_long_waits_look_after_commands():
 
 def test_pause_and_steps_leave_out_no_tick_and_no_time(monkeypatch):
     clock = Clock()
-    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep', lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep',
+                        lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
     steps = []
 
     def between(work):
@@ -189,14 +198,16 @@ def test_failure_ends_the_thread_and_is_kept():
 
     def fail():
         raise ArithmeticError('gave up')
-    ticker = Ticker(Work(clock, 10, {3: fail}), clock, 1000.0, 1.0, False, lambda: ended.append(True))
+    ticker = Ticker(
+        Work(clock, 10, {3: fail}), clock, 1000.0, 1.0, False, lambda: ended.append(True))
     ticker.run()
     assert str(ticker.failure) == 'gave up'
     assert ended == [True]
 
 
 def test_clock_topic_of_ten_hertz_runs_every_tick_in_bursts():
-    clock = ClockTopic([0, 0, 7_000_000_000, *(7_000_000_000 + k * 100 * MILLISECOND for k in range(1, 11))])
+    clock = ClockTopic([
+        0, 0, 7_000_000_000, *(7_000_000_000 + k * 100 * MILLISECOND for k in range(1, 11))])
     work = Work(clock, None)
     ticker = run(work, clock, rate=100.0)
     assert len(work.runs) == 101
@@ -212,8 +223,9 @@ def test_clock_topic_at_ten_times_the_speed_loses_no_tick():
 
 
 def test_clock_topic_that_pauses_or_jumps_keeps_ticks_consecutive():
-    instants = [10**10, 10**10 + 10**9, 10**10 + 10**9, 10**10 + 10**9, 2 * 10**9, 2 * 10**9 + 10**8, 2 * 10**9 + 10**8 + 2 * CLOCK_JUMP,
-                2 * 10**9 + 2 * 10**8 + 2 * CLOCK_JUMP]
+    instants = [
+        10**10, 10**10 + 10**9, 10**10 + 10**9, 10**10 + 10**9, 2 * 10**9, 2 * 10**9 + 10**8,
+        2 * 10**9 + 10**8 + 2 * CLOCK_JUMP, 2 * 10**9 + 2 * 10**8 + 2 * CLOCK_JUMP]
     clock = ClockTopic(instants)
     work = Work(clock, None)
     ticker = run(work, clock, rate=100.0)
@@ -226,8 +238,11 @@ def test_lateness_of_a_second_and_of_the_whole_run():
     lateness = Lateness()
     for microseconds in range(100):
         lateness.add(microseconds * 1000)
-    assert lateness.since_last() == pytest.approx({'count': 100, 'p50': 50e-6, 'p99': 99e-6, 'max': 99e-6})
+    assert lateness.since_last() == pytest.approx({
+        'count': 100, 'p50': 50e-6, 'p99': 99e-6, 'max': 99e-6})
     lateness.add(50_000_000)
-    assert lateness.since_last() == pytest.approx({'count': 1, 'p50': 20e-3, 'p99': 20e-3, 'max': 50e-3})
+    assert lateness.since_last() == pytest.approx({
+        'count': 1, 'p50': 20e-3, 'p99': 20e-3, 'max': 50e-3})
     assert lateness.since_last()['count'] == 0
-    assert lateness.summary() == pytest.approx({'count': 101, 'p50': 51e-6, 'p99': 100e-6, 'max': 50e-3})
+    assert lateness.summary() == pytest.approx({
+        'count': 101, 'p50': 51e-6, 'p99': 100e-6, 'max': 50e-3})
