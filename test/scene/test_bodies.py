@@ -1,4 +1,5 @@
-"""Inertia of shapes against integrals done by hand, composites against their parts, tensors that no body has."""
+# SPDX-License-Identifier: Apache-2.0
+"""Inertia of shapes against integrals by hand, composites against parts, impossible tensors."""
 
 import itertools
 import math
@@ -29,7 +30,8 @@ SHAPES = [
 ]
 
 
-@pytest.mark.parametrize(('name', 'dimensions', 'moments'), SHAPES, ids=[shape[0] for shape in SHAPES])
+@pytest.mark.parametrize(
+    ('name', 'dimensions', 'moments'), SHAPES, ids=[shape[0] for shape in SHAPES])
 def test_shape_has_the_moments_of_its_integral(name, dimensions, moments):
     body = bodies.of_shape(name, 1.0, dimensions)
     # a few roundings: measured 2.2e-16 relative at most
@@ -46,7 +48,8 @@ def test_rod_about_its_end_by_the_parallel_axis():
 
 
 def test_flat_shapes_have_perpendicular_axes():
-    for name, dimensions in (('lamina', {'width': 0.3, 'height': 0.7}), ('hoop', {'radius': 0.3}), ('disk', {'radius': 0.7})):
+    for name, dimensions in (('lamina', {'width': 0.3, 'height': 0.7}), ('hoop', {'radius': 0.3}),
+                             ('disk', {'radius': 0.7})):
         I1, I2, I3 = bodies.of_shape(name, 1.3, dimensions).about_center.moments
         assert abs(I1 + I2 - I3) <= 2 * EPS * I3
 
@@ -58,7 +61,8 @@ def test_given_tensor_is_kept_to_the_last_bit():
     assert body.about_center.moments[0] == body.about_center.moments[1]
 
 
-@pytest.mark.parametrize('moments', [(1.0, 2.0, 2.5), (1.0, 1.0 + 1e-9, 1.9), (1e-9, 1.0, 1.0 + 1e-9)])
+@pytest.mark.parametrize(
+    'moments', [(1.0, 2.0, 2.5), (1.0, 1.0 + 1e-9, 1.9), (1e-9, 1.0, 1.0 + 1e-9)])
 def test_turned_tensor_gives_back_its_moments_and_axes(moments):
     turn = Rotation.from_rotvec([0.2, -0.1, 0.3])
     matrix = turn.as_matrix() @ np.diag(moments) @ turn.as_matrix().T
@@ -77,7 +81,8 @@ def test_axes_are_the_nearest_to_the_input_axes():
 
 def test_equal_moments_keep_the_input_axes():
     turn = Rotation.from_rotvec([0.0, 0.0, 0.7])
-    # a disk turned about its own axis is the same disk; the rounding of the turn must not turn its axes
+    # a disk turned about its own axis is the same disk; rounding of the turn must not turn its
+    # axes
     matrix = turn.as_matrix() @ np.diag([1.0, 1.0, 2.0]) @ turn.as_matrix().T
     inertia = bodies.Inertia.of_matrix((matrix + matrix.T) / 2)
     assert inertia.moments[0] == inertia.moments[1]
@@ -87,7 +92,9 @@ def test_equal_moments_keep_the_input_axes():
 def test_dumbbell_of_two_balls_and_a_rod():
     ball = bodies.of_shape('solid_sphere', 2.0, {'radius': 0.1})
     rod = bodies.of_shape('rod', 1.0, {'length': 1.0})
-    body = bodies.composite([(rod, (0, 0, 0), bodies.IDENTITY), (ball, (0, 0, 0.5), bodies.IDENTITY), (ball, (0, 0, -0.5), bodies.IDENTITY)])
+    body = bodies.composite([
+        (rod, (0, 0, 0), bodies.IDENTITY), (ball, (0, 0, 0.5), bodies.IDENTITY),
+        (ball, (0, 0, -0.5), bodies.IDENTITY)])
     across = 1 / 12 + 2 * (0.4 * 2.0 * 0.01 + 2.0 * 0.25)
     assert body.mass == 5.0
     assert body.about_center.moments == near((across, across, 2 * 0.4 * 2.0 * 0.01), 1e-15)
@@ -95,7 +102,8 @@ def test_dumbbell_of_two_balls_and_a_rod():
 
 
 def test_composite_keeps_its_own_axes_and_origin():
-    parts = [(bodies.of_shape('box', 1.0, {'size': (0.1, 0.2, 0.3)}), (0.3, 0.1, 0.0), (0.0, 0.0, math.sin(0.2), math.cos(0.2))),
+    parts = [(bodies.of_shape('box', 1.0, {'size': (0.1, 0.2, 0.3)}), (0.3, 0.1, 0.0),
+              (0.0, 0.0, math.sin(0.2), math.cos(0.2))),
              (bodies.of_shape('disk', 2.0, {'radius': 0.1}), (-0.2, 0.0, 0.1), bodies.IDENTITY)]
     body = bodies.composite(parts)
     assert body.center_of_mass == pytest.approx((-0.1 / 3, 0.1 / 3, 0.2 / 3), abs=1e-16)
@@ -103,7 +111,8 @@ def test_composite_keeps_its_own_axes_and_origin():
     tensor = np.zeros((3, 3))
     for part, at, orientation in parts:
         turn = Rotation.from_quat(orientation).as_matrix()
-        tensor += turn @ part.about_center.matrix @ turn.T + part.mass * (np.dot(at, at) * np.eye(3) - np.outer(at, at))
+        tensor += (turn @ part.about_center.matrix @ turn.T
+                   + part.mass * (np.dot(at, at) * np.eye(3) - np.outer(at, at)))
     # a dozen roundings of numbers up to 0.2: measured 1.1e-16
     assert np.abs(body.about_origin.matrix - tensor).max() <= 4 * EPS * 0.22
 
@@ -114,7 +123,8 @@ def test_lamina_is_legal_in_any_order(order):
 
 
 @pytest.mark.parametrize(('moments', 'words'), [
-    ((1.0, 2.0, 3.00001), 'triangle inequality'), ((-1.0, 2.0, 2.0), 'negative'), ((0.0, 0.0, 0.0), 'at least two'),
+    ((1.0, 2.0, 3.00001), 'triangle inequality'), ((-1.0, 2.0, 2.0), 'negative'),
+    ((0.0, 0.0, 0.0), 'at least two'),
     ([[1, 2, 0], [0, 1, 0], [0, 0, 1]], 'not symmetric')])
 def test_impossible_tensor_is_refused_by_name(moments, words):
     with pytest.raises(BadInput, match=words) as caught:
@@ -136,7 +146,7 @@ def test_needle_keeps_its_small_moment_when_turned():
 
 @pytest.mark.filterwarnings('error')
 def test_graded_tensors_are_solved_to_round_off():
-    """The moments span up to sixteen decades; the smallest one is as accurate as the tensor that is given allows."""
+    """Moments span up to sixteen decades; the smallest one is as accurate as the given tensor."""
     rng = np.random.default_rng(0)
     for _ in range(100):
         turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))

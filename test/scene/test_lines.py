@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors in scene files name the line, also where the YAML is well-formed and its meaning is not."""
+"""Errors in scene files name the line, even where only the meaning of the YAML is wrong."""
 
 import pytest
 

@@ -1,4 +1,8 @@
-"""Scene files: what ships loads, and each mistake gets one line with file, key path, value and what would be right."""
+# SPDX-License-Identifier: Apache-2.0
+"""Scene files: those that ship load, and each mistake gets one line.
+
+The line has the file, the key path, the value and what would be right.
+"""
 
 import math
 import pathlib
@@ -31,30 +35,38 @@ def test_racket_is_the_one_of_the_notes():
     assert scene.initial.angular_velocity.tolist() == [0.01, 5.0, 0.01]
 
 
-@pytest.mark.parametrize(('assignment', 'line'), [
-    ('body.mass=-1', 'racket.yaml: body.mass: got -1; needs a number above 0'),
-    ('body.mass=0', 'racket.yaml: body.mass: got 0; needs a number above 0'),
-    ('body.mass=1e999', 'racket.yaml: body.mass: got inf; needs a finite number'),
-    ('body.inertia.0=.nan', 'racket.yaml: body.inertia.0: got nan; needs a finite number'),
-    ('bodi.mass=1', "racket.yaml: unknown key 'bodi'; did you mean 'body'?"),
-    ('initial.angular_velocity=[1, 2, a]', "racket.yaml: initial.angular_velocity.2: got 'a'; the type is number"),
-    ('initial.angular_velocity=[1, 2]', 'racket.yaml: initial.angular_velocity: got [1, 2]; needs at least 3 entries'),
-    ('initial.orientation=[0, 0, 0, 0]',
-     'racket.yaml: initial.orientation: got [0.0, 0.0, 0.0, 0.0]; a quaternion (x, y, z, w) of non-zero norm'),
-    ('initial.rate=3', "racket.yaml: initial.rate: has no meaning on constraint 'free'"),
-    ('effects=[gravty]', "racket.yaml: effects.0: got 'gravty'; did you mean 'gravity'?"),
-    ('effects=[sliding_friction: {mu: 0.1}]', "racket.yaml: effects.sliding_friction: cannot act on constraint 'free'"),
-    ('constraint=pivoted', "racket.yaml: constraint: got 'pivoted'; one of free, pivot, table, or hinge"),
-    ('constraint=table', 'racket.yaml: constraint: a table needs a sphere'),
-    ('constraint=[1]', 'racket.yaml: constraint: got [1]; the type is string or object'),
-    ('body={mass: 1, shape: {rodd: {length: 2}}}', "racket.yaml: body.shape: unknown key 'rodd'; did you mean 'rod'?"),
-    ('body={mass: 1, shape: {rod: {length: 2}}}', 'racket.yaml: initial.angular_velocity: spin 0.01 rad/s about principal axis 3'),
-    ('body={inertia: [1, 1, 1]}', "racket.yaml: body: the key 'mass' is missing; a mass in kg"),
-    ('scene=7 of 9', "racket.yaml: scene: got '7 of 9'; a name is letters"),
-    ('body.inertia.3=1', "racket.yaml: 'body.inertia.3': no place '3' in a list of 3; places run from 0 to 2"),
-    ('strike.height=1', "racket.yaml: unknown key 'strike'"),
-    ('body.mass', "racket.yaml: 'body.mass': got 'body.mass'; an override is key.path=value"),
-])
+@pytest.mark.parametrize(
+    ('assignment', 'line'),
+    [('body.mass=-1', 'racket.yaml: body.mass: got -1; needs a number above 0'),
+     ('body.mass=0', 'racket.yaml: body.mass: got 0; needs a number above 0'),
+     ('body.mass=1e999', 'racket.yaml: body.mass: got inf; needs a finite number'),
+     ('body.inertia.0=.nan', 'racket.yaml: body.inertia.0: got nan; needs a finite number'),
+     ('bodi.mass=1', "racket.yaml: unknown key 'bodi'; did you mean 'body'?"),
+     ('initial.angular_velocity=[1, 2, a]',
+      "racket.yaml: initial.angular_velocity.2: got 'a'; the type is number"),
+     ('initial.angular_velocity=[1, 2]',
+      'racket.yaml: initial.angular_velocity: got [1, 2]; needs at least 3 entries'),
+     ('initial.orientation=[0, 0, 0, 0]',
+      'racket.yaml: initial.orientation: got [0.0, 0.0, 0.0, 0.0]; a quaternion (x, y, z, w) of '
+      'non-zero norm'),
+     ('initial.rate=3', "racket.yaml: initial.rate: has no meaning on constraint 'free'"),
+     ('effects=[gravty]', "racket.yaml: effects.0: got 'gravty'; did you mean 'gravity'?"),
+     ('effects=[sliding_friction: {mu: 0.1}]',
+      "racket.yaml: effects.sliding_friction: cannot act on constraint 'free'"),
+     ('constraint=pivoted',
+      "racket.yaml: constraint: got 'pivoted'; one of free, pivot, table, or hinge"),
+     ('constraint=table', 'racket.yaml: constraint: a table needs a sphere'),
+     ('constraint=[1]', 'racket.yaml: constraint: got [1]; the type is string or object'),
+     ('body={mass: 1, shape: {rodd: {length: 2}}}',
+      "racket.yaml: body.shape: unknown key 'rodd'; did you mean 'rod'?"),
+     ('body={mass: 1, shape: {rod: {length: 2}}}',
+      'racket.yaml: initial.angular_velocity: spin 0.01 rad/s about principal axis 3'),
+     ('body={inertia: [1, 1, 1]}', "racket.yaml: body: the key 'mass' is missing; a mass in kg"),
+     ('scene=7 of 9', "racket.yaml: scene: got '7 of 9'; a name is letters"),
+     ('body.inertia.3=1',
+      "racket.yaml: 'body.inertia.3': no place '3' in a list of 3; places run from 0 to 2"),
+     ('strike.height=1', "racket.yaml: unknown key 'strike'"),
+     ('body.mass', "racket.yaml: 'body.mass': got 'body.mass'; an override is key.path=value")])
 def test_mistake_gets_one_line(assignment, line):
     with pytest.raises(BadInput) as caught:
         parse_scene(RACKET, [assignment], 'racket.yaml')
@@ -62,10 +74,14 @@ def test_mistake_gets_one_line(assignment, line):
     assert '\n' not in str(caught.value)
 
 
-@pytest.mark.parametrize(('text', 'words'), [
-    ('a: *b', 'racket.yaml, line 1'), ('a: {b: 1', 'racket.yaml, line'), ('a: 1\na: 2', 'stands twice'), ('- 1', 'a scene is a mapping'),
-    ('a: ' + '[' * 50 + ']' * 50, 'nested deeper'), ('a: !!python/object:os.system x', 'python/object'), ('\x00', 'special characters'),
-    ('a: &x [1]\nb: *x', 'alias'), ('a: ' + 'x' * 300_000, 'at most 262144 bytes'), ('', 'a scene is a mapping')])
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [('a: *b', 'racket.yaml, line 1'), ('a: {b: 1', 'racket.yaml, line'),
+     ('a: 1\na: 2', 'stands twice'), ('- 1', 'a scene is a mapping'),
+     ('a: ' + '[' * 50 + ']' * 50, 'nested deeper'),
+     ('a: !!python/object:os.system x', 'python/object'), ('\x00', 'special characters'),
+     ('a: &x [1]\nb: *x', 'alias'), ('a: ' + 'x' * 300_000, 'at most 262144 bytes'),
+     ('', 'a scene is a mapping')])
 def test_what_is_no_scene_gets_one_line(text, words):
     with pytest.raises(BadInput, match=words) as caught:
         parse_scene(text, (), 'racket.yaml')
@@ -85,7 +101,8 @@ def test_missing_file_is_said(tmp_path):
 def test_own_scene_outside_the_package(tmp_path):
     path = tmp_path / 'mine.yaml'
     path.write_text(RACKET.replace('scene: tennis_racket', 'scene: mine'))
-    assert load_scene(path, ['body.inertia=[2, 3, 4]']).body.about_center.moments == (2.0, 3.0, 4.0)
+    assert load_scene(path, ['body.inertia=[2, 3, 4]']).body.about_center.moments == (
+        2.0, 3.0, 4.0)
 
 
 def test_numbers_as_people_write_them():
@@ -95,8 +112,12 @@ def test_numbers_as_people_write_them():
 
 
 def test_quaternion_is_normalised_and_a_unit_one_kept():
-    assert parse_scene(RACKET, ['initial.orientation=[0, 0, 0, 1e200]']).initial.orientation.tolist() == [0.0, 0.0, 0.0, 1.0]
-    assert parse_scene(RACKET, ['initial.orientation=[0.6, 0, 0, 0.8]']).initial.orientation.tolist() == [0.6, 0.0, 0.0, 0.8]
+    assert (parse_scene(
+                RACKET, ['initial.orientation=[0, 0, 0, 1e200]']).initial.orientation.tolist()
+            == [0.0, 0.0, 0.0, 1.0])
+    assert (parse_scene(
+                RACKET, ['initial.orientation=[0.6, 0, 0, 0.8]']).initial.orientation.tolist()
+            == [0.6, 0.0, 0.0, 0.8])
 
 
 def test_hinge_starts_at_its_angle_about_its_axis():
@@ -109,10 +130,13 @@ initial: {angle: 0.5, rate: 2.0}
 """
     scene = parse_scene(text)
     assert scene.constraint.axis == (0.0, 1.0, 0.0)
-    assert scene.initial.orientation.tolist() == pytest.approx([0.0, math.sin(0.25), 0.0, math.cos(0.25)], abs=1e-16)
+    assert scene.initial.orientation.tolist() == pytest.approx(
+        [0.0, math.sin(0.25), 0.0, math.cos(0.25)], abs=1e-16)
     # by hand: the origin hangs 0.1 m below the axis, turned by 0.5 rad about y
-    assert scene.initial.position.tolist() == pytest.approx([-0.1 * math.sin(0.5), 0.0, -0.1 * math.cos(0.5)], abs=1e-16)
-    assert scene.initial.velocity.tolist() == pytest.approx([-0.2 * math.cos(0.5), 0.0, 0.2 * math.sin(0.5)], abs=1e-16)
+    assert scene.initial.position.tolist() == pytest.approx(
+        [-0.1 * math.sin(0.5), 0.0, -0.1 * math.cos(0.5)], abs=1e-16)
+    assert scene.initial.velocity.tolist() == pytest.approx(
+        [-0.2 * math.cos(0.5), 0.0, 0.2 * math.sin(0.5)], abs=1e-16)
 
 
 def test_ball_starts_on_the_table():
@@ -129,40 +153,62 @@ initial: {velocity: [1, 0, 0]}
 
 
 @pytest.mark.parametrize(('scene', 'assignment', 'found', 'expected'), [
-    ('billiard_follow', 'strike.speed=2.0', lambda scene: scene.effect('strike').impulse, (0.34, 0.0, 0.0)),
+    ('billiard_follow', 'strike.speed=2.0', lambda scene: scene.effect('strike').impulse,
+     (0.34, 0.0, 0.0)),
     ('billiard_follow', 'strike.height=-0.02', lambda scene: scene.effect('strike').height, -0.02),
-    ('billiard_follow', 'strike.impulse=[0, 0.1, 0]', lambda scene: scene.effect('strike').impulse, (0.0, 0.1, 0.0)),
-    ('baseball_bat', 'strike.distance=0.3', lambda scene: scene.effect('strike').point, (0.3, 0.0, 0.0)),
-    ('baseball_bat', 'strike.point=[0.4, 0, 0]', lambda scene: scene.effect('strike').point, (0.4, 0.0, 0.0)),
-    ('kater_pendulum', 'constraint.hinge.distance=0.25', lambda scene: scene.constraint.through, (0.0, 0.0, -0.15)),
-    ('kater_pendulum_from_p', 'constraint.hinge.distance=-0.25', lambda scene: scene.constraint.through, (0.0, 0.0, -0.65)),
-    ('kater_pendulum', 'constraint.hinge.through=[0, 0, 0.1]', lambda scene: scene.constraint.through, (0.0, 0.0, 0.1)),
-    ('heavy_top', 'initial.spin=80', lambda scene: scene.initial.angular_velocity, (0.0, 0.0, 80.0)),
-    ('heavy_top', 'initial.tilt=0.6', lambda scene: scene.initial.orientation, (0.0, math.sin(0.3), 0.0, math.cos(0.3))),
+    ('billiard_follow', 'strike.impulse=[0, 0.1, 0]', lambda scene: scene.effect('strike').impulse,
+     (0.0, 0.1, 0.0)),
+    ('baseball_bat', 'strike.distance=0.3', lambda scene: scene.effect('strike').point,
+     (0.3, 0.0, 0.0)),
+    ('baseball_bat', 'strike.point=[0.4, 0, 0]', lambda scene: scene.effect('strike').point,
+     (0.4, 0.0, 0.0)),
+    ('kater_pendulum', 'constraint.hinge.distance=0.25', lambda scene: scene.constraint.through,
+     (0.0, 0.0, -0.15)),
+    ('kater_pendulum_from_p', 'constraint.hinge.distance=-0.25',
+     lambda scene: scene.constraint.through, (0.0, 0.0, -0.65)),
+    ('kater_pendulum', 'constraint.hinge.through=[0, 0, 0.1]',
+     lambda scene: scene.constraint.through, (0.0, 0.0, 0.1)),
+    ('heavy_top', 'initial.spin=80', lambda scene: scene.initial.angular_velocity,
+     (0.0, 0.0, 80.0)),
+    ('heavy_top', 'initial.tilt=0.6', lambda scene: scene.initial.orientation,
+     (0.0, math.sin(0.3), 0.0, math.cos(0.3))),
 ])
 def test_what_a_reader_turns_is_one_override(scene, assignment, found, expected):
-    """A key takes the place of another one that says the same thing: a tilt that of euler_zyz, a distance that of a point."""
-    assert np.atleast_1d(found(load_scene(scene, [assignment]))) == pytest.approx(expected, abs=1e-16)
+    """A key replaces another one with the same meaning: tilt or euler_zyz, distance or a point."""
+    assert np.atleast_1d(found(load_scene(scene, [assignment]))) == pytest.approx(
+        expected, abs=1e-16)
 
 
-@pytest.mark.parametrize(('scene', 'assignment', 'line'), [
-    ('billiard_follow', 'strike.height=0.03',
-     'billiard_follow.yaml: effects.strike.height: got 0.03; at most the radius, 0.028575, above or below the middle'),
-    ('billiard_follow', 'strike.hight=0.01', "billiard_follow.yaml: effects.strike: unknown key 'hight'; did you mean 'height'?"),
-    ('billiard_follow', 'strik.height=0.01', "billiard_follow.yaml: unknown key 'strik'; the keys are"),
-    ('billiard_follow', 'strike.distance=0.01', "billiard_follow.yaml: effects.strike.distance: has no meaning on constraint 'table'"),
-    ('billiard_follow', 'strike={height: 0}', 'billiard_follow.yaml: effects.strike: got the keys height; give one of impulse (N s) and'),
-    ('billiard_follow', 'strike={speed: 1, height: 0, point: [0, 0, 0]}', 'billiard_follow.yaml: effects.strike.height: stands beside point'),
-    ('baseball_bat', 'strike.speed=1', "baseball_bat.yaml: effects.strike.speed: has no meaning on constraint 'hinge'"),
-    ('baseball_bat', 'strike.height=1', "baseball_bat.yaml: effects.strike.height: has no meaning on constraint 'hinge'"),
-    ('baseball_bat', 'constraint.hinge.through=[0.55, 0, 0]', 'baseball_bat.yaml: effects.strike.distance: got 0.6227272727272727 on a hinge'),
-    ('kater_pendulum', 'constraint.hinge.distance=0',
-     'kater_pendulum.yaml: constraint.hinge.distance: got 0; hung at its centre of mass a body does not swing'),
-    ('kater_pendulum', 'constraint.hinge={axis: [0, 0, 1], distance: 1}', 'kater_pendulum.yaml: constraint.hinge.distance: got an axis'),
-    ('kater_pendulum', 'constraint.hinge={axis: [0, 1, 0], distance: 1, through: [0, 0, 1]}',
-     'kater_pendulum.yaml: constraint.hinge.distance: stands beside through'),
-    ('heavy_top', 'initial={tilt: 1, euler_zyz: [0, 0, 0]}', 'heavy_top.yaml: initial.tilt: stands beside euler_zyz'),
-])
+@pytest.mark.parametrize(
+    ('scene', 'assignment', 'line'),
+    [('billiard_follow', 'strike.height=0.03',
+      'billiard_follow.yaml: effects.strike.height: got 0.03; at most the radius, 0.028575, above '
+      'or below the middle'),
+     ('billiard_follow', 'strike.hight=0.01',
+      "billiard_follow.yaml: effects.strike: unknown key 'hight'; did you mean 'height'?"),
+     ('billiard_follow', 'strik.height=0.01',
+      "billiard_follow.yaml: unknown key 'strik'; the keys are"),
+     ('billiard_follow', 'strike.distance=0.01',
+      "billiard_follow.yaml: effects.strike.distance: has no meaning on constraint 'table'"),
+     ('billiard_follow', 'strike={height: 0}',
+      'billiard_follow.yaml: effects.strike: got the keys height; give one of impulse (N s) and'),
+     ('billiard_follow', 'strike={speed: 1, height: 0, point: [0, 0, 0]}',
+      'billiard_follow.yaml: effects.strike.height: stands beside point'),
+     ('baseball_bat', 'strike.speed=1',
+      "baseball_bat.yaml: effects.strike.speed: has no meaning on constraint 'hinge'"),
+     ('baseball_bat', 'strike.height=1',
+      "baseball_bat.yaml: effects.strike.height: has no meaning on constraint 'hinge'"),
+     ('baseball_bat', 'constraint.hinge.through=[0.55, 0, 0]',
+      'baseball_bat.yaml: effects.strike.distance: got 0.6227272727272727 on a hinge'),
+     ('kater_pendulum', 'constraint.hinge.distance=0',
+      'kater_pendulum.yaml: constraint.hinge.distance: got 0; hung at its centre of mass a body '
+      'does not swing'),
+     ('kater_pendulum', 'constraint.hinge={axis: [0, 0, 1], distance: 1}',
+      'kater_pendulum.yaml: constraint.hinge.distance: got an axis'),
+     ('kater_pendulum', 'constraint.hinge={axis: [0, 1, 0], distance: 1, through: [0, 0, 1]}',
+      'kater_pendulum.yaml: constraint.hinge.distance: stands beside through'),
+     ('heavy_top', 'initial={tilt: 1, euler_zyz: [0, 0, 0]}',
+      'heavy_top.yaml: initial.tilt: stands beside euler_zyz')])
 def test_a_wrong_turn_gets_one_line(scene, assignment, line):
     with pytest.raises(BadInput) as caught:
         load_scene(scene, [assignment])
@@ -170,13 +216,15 @@ def test_a_wrong_turn_gets_one_line(scene, assignment, line):
     assert '\n' not in str(caught.value)
 
 
-@pytest.mark.parametrize(('scene', 'overrides'), [
-    ('heavy_top', ['body.center_of_mass=[0, 0, 0]']), ('kater_pendulum', ['constraint.hinge.through=[0, 0, -0.4]'])])
+@pytest.mark.parametrize(('scene', 'overrides'),
+                         [('heavy_top', ['body.center_of_mass=[0, 0, 0]']),
+                          ('kater_pendulum', ['constraint.hinge.through=[0, 0, -0.4]'])])
 def test_held_at_its_centre_of_mass_a_body_runs_with_a_note(scene, overrides, capsys):
     assert load_scene(scene).notes == []
     [note] = load_scene(scene, overrides).notes
     assert note.endswith('holds the body at its centre of mass: gravity does nothing there')
-    assert simulate.main(['--scene', scene, '--set', *overrides, '--duration', '0.1', '--json']) == 0
+    assert simulate.main([
+        '--scene', scene, '--set', *overrides, '--duration', '0.1', '--json']) == 0
     said = capsys.readouterr()
     assert note in said.err
     assert '"potential": 0.0' in said.out

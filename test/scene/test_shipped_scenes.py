@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every system of the notes ships as a scene that loads and starts."""
 
 import numpy as np
@@ -8,9 +9,12 @@ from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.simulation.simulation import Simulation
 
 NOTES = (
-    'billiard_center', 'billiard_low', 'billiard_natural_roll', 'billiard_follow', 'kater_pendulum', 'kater_pendulum_from_p',
-    'baseball_bat', 'driven_body', 'free_body', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'tennis_racket',
-    'major_axis_relaxation', 'heavy_top', 'steady_precession', 'fast_top', 'sleeping_top', 'falling_top', 'thin_rod', 'sphere',
+    'billiard_center', 'billiard_low', 'billiard_natural_roll', 'billiard_follow',
+    'kater_pendulum', 'kater_pendulum_from_p',
+    'baseball_bat', 'driven_body', 'free_body', 'symmetric_top', 'chandler_wobble',
+    'asymmetric_top', 'tennis_racket',
+    'major_axis_relaxation', 'heavy_top', 'steady_precession', 'fast_top', 'sleeping_top',
+    'falling_top', 'thin_rod', 'sphere',
     'needle', 'spherical_pendulum')
 
 
@@ -36,5 +40,7 @@ def test_the_pendulum_hangs_the_same_way_from_both_edges():
     for name, below in (('kater_pendulum', 0.4), ('kater_pendulum_from_p', 0.6)):
         scene = load_scene(name)
         height = np.array(scene.body.center_of_mass) - scene.constraint.through
-        turned = 1.0 - 2.0 * (scene.initial.orientation[0] ** 2 + scene.initial.orientation[1] ** 2)    # R_zz
+        # R_zz
+        turned = (1.0
+                  - 2.0 * (scene.initial.orientation[0] ** 2 + scene.initial.orientation[1] ** 2))
         assert height[2] * turned == near(-below * np.cos(0.1), 1e-14)
