@@ -40,7 +40,8 @@ def test_many_bodies_come_from_all_cores_in_order():
     assert len(states) == 3000
     assert [body.time[0] for body in states] == [3010.0] * 3000
     for body in (0, 1536, 2999):
-        assert states[body].vector.tobytes() == ensemble('tennis_racket', starts[body:body + 1], [3010.0]).vector.tobytes()
+        assert states[body].vector.tobytes() == ensemble(
+            'tennis_racket', starts[body:body + 1], [3010.0]).vector.tobytes()
     assert states[10:20].vector.tobytes() == states.vector[10:20].tobytes()
     assert len({body.vector.tobytes() for body in states}) == 3000
 
@@ -58,7 +59,8 @@ def test_stepped_ensemble_has_the_bits_of_single_runs():
     states = ensemble('tennis_racket', starts, [1.0, 2.0], integrator='dop8', accuracy=1e-9)
     simulation = Simulation('tennis_racket', integrator='dop8', accuracy=1e-9)
     alone = np.empty((2, 14))
-    simulation.choice.solver(starts[2].vector, simulation.wrench).states(np.array([1.0, 2.0]), alone)
+    simulation.choice.solver(starts[2].vector, simulation.wrench).states(
+        np.array([1.0, 2.0]), alone)
     assert states[2].vector.tobytes() == alone.tobytes()
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulation: ticks, commands and the ledger, on the racket and on scenes made here."""
 
 import numpy as np
@@ -44,7 +45,8 @@ def test_times_out_of_order_give_the_same_bits():
     simulation = Simulation('tennis_racket')
     times = np.random.default_rng(1).uniform(0.0, 1e5, 1000)
     shuffled = simulation.states(times).vector
-    assert shuffled[np.argsort(times)].tobytes() == simulation.states(np.sort(times)).vector.tobytes()
+    assert shuffled[np.argsort(times)].tobytes() == simulation.states(np.sort(
+        times)).vector.tobytes()
 
 
 @pytest.mark.parametrize('frame', ['body', 'world'])
@@ -56,7 +58,8 @@ def test_impulse_changes_the_momentum_by_exactly_its_value(frame):
     simulation.impulse(torque=impulse, frame=frame)
     expected = before + (impulse if frame == 'body' else turn.inv().apply(impulse))
     # one rounding each for the product, the sum and the quotient: measured 8.9e-16 of 10
-    assert momentum_in_body(simulation) == pytest.approx(expected, abs=4 * EPS * np.abs(expected).max())
+    assert momentum_in_body(simulation) == pytest.approx(
+        expected, abs=4 * EPS * np.abs(expected).max())
 
 
 def test_impulse_of_force_moves_the_centre_of_mass():
@@ -97,17 +100,20 @@ def test_held_wrench_does_not_depend_on_the_rate_or_on_how_often_it_is_sent(fram
 
 def test_body_at_rest_held_at_every_tick_by_another_wrench_by_hand():
     body = 'body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}'
-    simulation = Simulation(parse_scene(f'scene: still\n{body}\nconstraint: free\neffects: []\ninitial: {{}}'))
+    simulation = Simulation(parse_scene(
+        f'scene: still\n{body}\nconstraint: free\neffects: []\ninitial: {{}}'))
     for k in range(50):
         simulation.hold(force=(0.0, 0.0, float(k)), torque=(0.0, 0.0, 3e-3 * k))
         simulation.advance()
     h = 1e-3
     speed = h * sum(range(50))                                                  # v = sum of F h/M
-    place = h * h * sum(k * (49 - k) + 0.5 * k for k in range(50))              # each F/M h goes on for the ticks left
+    # each F/M h goes on for the ticks left
+    place = h * h * sum(k * (49 - k) + 0.5 * k for k in range(50))
     assert simulation.state.velocity == pytest.approx([0.0, 0.0, speed], abs=1e-15)
     assert simulation.state.position == pytest.approx([0.0, 0.0, place], abs=1e-17)
     assert simulation.state.angular_velocity == pytest.approx([0.0, 0.0, 1e-3 * speed], abs=1e-18)
-    assert angle_between(*simulation.state.orientation, *Rotation.from_rotvec([0.0, 0.0, 1e-3 * place]).as_quat()) < 1e-16
+    assert angle_between(*simulation.state.orientation,
+                         *Rotation.from_rotvec([0.0, 0.0, 1e-3 * place]).as_quat()) < 1e-16
 
 
 def test_torque_on_a_ball_held_and_released_by_hand():
@@ -117,9 +123,11 @@ def test_torque_on_a_ball_held_and_released_by_hand():
     simulation.advance(1000)
     simulation.release()
     simulation.advance(500)
-    # alpha = tau/I = 2 rad/s^2 for 1 s from 1 rad/s, then 3 rad/s for 0.5 s: 1 + 1 + 1.5 rad about z
+    # alpha = tau/I = 2 rad/s^2 for 1 s from 1 rad/s, then 3 rad/s for 0.5 s: 1 + 1 + 1.5 rad about
+    # z
     assert simulation.state.angular_velocity == pytest.approx([0.0, 0.0, 3.0], abs=1e-13)
-    assert angle_between(*simulation.state.orientation, *Rotation.from_rotvec([0.0, 0.0, 3.5]).as_quat()) < 1e-12
+    assert angle_between(
+        *simulation.state.orientation, *Rotation.from_rotvec([0.0, 0.0, 3.5]).as_quat()) < 1e-12
     ledger = simulation.ledger()
     assert ledger['work'] == near(0.5 * I * (9.0 - 1.0), 1e-12)
     assert abs(ledger['energy_residual']) < 1e-13
@@ -166,8 +174,10 @@ def test_past_is_kept_until_it_is_forgotten():
 
 
 @pytest.mark.parametrize(('act', 'words'), [
-    (lambda s: s.impulse(torque=(np.nan, 0, 0)), 'three finite numbers'), (lambda s: s.impulse(force=(np.inf, 0, 0)), 'three finite numbers'),
-    (lambda s: s.hold(torque=(1, 2)), 'three finite numbers'), (lambda s: s.hold(torque=(1, 2, 3), frame='moon'), "'world' or 'body'"),
+    (lambda s: s.impulse(torque=(np.nan, 0, 0)), 'three finite numbers'),
+    (lambda s: s.impulse(force=(np.inf, 0, 0)), 'three finite numbers'),
+    (lambda s: s.hold(torque=(1, 2)), 'three finite numbers'),
+    (lambda s: s.hold(torque=(1, 2, 3), frame='moon'), "'world' or 'body'"),
     (lambda s: s.states([np.nan]), 'finite times')])
 def test_bad_command_gets_one_line_and_changes_nothing(act, words):
     simulation = Simulation('tennis_racket')
@@ -184,7 +194,9 @@ def test_scene_may_refuse_commands():
 
 
 def test_torque_about_a_rod_is_refused():
-    rod = load_scene('tennis_racket', ['body={mass: 1.0, shape: {rod: {length: 1.0}}}', 'initial.angular_velocity=[1, 0, 0]'])
+    rod = load_scene(
+        'tennis_racket',
+        ['body={mass: 1.0, shape: {rod: {length: 1.0}}}', 'initial.angular_velocity=[1, 0, 0]'])
     simulation = Simulation(rod)
     for act in (simulation.impulse, simulation.hold):
         with pytest.raises(BadInput, match='axis of zero moment'):
@@ -193,20 +205,24 @@ def test_torque_about_a_rod_is_refused():
 
 @pytest.mark.parametrize('impulse', ['-1e308', '1e160'])
 def test_strike_beyond_what_a_double_holds_is_refused(impulse):
-    with pytest.raises(BadInput, match=r'baseball_bat: strike: at 0 s it would do a work of (nan|inf) J'):
+    with pytest.raises(
+            BadInput, match=r'baseball_bat: strike: at 0 s it would do a work of (nan|inf) J'):
         Simulation(load_scene('baseball_bat', [f'strike.impulse=[0, {impulse}, 0]']))
 
 
-@pytest.mark.parametrize(('arguments', 'line'), [
-    ({'rate': 0.0}, 'rate: got 0.0'), ({'rate': np.nan}, 'rate: got nan'), ({'accuracy': 1e-17}, 'accuracy: got 1e-17'),
-    ({'integrator': 'dop9'}, "did you mean 'dop8'"), ({'step': -1.0, 'integrator': 'dop8'}, 'step: got -1.0')])
+@pytest.mark.parametrize(
+    ('arguments', 'line'),
+    [({'rate': 0.0}, 'rate: got 0.0'), ({'rate': np.nan}, 'rate: got nan'),
+     ({'accuracy': 1e-17}, 'accuracy: got 1e-17'), ({'integrator': 'dop9'}, "did you mean 'dop8'"),
+     ({'step': -1.0, 'integrator': 'dop8'}, 'step: got -1.0')])
 def test_impossible_request_is_refused_by_name_and_value(arguments, line):
     with pytest.raises(BadInput, match=line):
         Simulation('tennis_racket', **arguments)
 
 
 def test_exact_and_stepped_agree():
-    exact, stepped = Simulation('tennis_racket'), Simulation('tennis_racket', integrator='dop8', accuracy=1e-13)
+    exact, stepped = (Simulation('tennis_racket'),
+                      Simulation('tennis_racket', integrator='dop8', accuracy=1e-13))
     for each in (exact, stepped):
         each.advance(10_000)
     # the racket magnifies an error e^(lambda t) between flips: measured 3e-13 rad at 10 s

@@ -1,4 +1,8 @@
-"""Commands of one tick given at once: computed once, and to the bit what they do one by one; what is refused leaves the others."""
+# SPDX-License-Identifier: Apache-2.0
+"""Commands of one tick given at once have the same bits as one by one.
+
+They are computed once, and a refused one leaves the others.
+"""
 
 import numpy as np
 import pytest
@@ -16,9 +20,10 @@ from rigid_body_sim.simulation.command_rows import (
 from rigid_body_sim.simulation.simulation import Simulation
 
 NONE = (0.0, 0.0, 0.0)
-ROWS = np.array([
-    *((IMPULSE, (WORLD, BODY)[k % 2], 0.1 * k, 0.0, -0.3, 0.01, -0.02 * k, 0.005) for k in range(5)),
-    (HOLD, BODY, *NONE, 0.0, 0.1, 0.0), (IMPULSE, BODY, *NONE, 0.3, 0.1, 0.0), (HOLD, WORLD, 0.0, 0.0, 0.2, 0.0, 0.1, 0.0)])
+ROWS = np.array([*((IMPULSE, (WORLD, BODY)[k % 2], 0.1 * k, 0.0, -0.3, 0.01, -0.02 * k, 0.005)
+                   for k in range(5)),
+                 (HOLD, BODY, *NONE, 0.0, 0.1, 0.0), (IMPULSE, BODY, *NONE, 0.3, 0.1, 0.0),
+                 (HOLD, WORLD, 0.0, 0.0, 0.2, 0.0, 0.1, 0.0)])
 
 
 @pytest.fixture
@@ -51,20 +56,26 @@ def test_together_they_give_the_same_bits_as_one_by_one(pair):
 
 def test_refused_commands_leave_the_others(pair):
     simulation, expected = pair
-    bad = np.array([(IMPULSE, BODY, *NONE, 0.0, np.nan, 0.0), (HOLD, WORLD, *NONE, 1e15, 0.0, 0.0), (IMPULSE, WORLD, 1e200, *NONE, 0.0, 0.0)])
+    bad = np.array([(IMPULSE, BODY, *NONE, 0.0, np.nan, 0.0), (HOLD, WORLD, *NONE, 1e15, 0.0, 0.0),
+                    (IMPULSE, WORLD, 1e200, *NONE, 0.0, 0.0)])
     refused = simulation.command(np.concatenate([ROWS[:3], bad, ROWS[3:]]))
     assert [refusal.place for refusal in refused] == [3, 4, 5]
-    assert [refusal.reason for refusal in refused] == ['not finite', 'the body cannot take it', 'too large']
+    assert [refusal.reason for refusal in refused] == [
+        'not finite', 'the body cannot take it', 'too large']
     assert [refusal.error.where for refusal in refused] == ['impulse', 'wrench', 'impulse']
-    assert [words in str(refusal.error) for words, refusal in zip(
-        ('three finite numbers', 'rad within a tick', 'energies are doubles'), refused, strict=True)] == [True] * 3
+    assert [words in str(refusal.error)
+            for words, refusal in zip(
+                ('three finite numbers', 'rad within a tick', 'energies are doubles'), refused,
+                strict=True)] == [True] * 3
     expected.command(ROWS)
     assert_same(simulation, expected)
 
 
 def test_what_is_held_is_tried_on_what_the_impulses_before_it_leave():
-    """2e7 rad/s a tick is too fast; so is 0.6e7 after an impulse that gave as much, but not before it."""
-    body = load_scene('tennis_racket', ['body={mass: 1.0, inertia: [1.0, 1.0, 1.0]}', 'initial.angular_velocity=[0, 0, 0]'])
+    """2e7 rad/s a tick is too fast, and so is 0.6e7 after, but not before, such an impulse."""
+    body = load_scene(
+        'tennis_racket',
+        ['body={mass: 1.0, inertia: [1.0, 1.0, 1.0]}', 'initial.angular_velocity=[0, 0, 0]'])
     hold, impulse = (HOLD, WORLD, *NONE, 6e12, 0.0, 0.0), (IMPULSE, WORLD, *NONE, 6e9, 0.0, 0.0)
     assert Simulation(body).command(np.array([hold, impulse])) == []
     [refusal] = Simulation(body).command(np.array([impulse, hold]))
@@ -78,7 +89,10 @@ def test_none_changes_nothing(pair):
 
 
 def test_impulses_that_nearly_cancel_on_a_rod_balance():
-    """Turned to the world and back, their sum is not quite across the axis: that is rounding, and no torque the rod could not take."""
+    """The sum of torques, turned to the world and back, is not quite across the axis.
+
+    That is rounding, not a torque that the rod cannot take.
+    """
     simulation, random = Simulation('thin_rod'), np.random.default_rng(0)
     simulation.advance(1234)
     for _ in range(300):
@@ -92,7 +106,10 @@ def test_impulses_that_nearly_cancel_on_a_rod_balance():
 
 
 def test_rows_say_what_a_journal_says():
-    commands = [{'topic': 'cmd_impulse', 'frame': 'body', 'force': [1.0, -0.0, 1e-300], 'torque': [0.1, 0.2, 0.3]},
-                {'topic': 'cmd_wrench', 'frame': 'world', 'force': [0.0, 0.0, 0.0], 'torque': [-0.1, 0.0, 1e100]},
-                {'topic': 'release', 'frame': 'world', 'force': [0.0, 0.0, 0.0], 'torque': [0.0, 0.0, 0.0]}]
+    commands = [{'topic': 'cmd_impulse', 'frame': 'body', 'force': [1.0, -0.0, 1e-300],
+                 'torque': [0.1, 0.2, 0.3]},
+                {'topic': 'cmd_wrench', 'frame': 'world', 'force': [0.0, 0.0, 0.0],
+                 'torque': [-0.1, 0.0, 1e100]},
+                {'topic': 'release', 'frame': 'world', 'force': [0.0, 0.0, 0.0],
+                 'torque': [0.0, 0.0, 0.0]}]
     assert repr(commands_of(rows_of(commands))) == repr(commands)

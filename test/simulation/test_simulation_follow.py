@@ -1,4 +1,5 @@
-"""One simulation takes over from another at a tick: a new method, accuracy, rate or scene while it runs."""
+# SPDX-License-Identifier: Apache-2.0
+"""A simulation continues another at a tick, with a new method, accuracy, rate or scene."""
 
 import numpy as np
 import pytest
