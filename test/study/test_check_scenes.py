@@ -1,4 +1,5 @@
-"""check_scenes: what it says of scenes, what it makes of overrides, and that a wrong formula does not pass."""
+# SPDX-License-Identifier: Apache-2.0
+"""check_scenes: its output for scenes and overrides; a wrong formula does not pass."""
 
 import json
 import os
@@ -13,15 +14,18 @@ from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric_top
 
-# all that ship but those whose kernels no other test compiles (ball by dop8, torque, heat, bat) and the second of two alike
-QUICK = [name for name in SYSTEMS if not name.startswith(('billiard', 'driven', 'major', 'baseball', 'falling'))]
+# all that ship except those whose kernels no other test compiles (ball by dop8, torque, heat, bat)
+# and the second of two alike
+QUICK = [name for name in SYSTEMS if not name.startswith((
+    'billiard', 'driven', 'major', 'baseball', 'falling'))]
 
 
 def table(*arguments, capsys, status=0):
     """Return the quantities of a run by name, those of the last scene."""
     assert check_scenes.main([*arguments, '--json']) == status
     found = json.loads(capsys.readouterr().out)
-    assert found['failed'] == sum(row['verdict'] != 'confirmed' for one in found['scenes'] for row in one['quantities'])
+    assert found['failed'] == sum(row['verdict'] != 'confirmed' for one in found['scenes']
+                                  for row in one['quantities'])
     return {row['quantity']: row for row in found['scenes'][-1]['quantities']}
 
 
@@ -34,7 +38,8 @@ def test_scene_is_confirmed_by_both_ways(name, capsys):
     rows = table('--scene', name, capsys=capsys)
     assert len(rows) >= 4
     assert all(set(row['measured']) in ({'exact', 'dop8'}, {'both'}) for row in rows.values())
-    # what the notes get wrong is told apart: by far more than the tolerance (Chandler: by 0.3 %, far above its 1e-9)
+    # errors of the notes are told apart by far more than the tolerance (Chandler: by 0.3 %, far
+    # above its 1e-9)
     for row in rows.values():
         if 'error_as_written' in row:
             assert row['error_as_written'] > 1e3 * row['tolerance']
@@ -46,28 +51,36 @@ def test_inertia_by_quadrature_and_by_a_blow(capsys):
     assert all(set(row['measured']) == {'quadrature', 'blow'} for row in rows.values())
 
 
-@pytest.mark.parametrize(('module', 'function', 'wrong', 'scene', 'quantity'), [
-    (symmetric_top, 'precession_rate', symmetric_top.precession_rate_as_written, 'symmetric_top', 'Omega of omega round e3 in the body'),
-    (kater_pendulum, 'moment_about_suspension', kater_pendulum.moment_about_suspension_as_written, 'kater_pendulum', 'I_Q = M g l/Omega^2'),
-    (heavy_top, 'curvature', heavy_top.curvature_at_equilibrium, 'heavy_top', "V_eff'' off equilibrium, at 0.5219 rad"),
-    (kater_pendulum, 'frequency_from_q', lambda g, length, a: np.sqrt(g / (length**2 + a**2)), 'kater_pendulum',
-     "g = l' Omega^2, over the formula, in the limit"),
-])
-def test_a_wrong_formula_is_not_confirmed(monkeypatch, capsys, module, function, wrong, scene, quantity):
+@pytest.mark.parametrize(
+    ('module', 'function', 'wrong', 'scene', 'quantity'),
+    [(symmetric_top, 'precession_rate', symmetric_top.precession_rate_as_written, 'symmetric_top',
+      'Omega of omega round e3 in the body'),
+     (kater_pendulum, 'moment_about_suspension', kater_pendulum.moment_about_suspension_as_written,
+      'kater_pendulum', 'I_Q = M g l/Omega^2'),
+     (heavy_top, 'curvature', heavy_top.curvature_at_equilibrium, 'heavy_top',
+      "V_eff'' off equilibrium, at 0.5219 rad"),
+     (kater_pendulum, 'frequency_from_q', lambda g, length, a: np.sqrt(g / (length**2 + a**2)),
+      'kater_pendulum', "g = l' Omega^2, over the formula, in the limit")])
+def test_a_wrong_formula_is_not_confirmed(
+        monkeypatch, capsys, module, function, wrong, scene, quantity):
     monkeypatch.setattr(module, function, wrong)
     rows = table('--scene', scene, capsys=capsys, status=1)
     assert rows[quantity]['verdict'] == 'NOT CONFIRMED'
 
 
 @pytest.mark.parametrize(('scene', 'assignments'), [
-    ('heavy_top', ['initial.spin=35', 'initial.tilt=1.2']), ('heavy_top', ['initial.spin=-80', 'initial.tilt=2.5', 'gravity.g=3']),
-    ('kater_pendulum', ['constraint.hinge.distance=0.2', 'initial.angle=1.5']), ('symmetric_top', ['body.inertia=[1, 1, 0.6]']),
+    ('heavy_top', ['initial.spin=35', 'initial.tilt=1.2']),
+    ('heavy_top', ['initial.spin=-80', 'initial.tilt=2.5', 'gravity.g=3']),
+    ('kater_pendulum', ['constraint.hinge.distance=0.2', 'initial.angle=1.5']),
+    ('symmetric_top', ['body.inertia=[1, 1, 0.6]']),
     ('tennis_racket', ['body.inertia=[2, 1, 2.5]', 'initial.angular_velocity=[-3, 0.01, 0.02]']),
     ('steady_precession', ['initial.tilt=1.0', 'initial.spin=80']),
-    ('heavy_top', ['initial.spin=10']), ('fast_top', ['initial.tilt=1.0']), ('sleeping_top', ['initial.angular_velocity=[1e-6, 0, 60]']),
+    ('heavy_top', ['initial.spin=10']), ('fast_top', ['initial.tilt=1.0']),
+    ('sleeping_top', ['initial.angular_velocity=[1e-6, 0, 60]']),
 ])
 def test_other_values_are_confirmed_too(scene, assignments, capsys):
-    table('--scene', scene, *(word for one in assignments for word in ('--set', one)), capsys=capsys)
+    table(
+        '--scene', scene, *(word for one in assignments for word in ('--set', one)), capsys=capsys)
 
 
 def test_own_file_is_checked_by_the_name_in_it(tmp_path, capsys):
@@ -79,17 +92,25 @@ def test_own_file_is_checked_by_the_name_in_it(tmp_path, capsys):
 @pytest.mark.parametrize(('arguments', 'line'), [
     (['--scene', 'heavy_topp'], "scene: no scene 'heavy_topp'; did you mean heavy_top?"),
     (['--set', 'initial.spin=3'], "--set: got 'initial.spin=3'; name the scene it changes"),
-    (['--scene', 'heavy_top', '--set', 'scene=other'], 'other: no formula of the notes is about it'),
-    (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.distance=0'], 'kater_pendulum.yaml: constraint.hinge.distance: got 0'),
-    (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.through=[0, 0, -0.4]'], 'kater_pendulum: the suspension distance l is 0.0 m'),
-    (['--scene', 'kater_pendulum', '--set', 'initial.rate=30'], 'kater_pendulum: the pendulum does not swing to and fro'),
-    (['--scene', 'symmetric_top', '--set', 'body.inertia=[1, 2, 2.5]'], 'symmetric_top: moments [1.0, 2.0, 2.5]'),
+    (['--scene', 'heavy_top', '--set', 'scene=other'],
+     'other: no formula of the notes is about it'),
+    (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.distance=0'],
+     'kater_pendulum.yaml: constraint.hinge.distance: got 0'),
+    (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.through=[0, 0, -0.4]'],
+     'kater_pendulum: the suspension distance l is 0.0 m'),
+    (['--scene', 'kater_pendulum', '--set', 'initial.rate=30'],
+     'kater_pendulum: the pendulum does not swing to and fro'),
+    (['--scene', 'symmetric_top', '--set', 'body.inertia=[1, 2, 2.5]'],
+     'symmetric_top: moments [1.0, 2.0, 2.5]'),
     (['--scene', 'heavy_top', '--set', 'gravity.g=0'], 'heavy_top: moments'),
-    (['--scene', 'steady_precession', '--set', 'initial.spin=3'], 'steady_precession: tilt 0.5 rad, spin 3 rad/s'),
-    (['--scene', 'kater_pendulum', '--set', 'effects=[]'], 'kater_pendulum: the effects here: none; the formulas'),
+    (['--scene', 'steady_precession', '--set', 'initial.spin=3'],
+     'steady_precession: tilt 0.5 rad, spin 3 rad/s'),
+    (['--scene', 'kater_pendulum', '--set', 'effects=[]'],
+     'kater_pendulum: the effects here: none; the formulas'),
     (['--scene', 'heavy_top', '--set', 'initial.tilt=0'], 'heavy_top: tilt 0 rad'),
     (['--scene', 'sphere', '--set', 'initial.angular_velocity=[0, 0, 0]'], 'sphere: omega'),
-    (['--scene', 'sleeping_top', '--set', 'initial.tilt=0.3'], 'sleeping_top: it starts at a tilt of'),
+    (['--scene', 'sleeping_top', '--set', 'initial.tilt=0.3'],
+     'sleeping_top: it starts at a tilt of'),
 ])
 def test_what_cannot_be_checked_gets_one_line(arguments, line, capsys):
     assert check_scenes.main(arguments) == 2
@@ -132,15 +153,21 @@ def test_billiard_height_decides_the_formula():
     """As the check uses it: the notes' time above 2a/5 is seven times too long."""
     a, h = 0.03, 0.02
     right = billiard.onset_of_rolling(1.5, h, a, 0.2, 9.81)
-    assert billiard.onset_of_rolling_above_as_written(1.5, h, a, 0.2, 9.81) == pytest.approx(7.0 * right)
+    assert billiard.onset_of_rolling_above_as_written(1.5, h, a, 0.2, 9.81) == pytest.approx(
+        7.0 * right)
 
 
 @pytest.mark.skipif('RIGID_BODY_SIM_SOAK' not in os.environ, reason='compiles for long: make soak')
 def test_two_processes_share_several_scenes(capsys):
-    """Bodies that are held in one, others in another; the tables come in the order asked, and what is wrong is said as by one process."""
+    """Held bodies run in one process and the others in another.
+
+    The tables come in the order asked, and errors read as from one process.
+    """
     assert check_scenes.main(['--scene', 'heavy_top', '--scene', 'symmetric_top', '--json']) == 0
     found = json.loads(capsys.readouterr().out)
     assert [table['scene'] for table in found['scenes']] == ['heavy_top', 'symmetric_top']
     assert found['quantities'] == sum(len(table['quantities']) for table in found['scenes']) > 20
-    assert check_scenes.main(['--scene', 'heavy_top', '--scene', 'symmetric_top', '--set', 'initial.spin=50']) == 2
-    assert capsys.readouterr().err.startswith('symmetric_top: moments [1.0, 1.0, 1.3], omega [0.0, 0.0, 50.0]; needs I1 = I2')
+    assert check_scenes.main([
+        '--scene', 'heavy_top', '--scene', 'symmetric_top', '--set', 'initial.spin=50']) == 2
+    assert capsys.readouterr().err.startswith(
+        'symmetric_top: moments [1.0, 1.0, 1.3], omega [0.0, 0.0, 50.0]; needs I1 = I2')

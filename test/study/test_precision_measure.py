@@ -1,4 +1,5 @@
-"""The harness: errors it must find, refusals it must keep, the table, the figure and the command."""
+# SPDX-License-Identifier: Apache-2.0
+"""The harness: errors that it must find, refusals that it must keep, table, figure and command."""
 
 import json
 
@@ -35,7 +36,10 @@ def turned(q, angle):
 
 
 def made_up(problem, truth, name, angle):
-    """Return the Runner of a method whose attitude is off by an angle at the end and by twice that half-way."""
+    """Return the Runner of a method with a known error.
+
+    Its attitude is off by an angle at the end, and by twice that half-way.
+    """
     rows = {time: (np.array([float(x) for x in q]), np.array([float(x) for x in omega]))
             for time, q, omega in zip(truth.times.tolist(), truth.orientation, truth.omega)}
     place = [None]
@@ -64,8 +68,10 @@ def test_a_lucky_coarse_setting_does_not_end_a_sweep_but_round_off_does(racket):
     problem, truth = racket
 
     def swept(*errors):
-        one = runner.Runner('swept', 'step', errors, lambda error: made_up(problem, truth, '', error).make(None))
-        return [point['setting'] for point in measure.measure(problem, truth, [one], 1.0, 1)['lines'][0]['points']]
+        one = runner.Runner(
+            'swept', 'step', errors, lambda error: made_up(problem, truth, '', error).make(None))
+        return [point['setting']
+                for point in measure.measure(problem, truth, [one], 1.0, 1)['lines'][0]['points']]
     assert swept(1e-2, 1.0, 1.0, 1e-3) == [1e-2, 1.0, 1.0, 1e-3]
     assert swept(1e-3, 1e-12, 1e-10, 1e-10, 1e-10) == [1e-3, 1e-12, 1e-10, 1e-10]
 
@@ -77,8 +83,11 @@ def test_refusals_are_recorded_and_nan_is_one(racket):
     def gives_up(_):
         raise NotConverged('too far')
     silent = runner.Run(lambda: None, lambda time: None, lambda: [np.nan] * 7)
-    found = measure.measure(*racket, [runner.Runner('no', 'none', (None,), refuses), runner.Runner('silent', 'none', (None,), lambda _: silent),
-                                      runner.Runner('weak', 'none', (None,), gives_up)], 1.0, 5)
+    found = measure.measure(*racket,
+                            [runner.Runner('no', 'none', (None,), refuses),
+                             runner.Runner('silent', 'none', (None,), lambda _: silent),
+                             runner.Runner('weak', 'none', (None,), gives_up)],
+                            1.0, 5)
     assert found['lines'] == []
     assert found['refused']['no'] == 'a rod has no inverse'
     assert 'NaN' in found['refused']['silent']
@@ -121,7 +130,10 @@ def test_methods_come_from_the_table(racket, monkeypatch):
 @pytest.mark.skipif(not HAVE_NUMBA, reason='peers are given compiled equations')
 @pytest.mark.parametrize('name', ['damped_body', 'driven_pendulum', 'ball_slip_to_roll'])
 def test_peers_solve_the_same_equations(name):
-    """SciPy is always here: its error tells whether weight, damping, heat, hinge and friction have the right signs; the ball begins to roll."""
+    """SciPy, which is always here, tells whether signs are right.
+
+    They are those of weight, damping, heat, hinge and friction; the ball begins to roll.
+    """
     problem = suite.problem(name)
     truth, count = reference.load(problem), 8
     fine = next(one for one in peers.runners(problem, truth) if one.name == 'SciPy DOP853')
@@ -131,8 +143,9 @@ def test_peers_solve_the_same_equations(name):
     for time in truth.times[:count]:
         run.to(time)
         states.append(run.state())
-    truth_then = reference.Reference(truth.times[:count], truth.orientation[:count], truth.omega[:count], truth.floor[:count],
-                                     truth.floor_omega[:count], 34.0)
+    truth_then = reference.Reference(
+        truth.times[:count], truth.orientation[:count], truth.omega[:count], truth.floor[:count],
+        truth.floor_omega[:count], 34.0)
     angles, omegas = truth_then.errors(np.array(states))
     assert angles.max() < 1e-9
     assert omegas.max() < 1e-9
@@ -141,14 +154,15 @@ def test_peers_solve_the_same_equations(name):
 def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(runner, 'methods_for', lambda scene: ['exact'])
     monkeypatch.chdir(tmp_path)
-    assert work_precision.main(['--scene', 'billiard_follow', '--duration', '1', '--quick', '--json', '--output', 'made']) == 0
+    assert work_precision.main(['--scene', 'billiard_follow', '--duration', '1', '--quick',
+                                '--json', '--output', 'made']) == 0
     found = json.loads(capsys.readouterr().out)
     result, = found['results']
     assert result['reference_digits'] > 25.0
     assert result['lines'][0]['points'][0]['largest_error'] < 4.0 * result['largest_floor']
     assert (tmp_path / 'made' / 'work_precision.png').stat().st_size > 10000
     assert json.loads((tmp_path / 'made' / 'work_precision.json').read_text()) == found
-    for arguments in (['--duration', '-1', '--scene', 'heavy_top'], ['--duration', '3'], ['--scene', 'nowhere'],
-                      ['--scene', 'racket', '--duration', '3']):
+    for arguments in (['--duration', '-1', '--scene', 'heavy_top'], ['--duration', '3'],
+                      ['--scene', 'nowhere'], ['--scene', 'racket', '--duration', '3']):
         assert work_precision.main(arguments) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
