@@ -1,4 +1,8 @@
-"""Small deviations from rotation about one axis: linearised by numbers from Euler's equations, frequency, growth, the erratum."""
+# SPDX-License-Identifier: Apache-2.0
+"""Small deviations from rotation about one axis: linear equations, frequency, growth, erratum.
+
+The equations are linearised numerically from Euler's equations.
+"""
 
 import itertools
 
@@ -19,10 +23,15 @@ def matrix(I1, I2, I3, rates=theory.linear_rates):
 
 
 def jacobian(I1, I2, I3):
-    """Return the derivative of Euler's right-hand side at (0, 0, omega0): exact, since it is quadratic."""
+    """Return the derivative of Euler's right-hand side at (0, 0, omega0).
+
+    It is exact, since the side is quadratic.
+    """
     columns = []
     for unit in np.eye(3):
-        there, back = (euler_equations.angular_acceleration((I1, I2, I3), np.array([0.0, 0.0, OMEGA0]) + step) for step in (unit, -unit))
+        there, back = (euler_equations.angular_acceleration(
+                           (I1, I2, I3), np.array([0.0, 0.0, OMEGA0]) + step)
+                       for step in (unit, -unit))
         columns.append(0.5 * (there - back))
     return np.array(columns).T
 
@@ -36,11 +45,14 @@ def test_linear_equations_and_their_frequency(moments):
     stable = moments[2] != 2.0
     assert (squared > 0.0) == stable
     if stable:
-        assert np.max(np.abs(np.linalg.eigvals(A).imag)) == near(theory.frequency(OMEGA0, *moments), 1e-14)
+        assert np.max(np.abs(np.linalg.eigvals(A).imag)) == near(
+            theory.frequency(OMEGA0, *moments), 1e-14)
     else:
-        assert np.max(np.linalg.eigvals(A).real) == near(theory.growth_rate(OMEGA0, *moments), 1e-14)
+        assert np.max(np.linalg.eigvals(A).real) == near(
+            theory.growth_rate(OMEGA0, *moments), 1e-14)
         ratio = theory.growing_ratio(*moments)
-        assert A @ [1.0, ratio, 0.0] == near(theory.growth_rate(OMEGA0, *moments) * np.array([1.0, ratio, 0.0]), 1e-14)
+        assert (A @ [1.0, ratio, 0.0]
+                == near(theory.growth_rate(OMEGA0, *moments) * np.array([1.0, ratio, 0.0]), 1e-14))
 
 
 def test_tennis_racket_by_hand():
@@ -49,8 +61,12 @@ def test_tennis_racket_by_hand():
 
 
 def test_erratum():
-    """I1 = 1, I2 = 3: as written the frequency is too large by sqrt(3), and the equations are not Euler's."""
-    assert np.abs(matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written) - jacobian(1.0, 3.0, 2.0)).max() > 1.0
+    """I1 = 1, I2 = 3: as written the frequency is too large by sqrt(3).
+
+    The equations are not Euler's.
+    """
+    assert np.abs(matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written)
+                  - jacobian(1.0, 3.0, 2.0)).max() > 1.0
     written = matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written)
     squared = theory.frequency_squared_as_written(OMEGA0, 1.0, 3.0, 2.0)
     assert (written @ written)[0, 0] == near(-squared, 1e-14)
@@ -58,12 +74,16 @@ def test_erratum():
 
 
 def test_least_energy_is_about_the_largest_axis():
-    """Over directions of m at fixed L: never below the least, never above the greatest, both reached; the excess is their difference."""
+    """Over directions of m at fixed L the energy lies between its least and greatest value.
+
+    Both are reached; the excess is the difference from the least.
+    """
     moments, L = np.array([1.0, 3.0, 2.0]), 5.0
     m = np.random.default_rng(1).normal(size=(20000, 3))
     m *= L / np.linalg.norm(m, axis=1)[:, None]
     T = largest_axis.energy(moments, m)
-    least, greatest = largest_axis.least_energy(moments, L), largest_axis.greatest_energy(moments, L)
+    least, greatest = (
+        largest_axis.least_energy(moments, L), largest_axis.greatest_energy(moments, L))
     assert (least, greatest) == near((25.0 / 6.0, 12.5), 1e-15)
     assert least <= T.min() < 1.001 * least
     assert 0.999 * greatest < T.max() <= greatest
@@ -74,5 +94,6 @@ def test_least_energy_is_about_the_largest_axis():
 def test_excess_energy_does_not_cancel():
     m = np.array([1e-9, 5.0, 2e-10])
     with mpmath.workdps(40):
-        exact = sum(mpmath.mpf(x) ** 2 * (1 / mpmath.mpf(moment) - 1 / mpmath.mpf(3)) for x, moment in zip(m, (1, 3, 2))) / 2
+        exact = (sum(mpmath.mpf(x) ** 2 * (1 / mpmath.mpf(moment) - 1 / mpmath.mpf(3))
+                     for x, moment in zip(m, (1, 3, 2))) / 2)
     assert largest_axis.excess_energy(np.array([1.0, 3.0, 2.0]), m) == near(float(exact), 1e-15)

@@ -1,4 +1,8 @@
-"""Euler's angles: the product of three turns, body rates from R^T R', the energy and p_alpha by differentiation."""
+# SPDX-License-Identifier: Apache-2.0
+"""Euler angles: the product of three turns, body rates from R^T R', energy and p_alpha.
+
+Energy and p_alpha follow by differentiation.
+"""
 
 import mpmath
 import numpy as np
@@ -13,7 +17,8 @@ ANGLES, RATES, MOMENTS = (0.7, 1.2, -0.4), (1.1, -0.6, 2.3), (1.0, 2.5, 3.1)
 
 def about(axis, angle):
     c, s = mpmath.cos(angle), mpmath.sin(angle)
-    return mpmath.matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]] if axis == 'z' else [[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    return mpmath.matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]] if axis == 'z'
+                         else [[c, 0, s], [0, 1, 0], [-s, 0, c]])
 
 
 def matrix(alpha, beta, gamma):
@@ -28,20 +33,23 @@ def omega_by_differentiation(rates=RATES):
     rate = mpmath.matrix(3, 3)
     for row in range(3):
         for column in range(3):
-            rate[row, column] = mpmath.diff(lambda t, row=row, column=column: at(t)[row, column], 0)
+            rate[row, column] = mpmath.diff(
+                lambda t, row=row, column=column: at(t)[row, column], 0)
     skew = at(0).T * rate
     return skew[2, 1], skew[0, 2], skew[1, 0]
 
 
 def kinetic_energy(rates):
     """Return T for given Euler rates, by differentiation of R alone."""
-    return sum(moment * omega**2 for moment, omega in zip(MOMENTS, omega_by_differentiation(rates))) / 2
+    return (sum(moment * omega**2
+                for moment, omega in zip(MOMENTS, omega_by_differentiation(rates))) / 2)
 
 
 def test_rotation_matrix():
     expected = np.array(matrix(*ANGLES).tolist(), dtype=float)
     assert theory.rotation_matrix(*ANGLES) == pytest.approx(expected, abs=1e-15)
-    of_the_simulator = np.array([rotations.rotate(*rotations.from_euler_zyz(*ANGLES), *unit) for unit in np.eye(3)]).T
+    of_the_simulator = np.array([rotations.rotate(*rotations.from_euler_zyz(*ANGLES), *unit)
+                                 for unit in np.eye(3)]).T
     assert of_the_simulator == pytest.approx(expected, abs=1e-15)
     polar, azimuth = theory.axis_direction(ANGLES[0], ANGLES[1])
     direction = [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)]
