@@ -21,7 +21,8 @@ ELSEWHERE = {'test_installed.py'}    # what colcon runs on the installed package
 def main(folders):
     """Run the files of some folders, print a line for each; return the exit status."""
     paths = sorted(path for folder in folders or ['test'] for path in
-                   ([ROOT / folder] if folder.endswith('.py') else (ROOT / folder).rglob('test_*.py'))
+                   ([ROOT / folder] if folder.endswith('.py')
+                    else (ROOT / folder).rglob('test_*.py'))
                    if path.name not in ELSEWHERE)
     failed = []
     for path in paths:
@@ -31,7 +32,8 @@ def main(folders):
                                  cwd=ROOT, env=os.environ | {'XDG_CACHE_HOME': cache},
                                  capture_output=True, text=True)
         lines = run.stdout.strip().splitlines() or run.stderr.strip().splitlines() or ['nothing']
-        print(f'{path.relative_to(ROOT)}: {lines[-1]} ({time.monotonic() - begin:.0f} s)', flush=True)
+        print(f'{path.relative_to(ROOT)}: {lines[-1]} ({time.monotonic() - begin:.0f} s)',
+              flush=True)
         # 5: no test of this file runs here
         if run.returncode not in (0, 5):
             failed.append(str(path.relative_to(ROOT)))

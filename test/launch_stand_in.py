@@ -88,7 +88,8 @@ class Action:
 
 
 class DeclareLaunchArgument(Action):
-    def __init__(self, name, *, default_value=None, description=None, choices=None, condition=None):
+    def __init__(
+            self, name, *, default_value=None, description=None, choices=None, condition=None):
         super().__init__(condition=condition)
         self.name, self.default, self.description = name, default_value, description
         self.choices = choices

@@ -20,11 +20,13 @@ class Packed:
 
     def __init__(self, type_name, constants):
         self.type_name, self._blank = type_name, cdr.encode(type_name, constants)
-        self.layout, self.size = Layout(schema(type_name), type_name, self._blank), len(self._blank)
+        self.layout, self.size = (
+            Layout(schema(type_name), type_name, self._blank), len(self._blank))
 
     def pack_many(self, columns):
-        """Return messages as uint8 of shape (n, size) from columns, named as in messages/layout.py."""
-        rows = np.tile(np.frombuffer(self._blank, np.uint8), (len(next(iter(columns.values()))), 1))
+        """Return messages as uint8 of shape (n, size) from columns, named as in Layout."""
+        rows = np.tile(
+            np.frombuffer(self._blank, np.uint8), (len(next(iter(columns.values()))), 1))
         view = rows.view(self.layout.dtype)[:, 0]
         for name, values in columns.items():
             if name.endswith('stamp'):

@@ -1,7 +1,9 @@
-"""What every test on real ROS needs: a domain of its own, and processes that never outlive the test.
+# SPDX-License-Identifier: Apache-2.0
+"""Fixtures of every test on real ROS: a domain of its own, and processes that die with the test.
 
-Domain ids 1 to 101: 0 is where a user's own nodes live, from 102 on the ports of a domain collide with ephemeral ones. A lock on a file
-holds an id for as long as its test runs, also against other test runs on the machine; the system releases it when the process dies.
+Domain ids are 1 to 101: a user's own nodes live in 0, and from 102 on the ports of a domain
+collide with ephemeral ones. A lock on a file holds an id for as long as its test runs, against
+other test runs on the machine too; the system releases it when the process dies.
 """
 
 import contextlib
@@ -18,7 +20,8 @@ import typing
 FIRST_DOMAIN, LAST_DOMAIN = 1, 101
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-# Read when rclpy and the message classes are imported, hence set for this process too, by conftest.py.
+# They are read when rclpy and the message classes are imported, so conftest.py sets them for this
+# process too.
 SETTINGS = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_PYTHON_CHECK_FIELDS': '1'}
 
 
@@ -30,12 +33,15 @@ class Domain(typing.NamedTuple):
 
     @contextlib.contextmanager
     def process(self, *arguments, **options):
-        """Run ``python ARGUMENTS`` from the root of the source tree in this domain; yield the Popen, whose group is killed at the end.
+        """Run ``python ARGUMENTS`` from the root of the source tree; yield the Popen.
 
-        Its output arrives as text in ``stdout`` and ``stderr`` unless ``options`` (of Popen) say otherwise.
+        The process is in this domain, and its group is killed at the end. Its output arrives as
+        text in ``stdout`` and ``stderr`` unless ``options`` (of Popen) say otherwise.
         """
-        options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'text': True, 'cwd': ROOT, 'env': self.environment, **options}
-        with subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **options) as process:
+        options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'text': True, 'cwd': ROOT,
+                   'env': self.environment, **options}
+        with subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True,
+                              **options) as process:
             try:
                 yield process
             finally:
@@ -43,7 +49,10 @@ class Domain(typing.NamedTuple):
                     os.killpg(process.pid, signal.SIGKILL)
 
     def run(self, *arguments, timeout=60, **options):
-        """Run ``python ARGUMENTS`` to its end; return a CompletedProcess. After ``timeout`` seconds: TimeoutExpired, nothing left."""
+        """Run ``python ARGUMENTS`` to its end; return a CompletedProcess.
+
+        After ``timeout`` seconds it raises TimeoutExpired and leaves no process.
+        """
         with self.process(*arguments, **options) as process:
             stdout, stderr = process.communicate(timeout=timeout)
             return subprocess.CompletedProcess(process.args, process.returncode, stdout, stderr)
@@ -68,6 +77,9 @@ def held_domain(log_folder):
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 continue
-            yield Domain(domain_id, {**os.environ, **SETTINGS, 'ROS_DOMAIN_ID': str(domain_id), 'ROS_LOG_DIR': str(log_folder)})
+            yield Domain(domain_id,
+                         {**os.environ, **SETTINGS, 'ROS_DOMAIN_ID': str(domain_id),
+                          'ROS_LOG_DIR': str(log_folder)})
             return
-    raise RuntimeError(f'all domain ids from {FIRST_DOMAIN} to {LAST_DOMAIN} are in use by tests: wait for other test runs to end')
+    raise RuntimeError(f'all domain ids from {FIRST_DOMAIN} to {LAST_DOMAIN} are in use by tests: '
+                       'wait for other test runs to end')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rooms of the package and the arrows between them: imports run one way, from higher rooms to lower ones.
+"""The rooms of the package: imports run one way, from higher rooms to lower ones.
 
 The source is read, not run, so an import inside a function counts like any other.
 """
@@ -10,10 +10,10 @@ import pathlib
 import pytest
 
 PACKAGE = pathlib.Path(__file__).resolve().parent.parent / 'rigid_body_sim'
-ROOMS = ('errors', 'command_line', 'compilation', 'numerics', 'scene', 'theory', 'mechanics', 'motions',
-         'integrators', 'choice', 'simulation', 'drawing', 'messages', 'recording', 'sweeps', 'analysis',
-         'study', 'realtime', 'node', 'view', 'cli')
-"""From the ground up: a room may import those before it. The package's own front door is above them all."""
+ROOMS = ('errors', 'command_line', 'compilation', 'numerics', 'scene', 'theory', 'mechanics',
+         'motions', 'integrators', 'choice', 'simulation', 'drawing', 'messages', 'recording',
+         'sweeps', 'analysis', 'study', 'realtime', 'node', 'view', 'cli')
+"""Rooms from the ground up: one may import those before it. The front door is above them all."""
 FRONT_DOOR = ('__init__', '__main__', 'testing')
 ROS = ('rclpy', 'rcl_interfaces', 'rosidl_runtime_py', 'std_srvs')
 """What only ROS has; packages whose name ends in _msgs are counted in."""
@@ -78,7 +78,7 @@ def test_nothing_below_the_node_imports_ros():
 
 
 def test_no_room_is_in_a_circle():
-    """Follow the arrows between rooms from each of them: none leads back, whatever the order above says."""
+    """Follow the imports between rooms from each of them: none leads back, in any order."""
     leads_to = {}
     for name, _, imported in ARROWS:
         if imported.startswith('rigid_body_sim.') and room_of(name) not in FRONT_DOOR:
@@ -94,7 +94,8 @@ def test_no_room_is_in_a_circle():
         follow(room, [])
 
 
-@pytest.mark.parametrize('room', [room for room in ROOMS if (PACKAGE / room / '__init__.py').exists()])
+@pytest.mark.parametrize(
+    'room', [room for room in ROOMS if (PACKAGE / room / '__init__.py').exists()])
 def test_a_room_says_what_lives_there(room):
     about = ast.get_docstring(ast.parse((PACKAGE / room / '__init__.py').read_text()))
     assert about, f'rigid_body_sim/{room}/__init__.py says nothing'

@@ -62,7 +62,8 @@ def test_ways_to_ask_for_the_same_have_the_same_digests():
 def test_one_bit_in_one_number_is_another_digest():
     assert digests.digest([[1.0, 2.0]]) != digests.digest([[1.0, 2.0000000000000004]])
     assert digests.digest([[0.0]]) != digests.digest([[-0.0]])
-    assert digests.different({'a': {'x': '1', 'y': '2'}}, {'a': {'x': '1', 'y': '3'}, 'b': {'z': '1'}}) == ['a: y', 'b: z']
+    assert digests.different({'a': {'x': '1', 'y': '2'}},
+                             {'a': {'x': '1', 'y': '3'}, 'b': {'z': '1'}}) == ['a: y', 'b: z']
 
 
 def test_the_command_names_what_differs(monkeypatch, capsys):

@@ -1,4 +1,5 @@
-"""The pages: their numbers are those that check_scenes finds, their pictures and links exist, their commands are commands."""
+# SPDX-License-Identifier: Apache-2.0
+"""The pages: their numbers are those of check_scenes, and pictures, links and commands exist."""
 
 import pathlib
 import re
@@ -14,8 +15,9 @@ sys.path.insert(0, str(DOCS))
 from figures import tables  # noqa: E402  (docs/ is no package)
 
 README = DOCS.parent / 'README.md'
-# scenes whose kernels other tests compile anyway; the rest of the tables is made by the same function
-QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top', 'heavy_top', 'fast_top'}
+# scenes whose kernels other tests compile anyway; one function makes the other tables too
+QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top',
+         'heavy_top', 'fast_top'}
 
 
 def numbers(text):
@@ -32,13 +34,15 @@ def test_numbers_of_the_page_are_those_of_check_scenes(path):
             if erratum[2] in QUICK:
                 assert _same(tables.correction(*erratum), text), erratum
     fresh = tables.filled(text.replace('<!-- corrections -->', '<!-- left as it is -->'), QUICK)
-    assert _same(fresh, text.replace('<!-- corrections -->', '<!-- left as it is -->')), 'run: make figures'
+    assert _same(
+        fresh, text.replace('<!-- corrections -->', '<!-- left as it is -->')), 'run: make figures'
 
 
 def _same(part, text):
-    """Return whether every line of one text stands in another, numbers to two units of their last place."""
+    """Return whether each line of one text is in another, numbers to two units of last place."""
     there = [numbers(line) for line in text.splitlines()]
-    return all(any(words == other and found == pytest.approx(shown, rel=2e-9) for shown, other in there)
+    return all(any(words == other and found == pytest.approx(shown, rel=2e-9)
+                   for shown, other in there)
                for found, words in map(numbers, part.splitlines()))
 
 
@@ -48,7 +52,8 @@ def test_every_scene_has_a_page():
         assert f'config/scenes/{name}.yaml' in text, name
 
 
-@pytest.mark.parametrize('path', [*tables.pages(), DOCS / 'scenes.md', README], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    'path', [*tables.pages(), DOCS / 'scenes.md', README], ids=lambda path: path.stem)
 def test_links_lead_somewhere(path):
     for target in re.findall(r'\]\(([^)#:]+)\)', path.read_text()):
         assert (path.parent / target).exists(), target
@@ -58,7 +63,8 @@ def test_the_gallery_shows_every_page_and_pictures_are_small():
     text = README.read_text()
     for path in (DOCS / 'systems').glob('*.md'):
         assert f'(docs/systems/{path.name})' in text
-        assert f'](../images/{path.stem}.png)\n' == path.read_text()[-len(f'](../images/{path.stem}.png)\n'):]
+        assert (f'](../images/{path.stem}.png)\n'
+                == path.read_text()[-len(f'](../images/{path.stem}.png)\n'):])
         assert (DOCS / 'images' / f'{path.stem}.png').stat().st_size < 100_000
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/extending.md: its files are written to a temporary package, registered as it says, and run."""
+"""docs/extending.md: its files are written to a temporary package, registered and run."""
 
 import dataclasses
 import importlib
@@ -217,7 +217,9 @@ def test_the_scene_runs_with_all_of_them(package):
 
 
 def test_a_package_that_cannot_be_imported_is_refused_in_one_line(package):
-    with pytest.raises(BadInput, match='effect broken: more_bodies.absent:Effect cannot be'.replace('.', r'\.')):
+    with pytest.raises(
+            BadInput,
+            match='effect broken: more_bodies.absent:Effect cannot be'.replace('.', r'\.')):
         parse_scene(SPHERE, ['effects=[broken]'])
     with pytest.raises(BadInput, match='effect constant: math:pi is not an Effect'):
         parse_scene(SPHERE, ['effects=[constant]'])

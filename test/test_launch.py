@@ -102,7 +102,8 @@ def test_two_bodies_have_a_namespace_each():
 def test_the_stand_in_refuses_what_launch_does_not_know(tmp_path):
     text = SIM.read_text()
     for old, new in (("executable='sim_node'", "executible='sim_node'"),
-                     ('default_value=', 'default='), ('OpaqueFunction(function', 'Opaque(function'),
+                     ('default_value=', 'default='),
+                     ('OpaqueFunction(function', 'Opaque(function'),
                      ("LaunchConfiguration('rviz')", "LaunchConfiguration('rwiz')")):
         assert old in text
         wrong = tmp_path / 'wrong.launch.py'

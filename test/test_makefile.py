@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The two commands on machines other than this one: a sourced ROS, no fitting Python."""
 
 import os
@@ -9,31 +10,43 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCED = {
-    'AMENT_PREFIX_PATH': '/opt/ros/jazzy', 'CMAKE_PREFIX_PATH': '/opt/ros/jazzy', 'COLCON_PREFIX_PATH': '/ws/install',
-    'LD_LIBRARY_PATH': '/opt/ros/jazzy/lib', 'PYTHONPATH': '/opt/ros/jazzy/lib/python3.12/site-packages',
-    'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp', 'ROS_DISTRO': 'jazzy', '_ROS_WHEELS_BOOTSTRAP_COMPLETE': '1',
+    'AMENT_PREFIX_PATH': '/opt/ros/jazzy', 'CMAKE_PREFIX_PATH': '/opt/ros/jazzy',
+    'COLCON_PREFIX_PATH': '/ws/install',
+    'LD_LIBRARY_PATH': '/opt/ros/jazzy/lib',
+    'PYTHONPATH': '/opt/ros/jazzy/lib/python3.12/site-packages',
+    'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp', 'ROS_DISTRO': 'jazzy',
+    '_ROS_WHEELS_BOOTSTRAP_COMPLETE': '1',
 }
 
 pytestmark = pytest.mark.skipif(not shutil.which('make'), reason='needs make')
 
 
 def make(*arguments, environment, extra=''):
-    return subprocess.run(['make', '--no-print-directory', '-f', '-', *arguments], input=f'include Makefile\n{extra}', cwd=ROOT,
-                          env=environment, capture_output=True, text=True, timeout=30)
+    return subprocess.run(['make', '--no-print-directory', '-f', '-', *arguments],
+                          input=f'include Makefile\n{extra}', cwd=ROOT, env=environment,
+                          capture_output=True, text=True, timeout=30)
 
 
 def test_a_sourced_ros_is_unset_and_said_in_one_line():
-    clean = {name: value for name, value in os.environ.items() if name not in SOURCED and name not in ('MAKEFLAGS', 'MFLAGS', 'MAKELEVEL')}
-    shown = make('shown', environment={**clean, **SOURCED, 'ROS_DOMAIN_ID': '7'}, extra='shown: ; @env\n').stdout.splitlines()
+    clean = {name: value
+             for name, value in os.environ.items()
+             if name not in SOURCED and name not in ('MAKEFLAGS', 'MFLAGS', 'MAKELEVEL')}
+    shown = make('shown', environment={**clean, **SOURCED, 'ROS_DOMAIN_ID': '7'},
+                 extra='shown: ; @env\n').stdout.splitlines()
     assert set(shown[0].partition(': ')[2].split()) == set(SOURCED)
     seen = dict(line.partition('=')[::2] for line in shown[1:])
-    assert {name: seen.get(name) for name in SOURCED} == {**dict.fromkeys(SOURCED), 'AMENT_PREFIX_PATH': f'{ROOT}/.venv'}
+    assert {name: seen.get(name) for name in SOURCED} == {
+        **dict.fromkeys(SOURCED), 'AMENT_PREFIX_PATH': f'{ROOT}/.venv'}
     assert seen['ROS_DOMAIN_ID'] == '7'     # the user's own choice stays
-    assert make('shown', environment=clean, extra='shown: ; @echo nothing to say\n').stdout == 'nothing to say\n'
+    assert make('shown', environment=clean,
+                extra='shown: ; @echo nothing to say\n').stdout == 'nothing to say\n'
 
 
 def make_venv(folder, *versions, pythons):
-    """Run make_venv.sh on a machine that has a POSIX shell and the given Pythons (name -> shell script) and nothing else."""
+    """Run make_venv.sh on a machine with a POSIX shell and the given Pythons only.
+
+    Pythons are given as name -> shell script.
+    """
     tools = folder / 'bin'
     tools.mkdir()
     for name in ('ls', 'sed', 'sh', 'uname'):
@@ -41,20 +54,22 @@ def make_venv(folder, *versions, pythons):
     for name, script in pythons.items():
         (tools / name).write_text(f'#!/bin/sh\n{script}\n')
         (tools / name).chmod(0o755)
-    return subprocess.run([ROOT / 'requirements' / 'make_venv.sh', folder / '.venv', 'pins', *versions], env={'PATH': tools, 'HOME': tools},
-                          capture_output=True, text=True, timeout=30)
+    return subprocess.run(
+        [ROOT / 'requirements' / 'make_venv.sh', folder / '.venv', 'pins', *versions],
+        env={'PATH': tools, 'HOME': tools}, capture_output=True, text=True, timeout=30)
 
 
 OLD = """case "$1" in -V) echo Python 3.10.12;; *) exit 1;; esac"""
 WITHOUT_VENV = """case "$2" in *ensurepip*) exit 1;; *print*) echo python3.12-venv;; esac"""
 
 
-@pytest.mark.parametrize(('pythons', 'said'), [
-    ({}, 'needs Python 3.11, 3.12 or 3.13, found no python3;'),
-    ({'python3': OLD}, 'needs Python 3.11, 3.12 or 3.13, found python3 = Python 3.10.12;'),
-    ({'python3': OLD, 'python3.12': WITHOUT_VENV},
-     'lacks the module venv or ensurepip; install it (Debian, Ubuntu: apt install python3.12-venv)'),
-])
+@pytest.mark.parametrize(
+    ('pythons', 'said'),
+    [({}, 'needs Python 3.11, 3.12 or 3.13, found no python3;'),
+     ({'python3': OLD}, 'needs Python 3.11, 3.12 or 3.13, found python3 = Python 3.10.12;'),
+     ({'python3': OLD, 'python3.12': WITHOUT_VENV},
+      'lacks the module venv or ensurepip; install it (Debian, Ubuntu: apt install '
+      'python3.12-venv)')])
 def test_a_machine_without_a_fitting_python_gets_one_clear_line(tmp_path, pythons, said):
     result = make_venv(tmp_path, '3.11', '3.12', '3.13', pythons=pythons)
     assert result.returncode == 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is installed, and what it needs, agrees with what is written: package.xml, setup.py, requirements/, config/, launch/."""
+"""What is installed agrees with package.xml, setup.py, requirements/, config/ and launch/."""
 
 import ast
 import importlib
@@ -18,27 +18,34 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / 'rigid_body_sim'
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 
-# import name -> key of package.xml; without a key: optional, imported only where it is used and absent without harm
+# import name -> key of package.xml; a name without a key is optional, imported only where it is
+# used, and its absence does no harm
 KEYS = {
-    'yaml': 'python3-yaml', **{name: f'python3-{name}' for name in ('jsonschema', 'matplotlib', 'mpmath', 'numpy', 'scipy', 'tqdm')},
+    'yaml': 'python3-yaml',
+    **{name: f'python3-{name}'
+       for name in ('jsonschema', 'matplotlib', 'mpmath', 'numpy', 'scipy', 'tqdm')},
     **{name: name for name in (
-        'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'lifecycle_msgs', 'nav_msgs', 'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
+        'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'lifecycle_msgs', 'nav_msgs',
+        'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
         'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
 }
 OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly', 'pyarrow', 'rosbags', 'viser',
             'websockets', 'xarray', 'zstandard'}
 COMES_WITH = {'llvmlite': 'numba', 'websockets': 'viser'}
-# what work_precision --peers and hard_cases --peers measure, by import name; requirements/peers.in has them
-PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
+# import names of what work_precision --peers and hard_cases --peers measure; requirements/peers.in
+# lists them
+PEERS = {'Basilisk': 'bsk', 'heyoka': 'heyoka', 'mujoco': 'mujoco', 'pinocchio': 'pin',
+         'pybullet': 'pybullet', 'pydrake': 'drake'}
 
 
 def dependencies(tag):
     """Return the keys under one tag of package.xml."""
-    return {element.text for element in xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot().iter(tag)}
+    return {element.text
+            for element in xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot().iter(tag)}
 
 
 def imported(path):
-    """Return the names of the top-level packages that a file imports, those of message types that it names among them."""
+    """Return the top-level packages that a file imports, with those of message types it names."""
     text = path.read_text()
     names = set(re.findall(r"'(\w+)/(?:msg|srv)/\w+'", text))
     for node in ast.walk(ast.parse(text)):
@@ -46,7 +53,8 @@ def imported(path):
             names |= {alias.name.partition('.')[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and not node.level:
             names.add(node.module.partition('.')[0])
-    return names - set(sys.stdlib_module_names) - {'rigid_body_sim'} - (set(PEERS) if 'study' in path.parts else set())
+    return (names - set(sys.stdlib_module_names) - {'rigid_body_sim'}
+            - (set(PEERS) if 'study' in path.parts else set()))
 
 
 def test_package_xml_names_what_is_imported_and_nothing_else():
@@ -62,12 +70,14 @@ def test_requirements_name_what_is_imported():
     used = set().union(*map(imported, SOURCES))
     named = ''.join((ROOT / 'requirements' / f'{name}.in').read_text().lower()
                     for name in ('run', 'test'))
-    for name in used - set(KEYS) | {name for name in used if KEYS.get(name, '').startswith('python3-')}:
+    for name in used - set(KEYS) | {name
+                                    for name in used if KEYS.get(name, '').startswith('python3-')}:
         assert re.search(rf'^(py)?{COMES_WITH.get(name, name)}==', named, re.MULTILINE), name
 
 
 def test_requirements_name_the_peers():
-    used = {name for path in SOURCES if 'study' in path.parts for name in PEERS if name in path.read_text()}
+    used = {name for path in SOURCES if 'study' in path.parts
+            for name in PEERS if name in path.read_text()}
     named = (ROOT / 'requirements' / 'peers.in').read_text()
     for name in used:
         assert re.search(rf'^{PEERS[name]}==', named, re.MULTILINE), name
@@ -79,8 +89,10 @@ def test_every_folder_is_a_package_that_gets_installed():
 
 
 def test_the_table_of_commands_needs_no_package():
-    code = 'import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.cli.subcommands import COMMANDS; print(*COMMANDS)'
-    listed = subprocess.run([sys.executable, '-I', '-S', '-c', code, ROOT], capture_output=True, text=True, timeout=30, check=True).stdout
+    code = ('import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.cli.subcommands '
+            'import COMMANDS; print(*COMMANDS)')
+    listed = subprocess.run([sys.executable, '-I', '-S', '-c', code, ROOT], capture_output=True,
+                            text=True, timeout=30, check=True).stdout
     assert listed.split() == list(COMMANDS)
 
 
@@ -136,7 +148,9 @@ def test_the_parameter_file_is_made_from_the_table():
 @pytest.mark.parametrize('pins', ['run', 'test', 'kilted', 'noble', 'noble-numba'])
 def test_pins_are_exact_and_hold_what_is_asked_for(pins):
     folder = ROOT / 'requirements'
-    lines = [line for line in (folder / f'{pins}.txt').read_text().splitlines() if not line.startswith('#')]
+    lines = [line
+             for line in (folder / f'{pins}.txt').read_text().splitlines()
+             if not line.startswith('#')]
     assert all(re.fullmatch(r'[\w.-]+==[\w.]+', line) for line in lines)
     asked = folder / f'{pins}.in'
     for line in asked.read_text().splitlines() if asked.exists() else ():
@@ -145,5 +159,6 @@ def test_pins_are_exact_and_hold_what_is_asked_for(pins):
 
 
 def test_the_test_pins_are_the_run_pins_and_more():
-    run, test = (set((ROOT / 'requirements' / f'{name}.txt').read_text().splitlines()[1:]) for name in ('run', 'test'))
+    run, test = (set((ROOT / 'requirements' / f'{name}.txt').read_text().splitlines()[1:])
+                 for name in ('run', 'test'))
     assert run < test

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The helper of the tests on ROS: no two share a domain, no process outlives its test."""
 
 import os
@@ -26,7 +27,8 @@ def one_domain(monkeypatch):
 
 @pytest.mark.usefixtures('one_domain')
 def test_all_domains_held_is_said(tmp_path):
-    with ros.held_domain(tmp_path), pytest.raises(RuntimeError, match='all domain ids'), ros.held_domain(tmp_path):
+    with ros.held_domain(tmp_path), pytest.raises(
+            RuntimeError, match='all domain ids'), ros.held_domain(tmp_path):
         pass
 
 
@@ -41,8 +43,8 @@ except RuntimeError:
     print('refused')
 """
     def asked():
-        return subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=30, cwd=ros.ROOT / 'test',
-                              check=True).stdout.strip()
+        return subprocess.run([sys.executable, '-c', script], capture_output=True, text=True,
+                              timeout=30, cwd=ros.ROOT / 'test', check=True).stdout.strip()
 
     with ros.held_domain(tmp_path):
         assert asked() == 'refused'
@@ -50,17 +52,22 @@ except RuntimeError:
 
 
 def test_the_domain_reaches_this_process_and_its_children(ros_domain):
-    child = ros_domain.run('-c', 'import os; print(os.environ["ROS_DOMAIN_ID"], os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"])')
+    child = ros_domain.run('-c',
+                           'import os; print(os.environ["ROS_DOMAIN_ID"], '
+                           'os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"])')
     assert child.stdout.split() == [str(ros_domain.id), 'LOCALHOST']
     assert os.environ['ROS_DOMAIN_ID'] == str(ros_domain.id)
 
 
 def test_grandchildren_do_not_outlive_the_test(ros_domain):
     mine, theirs = os.pipe()
-    with ros_domain.process('-c', 'import subprocess; subprocess.run(["sleep", "60"], close_fds=False)', pass_fds=(theirs,)):
+    with ros_domain.process(
+            '-c', 'import subprocess; subprocess.run(["sleep", "60"], close_fds=False)',
+            pass_fds=(theirs,)):
         os.close(theirs)
         assert not select.select([mine], [], [], 1.0)[0]     # open: child or grandchild lives
-    assert select.select([mine], [], [], 10.0)[0]            # end of file: nobody is left that could write
+    # end of file: nobody is left that could write
+    assert select.select([mine], [], [], 10.0)[0]
     os.close(mine)
 
 

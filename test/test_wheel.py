@@ -71,8 +71,8 @@ def environment(built, tmp_path_factory):
     folder = tmp_path_factory.mktemp('environment')
     python(folder, '-m', 'venv', '--without-pip', folder)
     before = {path.name for path in (folder / 'bin').iterdir()}
-    python(folder, '-m', 'pip', '--python', folder / 'bin' / 'python', 'install', '-q', '--no-deps',
-           '--no-index', built[1])
+    python(folder, '-m', 'pip', '--python', folder / 'bin' / 'python', 'install', '-q',
+           '--no-deps', '--no-index', built[1])
     after = {path.name for path in (folder / 'bin').iterdir()}
     [site] = folder.glob('lib/python3.*/site-packages')
     (site / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')

@@ -1,4 +1,5 @@
-"""Tops for tests: scenes of bodies on a pivot, and states of the motion `lagrange_top` anchored at a start."""
+# SPDX-License-Identifier: Apache-2.0
+"""Tops for tests: scenes of bodies on a pivot, and anchored states of `lagrange_top`."""
 
 import json
 import math
@@ -11,7 +12,8 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE
 
 HEAVY = {'moments': [0.03, 0.03, 0.01], 'mass': 1.0, 'center': [0.0, 0.0, 0.1], 'g': 9.81}
-ROUND = {'moments': [1.0, 1.0, 1.0], 'mass': 1.0, 'center': [0.0, 0.0, 0.5], 'g': 2.0}      # k = M g h/I1 = 1, n = omega_3
+# k = M g h/I1 = 1, n = omega_3
+ROUND = {'moments': [1.0, 1.0, 1.0], 'mass': 1.0, 'center': [0.0, 0.0, 0.5], 'g': 2.0}
 UPRIGHT = [0.0, 0.0, 0.0, 1.0]
 
 
@@ -19,7 +21,8 @@ def scene_of(body, orientation=UPRIGHT, omega=(0.0, 0.0, 0.0), effects=None, ext
     effects = [{'gravity': {'g': body['g']}}] if effects is None else effects
     return parse_scene(json.dumps({
         'scene': 'top', 'constraint': 'pivot', 'effects': effects,
-        'body': {'mass': body['mass'], 'inertia': body['moments'], 'inertia_about': 'origin', 'center_of_mass': body['center']},
+        'body': {'mass': body['mass'], 'inertia': body['moments'], 'inertia_about': 'origin',
+                 'center_of_mass': body['center']},
         'initial': {'orientation': list(orientation), 'angular_velocity': list(omega)}}) + extra)
 
 
