@@ -49,7 +49,7 @@ def right_side(case, y):
 
 
 def step(case, y, h):
-    """Return y after h by Gragg's midpoint rule, extrapolated from 2, 4, ... 2 COLUMNS substeps."""
+    """Return y after h by Gragg's midpoint rule, extrapolated from 2 to 2 COLUMNS substeps."""
     rows = []
     start = right_side(case, y)
     for row in range(COLUMNS):

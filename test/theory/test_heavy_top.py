@@ -152,7 +152,7 @@ def test_steady_precession(beta_0):
 
 
 def test_turning_points():
-    """Released at rest in beta at 0.5 rad, the top has the same V_eff at the other turning point."""
+    """Released at rest in beta at 0.5 rad, the top has that V_eff at the other turning point."""
     P_gamma = 0.6
     P_alpha = theory.p_alpha(0.0, 0.5, P_gamma, I1)
     E = theory.energy(0.5, 0.0, P_alpha, P_gamma, I1, I3, MGL)
