@@ -116,7 +116,7 @@ def decode(schemas, type_name, data, leaves=None):
         return reader.fields(type_name, '')
     except struct.error as error:
         problem = f'a message of {len(data)} bytes that cannot be decoded ({error})'
-        raise BadInput(type_name, problem, 'a message as its definition says') from error
+        raise BadInput(type_name, problem, 'a message that matches its definition') from error
 
 
 class _Reader:

@@ -184,7 +184,7 @@ def _check(schemas, type_name, above):
                        'a text with all the types it depends on')
     if type_name in above or len(above) > 32:
         raise BadInput(f'definition of {above[0]}',
-                       f'{type_name} contains itself or lies too deep', 'a finite type')
+                       f'{type_name} contains itself or is nested too deeply', 'a finite type')
     for field in schemas[type_name]:
         if field.base not in SIZES and field.base != 'string':
             _check(schemas, field.base, (*above, type_name))

@@ -93,7 +93,7 @@ def test_own_file_is_checked_by_the_name_in_it(tmp_path, capsys):
     (['--scene', 'heavy_topp'], "scene: no scene 'heavy_topp'; did you mean heavy_top?"),
     (['--set', 'initial.spin=3'], "--set: got 'initial.spin=3'; name the scene it changes"),
     (['--scene', 'heavy_top', '--set', 'scene=other'],
-     'other: no formula of the notes is about it'),
+     'other: no formula of the notes applies to it'),
     (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.distance=0'],
      'kater_pendulum.yaml: constraint.hinge.distance: got 0'),
     (['--scene', 'kater_pendulum', '--set', 'constraint.hinge.through=[0, 0, -0.4]'],

@@ -23,7 +23,7 @@ def check(run):
     omega0 = start[2]
     if not theory.frequency_squared(omega0, I1, I2, I3) > 0.0:
         raise BadInput(run.scene.name, f'moments {[I1, I2, I3]}, omega3 {omega0:g}',
-                       'needs rotation about axis 3, least or largest')
+                       'needs rotation about axis 3, with the least or the largest moment')
     measured = [run.derivative(instruments.omega(k), 0.02, 0.02) for k in range(2)]
     eta = run.at(0.02).angular_velocity
     yield Quantity("eta1', eta2' of the linear equations",

@@ -23,8 +23,8 @@ def confirm(scene):
     ``both`` heads their comparison.
     """
     if scene.name not in SYSTEMS:
-        raise BadInput(scene.name, 'no formula of the notes is about it',
-                       f'the scenes that are checked: {", ".join(SYSTEMS)}')
+        raise BadInput(scene.name, 'no formula of the notes applies to it',
+                       f'the scenes with formulas are {", ".join(SYSTEMS)}')
     system, shipped = SYSTEMS[scene.name], load_scene(scene.name)
     for what, own, meant in (('constraint', scene.constraint.kind, shipped.constraint.kind),
                              ('effects', _effects(scene), _effects(shipped))):

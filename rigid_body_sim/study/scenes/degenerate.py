@@ -44,7 +44,7 @@ def sphere(run):
     omega = run.at(0.0).angular_velocity.copy()
     size = float(np.linalg.norm(omega))
     if not size:
-        raise BadInput(run.scene.name, 'omega is zero', 'it is about rotation')
+        raise BadInput(run.scene.name, 'omega is zero', 'needs a rotating body')
     times = np.linspace(0.0, 100.0, 501)
     states = run.states(times)
     yield Quantity('omega in the body at 501 times', np.tile(omega, 501),

@@ -36,7 +36,7 @@ class Pendulum:
             raise BadInput(
                 scene.name,
                 f'the suspension distance l is {self.length!r} m, g is {self.g!r} m/s^2',
-                'it does not swing: both are above 0')
+                'it swings only if both are above 0')
         self.a = float(np.sqrt(self.axis @ scene.body.about_center.matrix @ self.axis / self.mass))
 
     def angle(self, states):

@@ -25,7 +25,8 @@ def check(run):
     top = Top(run)
     if top.beta > 1e-6:
         raise BadInput(
-            run.scene.name, f'it starts at a tilt of {top.beta!r} rad', 'an upright start, tilt 0')
+            run.scene.name, f'it starts at a tilt of {top.beta!r} rad',
+            'needs an upright start, tilt 0')
     seed = float(np.hypot(*run.at(0.0).angular_velocity[:2])) or SEED
     threshold = theory.threshold(top.I1, top.Mgl)
     own = top.P_gamma / threshold

@@ -26,7 +26,7 @@ def check(run):
         rates = theory.steady_precession_rates(top.beta, spin, top.I1, top.I3, top.Mgl)
     if not np.all(np.isfinite(rates)):
         raise BadInput(run.scene.name, f'tilt {top.beta:.6g} rad, spin {spin:.6g} rad/s',
-                       'too little spin for steady precession at this tilt')
+                       'steady precession at this tilt needs more spin')
     for name, rate in zip(('slow', 'fast'), rates, strict=True):
         steady = run.variant(_start(top.beta, rate, spin))
         times = np.linspace(0.0, SECONDS, 501)

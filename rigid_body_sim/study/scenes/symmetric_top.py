@@ -21,7 +21,7 @@ def check(run):
     across = float(np.hypot(start[0], start[1]))
     if I1 != I2 or I1 == I3 or not across * start[2]:
         raise BadInput(run.scene.name, f'moments {[I1, I2, I3]}, omega {start.tolist()}',
-                       'needs I1 = I2, another I3, omega oblique')
+                       'needs I1 = I2, a different I3 and an oblique omega')
     yield from round_the_axis(run, theory.precession_rate(start[2], I1, I3),
                               theory.precession_rate_as_written(start[2], I1, I3))
     times = np.linspace(0.0, 20.0, 101)
