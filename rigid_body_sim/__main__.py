@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The shell command: ``rigid_body_sim NAME ...``, also ``python -m rigid_body_sim NAME ...``."""
 
-import difflib
 import importlib
 import os
 import sys
 
 from rigid_body_sim.cli.subcommands import COMMANDS, MISSING
 from rigid_body_sim.command_line import BAD_INPUT, GOOD
+from rigid_body_sim.errors import nearest
 
 PROGRAM = 'rigid_body_sim'
 
@@ -27,8 +27,8 @@ def main(arguments=None):
         return completion.main(arguments[1:])
     name = arguments[0]
     if name not in COMMANDS:
-        near = difflib.get_close_matches(name, COMMANDS, 1)
-        hint = f'did you mean {near[0]}?' if near else f'the commands are {", ".join(COMMANDS)}'
+        near = nearest(name, COMMANDS)
+        hint = f'did you mean {near}?' if near else f'the commands are {", ".join(COMMANDS)}'
         print(f'{PROGRAM}: no command {name!r}; {hint}', file=sys.stderr)
         return BAD_INPUT
     module, _, function = COMMANDS[name][0].partition(':')

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors that a person reads: one line with the place, the fault and what would be right."""
 
+MOST_SLIPS = 2
+"""A word with more slips of the keyboard in it is taken for another word."""
+LETTERS_TO_A_SLIP = 3
+"""A short word has at most one slip for so many letters: `force` is no misspelling of `free`."""
+
 
 class BadInput(ValueError):
     """Input that cannot be run.
@@ -17,11 +22,42 @@ class BadInput(ValueError):
     """
 
     def __init__(self, where, problem, remedy):
-        super().__init__(f'{where}: {problem}; {remedy}')
-        self.where = where
-        self.problem = problem
-        self.remedy = remedy
+        self.where, self.problem, self.remedy = map(printable, (where, problem, remedy))
+        super().__init__(f'{self.where}: {self.problem}; {self.remedy}')
+
+    def __reduce__(self):
+        return type(self), (self.where, self.problem, self.remedy)
 
 
 class NotConverged(ArithmeticError):
     """A method gave up: it says at which time and why, instead of returning NaN."""
+
+
+def printable(text):
+    """Return a text with its unprintable characters escaped, so no terminal obeys them."""
+    return ''.join(one if one.isprintable() else one.encode('unicode_escape').decode()
+                   for one in str(text))
+
+
+def nearest(word, known):
+    """Return the one of some known words that `word` misspells, or None if it is another word."""
+    word = str(word)
+    allowed = min(MOST_SLIPS, max(1, len(word) // LETTERS_TO_A_SLIP))
+    slips, best = min(((_slips(word, one), one) for one in known), default=(len(word), None))
+    return best if slips <= allowed else None
+
+
+def _slips(one, other):
+    """Return the number of letters left out, put in, replaced or swapped with a neighbour.
+
+    This is the optimal string alignment distance (Damerau 1964).
+    """
+    before, last = [], list(range(len(other) + 1))
+    for i, letter in enumerate(one):
+        row = [i + 1]
+        for j, wanted in enumerate(other):
+            row.append(min(row[j] + 1, last[j + 1] + 1, last[j] + (letter != wanted)))
+            if i and j and letter == other[j - 1] and one[i - 1] == wanted:
+                row[-1] = min(row[-1], before[j - 1] + 1)
+        before, last = last, row
+    return last[-1]

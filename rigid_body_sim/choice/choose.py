@@ -5,14 +5,13 @@ A motion that absorbs the scene solves it exactly. Otherwise `auto` takes the ch
 was measured to meet the accuracy (measured.py), after a trial run on the scene itself (trial.py).
 """
 
-import difflib
 import functools
 import logging
 from dataclasses import dataclass
 
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.compilation import jit
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, runnable
 from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import Stepped
@@ -159,8 +158,8 @@ def _check(integrator, accuracy, step, horizon):
     if step is not None and not 0.0 < step < float('inf'):
         raise BadInput('step', f'got {step!r}', 'a positive number of seconds')
     if integrator not in ('auto', 'exact') and integrator not in METHODS:
-        near = difflib.get_close_matches(integrator, ['auto', 'exact', *METHODS], 1)
-        advice = f'did you mean {near[0]!r}?' if near else (
+        near = nearest(integrator, ['auto', 'exact', *METHODS])
+        advice = f'did you mean {near!r}?' if near else (
             f'one of auto, exact, {", ".join(METHODS)}')
         raise BadInput('integrator', f'got {integrator!r}', advice)
     if not 0.0 < horizon < float('inf'):

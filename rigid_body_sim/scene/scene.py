@@ -6,7 +6,6 @@ A scene names a body, what holds it (constraint), what else acts (effects) and h
 path, the value and what would be right.
 """
 
-import difflib
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, nearest, printable
 from rigid_body_sim.scene import bodies, yaml_text
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints import CONSTRAINTS
@@ -146,8 +145,8 @@ def load_scene(name_or_path: str | pathlib.Path,
     if path.suffix not in ('.yaml', '.yml') and '/' not in text:
         path = scene_folder() / f'{text}.yaml'
         if not path.is_file():
-            near = difflib.get_close_matches(text, scene_names(), 1)
-            hint = f'did you mean {near[0]}?' if near else \
+            near = nearest(text, scene_names())
+            hint = f'did you mean {near}?' if near else \
                 f'the scenes are {", ".join(scene_names())}'
             raise BadInput('scene', f'no scene {text!r}',
                            f'{hint} (or give the path of a .yaml file)')
@@ -190,8 +189,9 @@ def _scene(mapping, where):
     effects = tuple(_effects(mapping['effects'], body, constraint, f'{where}: effects'))
     initial = _initial(mapping['initial'], body, constraint, f'{where}: initial')
     text = yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)
-    return Scene(mapping['scene'], ' '.join(mapping.get('about', '').split()), body, constraint,
-                 effects, initial, mapping.get('commands', 'accept') == 'accept', text)
+    about = printable(' '.join(mapping.get('about', '').split()))
+    return Scene(mapping['scene'], about, body, constraint, effects, initial,
+                 mapping.get('commands', 'accept') == 'accept', text)
 
 
 def _body(mapping, where):
@@ -264,8 +264,8 @@ def _effects(entries, body, constraint, where):
         name, settings = _named(entry)
         effect, at = effect_class(name), f'{where}.{name}'
         if effect is None:
-            near = difflib.get_close_matches(str(name), EFFECTS, 1)
-            hint = f'did you mean {near[0]!r}?' if near else \
+            near = nearest(name, EFFECTS)
+            hint = f'did you mean {near!r}?' if near else \
                 f'the effects are {", ".join(EFFECTS)}'
             raise BadInput(f'{where}.{place}', f'got {yaml_text.brief(entry)}',
                            f'{hint} (one effect an entry)')

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """JSON schemas of the parts of a scene file, and the check that refuses a fault in one line."""
 
-import difflib
 import math
 from collections.abc import Iterable
 from typing import Any
 
 import jsonschema
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.scene import yaml_text
 
 Schema = dict[str, Any]
@@ -36,7 +35,7 @@ def check(value: Any, schema: Schema, where: str) -> None:
     """
     _refuse_non_finite(value, where)
     errors = sorted(jsonschema.Draft202012Validator(schema).iter_errors(value),
-                    key=lambda error: (len(error.absolute_path), str(error.path)))
+                    key=lambda error: (len(error.absolute_path), _last(error), str(error.path)))
     if not errors:
         return
     error: Any = errors[0]    # its attributes are typed as perhaps unset, which here they are not
@@ -44,14 +43,22 @@ def check(value: Any, schema: Schema, where: str) -> None:
     if error.validator == 'additionalProperties':
         known = sorted(error.schema['properties'])
         unknown = next(key for key in error.instance if key not in known)
-        near = difflib.get_close_matches(unknown, known, 1)
-        raise BadInput(where, f'unknown key {unknown!r}', f'did you mean {near[0]!r}?' if near
+        near = nearest(unknown, known)
+        raise BadInput(where, f'unknown key {unknown!r}', f'did you mean {near!r}?' if near
                        else f'the keys are {", ".join(known)}')
     if error.validator == 'required':
         missing = next(key for key in error.validator_value if key not in error.instance)
         raise BadInput(where, f'the key {missing!r} is missing',
                        f'needed: {", ".join(error.validator_value)}')
     raise BadInput(where, f'got {yaml_text.brief(error.instance)}', _remedy(error))
+
+
+def _last(error: Any) -> bool:
+    """Return whether a fault is told after the other ones of its place.
+
+    A misspelt key is unknown, and the right one is missing: the first says more.
+    """
+    return error.validator != 'additionalProperties'
 
 
 def _remedy(error: Any) -> str:

@@ -50,7 +50,10 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
         If these are not three numbers each, or the frame is unknown. Whether a body can take the
         numbers is for the simulation to say (admission.py).
     """
-    force, torque = tuple(map(float, force)), tuple(map(float, torque))
+    try:
+        force, torque = tuple(map(float, force)), tuple(map(float, torque))
+    except (TypeError, ValueError):
+        raise not_three_numbers(kind, force, torque) from None
     if (len(force), len(torque)) != (3, 3):
         raise not_three_numbers(kind, force, torque)
     if frame not in FRAMES:
@@ -61,8 +64,14 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
 def not_three_numbers(kind: int, force, torque) -> BadInput:
     """Return the error for a force and a torque that are not three finite numbers each."""
     return BadInput(
-        NAMES[kind], f'got force {list(force)}, torque {list(torque)}', 'three finite numbers each'
+        NAMES[kind],
+        f'got force {_shown(force)!r}, torque {_shown(torque)!r}',
+        'three finite numbers each',
     )
+
+
+def _shown(vector):
+    return list(vector) if isinstance(vector, tuple) else vector
 
 
 def wrench_of(row: np.ndarray) -> Wrench:

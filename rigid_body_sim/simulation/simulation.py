@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulation: a scene in motion, tick by tick or at any times, with commands.
 
 ::
@@ -12,6 +13,8 @@
 import copy
 import html
 import math
+import numbers
+import operator
 import typing
 
 import numpy as np
@@ -33,10 +36,19 @@ from rigid_body_sim.simulation.admission import (
     refusals,
     scene_refuses,
 )
-from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, row_of, wrench_of
+from rigid_body_sim.simulation.command_rows import (
+    HOLD,
+    IMPULSE,
+    LET_GO,
+    WIDTH,
+    row_of,
+    wrench_of,
+)
 from rigid_body_sim.simulation.spans import Event, Span
 
-LOOKS = 1024    # parts of the time ahead in which at_event looks first
+LOOKS = 1024  # parts of the time ahead in which at_event looks first
+LAST_TICK = 2**53
+"""Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
 KEPT = ('tick', 'events', 'vector', '_origin', '_origin_time', '_initial', '_commands')
 """What a copy or a pickle takes over as it is."""
 
@@ -51,7 +63,8 @@ class Simulation:
     integrator : str
         A method of ``rigid_body_sim.integrators.METHODS``, ``exact`` or ``auto``.
     accuracy : float
-        Error of the attitude (rad) that is asked for; closed forms give the round-off floor whatever is asked.
+        Error of the attitude (rad) that is asked for; closed forms give the round-off floor
+        whatever is asked.
     rate : float
         Ticks per second, for :meth:`advance`.
     step : float, optional
@@ -68,7 +81,8 @@ class Simulation:
     tick : int
         Ticks so far; it never falls, also across :meth:`reset`.
     vector : array (14,)
-        The present state; it changes with the next call, so copy what you keep (or take :attr:`state`).
+        The present state; it changes with the next call, so copy what you keep (or take
+        :attr:`state`).
     events : list of Event
         What happened so far.
 
@@ -78,14 +92,25 @@ class Simulation:
         By name and value, before anything runs.
     """
 
-    def __init__(self, scene, integrator: str = 'auto', accuracy: float = 1e-12,
-                 rate: float = 1000.0, step: float | None = None, horizon: float = HORIZON,
-                 settled: tuple | None = None, overrides=()):
+    def __init__(
+        self,
+        scene,
+        integrator: str = 'auto',
+        accuracy: float = 1e-12,
+        rate: float = 1000.0,
+        step: float | None = None,
+        horizon: float = HORIZON,
+        settled: tuple | None = None,
+        overrides=(),
+    ):
         if not isinstance(scene, Scene):
             scene = load_scene(scene, overrides)
         elif overrides:
             scene = parse_scene(scene.text, overrides, scene.name)
         self.scene = scene
+        given = {'accuracy': accuracy, 'rate': rate, 'horizon': horizon}
+        for name, value in (given if step is None else {**given, 'step': step}).items():
+            _refuse_no_number(name, value)
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
@@ -98,15 +123,18 @@ class Simulation:
         self._dynamics = Dynamics(self.scene)
         self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
-        self._strikes = sorted((effect for effect in self.scene.effects if effect.as_impulse is not None),
-                               key=lambda effect: effect.time)
+        self._strikes = sorted(
+            (effect for effect in self.scene.effects if effect.as_impulse is not None),
+            key=lambda effect: effect.time,
+        )
         self._restart()
 
     def follow(self, previous, keep_state):
-        """Begin at the present tick of another simulation, instead of at 0; called before anything else.
+        """Begin at the present tick of another simulation instead of at 0, before anything else.
 
-        With `keep_state`, for another method, accuracy or rate on the same scene: state, time, held wrench and ledger go on from there.
-        Without it, for another scene: only the tick counter goes on.
+        With `keep_state`, for another method, accuracy or rate on the same scene: state, time,
+        held wrench and ledger go on from there. Without it, for another scene: only the tick
+        counter goes on.
         """
         self.tick = previous.tick
         self._restart()
@@ -127,8 +155,12 @@ class Simulation:
         start = self.scene.initial.vector
         self._energies.diagnose(self._mechanics, start, self._diagnosis)
         if not np.isfinite(self._diagnosis).all():
-            raise BadInput(f'{self.scene.name}: initial', f'energy or momentum is beyond what a double holds ({float(self._diagnosis[0])!r} J)',
-                           'a smaller angular velocity, velocity or height')
+            raise BadInput(
+                f'{self.scene.name}: initial',
+                'energy or momentum is beyond what a double holds '
+                f'({float(self._diagnosis[0])!r} J)',
+                'a smaller angular velocity, velocity or height',
+            )
         self._initial = self._diagnosis.copy()
         self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(ENTRIES_SIZE))]
         self._commands = None
@@ -152,10 +184,18 @@ class Simulation:
     def __reduce__(self):
         choice = self.choice
         settled = (choice.method, choice.tolerance, choice.expected_error)
-        made = (self.scene, self.integrator, self.accuracy, self.rate, choice.step,
-                choice.horizon, settled)
-        spans = [(span.time, span.start, span.wrench, span.strikes, span.given)
-                 for span in self._spans]
+        made = (
+            self.scene,
+            self.integrator,
+            self.accuracy,
+            self.rate,
+            choice.step,
+            choice.horizon,
+            settled,
+        )
+        spans = [
+            (span.time, span.start, span.wrench, span.strikes, span.given) for span in self._spans
+        ]
         return _restored, (made, spans, {name: getattr(self, name) for name in KEPT})
 
     @property
@@ -173,36 +213,77 @@ class Simulation:
         return State(self.vector.copy())
 
     def advance(self, ticks: int = 1) -> None:
-        """Go on by a number of ticks; events on the way are appended to `events`."""
-        before = self.time
-        self.tick += ticks
-        self._commands = None
+        """Go on by a number of ticks; events on the way are appended to `events`.
+
+        Parameters
+        ----------
+        ticks : int
+            Zero or more. Time never goes back: :meth:`states` gives earlier states.
+
+        Raises
+        ------
+        BadInput
+            What is no such number. The simulation stays where it was, as after any other error.
+        """
+        before, tick = self.time, self.tick
+        self.tick = tick + self._count('advance', ticks)
+        commands, self._commands = self._commands, None
         foreseen = self._foreseen
         place = self.tick - foreseen.tick
         if foreseen.spans is self._spans and 0 <= place < len(foreseen.vectors):
             self.vector[:] = foreseen.vectors[place]
             self._diagnosed_tick = None
-        else:
+            return
+        spans = self._spans
+        try:
             self._arrive()
-            self.events.extend(self._events_between(self._spans, before, self.time))
+            self.events += list(self._events_between(self._spans, before, self.time))
+        except BaseException:
+            self.tick, self._spans, self._commands = tick, spans, commands
+            self._arrive()
+            raise
+
+    def _count(self, what, ticks):
+        """Return a number of ticks to go as an int; BadInput if it is none."""
+        try:
+            count = -1 if isinstance(ticks, bool) else operator.index(ticks)
+        except TypeError:
+            count = -1
+        if not 0 <= count <= LAST_TICK - self.tick:
+            raise BadInput(
+                what,
+                f'got {ticks!r}',
+                f'a number of ticks: an integer from 0 to {LAST_TICK - self.tick}',
+            )
+        return count
 
     def advance_through(self, ticks: int) -> States:
-        """Go on by a number of ticks and return the States at all of them, to the bit what :meth:`advance` meets one by one."""
-        self._commands = None
+        """Go on by a number of ticks and return the States at all of them.
+
+        They are to the bit what :meth:`advance` meets one by one.
+        """
+        ticks = self._count('advance_through', ticks)
         states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
         self.advance(ticks)
         return states
 
     def foresee(self, ticks: int) -> States:
-        """Return the States at the next ticks, to the bit what :meth:`advance` meets if no command comes, without going there.
+        """Return the States at the next ticks without going there.
 
-        There are `ticks` of them, or as many as come before the tick of the next event. They are kept: to advance to one of them costs
-        nothing more.
+        They are to the bit what :meth:`advance` meets if no command comes.
+
+        There are `ticks` of them, or as many as come before the tick of the next event. They are
+        kept: to advance to one of them costs nothing more.
         """
+        ticks = self._count('foresee', ticks)
         times = self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1))
+        if not ticks:
+            return self.states(times)
         spans = self._spans_until(times[-1])
         event = next(self._events_between(spans, self.time, times[-1]), None)
-        states = self.states(times if event is None else times[:max(event.tick - self.tick - 1, 0)])
+        states = self.states(
+            times if event is None else times[: max(event.tick - self.tick - 1, 0)]
+        )
         self._foreseen = _Foreseen(spans, self.tick + 1, states.vector.copy())
         return states
 
@@ -210,10 +291,14 @@ class Simulation:
         """Return energies (J) and L^2 of States, two arrays of shape (n,)."""
         out = np.empty((len(states), energy.DIAGNOSIS_SIZE))
         self._energies.diagnose_many(self._mechanics, states.vector, out)
-        return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[:, energy.MOMENTUM_SQUARED].copy()
+        return out[:, energy.KINETIC] + out[:, energy.POTENTIAL], out[
+            :, energy.MOMENTUM_SQUARED
+        ].copy()
 
     def states(self, times) -> States:
-        """Return the States at any times (s, any order) from the last :meth:`forget_past` on; later ones as if no command came.
+        """Return the States at any times (s, any order) from the last :meth:`forget_past` on.
+
+        Later ones are as if no command came.
 
         Raises
         ------
@@ -222,7 +307,11 @@ class Simulation:
         """
         times = np.ascontiguousarray(times, dtype=float).reshape(-1)
         if len(times) and not (np.isfinite(times).all() and times.min() >= self._spans[0].time):
-            raise BadInput('states', f'got times from {times.min()!r} to {times.max()!r} s', f'finite times from {self._spans[0].time!r} s on')
+            raise BadInput(
+                'states',
+                f'got times from {float(times.min())!r} to {float(times.max())!r} s',
+                f'finite times from {self._spans[0].time!r} s on',
+            )
         spans = self._spans_until(times.max()) if len(times) else []
         out = np.empty((len(times), STATE_SIZE))
         if len(spans) == 1:
@@ -251,6 +340,9 @@ class Simulation:
         BadInput
             No such event comes within that time; those that come are named.
         """
+        _refuse_no_number('within', within)
+        if not 0.0 < within < math.inf:
+            raise BadInput('within', f'got {within!r}', 'a positive number of seconds')
         now, reach = self.time, within / LOOKS
         while True:
             spans = self._spans_until(now + reach)
@@ -260,28 +352,38 @@ class Simulation:
                     return self.states([event.time])[0]
             if reach >= within:
                 names = ', '.join(sorted({event.name for event in found}))
-                raise BadInput('at_event', f'no {name!r} within {within:g} s',
-                               f'in that time come: {names}' if names else
-                               'no event comes in that time: a later one needs a larger `within`')
+                raise BadInput(
+                    'at_event',
+                    f'no {name!r} within {within:g} s',
+                    f'in that time come: {names}'
+                    if names
+                    else 'no event comes in that time: a later one needs a larger `within`',
+                )
             reach = min(2.0 * reach, within)
 
     def impulse(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
-        """Strike the body at the present tick: an impulse of force (N s, at the centre of mass) and of torque (N m s).
+        """Strike the body at the present tick: an impulse of force and one of torque.
+
+        The force (N s) acts at the centre of mass; the torque is in N m s.
 
         Impulses of one tick are added before they act, so opposite ones cancel to the last bit.
 
         Raises
         ------
         BadInput
-            Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an axis of zero moment.
+            Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an
+            axis of zero moment.
         """
         self._command_one(row_of(IMPULSE, force, torque, frame))
 
     def hold(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
-        """Hold a force (N, at the centre of mass) and a torque (N m) from the present tick on, until the next hold or :meth:`release`.
+        """Hold a force and a torque from the present tick on, until the next hold or release.
 
-        The hold is continuous and solved at the accuracy asked: the same commands lead to the same state at any rate. In the body's frame
-        the axes turn with the body. The same errors as for :meth:`impulse`.
+        The force (N) acts at the centre of mass; the torque is in N m.
+
+        The hold is continuous and solved at the accuracy asked: the same commands lead to the same
+        state at any rate. In the body's frame the axes turn with the body. The same errors as for
+        :meth:`impulse`.
         """
         self._command_one(row_of(HOLD, force, torque, frame))
 
@@ -294,7 +396,9 @@ class Simulation:
             raise refusal.error
 
     def command(self, rows):
-        """Give commands at the present tick, in their order: to the bit what they do one by one, but computed once.
+        """Give commands at the present tick, in their order.
+
+        They do to the bit what they do one by one, but are computed once.
 
         Parameters
         ----------
@@ -304,8 +408,16 @@ class Simulation:
         Returns
         -------
         list of admission.Refusal
-            The commands that are not taken, for the same reasons as of :meth:`impulse`; nothing comes of them.
+            The commands that are not taken, for the same reasons as of :meth:`impulse`; nothing
+            comes of them.
         """
+        rows = np.ascontiguousarray(rows, dtype=float)
+        if rows.ndim != 2 or rows.shape[1] != WIDTH:
+            raise BadInput(
+                'command',
+                f'got an array of shape {rows.shape}',
+                f'rows of {WIDTH} numbers (command_rows.py)',
+            )
         if not self.scene.accepts_commands:
             return scene_refuses(self.scene.name, len(rows))
         if self._commands is None:
@@ -324,29 +436,37 @@ class Simulation:
         return self._spans[-1].wrench
 
     def reset(self) -> None:
-        """Put the state back to the scene's initial one, without commands; the tick counter goes on."""
+        """Put the state back to the scene's initial one, without commands; ticks go on."""
         self._restart()
         self.events.append(Event(self.tick, self.time, 'reset', {}))
 
     def forget_past(self) -> None:
-        """Drop what is needed for :meth:`states` before the present; a simulation that takes commands for days calls it now and then."""
+        """Drop what is needed for :meth:`states` before the present.
+
+        A simulation that takes commands for days calls it now and then.
+        """
         if self._commands is None:
             self._spans = self._spans_until(self.time)[-1:]
 
     @property
     def acceleration(self):
-        """The (linear, angular) acceleration at the present: of the body's origin (world axes, m/s^2), and omega' (body axes, rad/s^2).
+        """The (linear, angular) acceleration at the present.
 
-        Exact, by the balance of forces (rigid_body_sim/mechanics/balance.py), with the held wrench; an impulse has none.
+        The first is of the body's origin (world axes, m/s^2), the second is omega' (body axes,
+        rad/s^2).
+
+        Exact, by the balance of forces (rigid_body_sim/mechanics/balance.py), with the held
+        wrench; an impulse has none.
         """
         balance = self._dynamics.balance(self.vector, self.wrench)
         return balance.acceleration, balance.angular_acceleration
 
     def reactions(self, times):
-        """Return what the constraint exerts on the body at times (s) as in :meth:`states`, as dynamics.Reactions.
+        """Return what the constraint exerts on the body at times (s), as dynamics.Reactions.
 
-        Force (N) and torque (N m) in world axes; the torque about `point` (m, world): the fixed point (torque 0), the point `through` of a
-        hinge, the point of contact with the table (torque 0).
+        Force (N) and torque (N m) in world axes; the torque about `point` (m, world): the fixed
+        point (torque 0), the point `through` of a hinge, the point of contact with the table
+        (torque 0).
 
         Of a strike or an impulse the reaction is an impulse too and not among these.
 
@@ -356,10 +476,16 @@ class Simulation:
             A free body; times as in :meth:`states`.
         """
         if self.scene.constraint.mechanism is Mechanism.FREE:
-            raise BadInput('reactions', f'nothing holds the body of {self.scene.name}', 'a scene with a pivot, a hinge or a table')
+            raise BadInput(
+                'reactions',
+                f'nothing holds the body of {self.scene.name}',
+                'a scene with a pivot, a hinge or a table',
+            )
         states = self.states(times)
         spans = self._spans_until(states.time.max()) if len(states) else []
-        return self._dynamics.reactions(states.vector, [spans[k].wrench for k in _places(spans, states.time)])
+        return self._dynamics.reactions(
+            states.vector, [spans[k].wrench for k in _places(spans, states.time)]
+        )
 
     @property
     def energy(self) -> float:
@@ -372,7 +498,10 @@ class Simulation:
         return float(self._diagnose()[energy.MOMENTUM_SQUARED])
 
     def ledger(self) -> dict[str, float]:
-        """Return the balance of energy (J) and angular momentum since the start or the last reset, a dict of floats (ledger.balance)."""
+        """Return the balance of energy (J) and angular momentum, a dict of floats.
+
+        It runs from the start or the last reset on; see ledger.balance.
+        """
         span = self._spans[-1]
         given = span.given + span.solver.exchanged(self.time)
         return balance(self._initial, self._diagnose(), given)
@@ -391,7 +520,7 @@ class Simulation:
         self._diagnosed_tick = None
 
     def _events_between(self, spans, before, now):
-        """Yield the events after `before` up to the tick at `now` (s), in the order of their times."""
+        """Yield the events after `before` up to the tick at `now` (s), in their order."""
         last_tick = self._origin + round((now - self._origin_time) * self.rate)
         for k, span in enumerate(spans):
             end = spans[k + 1].time if k + 1 < len(spans) else now
@@ -409,13 +538,21 @@ class Simulation:
             at = max(strike.time, last.time)
             struck, given = np.empty(STATE_SIZE), last.given + last.solver.exchanged(at)
             last.solver.state(at, struck)
-            taken, work = impulse.push(self._mechanics, struck, *strike.as_impulse(self.scene.body, struck), given)
+            taken, work = impulse.push(
+                self._mechanics, struck, *strike.as_impulse(self.scene.body, struck), given
+            )
             if not abs(work) <= LARGEST_WORK:
-                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it would do a work of {work!r} J',
-                               f'at most {LARGEST_WORK:g} J: energies are doubles')
+                raise BadInput(
+                    f'{self.scene.name}: strike',
+                    f'at {at:g} s it would do a work of {work!r} J',
+                    f'at most {LARGEST_WORK:g} J: energies are doubles',
+                )
             if not taken:
-                raise BadInput(f'{self.scene.name}: strike', f'at {at:g} s it has a torque about an axis of zero moment',
-                               'a point and an impulse without: such an axis takes no angular momentum')
+                raise BadInput(
+                    f'{self.scene.name}: strike',
+                    f'at {at:g} s it has a torque about an axis of zero moment',
+                    'a point and an impulse without: such an axis takes no angular momentum',
+                )
             last = self._span(at, struck, last.wrench, last.strikes + 1, given)
             spans = [*spans, last]
         return spans
@@ -423,30 +560,46 @@ class Simulation:
     def _settle(self):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""
         commands, time = self._commands, self.time
-        kept, given = self._spans[:commands.base], commands.given
+        kept, given = self._spans[: commands.base], commands.given
         last = kept[-1]
         if given.any_impulse or commands.wrench != last.wrench:
             exchanged = last.given + last.solver.exchanged(time)
             if given.any_impulse:
                 impulse.add_entries(given.exchange, exchanged)
-            kept = [*kept, self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged)]
+            kept = [
+                *kept,
+                self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged),
+            ]
         self._spans = kept
         self._arrive()
 
-
     def __repr__(self):
-        return (f'<Simulation of {self.scene.name} by {self.choice.method}: tick {self.tick}, '
-                f't = {self.time!r} s>')
+        return (
+            f'<Simulation of {self.scene.name} by {self.choice.method}: tick {self.tick}, '
+            f't = {self.time!r} s>'
+        )
 
     def _repr_html_(self):
         ledger = self.ledger()
-        rows = {'scene': self.scene.name, 'about': self.scene.about, 'method': self.choice.method,
-                'tick': f'{self.tick}, t = {self.time!r} s', 'energy': f'{self.energy!r} J',
-                'energy residual': f'{ledger["energy_residual"]:.2e}',
-                'momentum residual': f'{ledger["momentum_residual"]:.2e}'}
-        body = ''.join(f'<tr><th>{name}</th><td>{html.escape(text)}</td></tr>'
-                       for name, text in rows.items())
+        rows = {
+            'scene': self.scene.name,
+            'about': self.scene.about,
+            'method': self.choice.method,
+            'tick': f'{self.tick}, t = {self.time!r} s',
+            'energy': f'{self.energy!r} J',
+            'energy residual': f'{ledger["energy_residual"]:.2e}',
+            'momentum residual': f'{ledger["momentum_residual"]:.2e}',
+        }
+        body = ''.join(
+            f'<tr><th>{name}</th><td>{html.escape(text)}</td></tr>' for name, text in rows.items()
+        )
         return f'<table><tbody>{body}</tbody></table>{self.state._repr_html_()}'
+
+
+def _refuse_no_number(name, value):
+    """Refuse what a comparison with a number would fail on."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise BadInput(name, f'got {value!r}', 'a number')
 
 
 def _restored(made, spans, kept):
@@ -458,7 +611,10 @@ def _restored(made, spans, kept):
 
 
 class _Commands(typing.NamedTuple):
-    """The commands of the present tick: the number of spans before them, the wrench that they leave, and their Given."""
+    """The commands of the present tick.
+
+    These are the number of spans before them, the wrench that they leave, and their Given.
+    """
 
     base: int
     wrench: Wrench
@@ -466,7 +622,10 @@ class _Commands(typing.NamedTuple):
 
 
 class _Foreseen(typing.NamedTuple):
-    """States that were computed ahead: the spans they belong to, the tick of the first one, their vectors; no event falls among them."""
+    """States that were computed ahead: their spans, the tick of the first one, their vectors.
+
+    No event falls among them.
+    """
 
     spans: list
     tick: int

@@ -3,6 +3,7 @@
 
 import copy
 import inspect
+import math
 import pathlib
 import pickle
 import re
@@ -195,3 +196,59 @@ def test_notebooks_show_tables():
     shown = simulation._repr_html_()
     assert 'heavy_top' in shown and 'energy residual' in shown
     assert repr(simulation) == '<Simulation of heavy_top by exact: tick 0, t = 0.0 s>'
+
+
+NO_TICKS = [-1, -50, 10.5, 3.0, np.float64(4.0), math.nan, math.inf, '3', None, True, [1], 10**400]
+
+
+@pytest.mark.parametrize('ticks', NO_TICKS, ids=lambda ticks: str(ticks)[:10])
+@pytest.mark.parametrize('go', ['advance', 'advance_through', 'foresee'])
+@pytest.mark.parametrize('made', [{'scene': 'tennis_racket'}, STEPPED], ids=['exact', 'stepped'])
+def test_what_is_no_number_of_ticks_is_refused_and_changes_nothing(made, go, ticks):
+    one = Simulation(**made)
+    one.advance(100)
+    before = one.vector.tobytes()
+    with pytest.raises(BadInput, match=f'^{go}: got .*a number of ticks'):
+        getattr(one, go)(ticks)
+    assert (one.tick, one.vector.tobytes()) == (100, before)
+    one.advance(np.int64(3))
+    assert (one.tick, type(one.tick)) == (103, int)
+
+
+def test_an_error_on_the_way_leaves_the_simulation_where_it_was():
+    # the strike at 0.5 s cannot be: the tick before it is reached, no tick after it
+    one = Simulation('baseball_bat', overrides=['strike.impulse=[0, 1e160, 0]', 'strike.time=0.5'])
+    one.advance(499)
+    before = one.vector.tobytes()
+    for _ in range(2):
+        with pytest.raises(BadInput, match=r'strike: at 0\.5 s'):
+            one.advance(5)
+        assert (one.tick, one.time, one.vector.tobytes()) == (499, 0.499, before)
+
+
+@pytest.mark.parametrize(('act', 'line'), [
+    (lambda one: one.impulse(force=3), 'impulse: got force 3'),
+    (lambda one: one.hold(torque='abc'), r"got force \[0.0, 0.0, 0.0\], torque 'abc'"),
+    (lambda one: one.impulse(force=(1.0, None, 0.0)), 'three finite numbers each'),
+    (lambda one: one.command(np.zeros((1, 3))), r'command: got an array of shape \(1, 3\)'),
+    (lambda one: one.command(np.zeros(8)), r'command: got an array of shape \(8,\)'),
+    (lambda one: one.at_event('flip', within=math.nan), 'within: got nan'),
+    (lambda one: one.at_event('flip', within=-1), 'within: got -1'),
+    (lambda one: one.at_event('flip', within='a'), "within: got 'a'"),
+    (lambda one: one.states([math.nan]), 'got times from nan to nan s'),
+    (lambda one: Simulation(one.scene, rate='a'), "rate: got 'a'"),
+    (lambda one: Simulation(one.scene, accuracy=None), 'accuracy: got None'),
+    (lambda one: Simulation(one.scene, horizon=True), 'horizon: got True'),
+    (lambda one: Simulation(one.scene, 'rk4', step='1'), "step: got '1'"),
+])
+def test_what_is_no_number_is_refused_in_one_line(act, line):
+    with pytest.raises(BadInput, match=line):
+        act(Simulation('tennis_racket'))
+
+
+def test_no_states_at_all_are_states_too():
+    none = Simulation('tennis_racket').states([])
+    assert (len(none), repr(none), list(none)) == (0, 'States(none)', [])
+    assert repr(none[0:2]) == 'States(none)'
+    assert none._repr_html_().startswith('<table>')
+    assert len(none.to_pandas()) == 0
