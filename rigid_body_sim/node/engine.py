@@ -17,6 +17,7 @@ from rigid_body_sim.node.followed_clock import Followed
 from rigid_body_sim.node.journal import open_journal
 from rigid_body_sim.node.publishing import Publishing, frames_of
 from rigid_body_sim.node.rehearsal import rehearse
+from rigid_body_sim.node.status_line import StatusLine
 from rigid_body_sim.realtime.priority import quicken
 from rigid_body_sim.realtime.session import Session
 from rigid_body_sim.realtime.shutdown import say, tell
@@ -57,7 +58,15 @@ class Engine:
                 'a node cannot follow the /clock that it publishes',
             )
         self._node, self._settings = node, settings
-        self._entities_before = set(_entities(node))
+        self._entities_before, self.commands = set(_entities(node)), None
+        try:
+            self._set_up(node, settings, at_end)
+        except BaseException:
+            # a managed node may be configured again
+            self.remove()
+            raise
+
+    def _set_up(self, node, settings, at_end):
         simulation = self._prepare({})
         for line in simulation.scene.notes:
             node.get_logger().info(line)
@@ -89,6 +98,7 @@ class Engine:
         node.create_service(Trigger, '~/reset', self._reset)
         node.create_service(SetBool, '~/pause', self._pause)
         node.create_service(Trigger, '~/step', self._step)
+        self._status_line = StatusLine(node, self)
         self._prepared = None
         settings.on_change(self._before_change, self._after_change)
 
@@ -195,6 +205,7 @@ class Engine:
         The status is 1, after one line, if the simulation or the recording failed.
         """
         self._settings.on_change(lambda changes: None, lambda changes: None)
+        self._status_line.close()
         if self.ticker.is_alive():
             self.ticker.stop()
             self.ticker.join(STOP_WITHIN)
@@ -217,7 +228,8 @@ class Engine:
 
     def remove(self):
         """Take away from the node all that the engine gave it, after :meth:`close`."""
-        self.commands.remove()
+        if self.commands is not None:
+            self.commands.remove()
         for entity in set(_entities(self._node)) - self._entities_before:
             for destroy in (
                 self._node.destroy_publisher,

@@ -9,6 +9,7 @@ from that tick on).
 """
 
 import datetime
+import itertools
 import pathlib
 import time
 
@@ -70,6 +71,7 @@ class Journal:
             self.path = _free_path(node, settings, simulation.scene.name)
             try:
                 self._recorder = Recorder(self.path, ticking, others, journal, told, *options)
+                settings.recordings.add(self.path)
                 break
             except BadInput:
                 # another node of this name may have begun its recording in this moment
@@ -154,10 +156,14 @@ def _free_path(node, settings, scene):
                 f'got {name!r}',
                 'needs one name; the folder around it is recording.directory',
             )
-        return folder / name
+        # a managed node that is configured again numbers its own; it never adds to another's
+        return _numbered(folder / name, lambda path: path in settings.recordings)
     who = node.get_fully_qualified_name().strip('/').replace('/', '_')
     stem = f'{who}_{scene}_{datetime.datetime.now():%Y-%m-%d_%H-%M-%S}'
-    number = 1
-    while (path := folder / (stem if number == 1 else f'{stem}_{number}')).exists():
-        number += 1
-    return path
+    return _numbered(folder / stem, pathlib.Path.exists)
+
+
+def _numbered(path, taken):
+    """Return the path, with the first number behind it (from 2 on) that is not taken."""
+    paths = (path.with_name(f'{path.name}_{number}') for number in itertools.count(2))
+    return next(one for one in itertools.chain([path], paths) if not taken(one))

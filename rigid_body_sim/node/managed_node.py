@@ -8,31 +8,35 @@ Parameters that are fixed while the node runs can change before configure.
 
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.node.answering import Answering
 from rigid_body_sim.node.engine import Engine
 from rigid_body_sim.node.parameters import Settings
 
 INACTIVE = 'inactive'
 
 
-class ManagedNode(LifecycleNode):
+class ManagedNode(Answering, LifecycleNode):
     """An engine made by configure, run by activate, held by deactivate, taken away by cleanup.
 
     Parameters
     ----------
     stop : shutdown.Stop
         Asked to end the process when the duration is over or the simulation fails.
+    shared : set of str
+        Names of parameters that may be meant for other nodes.
     options : dict
         Those of rclpy.lifecycle.LifecycleNode.
     """
 
-    def __init__(self, stop, **options):
+    def __init__(self, stop, shared=frozenset(), **options):
         super().__init__('lifecycle_sim_node', **options)
+        self.answer_all()
         stop.last_resort = self.destroy_node
         self._stop = stop
         self.engine = None
         try:
-            self.settings = Settings(self, running=False)
+            self.settings = Settings(self, running=False, shared=shared)
         except BaseException:
             self.destroy_node()
             raise
@@ -41,7 +45,7 @@ class ManagedNode(LifecycleNode):
         """Make everything; after one line about a wrong parameter the node stays unconfigured."""
         try:
             self.engine = Engine(self, self.settings, self._stop.request)
-        except BadInput as refusal:
+        except (BadInput, NotConverged) as refusal:
             self.get_logger().error(str(refusal))
             return TransitionCallbackReturn.FAILURE
         self.settings.running = True

@@ -9,8 +9,8 @@ rigid_body_sim.node.parameters`` prints it, and ``... parameters yaml`` the para
 
 import array
 import dataclasses
-import difflib
 import math
+import re
 import sys
 import textwrap
 
@@ -19,7 +19,7 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParam
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged, nearest
 from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.recording import compression
 
@@ -79,6 +79,7 @@ class Entry:
         where = where or f'parameter {self.name}'
         value = value.tolist() if isinstance(value, array.array) else value
         if isinstance(self.default, float):
+            value = number_of(value)
             if isinstance(value, bool) or not isinstance(value, (int, float)):
                 raise BadInput(
                     where, f'got {value!r}', f'needs a number from {self.low:g} to {self.high:g}'
@@ -118,13 +119,11 @@ class Entry:
 
     def _refuse_unknown_word(self, word, where):
         if self.choices and word not in self.choices:
-            near = (
-                difflib.get_close_matches(word, self.choices, 1) if len(self.choices) > 3 else ()
-            )
+            near = nearest(word, self.choices) if len(self.choices) > 3 else None
             raise BadInput(
                 where,
                 f'got {word!r}',
-                f'did you mean {near[0]!r}?' if near else f'needs one of {self.limits}',
+                f'did you mean {near!r}?' if near else f'needs one of {self.limits}',
             )
 
     def descriptor(self, fixed):
@@ -157,6 +156,17 @@ class Entry:
             node.set_parameters([Parameter(self.name, Parameter.Type.STRING_ARRAY, list(value))])
         else:
             node.declare_parameter(self.name, value, self.descriptor(fixed), ignore_override=True)
+
+
+NUMBER = re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?')
+
+
+def number_of(value):
+    """Return the number that a text writes; whatever else it is stays as it is.
+
+    The YAML of ``ros2 param set`` and of launch files takes ``1e-9`` for a text.
+    """
+    return float(value) if isinstance(value, str) and NUMBER.fullmatch(value) else value
 
 
 TABLE = (
@@ -324,8 +334,8 @@ TABLE = (
     ),
 )
 ENTRIES = {entry.name: entry for entry in TABLE}
-# declared by rclpy itself, or for each topic when its publisher or subscription is made
-FOREIGN = ('use_sim_time',)
+SIM_TIME = 'use_sim_time'
+# declared by rclpy itself for each topic when its publisher or subscription is made
 FOREIGN_PREFIX = 'qos_overrides.'
 
 
@@ -339,6 +349,9 @@ class Settings:
     running : bool
         Whether the node runs from the start to the end; a managed node sets :attr:`running`
         itself.
+    shared : set of str
+        Names of overrides that may be meant for other nodes (overrides.settled): of those that
+        are unknown the log tells, and the node goes on.
 
     Attributes
     ----------
@@ -351,17 +364,30 @@ class Settings:
         For an override that is unknown or wrong.
     """
 
-    def __init__(self, node, running=True):
+    def __init__(self, node, running=True, shared=frozenset()):
         self.running = running
+        self.recordings = set()
+        """Paths of the recordings that the node made."""
+        # those that rclpy declares for each node
+        self._foreign = tuple(node.get_parameters_by_prefix(''))
         with node.handle:
             self._overrides = node.handle.get_parameters(Parameter)
         self._node = node
         self.on_change(lambda changes: None, lambda changes: None)
         for name, override in self._overrides.items():
-            self._refuse_unknown(name, list(ENTRIES) + list(FOREIGN))
-            if name == 'use_sim_time' and not isinstance(override.value, bool):
+            try:
+                self._refuse_unknown(name, [*ENTRIES, *self._foreign])
+            except BadInput as refusal:
+                if name not in shared:
+                    raise
+                near = f', {refusal.remedy}' if refusal.remedy.startswith('did') else ''
+                node.get_logger().warning(
+                    f'{refusal.where}: {refusal.problem}{near}; '
+                    'it stands in a section for several nodes and is left to the others'
+                )
+            if name == SIM_TIME and not isinstance(override.value, bool):
                 raise BadInput(
-                    'parameter use_sim_time', f'got {override.value!r}', 'needs true or false'
+                    f'parameter {SIM_TIME}', f'got {override.value!r}', 'needs true or false'
                 )
         self.values = {}
         for entry in TABLE:
@@ -388,7 +414,7 @@ class Settings:
     @property
     def use_sim_time(self):
         """Whether the node follows /clock."""
-        return self._node.get_parameter('use_sim_time').value
+        return self._node.get_parameter(SIM_TIME).value
 
     def refuse_unknown_qos(self):
         """Refuse qos_overrides of unknown topics or policies.
@@ -430,10 +456,9 @@ class Settings:
                     f'{parameter.name}; {_nearest(parameter.name, ENTRIES)}'
                 )
             default = getattr(ENTRIES.get(parameter.name), 'default', None)
-            if isinstance(default, float) and parameter.type_ == Parameter.Type.INTEGER:
-                parameter = Parameter(
-                    parameter.name, Parameter.Type.DOUBLE, float(parameter.value)
-                )
+            number = number_of(parameter.value)
+            if isinstance(default, float) and type(number) in (int, float):
+                parameter = Parameter(parameter.name, Parameter.Type.DOUBLE, float(number))
             elif isinstance(default, tuple) and (
                 parameter.value in (None, []) or isinstance(parameter.value, str)
             ):
@@ -449,7 +474,7 @@ class Settings:
         try:
             changes = self._changes(parameters)
             self._before_change(changes)
-        except BadInput as refusal:
+        except (BadInput, NotConverged) as refusal:
             return SetParametersResult(successful=False, reason=str(refusal))
         return SetParametersResult(successful=True)
 
@@ -467,22 +492,23 @@ class Settings:
                 raise BadInput(
                     f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value'
                 )
-            if entry is None:
-                continue
-            if self.running and not entry.changeable:
+            same_time = parameter.name != SIM_TIME or parameter.value == self.use_sim_time
+            changeable = same_time if entry is None else entry.changeable
+            if self.running and not changeable:
                 raise BadInput(
-                    f'parameter {entry.name}',
+                    f'parameter {parameter.name}',
                     'it cannot change while the node runs',
                     'give it at the start',
                 )
-            changes[entry.name] = entry.checked(parameter.value)
+            if entry is not None:
+                changes[entry.name] = entry.checked(parameter.value)
         return changes
 
 
 def _nearest(name, known):
     """Return what to say of an unknown name."""
-    near = difflib.get_close_matches(name, known, 1, 0.5)
-    return f'did you mean {near[0]}?' if near else f'the parameters are {", ".join(ENTRIES)}'
+    near = nearest(name, known)
+    return f'did you mean {near}?' if near else f'the parameters are {", ".join(ENTRIES)}'
 
 
 def table():

@@ -10,6 +10,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node import overrides
 from rigid_body_sim.realtime.shutdown import say
 
 RCLError = rclpy_implementation.RCLError
@@ -21,8 +22,9 @@ def run(make_node, arguments, stop):
     Parameters
     ----------
     make_node : callable
-        Called with `stop`; returns the node. The node has ``close()``, which ends it in order and
-        returns an exit status.
+        Called with `stop` and the names of parameters that may be meant for other nodes
+        (overrides.settled); returns the node. The node has ``close()``, which ends it in order
+        and returns an exit status.
     arguments : list of str
         The command line, with ``--ros-args``.
     stop : shutdown.Stop
@@ -36,8 +38,9 @@ def run(make_node, arguments, stop):
     # its complaint about arguments would come in two lines, and ours says the same
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
-        # the first argument is taken for the program's name
-        rclpy.init(args=['', *arguments], signal_handler_options=SignalHandlerOptions.NO)
+        with overrides.settled(arguments) as (settled, shared):
+            # the first argument is taken for the program's name
+            rclpy.init(args=['', *settled], signal_handler_options=SignalHandlerOptions.NO)
     except Exception as error:  # rclpy has a class of its own for each fault of the command line
         say(f'ROS arguments: {_one_line(error)}; see --help')
         return BAD_INPUT
@@ -45,7 +48,7 @@ def run(make_node, arguments, stop):
     stop.last_resort = rclpy.try_shutdown
     node = None
     try:
-        node = make_node(stop)
+        node = make_node(stop, shared)
         return _spin(node, stop)
     except BadInput as refusal:
         say(refusal)

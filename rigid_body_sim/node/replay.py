@@ -63,7 +63,9 @@ def main(arguments=None):
         process = importlib.import_module('rigid_body_sim.node.process')
         node = importlib.import_module('rigid_body_sim.node.replay_node').ReplayNode
         leave(
-            process.run(lambda stop: node(stop, recording, options), arguments[len(own) :], stop)
+            process.run(
+                lambda stop, _: node(stop, recording, options), arguments[len(own) :], stop
+            )
         )
 
 

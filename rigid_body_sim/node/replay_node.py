@@ -16,6 +16,7 @@ from tqdm import tqdm
 from rigid_body_sim.command_line import CHECK_FAILED, GOOD, print_json
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.node.answering import Answering
 from rigid_body_sim.node.offered_qos import offered_qos
 from rigid_body_sim.realtime.playing import MOST_REAL_TIME, Player, Reading
 from rigid_body_sim.realtime.priority import PRIORITY, ask_for_priority, quicken
@@ -27,7 +28,7 @@ ACKNOWLEDGED_WITHIN = 1.0
 PROGRESS_PERIOD = 0.2
 
 
-class ReplayNode(Node):
+class ReplayNode(Answering, Node):
     """Replays from its construction on.
 
     Parameters
@@ -41,6 +42,7 @@ class ReplayNode(Node):
 
     def __init__(self, stop, recording, options):
         super().__init__('replay')
+        self.answer_all()
         stop.last_resort = self.destroy_node
         self._recording, self._options = recording, options
         names = options.topics or [name for name, topic in recording.topics.items() if topic.count]

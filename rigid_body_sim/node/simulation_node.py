@@ -3,18 +3,20 @@
 
 from rclpy.node import Node
 
+from rigid_body_sim.node.answering import Answering
 from rigid_body_sim.node.engine import Engine
 from rigid_body_sim.node.parameters import Settings
-from rigid_body_sim.node.status_line import StatusLine
 
 
-class SimulationNode(Node):
+class SimulationNode(Answering, Node):
     """Simulates, publishes, records and obeys commands from its construction on.
 
     Parameters
     ----------
     stop : shutdown.Stop
         Asked to end the process when the duration is over or the simulation fails.
+    shared : set of str
+        Names of parameters that may be meant for other nodes.
     options : dict
         Those of rclpy.node.Node.
 
@@ -24,13 +26,13 @@ class SimulationNode(Node):
         One line, before anything runs.
     """
 
-    def __init__(self, stop, **options):
+    def __init__(self, stop, shared=frozenset(), **options):
         super().__init__('sim_node', **options)
+        self.answer_all()
         stop.last_resort = self.destroy_node
         self.engine = None
         try:
-            self.engine = Engine(self, Settings(self), stop.request)
-            self.status_line = StatusLine(self, self.engine)
+            self.engine = Engine(self, Settings(self, shared=shared), stop.request)
             self.engine.start()
         except BaseException:
             self.close()
@@ -41,5 +43,4 @@ class SimulationNode(Node):
         """End ticks and recording, and say how it went; return the exit status."""
         if self.engine is None:
             return 0
-        self.status_line.close()
         return self.engine.close()

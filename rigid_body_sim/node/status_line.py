@@ -1,46 +1,76 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One line on the terminal that tells how the node is doing, and the report at its end."""
+"""One line that tells how the node is doing."""
 
 import contextlib
+import os
 import sys
 
 from rclpy.clock import Clock, ClockType
 
-PERIOD = 0.2
+from rigid_body_sim.realtime.shutdown import tell
+
+DRAWN_EVERY = 0.2
+"""How often the line on a terminal is drawn anew, s."""
+WRITTEN_EVERY = 10.0
+"""How often a line is written where nothing can be drawn, s."""
 
 
 class StatusLine:
-    """Rewrites one line on stderr five times a second; does nothing where that is no terminal."""
+    """Draws one line on a terminal again and again; elsewhere writes one every ten seconds.
+
+    Under ``ros2 launch`` and in a file a line only shows once it has ended, and stays. There it
+    goes to stdout, as the report does; on a terminal it goes to stderr.
+    """
 
     def __init__(self, node, engine):
-        self._engine = engine
-        self._shown = sys.stderr.isatty()
-        self._width = 0
-        if self._shown:
-            node.create_timer(PERIOD, self._show, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._engine, self._name = engine, node.get_name()
+        self._drawn = draws(sys.stderr)
+        self._width, self._tick_told = 0, None
+        show, period = (self._draw, DRAWN_EVERY) if self._drawn else (self._write, WRITTEN_EVERY)
+        node.create_timer(period, show, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def _show(self):
+    def _text(self):
         engine = self._engine
         balance, diagnostics = engine.session.balance, engine.diagnostics
         recorded = engine.journal.status.recorded if engine.journal.status else 'nothing'
-        line = (
+        engine.session.want_balance()
+        return (
             f't {balance["time"]:10.3f} s   {diagnostics.rate:8.1f} Hz   '
             f'late p99 {diagnostics.lateness["p99"] * 1e6:5.0f} us   '
             f'energy {balance["energy_residual"]:8.1e}   '
             f'L^2 {balance["momentum_residual"]:8.1e}   recorded {recorded}'
         )
-        engine.session.want_balance()
-        self._write('\r' + line.ljust(self._width))
-        self._width = len(line)
+
+    def _draw(self):
+        with contextlib.suppress(OSError, ValueError):    # the terminal may be gone
+            # a line that is wider would go on in the next one, where no \r brings it back
+            line = self._text()[: os.get_terminal_size(sys.stderr.fileno()).columns - 1]
+            sys.stderr.write('\r' + line.ljust(self._width))
+            sys.stderr.flush()
+            self._width = len(line)
+
+    def _write(self):
+        tick = self._engine.session.next_tick
+        if tick != self._tick_told:    # a node that is paused has nothing to tell
+            self._tick_told = tick
+            tell(f'{self._name}: {self._text()}')
 
     def close(self):
         """Leave the last line as it is."""
-        if self._shown and self._width:
-            self._write('\n')
+        if self._width:
+            with contextlib.suppress(OSError, ValueError):
+                sys.stderr.write('\n')
+                sys.stderr.flush()
 
-    @staticmethod
-    def _write(text):
-        # the terminal may be gone
-        with contextlib.suppress(OSError, ValueError):
-            sys.stderr.write(text)
-            sys.stderr.flush()
+
+def draws(stream):
+    """Return whether a stream is a terminal that somebody looks at, on which a line can change.
+
+    ``ros2 launch`` with ``emulate_tty`` gives its nodes a terminal that has no size, and is not
+    the one that controls them.
+    """
+    try:
+        os.tcgetpgrp(stream.fileno())
+        return os.get_terminal_size(stream.fileno()).columns > 0
+    except (OSError, ValueError, AttributeError):
+        return False

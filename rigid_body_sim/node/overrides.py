@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameter overrides of a command line, made such that the last one of a name wins.
+
+rcl keeps one value of each type for a name: of ``rate: 500`` in a file and ``-p rate:=200.5`` it
+keeps both, and rclpy takes the integer, whichever came last. And rclpy prefers what a file says
+of a node by its name to a later ``-p``. So the overrides are merged here, before rcl reads them:
+nothing is read as a value, only moved, so types stay what rcl makes of them.
+"""
+
+import contextlib
+import os
+import re
+import tempfile
+
+import yaml
+
+PARAMETERS = 'ros__parameters'
+EVERY_NODE = '/**'
+RULE, FILE = ('-p', '--param'), ('--params-file',)
+TEXT = 'tag:yaml.org,2002:str'
+
+
+@contextlib.contextmanager
+def settled(arguments):
+    """Yield arguments that give each parameter once, and the names that are meant for any node.
+
+    A command line that cannot be understood stays as it is, for rcl to refuse in its own words.
+
+    Parameters
+    ----------
+    arguments : list of str
+        The command line, with ``--ros-args``.
+
+    Yields
+    ------
+    list of str
+        The command line, with one file of parameters, which exists until the end of the context.
+    frozenset of str
+        Names that come from a file's section for several nodes (``/**``) only: they may be
+        parameters of another node.
+    """
+    rest, sources = _taken_apart(arguments)
+    try:
+        sections = [_section(*source) for source in sources]
+    except (OSError, ValueError, yaml.YAMLError):
+        sections = None
+    if not sections:
+        yield arguments, frozenset()
+        return
+    merged, shared = _merged(sections)
+    handle, path = tempfile.mkstemp(suffix='.yaml', text=True)
+    try:
+        with os.fdopen(handle, 'w', encoding='utf-8') as file:
+            file.write(_text(merged))
+        yield [*rest, '--ros-args', *FILE, path], shared
+    finally:
+        os.unlink(path)
+
+
+def _taken_apart(arguments):
+    """Return the arguments without parameters, and (flag, text) of the parameters in order."""
+    rest, sources, ours, place = [], [], False, 0
+    while place < len(arguments):
+        one = arguments[place]
+        ours = one == '--ros-args' or (ours and one != '--')
+        if ours and one in RULE + FILE and place + 1 < len(arguments):
+            sources.append((one, arguments[place + 1]))
+            place += 1
+        else:
+            rest.append(one)
+        place += 1
+    return rest, sources
+
+
+def _section(flag, text):
+    """Return (from a file, {node: {name: YAML node}}) of a source; ValueError if it is unclear."""
+    if flag in FILE:
+        with open(text, encoding='utf-8') as file:
+            return True, dict(_nodes(_composed(file), ''))
+    name, equals, value = text.partition(':=')
+    node, colon, own = name.rpartition(':')
+    if not (equals and own):
+        raise ValueError(text)
+    return False, {f'/{node.lstrip("/")}' if colon else EVERY_NODE: {own: _composed(value)}}
+
+
+def _composed(text):
+    node = yaml.compose(text, Loader=yaml.SafeLoader)
+    if node is None:
+        raise ValueError('empty')
+    return node
+
+
+def _nodes(node, path):
+    """Yield (node name, {parameter name: YAML node}) of a file."""
+    for key, value in _entries(node):
+        if key == PARAMETERS:
+            yield path or EVERY_NODE, dict(_flat(value, ''))
+        else:
+            yield from _nodes(value, f'{path}/{key.strip("/")}')
+
+
+def _flat(node, before):
+    """Yield (parameter name, YAML node); nested names are joined by dots."""
+    for key, value in _entries(node):
+        if isinstance(value, yaml.MappingNode):
+            yield from _flat(value, f'{before}{key}.')
+        else:
+            yield f'{before}{key}', value
+
+
+def _entries(node):
+    if not isinstance(node, yaml.MappingNode):
+        raise ValueError('no mapping')
+    for key, value in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise ValueError('no word')
+        yield key.value, value
+
+
+def _merged(sections):
+    """Return {node: {name: YAML node}} without what a later source replaces, and the shared names.
+
+    Within one source rclpy decides: it prefers the name of a node to a pattern.
+    """
+    merged, whence = {}, {}
+    for from_file, section in sections:
+        for node, parameters in section.items():
+            for other in [other for other in merged if _covers(node, other)]:
+                for name in parameters:
+                    merged[other].pop(name, None)
+        for node, parameters in section.items():
+            merged.setdefault(node, {}).update(parameters)
+            for name in parameters:
+                whence[node, name] = from_file
+    named = [(name, from_file and node.rpartition('/')[2].startswith('*'))
+             for (node, name), from_file in whence.items() if name in merged[node]]
+    meant = {name for name, shared in named if not shared}
+    return merged, frozenset({name for name, shared in named if shared} - meant)
+
+
+def _covers(pattern, node):
+    """Return whether all nodes that a name or pattern stands for are covered by a pattern."""
+    parts = re.split(r'(/\*\*|\*)', pattern)
+    meanings = {'/**': '(?:/.*)?', '*': '[^/]*'}
+    return re.fullmatch(''.join(meanings.get(part, re.escape(part)) for part in parts), node)
+
+
+def _text(merged):
+    def mapping(entries):
+        return yaml.MappingNode('tag:yaml.org,2002:map', [
+            (yaml.ScalarNode(TEXT, key), value) for key, value in entries.items()])
+    nodes = {node: mapping({PARAMETERS: mapping(parameters)})
+             for node, parameters in merged.items() if parameters}
+    return yaml.serialize(mapping(nodes), Dumper=yaml.SafeDumper, allow_unicode=True,
+                          width=float('inf'))

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameter overrides: the last one of a name wins, whatever its type and wherever it stands."""
+
+import pytest
+import rclpy
+import yaml
+from rclpy.parameter import Parameter
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node import overrides
+from rigid_body_sim.node.parameters import Settings
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Return a function that starts a node as a command line says, and returns its Settings.
+
+    A source is a rule for -p, or a dict that becomes a file of parameters.
+    """
+    contexts = []
+
+    def start(*sources, extra=(), name='sim_node'):
+        arguments = ['--ros-args', *extra]
+        for place, source in enumerate(sources):
+            if isinstance(source, str):
+                arguments += ['-p', source]
+                continue
+            path = tmp_path / f'{place}.yaml'
+            path.write_text(yaml.safe_dump(source))
+            arguments += ['--params-file', str(path)]
+        contexts.append(rclpy.Context())
+        with overrides.settled(arguments) as (settled, shared):
+            rclpy.init(args=['', *settled], context=contexts[-1], domain_id=0)
+        node = rclpy.create_node(name, context=contexts[-1], enable_rosout=False,
+                                 start_parameter_services=False)
+        node.warned = []
+        node.get_logger = lambda: type('Log', (), {'warning': node.warned.append})
+        return node, Settings(node, shared=shared)
+    yield start
+    for context in contexts:
+        context.try_shutdown()
+
+
+def file(**values):
+    return {'/**': {'ros__parameters': values}}
+
+
+def named(**values):
+    return {'/sim_node': {'ros__parameters': values}}
+
+
+@pytest.mark.parametrize(('sources', 'rate'), [
+    ([file(rate=500), 'rate:=200.5'], 200.5),
+    ([file(rate=500.5), 'rate:=200'], 200.0),
+    (['rate:=200.5', file(rate=500)], 500.0),
+    (['rate:=5', 'rate:=7.5', 'rate:=9'], 9.0),
+    ([named(rate=500), 'rate:=200.5'], 200.5),
+    ([named(rate=500), 'rate:=200'], 200.0),
+    ([file(rate='abc'), 'rate:=200'], 200.0),
+    ([file(rate=True), named(rate=30.5), file(rate=40)], 40.0),
+    ([named(rate=500), {**file(rate=40), **named(accuracy=1e-9)}], 40.0),
+    ([{**file(rate=1.5), **named(rate=2)}], 2.0),
+    (['sim_node:rate:=5.5', 'rate:=6'], 6.0),
+    (['rate:=6', 'sim_node:rate:=5.5', 'other:rate:=9'], 5.5),
+    ([file(rate=8), {'/*': {'ros__parameters': {'rate': 9.5}}}], 9.5),
+    ([file(rate='1e3')], 1000.0),
+])
+def test_the_last_value_wins(start, sources, rate):
+    assert start(*sources)[1].rate == rate
+
+
+@pytest.mark.parametrize(('sources', 'line'), [
+    ([file(rate=1000.0), 'rate:=abc'], "parameter rate: got 'abc'; needs a number"),
+    ([file(rate=1000.0), file(rate='abc')], "parameter rate: got 'abc'; needs a number"),
+    ([file(scene='sphere'), 'scene:=3'], 'parameter scene: got 3; needs a text'),
+    ([file(record=True), 'record:=5.5'], 'parameter record: got 5.5; needs true or false'),
+    ([file(publish=['odom']), 'publish:=[1, 2]'], r'parameter publish: got \[1, 2\]; needs a list'),
+])
+def test_a_last_value_of_a_wrong_type_is_refused(start, sources, line):
+    with pytest.raises(BadInput, match=line):
+        start(*sources)
+
+
+def test_nested_and_dotted_names_are_one(start):
+    _, settings = start(file(recording={'name': 'first', 'split_bytes': 5}),
+                        file(**{'recording.name': 'second'}), 'recording.split_bytes:=7.5')
+    assert settings['recording.name'] == 'second'
+    assert settings['recording.split_bytes'] == 7.5
+
+
+def test_words_stay_words(start):
+    _, settings = start(file(scene='sphere', integrator='dop8', accuracy=1e-9, publish=[]),
+                        'recording.name:="5"', "frame_prefix:='true'")
+    assert (settings['recording.name'], settings.frame_prefix) == ('5', 'true')
+    assert (settings.accuracy, settings.publish) == (1e-9, ())
+
+
+def test_the_name_of_the_node_may_change(start):
+    extra = ['-r', '__node:=ball', '-r', '__ns:=/left']
+    mine = {'left': {'ball': {'ros__parameters': {'rate': 50}}}}
+    assert start(mine, extra=extra)[1].rate == 50.0
+    assert start(mine, 'rate:=60.5', extra=extra)[1].rate == 60.5
+
+
+def test_a_shared_file_may_hold_parameters_of_other_nodes(start):
+    node, settings = start({**file(controller_frequency=20.0, costmap={'width': 3}, rate=250),
+                            '/other_node': {'ros__parameters': {'ratee': 5}}},
+                           {'/*/*': {'ros__parameters': {'whatever': [1, 2]}}})
+    assert settings.rate == 250.0
+    assert [line.split(';')[0] for line in node.warned] == [
+        f'parameter {name}: there is none of that name' for name in
+        ('controller_frequency', 'costmap.width')]
+
+
+@pytest.mark.parametrize('source', ['ratee:=5', named(ratee=5), 'sim_node:ratee:=5',
+                                    {'/**/sim_node': {'ros__parameters': {'ratee': 5}}}])
+def test_an_unknown_parameter_for_this_node_is_refused(start, source):
+    known_to_others = file(ratee=4)
+    with pytest.raises(BadInput, match='ratee: there is none of that name; did you mean rate'):
+        start(known_to_others, source)
+
+
+def test_the_node_takes_its_own_dump(start):
+    """What ``ros2 param dump`` writes: all parameters, nested, by the YAML of Python."""
+    node, settings = start('rate:=250', 'accuracy:=1e-9', 'scene_overrides:=[body.mass=2.0]')
+    dump = {}
+    for name, parameter in node.get_parameters_by_prefix('').items():
+        *groups, last = name.split('.')
+        into = dump
+        for group in groups:
+            into = into.setdefault(group, {})
+        into[last] = parameter.value
+    assert 'start_type_description_service' in dump and 'use_sim_time' in dump
+    _, again = start(named(**dump))
+    assert again.values == settings.values
+
+
+@pytest.mark.parametrize('arguments', [
+    [], ['--ros-args'], ['--ros-args', '-p'], ['--ros-args', '-p', 'rate'],
+    ['--ros-args', '-p', 'rate:='], ['--ros-args', '-p', 'rate:=[1'], ['-p', 'rate:=5'],
+    ['--ros-args', '--params-file', '/nowhere.yaml'], ['--ros-args', '--', '-p', 'rate:=5'],
+    ['--ros-args', '-r', '__ns:=/left', '--log-level', 'warn']])
+def test_what_is_not_understood_is_left_to_rcl(arguments):
+    with overrides.settled(arguments) as (settled, shared):
+        assert (settled, shared) == (arguments, frozenset())
+
+
+@pytest.mark.parametrize('text', ['', '- 1', 'a: [', 'a: {ros__parameters: 3}', '3', '[a]: 1'])
+def test_a_file_that_is_not_understood_is_left_to_rcl(tmp_path, text):
+    path = tmp_path / 'wrong.yaml'
+    path.write_text(text)
+    arguments = ['--ros-args', '--params-file', str(path), '-p', 'rate:=5']
+    with overrides.settled(arguments) as (settled, _):
+        assert settled == arguments
+
+
+def test_a_number_that_arrives_as_a_text_is_one(start):
+    node, settings = start()
+    for text, value in (('1e-9', 1e-9), ('1E-6', 1e-6), ('2.5e-4', 2.5e-4), ('.1e-6', 1e-7)):
+        assert node.set_parameters([Parameter('accuracy', value=text)])[0].successful
+        assert settings.accuracy == node.get_parameter('accuracy').value == value
+    for text in ('1e5', 'nan', 'inf', '', '1e', 'e5', '0x1', '1_0', ' 1'):
+        assert not node.set_parameters([Parameter('accuracy', value=text)])[0].successful
+    assert settings.accuracy == 1e-7
+
+
+def test_the_clock_cannot_change_while_the_node_runs(start):
+    node, settings = start()
+    [result] = node.set_parameters([Parameter('use_sim_time', value=True)])
+    assert not result.successful
+    assert result.reason == ('parameter use_sim_time: it cannot change while the node runs; '
+                             'give it at the start')
+    assert settings.use_sim_time is False
+    # ros2 param load sends what it is already
+    assert node.set_parameters([Parameter('use_sim_time', value=False)])[0].successful
+    settings.running = False
+    assert node.set_parameters([Parameter('use_sim_time', value=True)])[0].successful
+    assert settings.use_sim_time is True
