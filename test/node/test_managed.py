@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The managed node through its life, as a launch system leads it."""
 
 import itertools
@@ -7,7 +8,7 @@ from geometry_msgs.msg import PoseStamped
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from std_srvs.srv import SetBool, Trigger
 
 pytestmark = pytest.mark.usefixtures('compiled_kernels')
@@ -101,5 +102,64 @@ def test_signal_ends_it_in_every_state(ros_domain, new_client, tmp_path, transit
         client.until(lambda: NODE[1:] in client.node.get_node_names(), 60.0, 'the node')
         for transition in transitions:
             assert Managed(client).go(transition)
+        process.terminate()
+        assert process.wait(5.0) == 0
+
+
+def test_a_request_that_does_not_fit_is_answered(ros_domain, new_client, tmp_path):
+    """Each transition in each state in which it does not fit; what rclpy itself raises on."""
+    arguments = ['-p', 'rate:=100', '-p', f'recording.directory:={tmp_path / "recordings"}']
+    unfit = {'unconfigured': [3, 4, 2, 99, 250],
+             'inactive': [1, 4, 99],
+             'active': [1, 2, 3, 99, 0]}
+    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args',
+                            *arguments) as process, new_client(ros_domain) as client:
+        node = Managed(client)
+        client.until(lambda: NODE[1:] in client.node.get_node_names(), 60.0, 'the node')
+        for go in (None, Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
+            if go is not None:
+                assert node.go(go)
+            state = node.state
+            for transition in unfit[state]:
+                assert not node.go(transition), f'{transition} from {state}'
+                assert node.state == state
+            for label in ('configure', 'no such word') if state == 'active' else ['deactivate']:
+                given = Transition(label=label)
+                assert not client.call(ChangeState, f'{NODE}/change_state',
+                                       transition=given).success
+                assert node.state == state
+        # a type of parameter that does not exist: rclpy raises before it looks at the name
+        wrong = Parameter(name='rate', value=ParameterValue(type=200))
+        for service in (SetParameters, SetParametersAtomically):
+            name = 'set_parameters' + ('_atomically' if service is SetParametersAtomically else '')
+            client.call(service, f'{NODE}/{name}', parameters=[wrong])
+        assert node.state == 'active'
+        process.terminate()
+        assert process.wait(5.0) == 0
+
+
+def test_a_failed_configure_leaves_nothing_behind(ros_domain, new_client, tmp_path):
+    folder = tmp_path / 'recordings'
+    (folder / 'mine').mkdir(parents=True)
+    arguments = ['-p', 'rate:=100', '-p', f'recording.directory:={folder}',
+                 '-p', 'recording.name:=mine']
+    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args',
+                            *arguments) as process, new_client(ros_domain) as client:
+        node = Managed(client)
+        client.until(lambda: NODE[1:] in client.node.get_node_names(), 60.0, 'the node')
+        for _ in range(2):
+            # the folder of somebody else is never added to
+            assert not node.go(Transition.TRANSITION_CONFIGURE)
+            client.until(lambda: '/pose' not in node.topics(), what='the topics to go')
+        (folder / 'mine').rmdir()
+        names = 'mine', 'mine_2', 'mine_3'
+        for count in range(len(names)):
+            assert node.go(Transition.TRANSITION_CONFIGURE)
+            client.until(lambda: '/pose' in node.topics(), what='the topics')
+            publishers = client.node.get_publishers_info_by_topic('/pose')
+            assert len(publishers) == 1
+            assert node.go(Transition.TRANSITION_CLEANUP)
+            assert sorted(path.name for path in folder.iterdir()) == sorted(names[:count + 1])
+        assert all((folder / name / 'metadata.yaml').exists() for name in names)
         process.terminate()
         assert process.wait(5.0) == 0
