@@ -2,11 +2,13 @@
 """The command `recover`: a cut recording made whole.
 
 What a kill -9, a full disk or a power cut left gets the tail and metadata.yaml that every reader
-asks for. Everything that was completely written is kept. Of the chunk in which a file is cut (at
-most 0.1 s of a node's recording) the messages are kept if it is not compressed; half a compressed
-chunk cannot be decompressed. Nothing is ever invented: a chunk with a wrong checksum is hidden,
-not guessed at. The file is repaired in place, so that a full disk needs room for the index only,
-and a second run changes nothing.
+asks for. Everything that was completely written is kept, and of the chunk in which a file is cut
+(at most 0.1 s of a node's recording) what can be decompressed. Then only what lies behind the last
+whole record is replaced, so that a full disk needs room for the index only. Where bytes are wrong,
+each chunk is read by what else tells of it, and the file is written anew beside the old one, which
+stays as NAME.mcap.orig. What is lost is counted by the statistics, the message indexes, the
+sequence numbers or metadata.yaml; where none of them tells, it is said to be unknown. A second run
+changes nothing.
 """
 
 import dataclasses
@@ -47,8 +49,10 @@ def recover(path):
     if not names:
         raise BadInput(str(path), 'holds no .mcap file',
                        'the folder of a recording, or one of its .mcap files')
-    results = [recover_file(path / name) for name in names]
-    _write_metadata(path, names, [found for _, found in results])
+    bag = _told(path)
+    counts = {file.get('path'): file.get('message_count') for file in bag.get('files', ())}
+    results = [recover_file(path / name, counts.get(name)) for name in names]
+    _write_metadata(path, names, [found for _, found in results], bag)
     return [result for result, _ in results]
 
 
@@ -64,23 +68,29 @@ def recording_files(path):
                        'the folder of a recording, or an .mcap file') from error
 
 
-def _write_metadata(path, names, found):
-    """Write metadata.yaml if it does not tell what the files hold."""
-    topics = {topic.name: topic for one in found for topic in one.topics}
-    about = next((one.about for one in found if one.about), None)
-    bag = metadata.bag_metadata(list(topics.values()), [one.file for one in found], about)
+def _told(path):
+    """Return the map in a folder's metadata.yaml, {} where it makes no sense."""
     try:
-        text = (path / metadata.FILE_NAME).read_text(encoding='utf-8')
-        there = metadata.load(text)[metadata.ROOT]
-        told = ([file['path'] for file in there['files']],
-                [file['message_count'] for file in there['files']], there['message_count'])
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError):
-        told = None
-    counts = [sum(one.file.counts.values()) for one in found]
-    if told != (names, counts, bag['message_count']):
+        bag = metadata.load((path / metadata.FILE_NAME).read_text(encoding='utf-8'))[metadata.ROOT]
+        good = all(isinstance(file['path'], str) and isinstance(file['message_count'], int)
+                   for file in bag['files']) and isinstance(bag['message_count'], int)
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, LookupError, TypeError):
+        return {}
+    return bag if good else {}
+
+
+def _write_metadata(path, names, found, bag):
+    """Write metadata.yaml if `bag`, what it told, is not what the files hold."""
+    topics = {topic.name: topic for one in found for topic in one.topics}
+    about = next((one.about for one in found if one.about), bag.get('custom_data'))
+    now = metadata.bag_metadata(list(topics.values()), [one.file for one in found], about)
+    told = [(file['path'], file['message_count']) for file in bag.get('files', ())]
+    counts = [(name, sum(one.file.counts.values()))
+              for name, one in zip(names, found, strict=True)]
+    if not bag or told != counts or bag['message_count'] != now['message_count']:
         folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
         try:
-            metadata.write(folder, bag)
+            metadata.write(folder, now)
         finally:
             os.close(folder)
 
@@ -104,8 +114,9 @@ def _run(options):
               f'run it again', file=sys.stderr)
         return command_line.CHECK_FAILED
     if options.json:
-        command_line.print_json([{**dataclasses.asdict(result), 'path': str(result.path)}
-                                 for result in results])
+        command_line.print_json([
+            {name: str(value) if isinstance(value, pathlib.Path) else value
+             for name, value in dataclasses.asdict(result).items()} for result in results])
     else:
         print(*results, sep='\n')
     return command_line.GOOD

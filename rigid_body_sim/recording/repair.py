@@ -3,7 +3,10 @@
 
 import dataclasses
 import fcntl
+import itertools
+import os
 import pathlib
+import shutil
 
 import yaml
 
@@ -19,26 +22,62 @@ from rigid_body_sim.recording.writer import ABOUT
 class Recovered:
     """What became of one file.
 
-    `messages` it holds now; `lost_messages` estimated from the size of what could not be kept,
-    `lost_seconds` of stamps between the last message kept and the last in the cut chunk,
-    `lost_bytes` dropped; `changed` is False where the file was whole.
+    Attributes
+    ----------
+    path : pathlib.Path
+    messages : int
+        It holds now.
+    lost_messages : int
+    certainty : str
+        How `lost_messages` is known, see :class:`rigid_body_sim.recording.mcap.mending.Losses`.
+    lost_seconds : float
+        Of stamps between the messages around what is lost.
+    lost_bytes : int
+        Of which nothing was kept.
+    doubtful_messages : int
+        Kept, though the checksum over them is wrong: among them are wrong bytes.
+    changed : bool
+        False where the file was whole.
+    original : pathlib.Path or None
+        Where the file is as it was, if it had to be written anew.
     """
 
     path: pathlib.Path
     messages: int
-    lost_messages: int
-    lost_seconds: float
-    lost_bytes: int
-    changed: bool
+    lost_messages: int = 0
+    certainty: str = 'counted'
+    lost_seconds: float = 0.0
+    lost_bytes: int = 0
+    doubtful_messages: int = 0
+    changed: bool = False
+    original: pathlib.Path = None
 
     def __str__(self):
         if not self.changed:
             return f'{self.path}: whole, {self.messages} messages'
-        lost = 'nothing'
-        if self.lost_bytes:
-            lost = (f'about {self.lost_messages} messages, {self.lost_seconds:.3f} s '
-                    f'({self.lost_bytes} bytes)')
-        return f'{self.path}: made whole, {self.messages} messages kept, lost {lost}'
+        text = f'{self.path}: made whole, {self.messages} messages kept, {self._lost()}'
+        if self.doubtful_messages:
+            text += (f'; {self.doubtful_messages} of them are doubtful: the checksum over them '
+                     f'is wrong')
+        if self.original:
+            text += f'; the file as it was: {self.original.name}'
+        return text
+
+    def _lost(self):
+        about = 'about ' if self.certainty != 'counted' else ''
+        size = f'{self.lost_seconds:.3f} s ({self.lost_bytes} bytes)'
+        if self.lost_messages:
+            text = f'lost {about}{self.lost_messages} messages, {size}'
+            more = ', and perhaps more'
+        elif self.certainty == 'unknown':
+            text, more = 'what is lost is not known', ''
+            if self.lost_bytes:
+                text += f' ({self.lost_bytes} bytes could not be read)'
+        else:
+            text = 'lost nothing'
+        if self.certainty == 'unknown':
+            text += f'{more}: the file does not tell how many messages it held'
+        return text
 
 
 class Found:
@@ -71,8 +110,18 @@ def _profiles(channel):
     return profiles if isinstance(profiles, list) else []
 
 
-def recover_file(path):
+def recover_file(path, expected=None):
     """Make one file whole; return (Recovered, Found): what was done, and what the file holds.
+
+    Only what lies behind the last whole record is replaced in place. Where more is wrong, the file
+    is written anew beside the old one, read back, and put in its place; the old one stays, as
+    ``NAME.mcap.orig``.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    expected : int, optional
+        Messages that metadata.yaml tells.
 
     Raises
     ------
@@ -81,22 +130,65 @@ def recover_file(path):
     OSError
         Where the disk refuses.
     """
+    def texts(target, contents):
+        found = Found(target, contents, path.name)
+        bag = metadata.bag_metadata(found.topics, [found.file], found.about)
+        return {'serialized_metadata': metadata.dump(bag)}
     try:
-        with open(path, 'r+b') as stream:
+        with open(path, 'r+b') as stream, _Beside(path) as beside:
             try:
                 fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError as error:
                 raise BadInput(str(path), 'is still being recorded',
                                'a recording whose recorder has ended') from error
-
-            def texts(contents):
-                found = Found(stream, contents, path.name)
-                bag = metadata.bag_metadata(found.topics, [found.file], found.about)
-                return {'serialized_metadata': metadata.dump(bag)}
             with readable(path):
-                mended = mend(stream, texts)
-                found = Found(stream, mended.contents, path.name)
+                contents, lost = mend(stream, texts, beside.open, expected)
+                found = Found(beside.stream or stream, contents, path.name)
+            original = beside.take_its_place()
     except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
         raise BadInput(str(path), f'cannot be opened for repair ({error.strerror})',
                        'an .mcap file that may be written') from error
-    return Recovered(path, mended.contents.message_count, *mended[1:]), found
+    if lost is None:
+        return Recovered(path, contents.message_count), found
+    return Recovered(path, contents.message_count, *lost, changed=True, original=original), found
+
+
+class _Beside:
+    """The file that is written beside a damaged one; gone at the end if it did not replace it."""
+
+    def __init__(self, path):
+        self._path, self._part = path, path.with_name(f'.{path.name}.part')
+        self.stream = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.stream:
+            self.stream.close()
+            self._part.unlink(missing_ok=True)
+
+    def open(self):
+        """Return the new file, open for reading and writing."""
+        self.stream = open(self._part, 'w+b')       # noqa: SIM115, closed at the end
+        shutil.copymode(self._path, self._part)
+        return self.stream
+
+    def take_its_place(self):
+        """Put the new file, if there is one, in the place of the old; return where that is now."""
+        if self.stream is None:
+            return None
+        names = itertools.chain(('.orig',), (f'.orig{number}' for number in itertools.count(2)))
+        for name in names:
+            original = self._path.with_name(self._path.name + name)
+            try:
+                os.link(self._path, original)
+            except FileExistsError:
+                continue
+            except OSError:     # a file system without links
+                if original.exists():
+                    continue
+                os.rename(self._path, original)
+            break
+        os.replace(self._part, self._path)
+        return original

@@ -82,7 +82,7 @@ class PackedChunk(typing.NamedTuple):
     counts: dict
 
 
-def pack(position, compression, compressed, records, channels, times, offsets):
+def pack(position, compression, compressed, records, channels, times, offsets, sure=True):
     """Return the PackedChunk of message records that are to be written at `position` of a file.
 
     Parameters
@@ -96,9 +96,12 @@ def pack(position, compression, compressed, records, channels, times, offsets):
         Message records end to end.
     channels, times, offsets : arrays
         One element a message: its channel number, log time (ns) and offset in `records`.
+    sure : bool
+        Whether a checksum is to vouch for the records.
     """
     start, end = int(times.min()), int(times.max())
-    chunk = to_bytes(Chunk(compression, compressed, end, start, zlib.crc32(records), len(records)))
+    checksum = zlib.crc32(records) if sure else 0
+    chunk = to_bytes(Chunk(compression, compressed, end, start, checksum, len(records)))
     indexes, places, counts = index_messages(position + len(chunk), channels, times, offsets)
     index = ChunkIndex(len(chunk), position, compression, len(compressed), end, len(indexes),
                        places, start, len(records))

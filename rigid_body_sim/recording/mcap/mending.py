@@ -1,45 +1,75 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A cut file mended in place.
+"""A cut or damaged file made whole.
 
-Whatever is whole stays where it is; what is missing of the last chunk's indexes, and the tail, are
-written behind it. Why not reading all of it by `mcap.stream_reader` and writing it anew by
-`mcap.writer`: that takes 15 times as long (bench/recordings.py) and the size of the file once
-more, where a full disk has room for an index only; and it loses the messages of an uncompressed
-chunk that is cut.
+Where only the end is missing, what is missing of the last chunk's indexes, and the tail, are
+written behind what is whole: nothing else moves, and a full disk needs room for an index only.
+Where more is wrong, the file is written anew beside the old one: what is whole byte by byte, what
+is damaged as it could be read (rescue.py). Why not reading all of it by `mcap.stream_reader` and
+writing it anew by `mcap.writer`: that takes 15 times as long (bench/recordings.py), and it ends at
+the first record that is damaged.
 """
 
 import os
 import typing
 
 import numpy as np
-from mcap.records import Metadata
+from mcap.exceptions import InvalidMagic
+from mcap.opcode import Opcode
+from mcap.records import Chunk, Metadata
 from mcap.writer import MCAP0_MAGIC
 
 from rigid_body_sim.recording.mcap import chunks
+from rigid_body_sim.recording.mcap.bytes import FileBytes
+from rigid_body_sim.recording.mcap.compression import compressor, records_of
 from rigid_body_sim.recording.mcap.contents import Contents
-from rigid_body_sim.recording.mcap.records import PRIVATE, to_bytes
-from rigid_body_sim.recording.mcap.scan import Scan
-from rigid_body_sim.recording.mcap.summary import read_metadata, tail_is_whole
-from rigid_body_sim.recording.mcap.walk import Cut, heads, walk
+from rigid_body_sim.recording.mcap.records import HEAD, Damaged, of_bytes, to_bytes
+from rigid_body_sim.recording.mcap.rescue import rescue
+from rigid_body_sim.recording.mcap.scan import (
+    Broken,
+    FoundChunk,
+    Loose,
+    Scan,
+    Unindexed,
+    Whole,
+)
+from rigid_body_sim.recording.mcap.summary import read_metadata
+from rigid_body_sim.recording.mcap.walk import HEADS, MESSAGE, heads, walk
 from rigid_body_sim.recording.mcap.writing import HEADER
+
+_BLOCK = 2**22
+
+
+class Losses(typing.NamedTuple):
+    """What could not be kept of a file.
+
+    Attributes
+    ----------
+    messages : int
+    certainty : str
+        How `messages` is known: ``counted`` by statistics, indexes or sequence numbers,
+        ``estimated`` by sizes, or ``unknown``: at least so many, and nothing tells how many more.
+    seconds : float
+        Of log time between the messages around what is lost.
+    bytes : int
+    doubtful : int
+        Messages that were kept, though the checksum over them is wrong.
+    """
+
+    messages: int = 0
+    certainty: str = 'counted'
+    seconds: float = 0.0
+    bytes: int = 0
+    doubtful: int = 0
 
 
 class Mended(typing.NamedTuple):
-    """What became of a file.
-
-    `contents` it has now; `lost_messages` estimated from the size of what could not be kept,
-    `lost_seconds` of log time between the last message kept and the last in the cut chunk,
-    `lost_bytes` dropped; `changed` is False where the file was whole.
-    """
+    """What became of a file: its Contents now, and the Losses; None where it was whole."""
 
     contents: Contents
-    lost_messages: int = 0
-    lost_seconds: float = 0.0
-    lost_bytes: int = 0
-    changed: bool = True
+    losses: Losses
 
 
-def mend(stream, texts):
+def mend(stream, texts, beside, expected=None):
     """Make a file whole; return Mended.
 
     Parameters
@@ -47,98 +77,210 @@ def mend(stream, texts):
     stream : binary file
         Open for reading and writing.
     texts : callable
-        Called with the Contents, if the file lacks a metadata record ``rosbag2``; returns its
-        texts.
+        Called with a stream and the Contents, if the file lacks a metadata record ``rosbag2``;
+        returns its texts.
+    beside : callable
+        Returns a binary file, open for reading and writing and empty, for a file that has to be
+        written anew. The old one is not touched then.
+    expected : int, optional
+        Messages that the file should hold, where something else tells.
 
     Raises
     ------
     OSError
         Where the disk refuses. The file may be mended again then.
+    Damaged
+        Where the mended file does not read back.
     mcap.exceptions.InvalidMagic, mcap.exceptions.UnsupportedCompressionError
         See :class:`rigid_body_sim.recording.mcap.scan.Scan`.
     """
     scan = Scan(stream)
-    if not scan.cut and not scan.damaged and tail_is_whole(stream, scan.end):
-        return Mended(scan.contents, changed=False)
-    contents, descriptor = scan.contents, stream.fileno()
-    lost_bytes, lost_messages, lost_until = scan.lost_bytes, 0, 0
-    for offset, chunk in scan.damaged:
-        os.pwrite(descriptor, bytes([PRIVATE]), offset)
-        lost_bytes += len(chunk.data)
-        lost_messages += _messages_in(chunk.uncompressed_size, scan)
-    end = _Appender(descriptor, scan.end, contents)
-    if scan.last:
-        end.index(scan.last)
-    if scan.cut_chunk:
-        kept = end.salvage(scan.cut_chunk)
-        lost_bytes -= kept
-        lost_messages += _messages_in(scan.cut_chunk.uncompressed_size - kept, scan)
-        lost_until = scan.cut_chunk.message_end_time
-    if read_metadata(stream, contents, 'rosbag2') is None:
-        end.metadata('rosbag2', texts(contents))
+    if scan.whole:
+        return Mended(scan.contents, None)
+    found = losses(scan, expected)
+    if scan.in_place:
+        kept, behind = scan.parts[:1], scan.parts[1:]
+        begin = kept[0].end if kept else 0
+        target, end = stream, _Composer(stream.fileno(), begin)
+        for part in kept:
+            end.contents.merge(part.contents)
+        os.ftruncate(stream.fileno(), begin)
+    else:
+        target, behind = beside(), scan.parts
+        end = _Composer(target.fileno(), 0)
+    if end.position == 0 and not any(isinstance(part, Whole) and part.begin == 0
+                                     for part in behind):
+        end.append(MCAP0_MAGIC + (scan.header or to_bytes(HEADER)) + to_bytes(*scan.descriptions))
+        scan.descriptions.clear()
+    for part in behind:
+        end.part(FileBytes(stream.fileno()), part, scan)
+    contents = end.contents
+    contents.schemas, contents.channels = scan.contents.schemas, scan.contents.channels
+    if read_metadata(target, contents, 'rosbag2') is None:
+        end.metadata('rosbag2', texts(target, contents))
     end.append(contents.tail(end.position))
-    os.fsync(descriptor)
-    lost_seconds = max(0, lost_until - contents.end_time) / 1e9
-    return Mended(contents, lost_messages, lost_seconds, lost_bytes)
+    os.fsync(target.fileno())
+    _verify(target, scan)
+    return Mended(contents, found)
 
 
-def _messages_in(size, scan):
-    return max(0, round(size / scan.mean_message)) if scan.mean_message else 0
+def _verify(stream, scan):
+    """Raise Damaged where a mended file does not hold what was found in the old one."""
+    try:
+        stream.seek(0)
+        again = Scan(stream)
+        good = again.whole and again.contents.counts == scan.contents.counts
+    except InvalidMagic:
+        good = False
+    if not good:
+        raise Damaged('damaged in a way that cannot be mended here')
 
 
-class _Appender:
-    """Writes at the end of a file that is cut off at `position`, and notes it in its Contents."""
+def losses(scan, expected=None):
+    """Return the Losses of a file by its Scan; `expected` as for :func:`mend`."""
+    kept, damages = scan.contents.message_count, [*scan.damages]
+    if scan.cut_damage:
+        damages.append(scan.cut_damage)
+    if expected is None and scan.told:
+        expected = scan.told.contents.message_count
+    if expected is not None and expected >= kept:
+        messages, certainty = expected - kept, 'counted'
+    else:
+        messages, certainty = 0, 'counted'
+        for damage in damages:
+            count, how = _count(damage, scan)
+            messages += count
+            certainty = how if certainty != 'unknown' and how != 'counted' else certainty
+        if scan.cut:
+            certainty = 'unknown'
+    last = scan.told.contents.end_time if scan.told else 0
+    nanoseconds = sum(_hole(damage, scan, last) for damage in damages if damage.lost != 0)
+    return Losses(messages, certainty, nanoseconds / 1e9,
+                  sum(damage.lost_bytes for damage in damages),
+                  sum(damage.doubtful for damage in damages))
 
-    def __init__(self, descriptor, position, contents):
-        self._descriptor, self.position, self._contents = descriptor, position, contents
-        os.ftruncate(descriptor, position)
-        if position == 0:
-            self.append(MCAP0_MAGIC + to_bytes(HEADER))
+
+def _count(damage, scan):
+    """Return how many messages a Damage cost, and how that is known."""
+    if damage.lost is not None:
+        return damage.lost, 'counted'
+    if damage.before and damage.after and not damage.kept:
+        counts = [_missing_between(damage.before.heads, damage.after.heads, number)
+                  for number in damage.before.counts.keys() & damage.after.counts.keys()]
+        known = [count for count in counts if count is not None]
+        if known and len(known) == len(counts):
+            return sum(known), 'counted'
+    if damage.claimed and scan.mean_message:
+        return round(damage.claimed / scan.mean_message), 'estimated'
+    return 0, 'unknown' if damage.lost_bytes else 'counted'
+
+
+def _missing_between(before, after, number):
+    """Return how many messages of a channel are missing between two chunks, by their sequence.
+
+    None where its sequence numbers do not count by one.
+    """
+    sequences = [found['sequence'][found['channel'] == number] for found in (before, after)]
+    if any(len(one) < 2 or (np.diff(one) != 1).any() for one in sequences):
+        return None
+    return (int(sequences[1][0]) - int(sequences[0][-1]) - 1) & 0xffffffff
+
+
+def _hole(damage, scan, last):
+    """Return the ns of log time without messages around a Damage; `last` ends the file, or 0."""
+    if not damage.lost_bytes and not damage.claimed and not damage.lost:
+        return 0
+    begin = int(damage.before.times.max()) if damage.before else scan.contents.start_time
+    if damage.kept:
+        begin = max(begin, scan.contents.end_time if damage is scan.damages[-1] else begin)
+    end = int(damage.after.times.min()) if damage.after else last or damage.until
+    return max(0, end - begin) if begin and end - begin < 10**14 else 0
+
+
+class _Composer:
+    """Writes at the end of a file, and notes what in its Contents."""
+
+    def __init__(self, descriptor, position):
+        self._descriptor, self.position, self.contents = descriptor, position, Contents()
 
     def append(self, data):
-        done = 0
+        done, view = 0, memoryview(data)
         while done < len(data):
-            done += os.pwrite(self._descriptor, data[done:], self.position + done)
+            done += os.pwrite(self._descriptor, view[done:], self.position + done)
         self.position += len(data)
 
-    def index(self, chunk):
-        """Write all message indexes of a whole chunk at the end, and note the chunk.
+    def part(self, source, part, scan):
+        """Write a part of a Scan."""
+        if isinstance(part, Whole):
+            self._whole(source, part, scan)
+        elif isinstance(part, Unindexed):
+            self._index(source, part.offset)
+        elif isinstance(part, Broken):
+            found = rescue(source, part.offset, part.hint, part.cut)
+            self._rescued(found, doubtful=not (found.sure or part.cut))
+        elif isinstance(part, Loose):
+            self._loose(source.read(part.begin, part.end - part.begin))
+        else:
+            self._replaced(part.data)
 
-        Some may have been there, unknown to the tail.
-        """
-        indexes, chunk.index_places, _ = chunks.index_messages(self.position, chunk.channels,
-                                                               chunk.times, chunk.offsets)
-        chunk.index_length = len(indexes)
+    def _replaced(self, data):
+        """Write a record as it should have been."""
+        opcode, content = data[0], data[HEAD.size:]
+        if opcode == MESSAGE:
+            head = heads(data[:HEADS.itemsize], np.zeros(1, int))[0]
+            time = int(head['log_time'])
+            self.contents.add_messages({int(head['channel']): 1}, time, time)
+        elif opcode == Opcode.METADATA:
+            self.contents.add_metadata(self.position, len(data), of_bytes(Metadata, content).name)
+        self.append(data)
+
+    def _whole(self, source, part, scan):
+        begin = part.begin
+        if begin == 0 and scan.descriptions:
+            self._copy(source, 0, scan.header_end)
+            self.append(to_bytes(*scan.descriptions))
+            begin = scan.header_end
+        self.contents.merge(part.contents, self.position - begin)
+        self._copy(source, begin, part.end)
+
+    def _copy(self, source, begin, end):
+        for at in range(begin, end, _BLOCK):
+            self.append(source.read(at, min(_BLOCK, end - at)))
+
+    def _index(self, source, offset):
+        """Write the message indexes of a whole chunk that ends here, and note the chunk."""
+        length = HEAD.size + HEAD.unpack(source.read(offset, HEAD.size))[1]
+        chunk = of_bytes(Chunk, source.read(offset + HEAD.size, length - HEAD.size))
+        found = FoundChunk(chunk, self.position - length, length, records_of(chunk))
+        indexes, found.index_places, _ = chunks.index_messages(
+            self.position, found.heads['channel'], found.times, found.offsets)
+        found.index_length = len(indexes)
         self.append(indexes)
-        self._contents.add_chunk(chunk.index())
+        self.contents.add_chunk(found.index())
 
-    def salvage(self, chunk):
-        """Write what is whole in the data of a cut chunk as a chunk, if it is not compressed.
+    def _rescued(self, found, doubtful):
+        """Write what was rescued of a chunk as a chunk."""
+        if len(found.offsets):
+            data = found.compressed
+            if data is None:
+                data = compressor(found.compression)(found.records)
+            self._chunk(found.compression, data, found.records, found.offsets, not doubtful)
 
-        Returns the size of the records kept.
-        """
-        data = chunk.data
-        if chunk.compression:
-            return 0
-        try:
-            offsets, others = walk(data)
-        except Cut as cut:
-            data, (offsets, others) = data[:cut.whole], cut.found
-        if not len(offsets):
-            return 0
-        for opcode, begin, stop in others:
-            self._contents.describe(opcode, data[begin:stop])
-        found = heads(data, offsets)
-        packed = chunks.pack(self.position, '', data, data, found['channel'], found['log_time'],
-                             offsets.astype(np.uint64))
+    def _loose(self, records):
+        """Write messages without a chunk as one."""
+        self._chunk('', records, records, walk(records)[0])
+
+    def _chunk(self, compression, data, records, offsets, sure=True):
+        message_heads = heads(records, offsets)
+        packed = chunks.pack(self.position, compression, data, records, message_heads['channel'],
+                             message_heads['log_time'], offsets.astype(np.uint64), sure)
         self.append(packed.data)
-        self._contents.add_chunk(packed.index)
-        self._contents.add_messages(packed.counts, packed.index.message_start_time,
-                                    packed.index.message_end_time)
-        return len(data)
+        self.contents.add_chunk(packed.index)
+        self.contents.add_messages(packed.counts, packed.index.message_start_time,
+                                   packed.index.message_end_time)
 
     def metadata(self, name, texts):
         """Write a metadata record."""
         data = to_bytes(Metadata(name, texts))
-        self._contents.add_metadata(self.position, len(data), name)
+        self.contents.add_metadata(self.position, len(data), name)
         self.append(data)

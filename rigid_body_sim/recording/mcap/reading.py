@@ -80,6 +80,8 @@ class FileReader:
             if told is None:
                 self._stream.seek(0)
                 scan = Scan(self._stream)
+                if scan.damages or scan.cut:
+                    raise Damaged('the file is damaged')
                 told = scan.contents, scan.places
             self._contents, self._places = told
             size = os.fstat(self._stream.fileno()).st_size

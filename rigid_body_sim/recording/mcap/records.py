@@ -37,6 +37,14 @@ class WholeStream(ReadDataStream):
         return super().read(length)
 
 
+class LenientStream(WholeStream):
+    """The same, with a sign in place of bytes that are no text."""
+
+    def read_prefixed_string(self):
+        """Return the next text."""
+        return self.read(self.read4()).decode(errors='replace')
+
+
 def to_bytes(*records):
     """Return records end to end."""
     builder = RecordBuilder()

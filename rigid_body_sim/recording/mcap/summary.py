@@ -10,6 +10,7 @@ object of 0.8 kB a chunk.
 import io
 import os
 import struct
+import typing
 import zlib
 
 from mcap.exceptions import McapError
@@ -105,6 +106,46 @@ def read_summary(stream):
     if not set(contents.counts) <= set(contents.channels):
         return None
     return contents, sorted(places, key=lambda place: place.offset)
+
+
+class Told(typing.NamedTuple):
+    """What a whole summary tells of a file that may be damaged before it.
+
+    Attributes
+    ----------
+    contents : Contents
+        Without `chunk_indexes`.
+    places : list of ChunkPlace
+    data_end : int
+        Where the record is that ends the data section.
+    checked : bool
+        Whether a checksum vouches for it.
+    """
+
+    contents: Contents
+    places: list
+    data_end: int
+    checked: bool
+
+
+def read_told(stream):
+    """Return what the summary tells, as Told; None where it is not whole or does not tell all."""
+    try:
+        summary, tail = read_summary(stream), read_tail(stream)
+    except Damaged:
+        return None
+    if summary is None or not tail[0]:
+        return None
+    footer = of_bytes(Footer, tail[1][HEAD.size - _END_SIZE:])
+    return Told(*summary, tail[0] - _DATA_END_SIZE, footer.summary_crc != 0)
+
+
+def chunk_indexes(stream):
+    """Return the ChunkIndexes of a whole summary: offset of the chunk -> record."""
+    summary = read_tail(stream)[1]
+    reader = StreamReader(io.BytesIO(summary), skip_magic=True, emit_chunks=True)
+    return {record.chunk_start_offset: record for record in reader.records
+            if isinstance(record, ChunkIndex)}
 
 
 def place_of(index, known):

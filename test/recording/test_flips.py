@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One wrong byte in a head, a length or an index costs `recover` no message that mcap can read.
+
+The original stays until the mended file was read back, and what is lost is counted or said to be
+unknown.
+"""
+
+import io
+import random
+import struct
+
+import pytest
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import make_reader
+from mcap.stream_reader import StreamReader
+from mcap.writer import CompressionType
+from mcap.writer import Writer as TheirWriter
+from recording.conftest import SOAK, write
+
+from rigid_body_sim.cli.simulate import main as simulate
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording.mcap.records import HEAD
+from rigid_body_sim.recording.recover import recover
+
+import os
+FLIPS = int(os.environ.get("FL", 4))
+ERRORS = (McapError, EOFError, ValueError, LookupError, RuntimeError, MemoryError, OverflowError,
+          TypeError, struct.error)
+
+
+def messages_of(content, records):
+    """Return what the library reads until it gives up: messages as tuples, in their order.
+
+    By the summary, or with `records` from the first byte on.
+    """
+    found, channels = [], {}
+    try:
+        if records:
+            for record in StreamReader(io.BytesIO(content), record_size_limit=2**24).records:
+                if type(record).__name__ == 'Channel':
+                    channels[record.id] = record.topic
+                elif type(record).__name__ == 'Message':
+                    found.append(_message(channels[record.channel_id], record))
+        else:
+            for _, channel, message in make_reader(io.BytesIO(content)).iter_messages(
+                    log_time_order=False):
+                found.append(_message(channel.topic, message))
+    except ERRORS as error:
+        assert not isinstance(error, BadInput)
+    except Exception as error:          # noqa: BLE001, zstd and lz4 have their own
+        assert type(error).__module__.startswith(('zstandard', 'zstd', 'lz4', 'mcap')), error
+    return found
+
+
+def _message(topic, message):
+    return topic, message.log_time, message.publish_time, message.sequence, message.data
+
+
+def heads_of(content):
+    """Return the places of all bytes that are no payload, by what they belong to."""
+    places, at = {'magic': list(range(8)), 'end': list(range(len(content) - 8, len(content)))}, 8
+    while at < len(content) - 8:
+        opcode, length = HEAD.unpack_from(content, at)
+        end = at + HEAD.size + length
+        if opcode == Opcode.CHUNK:
+            name = int.from_bytes(content[at + 37:at + 41], 'little')
+            places.setdefault(opcode, []).extend(range(at, at + 49 + name))
+            if not name:
+                inner = at + 49
+                while inner < end:
+                    places.setdefault('messages', []).extend(range(inner, inner + 31))
+                    inner += HEAD.size + HEAD.unpack_from(content, inner)[1]
+        elif opcode == Opcode.MESSAGE:
+            places.setdefault(opcode, []).extend(range(at, at + 31))
+        else:
+            places.setdefault(opcode, []).extend(range(at, min(end, at + 400)))
+        at = end
+    return list(places.values())
+
+
+def simulated(path, scene, compression):
+    assert simulate(['--scene', scene, '--duration', '2', '--rate', '500', '--output', str(path),
+                     '--compression', compression]) == 0
+    return path / f'{path.name}_0.mcap'
+
+
+def by_the_library(path, **options):
+    """Write a recording with the library: channels in the chunks, other sizes."""
+    with open(path, 'wb') as stream:
+        writer = TheirWriter(stream, chunk_size=3000, **options)
+        writer.start('ros2', 'theirs')
+        schema = writer.register_schema('std_msgs/msg/Float64', 'ros2msg', b'float64 data')
+        channels = [writer.register_channel(f'/{name}', 'cdr', schema) for name in 'xyz']
+        rng = random.Random(4)
+        for k in range(900):
+            writer.add_message(channels[k % 3], 10**18 + k * 1000, rng.randbytes(12 + k % 5),
+                               10**18 + k * 1000, k // 3)
+        writer.finish()
+    return path
+
+
+RECORDINGS = {
+    'racket zstd': lambda path: write(path / 'bag', count=250, block=50) / 'bag_0.mcap',
+    'racket lz4': lambda path: write(path / 'bag', count=250, block=50, compression_name='lz4')
+    / 'bag_0.mcap',
+    'racket uncompressed': lambda path: write(path / 'bag', count=250, block=50, compression_name='none')
+    / 'bag_0.mcap',
+    'theirs zstd': lambda path: by_the_library(path / 'x.mcap', compression=CompressionType.ZSTD),
+    'theirs lz4': lambda path: by_the_library(path / 'x.mcap', compression=CompressionType.LZ4),
+    'theirs uncompressed': lambda path: by_the_library(path / 'x.mcap',
+                                                       compression=CompressionType.NONE),
+    'theirs without chunks': lambda path: by_the_library(path / 'x.mcap', use_chunking=False),
+}
+
+
+@pytest.mark.parametrize('name', list(RECORDINGS))
+@pytest.mark.parametrize('cut', [False, True], ids=['whole', 'without its tail'])
+def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name, cut):
+    content = RECORDINGS[name](tmp_path).read_bytes()
+    truth = messages_of(content, records=False)
+    assert len(truth) > 800
+    kinds, rng = heads_of(content), random.Random(f'{name} {cut}')
+    if cut:
+        end = content.rindex(HEAD.pack(Opcode.DATA_END, 4))
+        content, kinds = content[:end], [
+            inside for places in kinds if (inside := [at for at in places if at < end])]
+    path, bad = tmp_path / 'flipped.mcap', []
+    for _ in range(FLIPS):
+        at, wrong = rng.choice(rng.choice(kinds)), rng.randrange(1, 256)
+        flipped = bytearray(content)
+        flipped[at] ^= wrong
+        path.write_bytes(flipped)
+        readable = [messages_of(flipped, records) for records in (False, True)]
+        try:
+            result, = recover(path)
+        except BadInput as error:
+            if any(readable):
+                bad.append((at, wrong, str(error), [len(one) for one in readable]))
+            continue
+        mended = messages_of(path.read_bytes(), records=False)
+        again = messages_of(path.read_bytes(), records=True)
+        lost = {*truth} & {*readable[0], *readable[1]} - {*mended}
+        invented = {*mended} - {*truth}
+        if (lost or again != mended or len(mended) < max(map(len, readable))
+                or len(mended) != result.messages
+                or (invented and not result.doubtful_messages and 'chunks' not in name)
+                or (result.certainty == 'counted'
+                    and result.messages + result.lost_messages != len(truth))
+                or recover(path)[0].changed):
+            bad.append((at, wrong, len(lost), len(invented), len(mended),
+                        [len(one) for one in readable], str(result)))
+        if result.original:
+            assert result.original.read_bytes() == flipped
+            result.original.unlink()
+        else:           # nothing but the tail was written
+            assert path.read_bytes()[:100] == flipped[:100]
+    assert not bad, len(bad).__str__()+"\n".join(map(str,bad[:8]))
