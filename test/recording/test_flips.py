@@ -10,6 +10,7 @@ import random
 import struct
 
 import pytest
+import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
@@ -23,10 +24,9 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.mcap.records import HEAD
 from rigid_body_sim.recording.recover import recover
 
-import os
-FLIPS = int(os.environ.get("FL", 4))
-ERRORS = (McapError, EOFError, ValueError, LookupError, RuntimeError, MemoryError, OverflowError,
-          TypeError, struct.error)
+FLIPS = 60 if SOAK else 3       # of each recording, whole and without its tail
+ERRORS = (McapError, zstandard.ZstdError, EOFError, ValueError, LookupError, RuntimeError,
+          MemoryError, OverflowError, struct.error)
 
 
 def messages_of(content, records):
@@ -46,10 +46,8 @@ def messages_of(content, records):
             for _, channel, message in make_reader(io.BytesIO(content)).iter_messages(
                     log_time_order=False):
                 found.append(_message(channel.topic, message))
-    except ERRORS as error:
-        assert not isinstance(error, BadInput)
-    except Exception as error:          # noqa: BLE001, zstd and lz4 have their own
-        assert type(error).__module__.startswith(('zstandard', 'zstd', 'lz4', 'mcap')), error
+    except ERRORS:
+        pass
     return found
 
 
@@ -80,9 +78,9 @@ def heads_of(content):
 
 
 def simulated(path, scene, compression):
-    assert simulate(['--scene', scene, '--duration', '2', '--rate', '500', '--output', str(path),
-                     '--compression', compression]) == 0
-    return path / f'{path.name}_0.mcap'
+    arguments = f'--scene {scene} --duration 1 --rate 250 --compression {compression} --output'
+    assert simulate([*arguments.split(), str(path / 'bag')]) == 0
+    return path / 'bag' / 'bag_0.mcap'
 
 
 def by_the_library(path, **options):
@@ -106,6 +104,9 @@ RECORDINGS = {
     / 'bag_0.mcap',
     'racket uncompressed': lambda path: write(path / 'bag', count=250, block=50, compression_name='none')
     / 'bag_0.mcap',
+    'heavy top zstd': lambda path: simulated(path, 'heavy_top', 'zstd'),
+    'billiard lz4': lambda path: simulated(path, 'billiard_low', 'lz4'),
+    'bat uncompressed': lambda path: simulated(path, 'baseball_bat', 'none'),
     'theirs zstd': lambda path: by_the_library(path / 'x.mcap', compression=CompressionType.ZSTD),
     'theirs lz4': lambda path: by_the_library(path / 'x.mcap', compression=CompressionType.LZ4),
     'theirs uncompressed': lambda path: by_the_library(path / 'x.mcap',
@@ -141,10 +142,10 @@ def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name,
         mended = messages_of(path.read_bytes(), records=False)
         again = messages_of(path.read_bytes(), records=True)
         lost = {*truth} & {*readable[0], *readable[1]} - {*mended}
-        invented = {*mended} - {*truth}
+        invented = {*mended} - {*truth} - {*readable[0], *readable[1]}
         if (lost or again != mended or len(mended) < max(map(len, readable))
                 or len(mended) != result.messages
-                or (invented and not result.doubtful_messages and 'chunks' not in name)
+                or (invented and any(readable) and not result.doubtful_messages)
                 or (result.certainty == 'counted'
                     and result.messages + result.lost_messages != len(truth))
                 or recover(path)[0].changed):
@@ -155,4 +156,4 @@ def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name,
             result.original.unlink()
         else:           # nothing but the tail was written
             assert path.read_bytes()[:100] == flipped[:100]
-    assert not bad, len(bad).__str__()+"\n".join(map(str,bad[:8]))
+    assert not bad, bad[:5]

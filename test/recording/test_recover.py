@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cut files made whole: nothing invented, nothing lost before the cut chunk.
 
-The second time nothing changes.
+What is lost is counted or said to be unknown. The second time nothing changes.
 """
 
+import errno
 import fcntl
 import json
 import os
@@ -14,12 +15,14 @@ import yaml
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Chunk, Header
+from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC, CompressionType
 from mcap.writer import Writer as TheirWriter
 from recording.conftest import ABOUT, SOAK, START, write
 from rosbags.rosbag2 import Reader
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording.mcap import mending
 from rigid_body_sim.recording.mcap.records import HEAD, to_bytes
 from rigid_body_sim.recording.recover import main, recover
 
@@ -112,26 +115,73 @@ def test_what_is_lost_is_said(tmp_path, capsys):
             'path': str(whole),
             'messages': 1602,
             'lost_messages': 0,
+            'certainty': 'counted',
             'lost_seconds': 0.0,
             'lost_bytes': 0,
+            'doubtful_messages': 0,
             'changed': False,
+            'original': None,
         }
     ]
 
 
-def test_cut_in_the_message_indexes_or_the_tail_loses_nothing(tmp_path):
+def test_cut_in_the_tail_loses_nothing(tmp_path):
     whole = write(tmp_path / 'bag') / 'bag_0.mcap'
     messages, content = messages_of(whole), whole.read_bytes()
-    for offset in (
-        chunks_of(whole)[-1][0],
-        chunks_of(whole)[-1][0] + 100,
-        len(content) - 1,
-        len(content) - 300,
-    ):
+    for offset in (content.rindex(HEAD.pack(Opcode.DATA_END, 4)) + 13, len(content) - 300,
+                   len(content) - 1):
         (tmp_path / 'cut.mcap').write_bytes(content[:offset])
         result, = recover(tmp_path / 'cut.mcap')
         assert messages_of(tmp_path / 'cut.mcap') == messages
         assert str(result).endswith(f'made whole, {len(messages)} messages kept, lost nothing')
+
+
+@pytest.mark.parametrize('place', [0, 100, 'chunk 5'])
+def test_what_followed_a_cut_is_not_known_unless_metadata_yaml_tells(tmp_path, place):
+    folder = write(tmp_path / 'bag')
+    whole = folder / 'bag_0.mcap'
+    messages, ends = messages_of(whole), chunks_of(whole)
+    end, count = ends[4] if place == 'chunk 5' else (ends[-1][0] + place, len(messages))
+    content = whole.read_bytes()[:end]
+    (tmp_path / 'cut.mcap').write_bytes(content)
+    result, = recover(tmp_path / 'cut.mcap')
+    assert messages_of(tmp_path / 'cut.mcap') == messages[:count]
+    assert result.certainty == 'unknown'
+    assert 'what is lost is not known: the file does not tell how many' in str(result)
+    whole.write_bytes(content)
+    result, = recover(folder)
+    assert (result.lost_messages, result.certainty) == (len(messages) - count, 'counted')
+    assert 'not known' not in str(result)
+
+
+@pytest.mark.parametrize('compression_name', ['zstd', 'lz4', 'none'])
+def test_cut_in_the_first_chunk_is_not_said_to_cost_nothing(tmp_path, compression_name):
+    whole = write(tmp_path / 'bag', compression_name=compression_name) / 'bag_0.mcap'
+    messages = messages_of(whole)
+    (tmp_path / 'cut.mcap').write_bytes(whole.read_bytes()[:chunks_of(whole)[0][0] - 3000])
+    result, = recover(tmp_path / 'cut.mcap')
+    assert result.messages < chunks_of(whole)[0][1]
+    assert messages_of(tmp_path / 'cut.mcap') == messages[:result.messages]
+    assert result.certainty == 'unknown'
+    assert 'nothing' not in str(result)
+    assert 'about 0' not in str(result)
+
+
+def test_a_cut_chunk_of_several_blocks_keeps_those_that_are_there(tmp_path):
+    path = tmp_path / 'theirs.mcap'
+    with open(path, 'wb') as stream:
+        writer = TheirWriter(stream, chunk_size=2**20, compression=CompressionType.ZSTD)
+        writer.start('ros2', 'theirs')
+        schema = writer.register_schema('std_msgs/msg/Float64', 'ros2msg', b'float64 data')
+        channel = writer.register_channel('/x', 'cdr', schema)
+        for k in range(20_000):
+            writer.add_message(channel, START + k, os.urandom(20), START + k, k)
+        writer.finish()
+    messages = messages_of(path)
+    os.truncate(path, path.stat().st_size // 2)
+    result, = recover(path)
+    assert messages_of(path) == messages[:result.messages]
+    assert result.messages > 5000
 
 
 def test_whole_recording_is_left_alone(recording):
@@ -184,16 +234,70 @@ def test_split_recording_cut_in_its_last_file(tmp_path):
     )
 
 
-def test_damaged_chunk_is_hidden_and_the_others_are_kept(tmp_path):
+def damaged(path, place):
+    """Change a byte of the fourth chunk's data, counted from its end; return what was there."""
+    end, content = chunks_of(path)[3][0], bytearray(path.read_bytes())
+    content[end + place] ^= 0x55
+    path.write_bytes(content)
+    return bytes(content)
+
+
+def test_messages_under_a_wrong_checksum_are_kept_and_said_to_be_doubtful(tmp_path):
+    whole = write(tmp_path / 'bag', compression_name='none') / 'bag_0.mcap'
+    messages, content = messages_of(whole), damaged(whole, -2000)
+    result, = recover(whole)
+    found = messages_of(whole)
+    assert sum(one != other for one, other in zip(found, messages, strict=True)) == 1
+    assert (result.lost_messages, result.doubtful_messages) == (0, 400)
+    assert '400 of them are doubtful: the checksum over them is wrong' in str(result)
+    assert str(result).endswith('the file as it was: bag_0.mcap.orig')
+    assert (whole.parent / 'bag_0.mcap.orig').read_bytes() == content
+    with open(whole, 'rb') as stream:       # no checksum vouches for them
+        chunks = [record for record in StreamReader(stream, emit_chunks=True).records
+                  if isinstance(record, Chunk)]
+    assert [chunk.uncompressed_crc == 0 for chunk in chunks] == [k == 3 for k in range(10)]
+    assert recover(whole)[0].changed is False
+
+
+def test_a_chunk_that_cannot_be_decompressed_is_counted_by_its_indexes(tmp_path):
     whole = write(tmp_path / 'bag') / 'bag_0.mcap'
-    messages, end = messages_of(whole), chunks_of(whole)[3][0]
+    messages, begin = messages_of(whole), chunks_of(whole)[2][0]
     content = bytearray(whole.read_bytes())
-    content[end - 2000] ^= 0x55
-    whole.write_bytes(content)
+    content[content.index(b'zstd', begin) + 12] ^= 1       # what a zstd frame begins with
+    for cut in (0, content.rindex(HEAD.pack(Opcode.DATA_END, 4))):
+        path = tmp_path / f'{cut}.mcap'
+        path.write_bytes(content[:cut or None])
+        result, = recover(path)
+        assert messages_of(path) == messages[:1202] + messages[1602:]
+        assert (result.lost_messages, result.certainty) == (400, 'unknown' if cut else 'counted')
+        assert result.lost_seconds == pytest.approx(0.101, abs=0.002)
+
+
+def test_lost_messages_between_two_chunks_are_counted_by_their_sequence(tmp_path):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    messages, content = messages_of(whole), bytearray(whole.read_bytes())
+    begin, end = chunks_of(whole)[2][0], content.rindex(HEAD.pack(Opcode.DATA_END, 4))
+    stop = content.index(b'zstd', chunks_of(whole)[3][0]) - 41
+    content[begin + 6600:stop] = random.Random(8).randbytes(stop - begin - 6600)
+    whole.write_bytes(content[:end])
+    (tmp_path / 'bag' / 'metadata.yaml').unlink()
     result, = recover(whole)
     assert messages_of(whole) == messages[:1202] + messages[1602:]
-    assert result.lost_messages == pytest.approx(400, abs=3)
-    assert recover(whole)[0].changed is False
+    assert (result.lost_messages, result.certainty) == (400, 'unknown')
+
+
+@pytest.mark.parametrize('moment', ['written', 'verified'])
+def test_a_mending_that_dies_leaves_the_original(tmp_path, monkeypatch, moment):
+    whole = write(tmp_path / 'bag') / 'bag_0.mcap'
+    content = damaged(whole, -2000)
+    name = {'written': '_verify', 'verified': 'read_metadata'}[moment]
+
+    def dies(*_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+    monkeypatch.setattr(mending, name, dies)
+    assert main([str(whole)]) == 1
+    assert whole.read_bytes() == content
+    assert sorted(path.name for path in whole.parent.iterdir()) == ['bag_0.mcap', 'metadata.yaml']
 
 
 @pytest.mark.parametrize('compression', list(CompressionType))

@@ -225,9 +225,9 @@ def _plain(source, begin, _name, lengths, claims, cut):
         records = source.read(begin, length)
         if checksum and _right(records, checksum):
             return records, records, True, begin + length
-        agree = follows(source, begin + length, None, 1) + (records[:1] == bytes([MESSAGE]))
-        found.append((agree, -length, records))
-    if found and max(found)[0] == 2:
+        if follows(source, begin + length, None, 1):
+            found.append((records[0] in (MESSAGE, *DESCRIPTIONS), -length, records))
+    if found:
         records = max(found)[2]
         return None, records, False, begin + len(records)
     if cut and source.size - begin <= LARGEST_CHUNK:

@@ -571,9 +571,6 @@ class Scan:
             end = offset + HEAD.size + size
             if record and kind != Opcode.HEADER and (size == length or kind == opcode) and (
                     follows(source, end, None, 2)):
-                data = to_bytes(record)
-                if kind in DESCRIPTIONS:
-                    self.contents.note(record)
                 break
         else:
             end = offset + HEAD.size + length
@@ -582,7 +579,11 @@ class Scan:
                            and self._with_length(offset, end)) else 0
         self.damages.append(Damage(0, lost=0))
         self._drop()
-        self.parts.append(Replaced(data))
+        if kind in DESCRIPTIONS:
+            self.contents.note(record)
+            self._bad_descriptions = True
+        else:
+            self.parts.append(Replaced(to_bytes(record)))
         self.end = end
         return end
 
@@ -594,8 +595,8 @@ class Scan:
             return False
         data = HEAD.pack(MESSAGE, length) + record[HEAD.size:]
         time = int(heads(data[:HEADS.itemsize], np.zeros(1, int))[0]['log_time'])
-        seen = self._part.contents if self._part else self.contents
-        if not seen.counts or abs(time - seen.end_time) > _FAR:
+        known = [one for one in (self._part, self.told) if one] or [self]
+        if any(one.contents.counts and abs(time - one.contents.end_time) > _FAR for one in known):
             return False
         self.contents.add_messages({channel: 1}, time, time)
         self.damages.append(Damage(0, lost=0))
@@ -701,10 +702,10 @@ def _among(contents, record):
 
 
 def _pair(records, needed):
-    """Give the only record that nobody needs the only number that is missing; return if so."""
+    """Copy the only record that nobody needs to the only number that is missing; return if so."""
     missing, spare = needed - set(records), set(records) - needed
     if not (len(missing) == len(spare) == 1):
         return False
     number = missing.pop()
-    records[number] = dataclasses.replace(records.pop(spare.pop()), id=number)
+    records[number] = dataclasses.replace(records[spare.pop()], id=number)
     return True
