@@ -10,6 +10,9 @@ FLOOR = 4 * np.finfo(float).eps
 """Round-off floor of a relative residual: a few units in the last place, for each value is made of a handful of products and sums."""
 
 
+MOST_LEVELS = 100
+
+
 class Residual:
     """Takes values of a quantity that is constant in some segments of the history.
 
@@ -38,7 +41,8 @@ class Residual:
         self.first = self.last = None
         self.least, self.greatest = np.full(size, np.inf), np.full(size, -np.inf)
         self.largest = self.last_residual = 0.0
-        self.judged = 0
+        self.judged = self.stretches = 0
+        self.levels = []
 
     def add(self, stamps, times, values):
         """Take values (n,) or (n, size): their stamps (ns) and times from the start (s)."""
@@ -55,6 +59,7 @@ class Residual:
         which = np.searchsorted(begins, np.arange(len(values)), side='right') - 1
         references = np.concatenate([values[begins], [self._reference]])[which]
         self._place, self._reference = places[-1], references[-1]
+        self._note_levels(times[begins], values[begins], places[begins])
         kept = self._kept[places]
         if not kept.any():
             return
@@ -66,6 +71,14 @@ class Residual:
         self.judged += len(residuals)
         self.largest = max(self.largest, float(np.abs(residuals).max()))
         self.last_residual = float(residuals[-1])
+
+    def _note_levels(self, times, values, places):
+        """Note where stretches begin in which the quantity is constant, and at what value."""
+        for time, value, place in zip(times.tolist(), values, places.tolist(), strict=True):
+            self.stretches += bool(self._kept[place])
+            if self._kept[place] and len(self.levels) < MOST_LEVELS:
+                self.levels.append({'from': time, 'value': _plain(value),
+                                    'begun_by': self._history.segments[place].begun_by})
 
     @property
     def not_kept_from(self):
@@ -81,7 +94,12 @@ class Residual:
         return self._residuals.curve()
 
     def summary(self):
-        """Return a dict: first, last, least and greatest value; the largest and the last residual (None where it is never constant)."""
+        """Return a dict of plain data.
+
+        It has the first, last, least and greatest value; the largest and the last residual (None
+        where it is never constant); how many stretches there are in which it is constant, and of
+        the first MOST_LEVELS of them when each begins (s), by what, and the value.
+        """
         seen = {
             name: _plain(getattr(self, name)) if self.first is not None else None
             for name in ('first', 'last', 'least', 'greatest')
@@ -91,6 +109,8 @@ class Residual:
             'largest_residual': self.largest if self.judged else None,
             'last_residual': self.last_residual if self.judged else None,
             'judged_ticks': self.judged,
+            'stretches': self.stretches,
+            'levels': self.levels,
         }
 
 

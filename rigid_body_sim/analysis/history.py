@@ -17,7 +17,7 @@ KEEP_MOMENTUM = {'gravity', 'strike', 'internal_dissipation'}
 class Mark:
     """Something that happened.
 
-    `stamp` (ns) from which on it holds; `kind`: ``event``, ``commands``, ``reset``,
+    `stamp` (ns) from which on it holds; `kind`: ``event``, ``strike``, ``commands``, ``reset``,
     ``parameters``, ``gap``; `name` for people; `values`.
     """
 
@@ -42,6 +42,8 @@ class Segment:
         known.
     held : bool
         Whether a wrench acts.
+    begun_by : str
+        The kind of Mark that it begins with; ``''`` for the first one.
     """
 
     stamp: int
@@ -49,6 +51,7 @@ class Segment:
     rate: float
     pace: float
     held: bool = False
+    begun_by: str = ''
 
     @property
     def keeps_energy(self):
@@ -85,7 +88,7 @@ class History:
         )
 
 
-def history(entries, events, first):
+def history(entries, events, first, end):
     """Return the History of a run.
 
     Parameters
@@ -96,17 +99,21 @@ def history(entries, events, first):
         Stamps and DiagnosticStatus messages.
     first : Segment
         As the recording begins.
+    end : int
+        Stamp of its last tick, ns.
     """
-    marks = sorted(
-        [*filter(None, map(_mark, entries)), *(_event(*event) for event in events)],
-        key=lambda mark: mark.stamp,
-    )
     segments = [first]
     for entry in entries:
         changed = _changed(segments[-1], entry)
         if changed:
-            segments.append(dataclasses.replace(changed, stamp=entry['log_time']))
-    return History(tuple(marks), tuple(_with_strikes(segments, entries)))
+            segments.append(dataclasses.replace(changed, stamp=entry['log_time'],
+                                                begun_by=entry['kind']))
+    segments, strikes = _with_strikes(segments, entries, end)
+    marks = sorted(
+        [*filter(None, map(_mark, entries)), *(_event(*event) for event in events), *strikes],
+        key=lambda mark: mark.stamp,
+    )
+    return History(tuple(marks), tuple(segments))
 
 
 def _changed(segment, entry):
@@ -133,26 +140,32 @@ def _changed(segment, entry):
     return None
 
 
-def _with_strikes(segments, entries):
-    """Return the segments, cut where the scene's own strikes act: at their times since the start, the last reset or another scene."""
+def _with_strikes(segments, entries, end):
+    """Return the segments, cut where the scene's own strikes act, and the Marks of the strikes.
+
+    They act at their times since the start, the last reset or another scene.
+    """
     starts = {
         entry['log_time']
         for entry in entries
         if entry['kind'] == 'reset' or not entry.get('keeps_state', True)
     }
-    cut, begin = [], segments[0].stamp
+    cut, marks, begin = [], [], segments[0].stamp
     for segment, following in zip(segments, [*segments[1:], None], strict=True):
-        begin = segment.stamp if segment.stamp in starts else begin
+        fresh = segment is segments[0] or segment.stamp in starts
+        begin = segment.stamp if fresh else begin
+        until = min(end, following.stamp - 1) if following else end
         cut.append(segment)
-        times = (
-            [effect.time for effect in segment.scene.effects if effect.as_impulse is not None]
-            if segment.scene
-            else []
-        )
-        stamps = sorted(begin + round(time * NANOSECONDS) for time in times)
-        cut += [dataclasses.replace(segment, stamp=stamp) for stamp in stamps
-                if segment.stamp < stamp and (following is None or stamp < following.stamp)]
-    return cut
+        strikes = [(begin + round(effect.time * NANOSECONDS), effect)
+                   for effect in (segment.scene.effects if segment.scene else ())
+                   if effect.as_impulse is not None]
+        for stamp, effect in sorted(strikes, key=lambda strike: strike[0]):
+            if not segment.stamp + (not fresh) <= stamp <= until:
+                continue
+            marks.append(Mark(stamp, 'strike', effect.name, {'time': effect.time}))
+            if stamp > segment.stamp:
+                cut.append(dataclasses.replace(segment, stamp=stamp, begun_by='strike'))
+    return cut, marks
 
 
 def _mark(entry):

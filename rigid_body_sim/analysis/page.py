@@ -26,6 +26,7 @@ MOST_MARKS = 500
 MOST_POINTS = 3000
 """Points of a curve; of a longer one each stretch shows its extremes."""
 PANEL_HEIGHT, SPACE_HEIGHT = 170, 560    # px
+CAUSES = {'strike': 'strikes', 'reset': 'resets', 'parameters': 'changes of parameters'}
 HERE = pathlib.Path(__file__).parent
 SPEEDS = {'0.01': '1/100', '0.1': '1/10', '1': 'real time', '10': '10 x', '100': '100 x'}
 
@@ -120,7 +121,11 @@ def _verdict(found):
         what = ' and '.join(f'{name} to {size:.1e}' for name, size in kept.items())
         floor = ', which is round-off' if worst <= FLOOR else ''
         said = f'{what} (relative{floor})'
-        text = f'<b>{"Kept" if worst <= 10.0 * accuracy else "Not kept"}:</b> {said}.'
+        parts = max(found[key]['stretches'] for key in names)
+        within = f' within each of {parts} stretches' if parts > 1 else ''
+        text = f'<b>{"Kept" if worst <= 10.0 * accuracy else "Not kept"}{within}:</b> {said}.'
+        if parts > 1:
+            text += ' ' + _between(found)
     else:
         text = 'Neither energy nor L² is constant in this scene; the ledger has their balance.'
     ticks = found['timing']['ticks']
@@ -131,9 +136,18 @@ def _verdict(found):
         text += (f' {len(seen)} predicted frequenc{"y was" if len(seen) == 1 else "ies were"} '
                  f'measured, within {off:.1e}.')
     counts = [f'{count} x {html.escape(name)}' for name, count in found['events'].items()]
+    counts += [f'{found["strikes"]} x strike'] if found['strikes'] else []
     counts += [f'{found["commands"]} ticks with commands'] if found['commands'] else []
     text += f' {", ".join(counts)}.' if counts else ''
     return f'<p class="verdict{"" if good else " bad"}">{text}</p>'
+
+
+def _between(found):
+    """Return the sentence on what changed the energy between the stretches in which it is kept."""
+    levels = found['energy']['levels'] or found['angular_momentum_squared']['levels']
+    causes = sorted({level['begun_by'] for level in levels[1:]} - {''})
+    names = [CAUSES.get(cause, cause) for cause in causes]
+    return f'It is changed by {" and ".join(names)} between them.' if names else ''
 
 
 def heading_of(moves):

@@ -103,8 +103,9 @@ def _source(recording, namespace, topics):
     entries = [entry for entry in recording.journal() if entry['topic'] == topics.get('journal')]
     ticking = [recording.topics[topics[name]] for name in EVERY_TICK if name in topics]
     start = min(_first_time(recording, topic.name) for topic in ticking)
+    end = _last_time(recording, ticking[0].name)
     with journal_of(recording.path):
-        run, begin, happened = _run(recording, topics, entries, start)
+        run, begin, happened = _run(recording, topics, entries, start, end)
     return Source(
         namespace,
         topics,
@@ -114,12 +115,12 @@ def _source(recording, namespace, topics):
         happened,
         entries,
         start,
-        _last_time(recording, ticking[0].name),
+        end,
         max(topic.count for topic in ticking),
     )
 
 
-def _run(recording, topics, entries, start):
+def _run(recording, topics, entries, start, end):
     """Return what the run was asked for, the journal's first entry and the History."""
     begin = next(
         (entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry), {}
@@ -136,7 +137,7 @@ def _run(recording, topics, entries, start):
     held = not entries and bool({'cmd_wrench', 'cmd_impulse'} & set(topics))
     events = recording.decoded(topics['events']) if 'events' in topics else ()
     rate = run['rate'] if run else _estimated_rate(recording, topics)
-    happened = history(entries, events, Segment(start, scene, rate, pace, held))
+    happened = history(entries, events, Segment(start, scene, rate, pace, held), end)
     return run, begin, happened
 
 

@@ -27,6 +27,7 @@ def summary(measured, spectrum=None, balance=None):
         'round_off_floor': FLOOR,
         'flips': measured.flips.count if measured.flips else None,
         'events': dict(events),
+        'strikes': marks['strike'],
         'commands': marks['commands'],
         'resets': marks['reset'],
         'parameter_changes': marks['parameters'],
@@ -100,6 +101,7 @@ def lines(found):
         if line['measured'] is not None
     ]
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
+    others += [f'{found["strikes"]} x strike'] if found['strikes'] else []
     others += [
         f'{found[kind]} {name}'
         for kind, name in (
@@ -127,7 +129,15 @@ def _quantity(values, unit):
         return 'not recorded'
     if values['largest_residual'] is None:
         return f'{values["first"]:.9g} to {values["last"]:.9g} {unit} (not constant in this scene)'
-    return f'{values["first"]:.9g} {unit}; {_residual(values)}'
+    levels, kept = values['levels'], _residual(values)
+    if values['stretches'] == 1 and levels[0]['from'] == 0.0:
+        return f'{values["first"]:.9g} {unit}; {kept}'
+    told = [f'{level["value"]:.9g} {unit} from {level["from"]:.6g} s on'
+            + (f' ({level["begun_by"]})' if level['begun_by'] else '')
+            for level in levels[:TOLD]]
+    more = values['stretches'] - TOLD
+    told += [f'and in {more} more stretches'] if more > 0 else []
+    return f'{", ".join(told)}; within each {kept}'
 
 
 def _residual(values):

@@ -57,9 +57,9 @@ def test_the_page_is_complete_in_itself_and_small(written):
 def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
     text = written.read_text(encoding='utf-8')
     assert text.index('class="verdict') < text.index('<canvas') < text.index('id="time0"') < text.index('<details>')
-    assert '<b>Kept:</b> energy' in text and 'none lost' in text
-    found = {'energy': {'largest_residual': 0.1}, 'angular_momentum_squared': {'largest_residual': None},
-             'run': {}, 'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {}, 'commands': 0}
+    assert '<b>Kept within each of 2 stretches:</b> energy' in text and 'none lost' in text
+    found = {'energy': {'largest_residual': 0.1, 'stretches': 1}, 'strikes': 0,
+             'angular_momentum_squared': {'largest_residual': None, 'stretches': 0}, 'run': {}, 'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {}, 'commands': 0}
     said = page._verdict(found)
     assert 'verdict bad' in said and 'Not kept' in said and '2 lost' in said
 
