@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from tqdm import tqdm
 
-from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -38,12 +38,16 @@ class Ensemble(Sequence):
         Names of the parts that it holds.
     events : list of list of Event, or None
         What happened to each body, where that was asked for; the ticks are None.
+    choices : list of (Choice, array of int)
+        Each method that was chosen, and the numbers of its bodies; empty for a part of an
+        Ensemble.
     """
 
-    __slots__ = ('columns', 'events', 'vector')
+    __slots__ = ('choices', 'columns', 'events', 'vector')
 
-    def __init__(self, vector, columns=tuple(PLACES), events=None):
+    def __init__(self, vector, columns=tuple(PLACES), events=None, choices=()):
         self.vector, self.columns, self.events = vector, tuple(columns), events
+        self.choices = list(choices)
 
     def __len__(self):
         return len(self.vector)
@@ -69,8 +73,8 @@ class Ensemble(Sequence):
 
 def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accuracy: float = 1e-12,
              *, overrides: Mapping | None = None, columns: Sequence[str] | None = None, out=None,
-             events: bool = False, memory: float | None = None,
-             progress: bool = False) -> Ensemble:
+             events: bool = False, memory: float | None = None, progress: bool = False,
+             horizon: float = HORIZON) -> Ensemble:
     """Return the states of many bodies at many times.
 
     Parameters
@@ -100,6 +104,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
         nothing is allocated but a block.
     progress : bool
         Whether to show a bar on stderr.
+    horizon : float
+        Duration over which the accuracy is asked for, s.
 
     Returns
     -------
@@ -124,7 +130,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
     shape = (len(starts), len(times), sum(map(_width, names)))
     out = _result(shape, out, memory)
     # one method for all bodies, or one for each body where their scenes differ
-    groups = [(choose(one, integrator, accuracy), bodies)
+    groups = [(choose(one, integrator, accuracy, horizon=horizon), bodies)
               for one, bodies in _alike(scenes, starts)]
     with tqdm(total=len(starts), unit=' bodies', disable=not progress, leave=False) as bar:
         if len(groups) == 1:
@@ -145,7 +151,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
         for choice, bodies in groups:
             for body in bodies:
                 found[body] = _events(choice, starts[body], times)
-    return Ensemble(out, names, found)
+    return Ensemble(out, names, found, groups)
 
 
 def _scenes(scene, overrides):

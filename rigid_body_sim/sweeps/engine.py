@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The engine of a sweep: pieces of work go to an executor, and what becomes of them is noted.
+
+Which piece runs where and when has no influence on any bit of the result.
+"""
+
+import concurrent.futures
+import contextlib
+import itertools
+import math
+import os
+import time
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.sweeps.runs import compute
+
+BLOCK_BYTES = 2**25
+"""Largest size of the states of a block, and of its results."""
+SECONDS = 1.0
+"""Of work in a block that goes to another process or into a store, at most."""
+PIECES = 8
+"""Blocks for each worker, where there is enough work: the last one to finish is short then."""
+FIRST_PIECE = 1024
+"""Runs of the first pieces, from which is learned how long they take."""
+PATIENCE = 5.0
+"""Between two looks at the workers, s."""
+LOOK = 0.2    # s, within which a forecast is measured
+
+
+class Stopped(RuntimeError):
+    """The workers are gone, or the disk refuses; what is done is in the store."""
+
+
+def cores():
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+class Workers:
+    """Where the work goes: an executor, or a client of Dask.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor, distributed.Client or None
+        By default threads of this process.
+    """
+
+    def __init__(self, executor):
+        self.local = executor is None
+        self._client = executor if hasattr(executor, 'get_executor') else None
+        if executor is not None and self._client is None and \
+                not isinstance(executor, concurrent.futures.Executor):
+            raise BadInput('executor', f'got {type(executor).__name__}',
+                           'a concurrent.futures.Executor or a distributed.Client')
+        if self._client is not None:
+            self._executor = executor.get_executor(pure=False)
+        else:
+            self._executor = executor or concurrent.futures.ThreadPoolExecutor(cores())
+        self._looked, self._count = -math.inf, 0
+
+    def submit(self, function, *arguments):
+        """Return the Future of a call; raises Stopped where the executor takes no more."""
+        try:
+            return self._executor.submit(function, *arguments)
+        except (RuntimeError, OSError) as error:
+            raise Stopped(f'the workers are gone ({_brief(error)})') from error
+
+    @property
+    def count(self):
+        """How many blocks can run at the same time, as far as is known."""
+        if time.monotonic() - self._looked > PATIENCE:
+            self._looked = time.monotonic()
+            if self._client is not None:
+                self._count = sum(self._client.ncores().values())
+            else:
+                self._count = getattr(self._executor, '_max_workers', None) or cores()
+        return max(1, self._count)
+
+    def check(self):
+        """Raise Stopped where the scheduler of Dask is gone."""
+        if self._client is not None and self._client.status not in ('running', 'newly-created'):
+            raise Stopped('the Dask scheduler is gone')
+
+    def close(self):
+        """End the threads that were started here; another's executor stays open."""
+        if self.local:
+            self._executor.shutdown()
+
+
+def _brief(error):
+    return ' '.join(f'{type(error).__name__}: {error}'.split())[:200]
+
+
+def run(workers, pieces, submit, take, window):
+    """Run pieces of work; return when all are done.
+
+    Parameters
+    ----------
+    workers : Workers
+    pieces : iterator
+        What :func:`submit` takes; asked for as late as possible.
+    submit : callable
+        (workers, piece) -> Future.
+    take : callable
+        Called with the Outcome of each.
+    window : callable
+        () -> the number of pieces that may wait or run.
+
+    Raises
+    ------
+    Stopped, BadInput, KeyboardInterrupt
+        What runs is waited for and taken first, so nothing of it is lost.
+    """
+    pending = set()
+    try:
+        while True:
+            for piece in itertools.islice(pieces, max(0, window() - len(pending))):
+                pending.add(submit(workers, piece))
+            if not pending:
+                return
+            finished, pending = concurrent.futures.wait(
+                pending, PATIENCE, concurrent.futures.FIRST_COMPLETED)
+            if not finished:
+                workers.check()
+            for future in finished:
+                take(_result(future))
+    except BaseException:
+        for future in pending:
+            future.cancel()
+        # a second Ctrl-C ends this wait
+        finished, _ = concurrent.futures.wait(pending, 30.0)
+        for future in finished:
+            if not future.cancelled() and future.exception() is None:
+                with contextlib.suppress(OSError):
+                    take(future.result())
+        raise
+
+
+def _result(future):
+    """Return what a Future has; what a person can mend becomes a line."""
+    try:
+        return future.result()
+    except BadInput:
+        raise
+    except ImportError as error:
+        raise BadInput('worker', f'cannot import what it needs ({error})',
+                       'install this version of rigid_body_sim on all workers') from error
+    except (concurrent.futures.CancelledError, concurrent.futures.BrokenExecutor) as error:
+        raise Stopped(f'the workers are gone ({_brief(error)})') from error
+    except OSError as error:
+        if error.strerror is None:
+            raise Stopped(f'the workers are gone ({_brief(error)})') from error
+        raise Stopped(f'the disk refuses ({error.strerror})') from error
+    except Exception as error:
+        if type(error).__name__ in ('KilledWorker', 'FutureCancelledError'):
+            raise Stopped(f'the workers are gone ({_brief(error)})') from error
+        raise
+
+
+def seconds_a_run(plan, patience=LOOK):
+    """Return what a run takes on one core, s, measured on some runs of the middle.
+
+    Kernels are compiled on the way, so that workers on this machine find them.
+    """
+    size = plan.spec.size
+    first = max(0, min(plan.template_run, size - 1))
+    compute(plan, first, first + 1)
+    spent, count = 0.0, 1
+    most = max(1, min(size, BLOCK_BYTES // plan.working_bytes))
+    while True:
+        first = max(0, min((size - count) // 2, size - count))
+        begin = time.perf_counter()
+        compute(plan, first, first + count)
+        took = time.perf_counter() - begin
+        spent += took
+        if count >= most or spent + 4.0 * took > patience:
+            return took / count
+        count = min(most, 4 * count)
+
+
+def block_runs(plan, seconds, workers):
+    """Return how many runs a block of a store has, where a run takes `seconds`."""
+    whole = seconds * plan.spec.size
+    target = min(SECONDS, max(0.05, whole / (PIECES * workers)))
+    return max(1, min(int(target / seconds), BLOCK_BYTES // plan.working_bytes))
+
+
+def pieces_in_memory(plan, workers, rate):
+    """Yield (first, stop, number) of pieces for a result in memory.
+
+    Parameters
+    ----------
+    plan : Plan
+    workers : Workers
+    rate : callable
+        () -> runs per second of a worker, None while unknown.
+    """
+    size, first = plan.spec.size, 0
+    most = max(1, BLOCK_BYTES // plan.working_bytes)
+    for number in itertools.count():
+        if first >= size:
+            return
+        known = rate()
+        count = FIRST_PIECE if known is None else int(known * SECONDS)
+        fair = -(-(size - first) // (2 * workers.count))
+        stop = min(size, first + max(1, min(count, fair, most)))
+        yield first, stop, number
+        first = stop

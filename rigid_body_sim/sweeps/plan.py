@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The plan of a sweep: its runs in order, the values of each, and the variables of the result.
+
+Runs are numbered over the dimensions like the elements of an array, the last one fastest. A plan
+is made of the spec alone, so that every worker makes the same one.
+"""
+
+import importlib
+import json
+import math
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.motions import MOTIONS
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import AXES, PLACES, STATE_SIZE, UNITS
+from rigid_body_sim.sweeps.quantities import QUANTITIES, unit_of_key
+
+DONE, GAVE_UP, REFUSED, FUNCTION_FAILED, NOT_FINITE, NOT_RUN = 0, 1, 2, 3, 4, -1
+STATUSES = {NOT_RUN: 'not_run', DONE: 'done', GAVE_UP: 'method_gave_up',
+            REFUSED: 'scene_refused', FUNCTION_FAILED: 'function_failed',
+            NOT_FINITE: 'not_finite'}
+METHOD_NAMES = ('exact', *METHODS)
+DOUBLE = np.dtype(float)
+TRIES = 64
+GOLDEN = 0.5 * (5.0 ** 0.5 - 1.0)    # its multiples spread evenly
+RUN = 'run'
+TEXT = 'status_text'
+_PLACE = re.compile(r'initial\.(angular_velocity|position|velocity)(?:\.([0-2])|\[([0-2])\])?')
+SPIN = 'initial.spin'
+_WHOLE = {'initial.orientation': 'orientation', SPIN: 'angular_velocity'}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One array of the result.
+
+    Attributes
+    ----------
+    name : str
+    dims : tuple of str
+        Behind those of the runs.
+    shape : tuple of int
+        Along `dims`.
+    dtype : numpy.dtype
+    attrs : dict
+        Among them ``long_name`` and ``units``.
+    """
+
+    name: str
+    dims: tuple = ()
+    shape: tuple = ()
+    dtype: np.dtype = DOUBLE
+    attrs: dict = field(default_factory=dict)
+
+    @property
+    def fill(self):
+        """What a run that failed has."""
+        return math.nan if self.dtype.kind == 'f' else NOT_RUN
+
+    @property
+    def bytes(self):
+        """Bytes of one run."""
+        return self.dtype.itemsize * math.prod(self.shape)
+
+
+class Plan:
+    """The runs of a Spec.
+
+    Parameters
+    ----------
+    spec : Spec
+    outputs : dict, optional
+        What :func:`outputs_of` found of each function in `keep`; without it there are no
+        variables of functions.
+
+    Attributes
+    ----------
+    dims : dict of str to int
+        The number of values of each dimension.
+    template : Scene
+        A run of the sweep that is valid; it has all its keys.
+    template_run : int
+    direct : dict of str to slice
+        Keys that set places of the start and change nothing else of a scene that
+        `sets_directly`.
+    horizon : float
+        Duration over which the accuracy is asked for: to the last time, s.
+    variables : list of Variable
+
+    Raises
+    ------
+    BadInput
+        All of TRIES runs, spread over the sweep, are refused, or an event does not exist.
+    """
+
+    def __init__(self, spec, outputs=None):
+        self.spec = spec
+        self.dims = {key: len(values) for key, values in spec.vary.items()}
+        if spec.runs:
+            self.dims[RUN] = spec.runs
+        self.horizon = float(spec.times[-1]) or HORIZON
+        self.template, self.template_run = self._template()
+        self.direct = _direct_places([*spec.vary, *spec.sample])
+        self.slow = [key for key in (*spec.vary, *spec.sample) if key not in self.direct]
+        self.wants = {one.kind for one in spec.keep}
+        _check_events(spec.keep)
+        self.outputs = outputs or {}
+        self.variables = _variables(self)
+
+    @property
+    def bytes(self):
+        """Bytes of the result of one run."""
+        return sum(one.bytes for one in self.variables)
+
+    @property
+    def working_bytes(self):
+        """Bytes that computing one run takes: its states at all times, and its result."""
+        return len(self.spec.times) * STATE_SIZE * 8 + self.bytes
+
+    def places(self, first, stop):
+        """Return the place along each dimension of the runs from `first` up to `stop`."""
+        shape = tuple(self.dims.values())
+        runs = np.arange(first, stop)
+        found = (runs,) if len(shape) == 1 else np.unravel_index(runs, shape)
+        return dict(zip(self.dims, found))
+
+    def values(self, first, stop):
+        """Return the values of each key at the runs from `first` up to `stop`.
+
+        Returns
+        -------
+        dict of str to array (n, ...) or list of n values
+        """
+        places = self.places(first, stop) if self.spec.vary else {}
+        found = {}
+        for key, values in self.spec.vary.items():
+            if isinstance(values, np.ndarray):
+                found[key] = values[places[key]]
+            else:
+                found[key] = [values[place] for place in places[key].tolist()]
+        for key, sampled in self.spec.sample.items():
+            found[key] = self._samples(sampled, first, stop)
+        return found
+
+    def _samples(self, sampled, first, stop):
+        runs = self.spec.runs
+        if stop - first >= runs:
+            return sampled.of_runs(0, runs)[np.arange(first, stop) % runs]
+        begin, end = first % runs, (stop - 1) % runs + 1
+        if begin < end:
+            return sampled.of_runs(begin, end)
+        return np.concatenate([sampled.of_runs(begin, runs), sampled.of_runs(0, end)])
+
+    def overrides(self, run):
+        """Return the value of each key at one run, as ``--set`` takes them."""
+        return {key: _plain(values[0]) for key, values in self.values(run, run + 1).items()}
+
+    def scene_of(self, run):
+        """Return the scene of one run; raises BadInput where it is refused."""
+        return parse_scene(self.spec.scene, self.overrides(run), f'run {run}')
+
+    def _template(self):
+        size, problem = self.spec.size, None
+        for run in dict.fromkeys(int(size * (k * GOLDEN % 1.0)) for k in range(TRIES)):
+            try:
+                return self.scene_of(run), run
+            except BadInput as error:
+                problem = problem or error
+        raise problem
+
+
+def _plain(value):
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def _direct_places(keys):
+    """Return the places of the start that keys set, where each sets its own and no more."""
+    found = {}
+    for key in keys:
+        match = _PLACE.fullmatch(key)
+        if match:
+            part, digit = PLACES[match[1]], match[2] or match[3]
+            found[key] = part if digit is None else \
+                slice(part.start + int(digit), part.start + int(digit) + 1)
+        elif key in _WHOLE:
+            found[key] = PLACES[_WHOLE[key]]
+    taken = [place for part in found.values() for place in range(part.start, part.stop)]
+    others = [key for key in keys if key.startswith('initial') and key not in found]
+    # two ways to say one thing take each other's place: such scenes are read one by one
+    return found if len(set(taken)) == len(taken) and not others else {}
+
+
+def _check_events(keep):
+    asked = [one for one in keep if one.kind in ('first', 'all')]
+    # scenes without a closed form have events of the same names
+    known = {name for motion in MOTIONS if asked
+             for name in importlib.import_module(motion).EVENTS}
+    for one in asked:
+        if one.what not in known:
+            raise BadInput(f'keep: {one.kind}', f'got {one.what!r}',
+                           f'an event: {", ".join(sorted(known))}')
+
+
+def word(name):
+    """Return a name that may stand in the name of a variable."""
+    return re.sub(r'\W+', '_', name)
+
+
+def _variables(plan):
+    keep, times = plan.spec.keep, plan.spec.times
+    found = []
+    for one in keep:
+        if one.kind == 'final':
+            found += [Variable(f'final_{part}', (_axis(part),), (len(AXES[part]),), attrs={
+                'long_name': f'{part.replace("_", " ")} at the last time', 'units': UNITS[part]})
+                for part in one.what]
+        elif one.kind == 'states':
+            found += [Variable(part, ('time', _axis(part)), (len(times), len(AXES[part])), attrs={
+                'long_name': part.replace('_', ' '), 'units': UNITS[part]}) for part in one.what]
+        elif one.kind == 'first':
+            found.append(Variable(f'first_{word(one.what)}', attrs={
+                'long_name': f'time of the first {one.what}, NaN if there is none',
+                'units': 's'}))
+        elif one.kind == 'all':
+            event = word(one.what)
+            found += [Variable(f'all_{event}', (event,), (one.most,), attrs={
+                'long_name': f'times of the first {one.most} {one.what} events',
+                'units': 's'}), Variable(f'{event}_count', dtype=np.dtype(np.int32), attrs={
+                    'long_name': f'number of {one.what} events', 'units': '1'})]
+        elif one.kind in ('minimum', 'maximum'):
+            quantity = QUANTITIES[one.what]
+            found.append(Variable(f'{one.kind}_{word(one.what)}', attrs={
+                'long_name': f'{one.kind} over the times of: {quantity.long_name}',
+                'units': quantity.unit}))
+        elif one.kind == 'residuals':
+            found += [Variable(f'{name}_residual', attrs={
+                'long_name': f'{name} residual of the ledger at the last time, relative',
+                'units': '1'}) for name in ('energy', 'momentum')]
+        else:
+            found += [Variable(name, (f'{name}_place',) if size is not None else (),
+                               () if size is None else (size,), attrs={
+                'long_name': f'by the function {one.what}'})
+                for name, size in plan.outputs.get(one.what, ())]
+    names = [one.name for one in found]
+    for place, name in enumerate(names):
+        if name in names[:place] or name in plan.dims:
+            raise BadInput('keep', f'two things have the name {name!r}', 'give one of them')
+    meanings = [STATUSES[value] for value in sorted(STATUSES)]
+    return [
+        *found,
+        Variable('status', dtype=np.dtype(np.int8), attrs={
+            'long_name': 'how the run ended; status_text says why',
+            'flag_values': sorted(STATUSES), 'flag_meanings': ' '.join(meanings)}),
+        Variable('method', dtype=np.dtype(np.int8), attrs={
+            'long_name': 'method', 'flag_values': list(range(len(METHOD_NAMES))),
+            'flag_meanings': ' '.join(METHOD_NAMES)}),
+        Variable('tolerance', attrs={'long_name': 'accuracy that the method was given',
+                                     'units': 'rad'}),
+        Variable('expected_error', dtype=np.dtype(np.float32), attrs={
+            'long_name': 'error of the attitude to expect at the last time, NaN where the '
+                         'method was named and not chosen', 'units': 'rad'}),
+    ]
+
+
+def _axis(part):
+    return 'quaternion' if part == 'orientation' else 'axis'
+
+
+def coordinates(plan):
+    """Return name -> (dims, values, attrs) of all coordinates but those of the samples."""
+    found = {}
+    for key, values in plan.spec.vary.items():
+        attrs = {'long_name': key, 'units': unit_of_key(key)}
+        if not isinstance(values, np.ndarray):
+            values = np.array([value if isinstance(value, str) else json.dumps(value)
+                               for value in values], dtype=object)
+        found[key] = (key,), values, attrs
+    dims = {dim for one in plan.variables for dim in one.dims}
+    if 'time' in dims:
+        found['time'] = ('time',), plan.spec.times, {'long_name': 'time', 'units': 's'}
+    for name, axes in (('quaternion', 'xyzw'), ('axis', 'xyz')):
+        if name in dims or any(sampled.width == len(axes)
+                               for sampled in plan.spec.sample.values()):
+            found[name] = (name,), np.array(list(axes), dtype=object), {}
+    return found
+
+
+def sample_dims(sampled):
+    """Return the dimensions of the coordinate of a sampled key."""
+    return {1: (RUN,), 3: (RUN, 'axis'), 4: (RUN, 'quaternion')}[sampled.width]
+
+
+def sample_attrs(key):
+    """Return the attributes of the coordinate of a sampled key."""
+    return {'long_name': key, 'units': unit_of_key(key)}
