@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from tqdm import tqdm
 
-from rigid_body_sim.choice.choose import HORIZON, choose
+from rigid_body_sim.choice.choose import HORIZON, Choice, choose
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -71,8 +71,8 @@ class Ensemble(Sequence):
         return (np.array if copy else np.asarray)(self.vector, dtype=dtype)
 
 
-def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accuracy: float = 1e-12,
-             *, overrides: Mapping | None = None, columns: Sequence[str] | None = None, out=None,
+def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto',
+             accuracy: float = 1e-12, *, overrides: Mapping | None = None, columns: Sequence[str] | None = None, out=None,
              events: bool = False, memory: float | None = None, progress: bool = False,
              horizon: float = HORIZON) -> Ensemble:
     """Return the states of many bodies at many times.
@@ -87,7 +87,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
     times : array (n,)
         s, in any order.
     integrator, accuracy
-        As for Simulation. In closed form and by most methods each body gets the bits that it has
+        As for Simulation; or a Choice for this scene, which was made before. In closed form and by most methods each body gets the bits that it has
         alone; `taylor` takes eight bodies at once, with other steps to the same accuracy.
     overrides : mapping of str to a value for each body, optional
         ``{'body.mass': masses, 'gravity.g': [9.81, 1.62]}``: parameters that differ from body to
@@ -130,7 +130,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str = 'auto', accurac
     shape = (len(starts), len(times), sum(map(_width, names)))
     out = _result(shape, out, memory)
     # one method for all bodies, or one for each body where their scenes differ
-    groups = [(choose(one, integrator, accuracy, horizon=horizon), bodies)
+    groups = [(integrator if isinstance(integrator, Choice) else
+               choose(one, integrator, accuracy, horizon=horizon), bodies)
               for one, bodies in _alike(scenes, starts)]
     with tqdm(total=len(starts), unit=' bodies', disable=not progress, leave=False) as bar:
         if len(groups) == 1:

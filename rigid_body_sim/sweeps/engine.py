@@ -20,7 +20,7 @@ SECONDS = 1.0
 """Of work in a block that goes to another process or into a store, at most."""
 PIECES = 8
 """Blocks for each worker, where there is enough work: the last one to finish is short then."""
-FIRST_PIECE = 1024
+FIRST_PIECE = 8192
 """Runs of the first pieces, from which is learned how long they take."""
 PATIENCE = 5.0
 """Between two looks at the workers, s."""
@@ -202,7 +202,7 @@ def pieces_in_memory(plan, workers, rate):
             return
         known = rate()
         count = FIRST_PIECE if known is None else int(known * SECONDS)
-        fair = -(-(size - first) // (2 * workers.count))
+        fair = -(-2 * size // (PIECES * workers.count))
         stop = min(size, first + max(1, min(count, fair, most)))
         yield first, stop, number
         first = stop

@@ -5,6 +5,7 @@ Runs are numbered over the dimensions like the elements of an array, the last on
 is made of the spec alone, so that every worker makes the same one.
 """
 
+import functools
 import importlib
 import json
 import math
@@ -13,10 +14,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
-from rigid_body_sim.motions import MOTIONS
+from rigid_body_sim.motions import MOTIONS, absorbing_motion
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import AXES, PLACES, STATE_SIZE, UNITS
 from rigid_body_sim.sweeps.quantities import QUANTITIES, unit_of_key
@@ -88,7 +89,7 @@ class Plan:
     template_run : int
     direct : dict of str to slice
         Keys that set places of the start and change nothing else of a scene that
-        `sets_directly`.
+        `starts_alone_differ`.
     horizon : float
         Duration over which the accuracy is asked for: to the last time, s.
     variables : list of Variable
@@ -112,6 +113,17 @@ class Plan:
         _check_events(spec.keep)
         self.outputs = outputs or {}
         self.variables = _variables(self)
+
+    @functools.cached_property
+    def choice(self):
+        """The Choice of a method for the template; the scenes of a group may differ from it."""
+        return choose(self.template, self.spec.integrator, self.spec.accuracy,
+                      horizon=self.horizon)
+
+    @functools.cached_property
+    def starts_alone_differ(self):
+        """Whether runs of the template differ in their starts alone, see starts_alone_differ."""
+        return starts_alone_differ(self.template, self.spec.integrator)
 
     @property
     def bytes(self):
@@ -173,6 +185,19 @@ class Plan:
             except BadInput as error:
                 problem = problem or error
         raise problem
+
+
+def starts_alone_differ(scene, integrator):
+    """Return whether runs of a scene that differ in direct keys differ in their starts alone.
+
+    Not so where the constraint makes the start of other numbers, an axis without moment refuses a
+    spin, or `auto` asks the start which method is best.
+    """
+    constraint = scene.constraint
+    if constraint.kind not in ('free', 'pivot') or \
+            min(constraint.inertia(scene.body).moments) <= 0.0:
+        return False
+    return integrator != 'auto' or absorbing_motion(scene) is not None
 
 
 def _plain(value):

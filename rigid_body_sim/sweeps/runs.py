@@ -8,6 +8,7 @@ fails is NaN, with its status and a line that says why; the others go on.
 import functools
 import math
 import re
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,10 +20,16 @@ from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
-from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, PLACES, STATE_SIZE, States
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    AXES,
+    ORIENTATION,
+    PLACES,
+    STATE_SIZE,
+    States,
+)
 from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.sweeps import plan as plans
@@ -90,6 +97,27 @@ class Block:
     texts: dict
 
 
+def room(plan, count):
+    """Return (arrays, states): room for the results of so many runs.
+
+    Where all of the states is kept, the arrays of its parts are views of `states`, shape
+    (runs, times, 14), and nothing is copied; else `states` is None.
+    """
+    states, parts = None, {}
+    whole = tuple(AXES)
+    for one in plan.spec.keep:
+        at = {'states': slice(None), 'final': 0}.get(one.kind)
+        if at is None or one.what != whole or (one.kind == 'final' and len(plan.spec.times) > 1):
+            continue
+        if states is None:
+            states = np.empty((count, len(plan.spec.times), STATE_SIZE))
+        prefix = '' if one.kind == 'states' else 'final_'
+        parts.update({prefix + part: states[:, at, PLACES[part]] for part in whole})
+    arrays = {one.name: parts[one.name] if one.name in parts else
+              np.empty((count, *one.shape), one.dtype) for one in plan.variables}
+    return arrays, states
+
+
 def compute(plan, first, stop, into=None):
     """Return the Block of the runs from `first` up to `stop`.
 
@@ -97,23 +125,33 @@ def compute(plan, first, stop, into=None):
     ----------
     plan : Plan
     first, stop : int
-    into : dict of str to array (n, ...), optional
-        Where the results go.
+    into : tuple, optional
+        Where the results go: what :func:`room` returns.
     """
-    count = stop - first
-    arrays = into or {one.name: np.empty((count, *one.shape), one.dtype)
-                      for one in plan.variables}
+    arrays, states = into or room(plan, stop - first)
     block = Block(first, stop, arrays, plan.values(first, stop), {})
     with one_core():
-        _Work(plan, block).run()
+        _Work(plan, block, states).run()
     return block
+
+
+_OWN = threading.local()
+
+
+def _scratch(shape):
+    """Return an array that the next call in this thread takes again: fresh memory is slow."""
+    size = math.prod(shape)
+    kept = getattr(_OWN, 'array', None)
+    if kept is None or len(kept) < size:
+        _OWN.array = kept = np.empty(size)
+    return kept[:size].reshape(shape)
 
 
 class _Work:
     """The computation of one block."""
 
-    def __init__(self, plan, block):
-        self.plan, self.block = plan, block
+    def __init__(self, plan, block, states):
+        self.plan, self.block, self.states = plan, block, states
         self.values = block.values
 
     def run(self):
@@ -160,7 +198,8 @@ class _Work:
             # the template's start may not fit these parameters: ask with all keys of each run
             self.one_by_one(where)
             return
-        if not _starts_alone_differ(scene, self.plan.spec.integrator):
+        if not (self.plan.starts_alone_differ if scene is self.plan.template else
+                plans.starts_alone_differ(scene, self.plan.spec.integrator)):
             self.one_by_one(where)
             return
         starts = np.tile(scene.initial.vector, (count, 1))
@@ -206,9 +245,12 @@ class _Work:
         if any(effect.as_impulse is not None for effect in scene.effects):
             self.struck(where)
             return
-        out = np.empty((len(starts), len(spec.times), STATE_SIZE))
+        in_place = self.states is not None and isinstance(where, slice)
+        out = self.states[where] if in_place else \
+            _scratch((len(starts), len(spec.times), STATE_SIZE))
         try:
-            found = ensemble(scene, starts, spec.times, spec.integrator, spec.accuracy, out=out,
+            method = self.plan.choice if scene is self.plan.template else spec.integrator
+            found = ensemble(scene, starts, spec.times, method, spec.accuracy, out=out,
                              events=bool({'first', 'all'} & self.plan.wants),
                              horizon=self.plan.horizon)
         except (NotConverged, BadInput) as error:
@@ -268,12 +310,13 @@ class _Work:
             residuals = [struck.ledger()] if struck else \
                 _residuals(scene, choice, starts, states[:, -1], float(spec.times[-1]))
         for one in spec.keep:
-            if one.kind == 'final':
+            if one.kind in ('final', 'states'):
+                at, prefix = (-1, 'final_') if one.kind == 'final' else (slice(None), '')
                 for part in one.what:
-                    arrays[f'final_{part}'][where] = states[:, -1, PLACES[part]]
-            elif one.kind == 'states':
-                for part in one.what:
-                    arrays[part][where] = states[:, :, PLACES[part]]
+                    array = arrays[prefix + part]
+                    # the parts of states that were computed in place are there
+                    if not np.may_share_memory(array, states):
+                        array[where] = states[:, at, PLACES[part]]
             elif one.kind in ('first', 'all'):
                 self.keep_events(one, events, where)
             elif one.kind in ('minimum', 'maximum'):
@@ -346,19 +389,6 @@ def _slice_of(places):
     return slice(first, last + 1) if last - first + 1 == len(places) else places
 
 
-def _starts_alone_differ(scene, integrator):
-    """Return whether runs of a scene that differ in direct keys differ in their starts alone.
-
-    Not so where the constraint makes the start of other numbers, an axis without moment refuses a
-    spin, or `auto` asks the start which method is best.
-    """
-    constraint = scene.constraint
-    if constraint.kind not in ('free', 'pivot') or \
-            min(constraint.inertia(scene.body).moments) <= 0.0:
-        return False
-    return integrator != 'auto' or absorbing_motion(scene) is not None
-
-
 def _units(values):
     """Return quaternions as scene.initial.unit_quaternion does, and which of them have a norm."""
     x, y, z, w = values.T
@@ -375,7 +405,7 @@ def _expected(choice, scene, starts):
     if choice.expected_error is None:
         return math.nan
     if choice.method != 'exact':
-        return choice.expected_error    # of a scene of its own: _starts_alone_differ
+        return choice.expected_error    # of a scene of its own: starts_alone_differ
     # choice.measured.floor for many starts: half an ulp of all the angle turned
     x, y, z = starts[:, ANGULAR_VELOCITY].T
     pace = np.sqrt(x * x + y * y + z * z) + swing_rate(scene)

@@ -326,7 +326,7 @@ def in_memory(plan, arrays, texts):
     shape, dims = plan.spec.shape, tuple(plan.dims)
     variables = {one.name: ((*dims, *one.dims), arrays[one.name].reshape(*shape, *one.shape),
                             _fitting(one.attrs)) for one in plan.variables}
-    told = np.broadcast_to(np.array('', dtype=object), shape)
+    told = np.broadcast_to('', shape)    # takes no memory
     if texts:
         told = np.full(plan.spec.size, '', dtype=object)
         for run, text in texts.items():

@@ -26,7 +26,7 @@ from rigid_body_sim.sweeps import engine, stores
 from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps.needed import need
 from rigid_body_sim.sweeps.plan import Plan
-from rigid_body_sim.sweeps.runs import outputs_of
+from rigid_body_sim.sweeps.runs import outputs_of, room
 from rigid_body_sim.sweeps.work import Task, do, work
 
 if typing.TYPE_CHECKING:
@@ -121,13 +121,14 @@ def _to_memory(plan, workers, bar):
         raise BadInput('sweep', f'the results of {spec.size} runs need {needed / 1e9:.3g} GB, and '
                        f'{limit / 1e9:.3g} GB may be taken', 'fewer runs or times, less in keep, '
                        'or a store')
-    arrays = {one.name: np.empty((spec.size, *one.shape), one.dtype) for one in plan.variables}
+    arrays, states = room(plan, spec.size)
     texts, rates = {}, []
 
     def submit(workers, piece):
         first, stop, number = piece
         if workers.local:
-            into = {name: array[first:stop] for name, array in arrays.items()}
+            parts = {name: array[first:stop] for name, array in arrays.items()}
+            into = parts, None if states is None else states[first:stop]
             return workers.submit(do, plan, first, stop, number, None, None, into)
         return workers.submit(work, task, *piece)
 
