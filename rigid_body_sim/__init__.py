@@ -19,9 +19,10 @@ if typing.TYPE_CHECKING:  # what type checkers and editors read
     from rigid_body_sim.simulation.ensemble import Ensemble, ensemble
     from rigid_body_sim.simulation.simulation import Simulation
     from rigid_body_sim.simulation.spans import Event
+    from rigid_body_sim.sweeps.sweep import sweep
 
 __all__ = ['BadInput', 'Ensemble', 'Event', 'NotConverged', 'Recording', 'Scene', 'Simulation',
-           'State', 'States', 'ensemble', 'load_scene', 'parse_scene', 'scene_names']
+           'State', 'States', 'ensemble', 'load_scene', 'parse_scene', 'scene_names', 'sweep']
 
 # A name is imported when it is first used, so the table of commands shows without NumPy.
 _HOMES = {
@@ -31,7 +32,7 @@ _HOMES = {
     'scene_names': 'scene.scene',
     'State': 'scene.state', 'States': 'scene.state',
     'Ensemble': 'simulation.ensemble', 'ensemble': 'simulation.ensemble',
-    'Simulation': 'simulation.simulation', 'Event': 'simulation.spans',
+    'Simulation': 'simulation.simulation', 'Event': 'simulation.spans', 'sweep': 'sweeps.sweep',
 }
 
 

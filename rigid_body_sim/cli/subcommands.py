@@ -31,6 +31,8 @@ COMMANDS = {
                      'run every system of the notes and measure what theory predicts'),
     'hard_cases': ('rigid_body_sim.study.hard_cases.hard_cases:main',
                    'make the table of hard cases, ours and the peers'),
+    'sweep': ('rigid_body_sim.cli.sweep:main',
+              'run a scene over grids or samples of its keys, to Zarr or Parquet; resumes'),
     'scenes': ('rigid_body_sim.cli.scenes:main',
                'list the scenes, their effects and the methods that can run them'),
 }

@@ -145,7 +145,9 @@ def _result(future):
     except ImportError as error:
         raise BadInput('worker', f'cannot import what it needs ({error})',
                        'install this version of rigid_body_sim on all workers') from error
-    except (concurrent.futures.CancelledError, concurrent.futures.BrokenExecutor) as error:
+    except concurrent.futures.CancelledError as error:
+        raise Stopped('the workers or their scheduler are gone') from error
+    except concurrent.futures.BrokenExecutor as error:
         raise Stopped(f'the workers are gone ({_brief(error)})') from error
     except OSError as error:
         if error.strerror is None:
