@@ -62,7 +62,7 @@ def plain(method):
     """
     def step_source(method, bound):
         flows = composition.flows(bound).__name__
-        return composition.composed_source(method, bound, PLAIN_DRIFT.format(flows=flows),
+        return composition.composed_source(method, PLAIN_DRIFT.format(flows=flows),
                                            PLAIN_KICK.format(flows=flows))
 
     family = types.SimpleNamespace(**{**vars(composition), 'step_source': step_source})

@@ -77,7 +77,7 @@ class Choice:
         if not wrench:
             return self._prototype.start(start)
         method = METHODS.get(self.method, GENERAL)    # GENERAL in place of `exact`
-        name = method.NAME if method.FAMILY.ACCOUNTS else GENERAL.NAME
+        name = method.NAME if method.FAMILY.TAKES_WRENCH else GENERAL.NAME
         held = Stepped(self.scene, name, self.tolerance, self.step, wrench, self.horizon)
         return held.start(start)
 

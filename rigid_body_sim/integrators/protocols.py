@@ -124,22 +124,17 @@ class Family(Protocol):
 
     Attributes
     ----------
-    ACCOUNTS : bool
-        Whether its equations take a held wrench, and the quadratures of the ledger behind the
-        unknowns. Where it is False, Stepped has the general method (`GENERAL` in
-        ``integrators/__init__.py``) solve both.
+    TAKES_WRENCH : bool
+        Whether its equations take a held wrench. Where it is False, the general method (`GENERAL`
+        in ``integrators/__init__.py``) solves the hold.
     LANES : bool
         Whether it has a function ``batch`` (LanesFamily).
-    SHARED : bool
-        Whether a march with the ledger's quadratures gives the same states as one without them,
-        so that one march can serve both. False where the quadratures take part in step control.
     """
 
-    ACCOUNTS: bool
+    TAKES_WRENCH: bool
     LANES: bool
-    SHARED: bool
 
-    def bind(self, method: Method, stepped: Any, ledger: bool) -> 'Bound':
+    def bind(self, method: Method, stepped: Any) -> 'Bound':
         """Return the method's kernels on a scene's equations.
 
         Parameters
@@ -148,8 +143,6 @@ class Family(Protocol):
             Of this family.
         stepped : Stepped
             Its scene, wrench, accuracy (rad), step (s) and horizon (s) are used.
-        ledger : bool
-            Add the quadratures of the ledger.
 
         Raises
         ------
@@ -177,11 +170,12 @@ class Bound(Protocol):
 
     Attributes
     ----------
-    acts : bool
-        Whether anything exchanges energy or angular momentum with the body.
+    EXCHANGES : bool
+        Whether its courses have a method ``exchanged(time)``, as Solver.exchanged. Otherwise the
+        ledger's entries are a quadrature over the states (mechanics/exchange.py).
     """
 
-    acts: bool
+    EXCHANGES: bool
 
     def course(self, stepped: Any) -> 'Course':
         """Return the course of a started solver."""
@@ -200,10 +194,7 @@ class Course(Protocol):
     TELLS_EVENTS: bool
 
     def state(self, time: float, out: np.ndarray) -> None:
-        """Fill `out` with the state at a time (s) not before the start.
-
-        Columns from 14 on, where `out` has them, get the entries of the ledger.
-        """
+        """Fill `out`, shape (14,), with the state at a time (s) not before the start."""
 
     def states(self, times: np.ndarray, out: np.ndarray) -> None:
         """Fill the rows of `out` as `state` does, for times (s) in any order."""
@@ -231,7 +222,7 @@ class MarchingFamily(Family, Protocol):
         ``marching.course.Bound``.
     """
 
-    def equations_of(self, scene: Any, wrench: Any, ledger: bool) -> Any:
+    def equations_of(self, scene: Any, wrench: Any) -> Any:
         """Return the equations (equations/equations.py) that `march` is for."""
 
     def march(self, method: Method, equations: Any, adapts: bool) -> Any:
@@ -245,9 +236,9 @@ class MarchingFamily(Family, Protocol):
         Returns
         -------
         module
-            With ``SIZE`` (unknowns, those of the ledger included), ``VALUES`` (place of the
-            unknowns in a point), ``begin(p, control, point)``, ``march(p, control, point,
-            following, target, end, limit)`` and ``between(p, control, point, following, dt)``.
+            With ``SIZE`` (unknowns), ``VALUES`` (place of the unknowns in a point), ``begin(p,
+            control, point)``, ``march(p, control, point, following, target, end, limit)`` and
+            ``between(p, control, point, following, dt)``.
         """
 
     def begin(self, stepped: Any, march: Any) -> tuple[np.ndarray, np.ndarray]:

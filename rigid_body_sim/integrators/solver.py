@@ -20,18 +20,20 @@ import numpy as np
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators import GENERAL, METHODS, runnable
+from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.events import Watcher, watches
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 
 FINEST = 1e-15          # smallest accuracy that doubles carry
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
+SLACK = 1e-2            # of the accuracy: the jumps between steps that the ledger does not resolve
 
 
 class Stepped:
@@ -63,20 +65,13 @@ class Stepped:
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         _check_control(self.method, accuracy, step)
         self.accuracy, self.step, self.horizon = accuracy, step, horizon
-        # the ledger always asks what a command does: one march for both halves the compilation
-        one_march = bool(wrench) and self.method.FAMILY.SHARED
-        self._plain = self._bind(ledger=one_march)
-        self._with_ledger = self._plain if one_march else None
-
-    def _bind(self, ledger):
-        """Return the Bound of the method, with the quadratures of the ledger or without them."""
-        on_table = self.scene.constraint.mechanism is Mechanism.TABLE
+        on_table = scene.constraint.mechanism is Mechanism.TABLE
         if on_table and not self.method.TABLE:
-            able = ', '.join(runnable(self.scene))
+            able = ', '.join(runnable(scene))
             raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table '
                            'under a wrench', f'those that can: {able}')
-        method = GENERAL if ledger and not self.method.FAMILY.ACCOUNTS else self.method
-        return method.FAMILY.bind(method, self, ledger)
+        self._bound = self.method.FAMILY.bind(self.method, self)
+        self._actors = None if self._bound.EXCHANGES else Actors(scene, wrench)
 
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
@@ -85,10 +80,8 @@ class Stepped:
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        started._course = self._plain.course(started)
-        shared = self._with_ledger is self._plain
-        started._ledger_course = started._course if shared else None
-        started._watcher = None
+        started._course = self._bound.course(started)
+        started._exchange, started._watcher = None, None
         return started
 
     def state(self, time, out):
@@ -138,7 +131,7 @@ class Stepped:
 
         batch = None
         if self.method.FAMILY.LANES and len(times):
-            batch = self.method.FAMILY.batch(self._plain, self, times)
+            batch = self.method.FAMILY.batch(self._bound, self, times)
         if batch is None:
             on_all_cores(one_by_one, len(starts))
             return
@@ -183,16 +176,16 @@ class Stepped:
 
         mechanics/ledger.py has their layout. Raises what `states` raises.
         """
-        if not self._plain.acts:
+        time = float(time)
+        self._within(time, time)
+        if self._bound.EXCHANGES:
+            return self._course.exchanged(time)
+        if not self._actors.acts:
             return np.zeros(ENTRIES_SIZE)
-        if self._ledger_course is None:
-            if self._with_ledger is None:
-                self._with_ledger = self._bind(ledger=True)
-            self._ledger_course = self._with_ledger.course(self)
-        self._within(float(time), float(time))
-        row = np.empty(STATE_SIZE + ENTRIES_SIZE)
-        self._ledger_course.state(float(time), row)
-        return row[STATE_SIZE:]
+        if self._exchange is None:
+            slack = SLACK * self.accuracy if self.step is None else 0.0
+            self._exchange = Exchange(self._actors, self._course.states, self.vector, slack)
+        return self._exchange.until(time)
 
 
 def _check_control(method, accuracy, step):

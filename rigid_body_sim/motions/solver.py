@@ -6,9 +6,9 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import on_all_cores
-from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, ENTRIES_SIZE
+from rigid_body_sim.mechanics.exchange import Actors, Exchange
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
-from rigid_body_sim.motions.weight import WeightImpulse
 
 CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
 NONE_YET = (-math.inf,) * CROWD
@@ -41,15 +41,15 @@ class Exact:
         self.motion = motion
         self._scene = scene
         self._parameters = motion.parameters(scene)
-        self._loops = loops(motion)
+        self._loops, self._actors = loops(motion), None if motion.exchanged else Actors(scene)
 
     def start(self, vector):
         """Anchor the motion at a state (14 doubles, its time included) and return a solver from there."""
         started = object.__new__(Exact)
-        started.motion, started._scene, started._parameters, started._loops = self.motion, self._scene, self._parameters, self._loops
+        started.__dict__.update(self.__dict__)
         started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
         self.motion.anchor(self._parameters, vector, started.anchor)
-        started._next_event, started._weight, started._last_events = None, None, NONE_YET
+        started._next_event, started._exchange, started._last_events = None, None, NONE_YET
         return started
 
     def state(self, time, out):
@@ -71,10 +71,10 @@ class Exact:
         out = np.zeros(ENTRIES_SIZE)
         if self.motion.exchanged is not None:
             self.motion.exchanged(self.anchor, time, out)
-        elif self._scene.constraint.holds_a_point and self._scene.effect('gravity'):
-            if self._weight is None:
-                self._weight = WeightImpulse(self._scene, self.states, self._start)
-            out[ANGULAR_IMPULSE] = self._weight.until(time)
+        elif self._actors.acts:
+            if self._exchange is None:
+                self._exchange = Exchange(self._actors, self.states, self._start, 0.0)
+            out[:] = self._exchange.until(time)
         return out
 
     def events(self, after, until, tick=0.0):

@@ -4,8 +4,8 @@ import numpy as np
 
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.mechanics.exchange import MOST, RADIANS
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
-from rigid_body_sim.motions.weight import MOST_PANELS, RADIANS_A_PANEL
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
@@ -63,7 +63,7 @@ class Allowed:
         self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v) + self._weight
                               + self._quadrature * abs(simulation.ledger()['work']))
         # the ledger's quadrature of the weight's torque has so many panels at most: beyond, it no longer follows the turning
-        resolved = size * passed <= RADIANS_A_PANEL * MOST_PANELS
+        resolved = size * passed <= RADIANS * MOST
         self.momentum += ulp * float(np.linalg.norm(self._moments)) * size + (ulp if resolved else 1.0) * self._weight * passed
         self._time = simulation.time
 

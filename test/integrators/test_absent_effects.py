@@ -49,10 +49,10 @@ def test_an_effect_that_is_listed_is_entered(monkeypatch):
         Equations(parse_scene(smooth_cases.text('asymmetric_heavy_top')))
 
 
-def test_no_quadratures_before_the_ledger_asks():
-    """The quadratures of the ledger are another kernel, which is not made before."""
+def test_the_ledgers_kernel_is_not_made_before_the_ledger_asks():
     made = parse_scene(smooth_cases.text('asymmetric_heavy_top'))
-    solver = Stepped(made, 'dop8', accuracy=1e-9)
-    assert solver._with_ledger is None
-    solver.start(made.initial.vector).state(0.1, np.empty(14))
-    assert solver._with_ledger is None
+    solver = Stepped(made, 'dop8', accuracy=1e-9).start(made.initial.vector)
+    solver.state(0.1, np.empty(14))
+    assert solver._actors._kernels is None
+    solver.exchanged(0.1)
+    assert solver._actors._kernels is not None

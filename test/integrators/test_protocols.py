@@ -34,6 +34,6 @@ def test_solvers_have_the_methods_of_the_contract(solver):
     assert issubclass(solver, protocols.Solver)
 
 
-def test_the_general_method_takes_wrenches_and_the_ledger():
-    assert GENERAL.FAMILY.ACCOUNTS and GENERAL.HEAT and GENERAL.TABLE and GENERAL.STIFF
+def test_the_general_method_takes_wrenches():
+    assert GENERAL.FAMILY.TAKES_WRENCH and GENERAL.HEAT and GENERAL.TABLE and GENERAL.STIFF
     assert {'accuracy', 'step'} == set(GENERAL.TAKES)

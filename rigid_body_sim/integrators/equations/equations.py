@@ -11,7 +11,6 @@ import numpy as np
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import euler, flying, hinged, turning
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.scene.state import TIME
 
@@ -27,9 +26,6 @@ class Equations:
     scene : Scene
     wrench : effects.wrench.Wrench, optional
         Held command.
-    ledger : bool
-        Add the quadratures of the ledger: work of torques, forces and commands, heat, angular
-        impulse about the point of reference (world axes).
 
     Attributes
     ----------
@@ -42,8 +38,6 @@ class Equations:
         Where the last of them is: for :func:`rigid_body_sim.compilation.templates.specialise`.
     breakpoints : tuple of floats
         Times (s) at which the parameters jump.
-    acts : bool
-        Whether anything exchanges energy or angular momentum with the body.
     calls : list
         What acts, as text for the ..._source functions.
     parameter_count, fixed_count : int
@@ -52,7 +46,7 @@ class Equations:
         Whether anything is booked as heat: it depends on velocities.
     """
 
-    def __init__(self, scene, wrench=None, ledger=False):
+    def __init__(self, scene, wrench=None):
         self.frame = scene.constraint.frame(scene.body)
         self._axis = scene.constraint.axis
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
@@ -61,8 +55,6 @@ class Equations:
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         acting = self._acting(-np.inf)
-        self.acts = bool(acting)
-        self.extra = ENTRIES_SIZE if ledger else 0
         if self._axis is not None:
             self.kind, self._moment = hinged, moment_on_hinge(scene)
         else:
@@ -71,11 +63,10 @@ class Equations:
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
         self.makes_heat = any(one.books == 'heat' for one in acting)
-        sources = {'booked': _booked(calls if ledger else None)}
         if self.kind is hinged:
-            sources['torque'] = torque_source(calls)
+            sources = {'torque': torque_source(calls)}
         else:
-            sources |= {'omega_rate': _omega_rate(calls), 'axes_rate': _axes_rate(calls)}
+            sources = {'omega_rate': _omega_rate(calls), 'axes_rate': _axes_rate(calls)}
         if self.kind is flying:
             sources['force'] = force_source(calls)
         self.kernels = specialise(self.kind, **sources)
@@ -121,8 +112,8 @@ class Equations:
         return held
 
     def start(self, vector):
-        """Return (parameters, unknowns with the ledger) of a start, a state vector (14)."""
-        p, y = self.held(float(vector[TIME])), np.zeros(self.kind.UNKNOWNS + self.extra)
+        """Return (parameters, unknowns) of a start, a state vector (14)."""
+        p, y = self.held(float(vector[TIME])), np.zeros(self.kind.UNKNOWNS)
         self.kernels.start(p, vector, y, 0)
         return p, y
 
@@ -154,7 +145,7 @@ class _Call:
 
     def __init__(self, acting, number, at):
         module, _, self.function = acting.kernel.partition(':')
-        self.gives, self.books = acting.gives, acting.books
+        self.gives = acting.gives
         self.name = f'{self.function}_{module.rpartition(".")[2]}'
         self.imported = imported(acting.kernel, self.name)
         values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
@@ -241,31 +232,3 @@ def _axes_rate(calls):
 def _turning_rates(calls):
     """Return the three sums of the rates at which effects turn the axes."""
     return [' + '.join(call.turns[k] for call in calls) for k in range(3)]
-
-
-def _booked(calls):
-    """Power of what does work, minus the power of what makes heat, torque in world axes.
-
-    Nothing if the books are not kept.
-    """
-    if calls is None:
-        return _kernel('booked', [], ())
-    power = {'work': [], 'heat': [], 'potential': []}
-    for call in calls:
-        velocity = ('vx', 'vy', 'vz') if call.gives == 'force' else ('wx', 'wy', 'wz')
-        power[call.books].append(
-            ' + '.join(
-                f'{component} * {rate}'
-                for component, rate in zip((call.x, call.y, call.z), velocity, strict=True)
-            )
-        )
-    torques = [call for call in calls if call.gives == 'torque']
-    return _kernel(
-        'booked',
-        calls,
-        (
-            ' + '.join(power['work']) or '0.0',
-            f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0',
-            f'*rotate(qx, qy, qz, qw, *taken(p, {", ".join(_sums(torques))}))',
-        ),
-    )

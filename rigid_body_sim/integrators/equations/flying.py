@@ -8,21 +8,17 @@ x' = v, M v' = F.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+from rigid_body_sim.integrators.equations.euler import (
     MASS,
     attitude_rate,
     read_state,
-    taken,
     unit,
     write_state,
 )
-from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
 
-# `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND
-booked = UNBOUND
 
 UNKNOWNS = 13
 GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
@@ -39,7 +35,7 @@ def start(p, vector, point, at):
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the ledger."""
+    """Return the rates of the unknowns."""
     qx, qy, qz, qw, wx, wy, wz, vx, vy, vz = (
         y[0],
         y[1],
@@ -63,7 +59,6 @@ def rate(p, y):
         fx / p[MASS],
         fy / p[MASS],
         fz / p[MASS],
-        *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz),
     )
 
 

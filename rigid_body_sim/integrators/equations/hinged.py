@@ -22,13 +22,11 @@ from rigid_body_sim.integrators.equations.euler import (
     write_state,
 )
 from rigid_body_sim.numerics.functions import cos, sin
-from rigid_body_sim.numerics.rotations import multiply, rotate  # noqa: F401
+from rigid_body_sim.numerics.rotations import multiply
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.state import STATE
 
-# `rotate` is for the bound sums
 torque = UNBOUND
-booked = UNBOUND
 
 UNKNOWNS = 2
 GROUPS = ((0, 1, True), (1, 2, False))
@@ -73,21 +71,13 @@ def attitude(p, phi):
 
 
 @compiled
-def taken(p, tx, ty, tz):
-    """Return the part of a torque that turns the body: the one along the axis."""
-    along = p[AXIS] * tx + p[AXIS + 1] * ty + p[AXIS + 2] * tz
-    return along * p[AXIS], along * p[AXIS + 1], along * p[AXIS + 2]
-
-
-@compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the ledger."""
+    """Return the rates of the unknowns."""
     phi, speed = y[0], y[1]
     nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
     qx, qy, qz, qw = attitude(p, phi)
     tx, ty, tz = torque(p, qx, qy, qz, qw, speed * nx, speed * ny, speed * nz, 0.0, 0.0, 0.0)
-    return (speed, p[INVERSE] * (nx * tx + ny * ty + nz * tz),
-            *booked(p, qx, qy, qz, qw, speed * nx, speed * ny, speed * nz, 0.0, 0.0, 0.0))
+    return speed, p[INVERSE] * (nx * tx + ny * ty + nz * tz)
 
 
 @compiled

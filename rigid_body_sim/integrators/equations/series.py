@@ -74,7 +74,7 @@ class Series(Equations):
                 'bodies under gravity, torques and drag only',
             )
         pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
-        self.acts, self.extra, self.kind = bool(pulls), 0, turning
+        self.kind = turning
         forced = any(pull.force is not None for pull in pulls)
         self.pushed = forced and not self.frame.moves
         self.falls = self.frame.moves and (forced or any(pull.slowing for pull in pulls))
@@ -82,7 +82,7 @@ class Series(Equations):
         self.dragged = any(pull.drag is not None for pull in pulls)
         # the sums of what acts stay unbound: nothing asks for rates
         self.kernels = specialise(
-            turning, **dict.fromkeys(('omega_rate', 'axes_rate', 'booked'), '# not asked for\n')
+            turning, **dict.fromkeys(('omega_rate', 'axes_rate'), '# not asked for\n')
         )
         self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
         self._fixed, self._held = self._constants(), {}

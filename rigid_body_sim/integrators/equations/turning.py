@@ -13,21 +13,17 @@ of reference moves in a straight line.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+from rigid_body_sim.integrators.equations.euler import (
     attitude_rate,
     load_start,
     read_state,
-    taken,
     unit,
     write_state,
 )
-from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
 from rigid_body_sim.numerics.vectors import plus, scaled
 
-# `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
 axes_rate = UNBOUND
-booked = UNBOUND
 
 UNKNOWNS = 7
 GROUPS = ((0, 4, True), (4, 7, False))
@@ -44,13 +40,12 @@ def start(p, vector, point, at):
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the ledger."""
+    """Return the rates of the unknowns."""
     qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0)
     return (
         *attitude_rate(qx, qy, qz, qw, ax, ay, az),
         *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
-        *booked(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0),
     )
 
 

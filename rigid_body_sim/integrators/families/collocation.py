@@ -14,37 +14,36 @@ from rigid_body_sim.integrators.marching import gauss_march, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import VALUES
 
-ACCOUNTS = True
-SHARED = True
+TAKES_WRENCH = True
 LANES = False
 TERMS = 2 * STAGES + 1      # of a curve: P_0 ... P_16
 
 
 def march(method, equations, adapts):
     """Return the module that marches: gauss_march.py bound to equations."""
-    n, groups = equations.kind.UNKNOWNS, equations.kind.GROUPS
-    size, kernels = n + equations.extra, equations.kernels.__name__
+    size, groups = equations.kind.UNKNOWNS, equations.kind.GROUPS
+    kernels = equations.kernels.__name__
     relative = sum(not absolute for _, _, absolute in groups)
-    places = _places(n, size)
+    places = _places(size)
     return specialise(
         gauss_march, rate=f'{kernels}:rate', settled=f'{kernels}:settled',
         **{name: f'{name} = {place}\n' for name, place in places.items()},
         load=unroll.load_source('load', size), put=unroll.put_source('put', size),
         load_scales=unroll.load_source('load_scales', relative),
         put_scales=unroll.put_source('put_scales', relative),
-        stage_rates=_stage_rates(n, size, equations.parameter_count),
-        spread=_spread(n), combined=_combined(size, places['RATES']), advanced=_advanced(size),
-        along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(n, places['CURVE']),
+        stage_rates=_stage_rates(size, equations.parameter_count),
+        spread=_spread(size), combined=_combined(size, places['RATES']), advanced=_advanced(size),
+        along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(size, places['CURVE']),
         measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),
         fastest=unroll.fastest_source(groups), first_scales=_first_scales(groups))
 
 
-def _places(n, size):
-    """Return the counts and places of gauss_march.py for n unknowns, `size` with the ledger."""
-    last, rates, square = VALUES + 2 * size, STAGES * n, STAGES * STAGES
+def _places(size):
+    """Return the counts and places of gauss_march.py for `size` unknowns."""
+    last, rates, square = VALUES + 2 * size, STAGES * size, STAGES * STAGES
     matrix = rates + STAGES * size
     predictor, steps = matrix + square, matrix + 2 * square
-    return {'SIZE': size, 'UNKNOWNS': n, 'LAST': last, 'SWEEPS': last + 1, 'KEPT': last + 2,
+    return {'SIZE': size, 'LAST': last, 'SWEEPS': last + 1, 'KEPT': last + 2,
             'RATES': rates, 'MATRIX': matrix, 'PREDICTOR': predictor, 'FOR': steps,
             'FOR_STEP': steps + 1, 'FOR_BEFORE': steps + 2, 'FOR_POINT': steps + 3,
             'TAIL': steps + 4, 'CURVE': steps + 5}
@@ -71,14 +70,14 @@ def _tuple(entries):
     return f'({"".join(f"{entry}, " for entry in entries)})'
 
 
-def _stage_rates(n, size, parameters):
+def _stage_rates(n, parameters):
     """Return the source of ``stage_rates(p, S)``: rates at the eight stages."""
     stages = _tuple(f'S[{STAGES * u} + i]' for u in range(n))
     return _function('stage_rates(p, S)', [
         # a tuple: an array might overlap S, and numbers would be read anew at each stage
         f'numbers = {_tuple(f"p[{k}]" for k in range(parameters))}',
         f'for i in range({STAGES}):', f'    k = rate(numbers, {stages})',
-        *(f'    S[{STAGES * (n + u)} + i] = k[{u}]' for u in range(size))])
+        *(f'    S[{STAGES * (n + u)} + i] = k[{u}]' for u in range(n))])
 
 
 def _spread(n):

@@ -40,10 +40,9 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     equations_of,
     march,
 )
-from rigid_body_sim.integrators.marching import composed, quadrature
+from rigid_body_sim.integrators.marching import composed
 
-ACCOUNTS = True
-SHARED = True
+TAKES_WRENCH = True
 LANES = False
 
 
@@ -52,24 +51,21 @@ def step_source(method, equations):
     name = flows(equations).__name__
     return composed_source(
         method,
-        equations,
         f'{name}:drift',
         f'{name}:{"kick_with_heat" if equations.makes_heat else "kick"}',
     )
 
 
-def composed_source(method, equations, drift, kick):
+def composed_source(method, drift, kick):
     """Return the source of a step of other flows, given as `specialise` takes them."""
-    advance = specialise(
+    made = specialise(
         composed,
         drift=drift,
         kick=kick,
         DRIFTS=f'DRIFTS = {method.DRIFTS!r}\n',
         KICKS=f'KICKS = {method.KICKS!r}\n',
     )
-    return f'from {advance.__name__} import advance\n' + quadrature.step_source(
-        method.ORDER, equations.kind.UNKNOWNS, equations.extra
-    )
+    return f'from {made.__name__} import step\n'
 
 
 def flows(equations):

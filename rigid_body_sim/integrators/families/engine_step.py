@@ -20,10 +20,8 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     equations_of,
     march,
 )
-from rigid_body_sim.integrators.marching import quadrature
 
-ACCOUNTS = True
-SHARED = True
+TAKES_WRENCH = True
 LANES = False
 
 TURN = """
@@ -58,5 +56,4 @@ def step_source(method, equations):
             'from_rotation_vector, multiply, normalised\n'
         )
     )
-    advance = f'{imports}\n\n@compiled\ndef advance(p, y, c, k0, h):{lines}'
-    return advance + quadrature.step_source(method.ORDER, equations.kind.UNKNOWNS, equations.extra)
+    return f'{imports}\n\n@compiled\ndef step(p, y, c, k0, h):{lines}'

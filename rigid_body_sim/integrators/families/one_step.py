@@ -12,20 +12,20 @@ from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES
 
 
-def equations_of(scene, wrench, ledger):
+def equations_of(scene, wrench):
     """Return the equations of a scene that `march` is for."""
-    return Equations(scene, wrench, ledger)
+    return Equations(scene, wrench)
 
 
-def bind(method, stepped, ledger):
+def bind(method, stepped):
     """Return the method's kernels on the equations of a scene."""
-    return course.Bound(method, stepped, ledger)
+    return course.Bound(method, stepped)
 
 
 def march(method, equations, adapts):
     """Return the module that marches: adaptive.py or fixed.py bound to equations and step."""
     groups, kernels = equations.kind.GROUPS, equations.kernels.__name__
-    size = equations.kind.UNKNOWNS + equations.extra
+    size = equations.kind.UNKNOWNS
     bindings = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled',
                 'SIZE': f'SIZE = {size}\n',
                 'load': unroll.load_source('load', size), 'put': unroll.put_source('put', size)}
@@ -34,7 +34,7 @@ def march(method, equations, adapts):
     relative = sum(not absolute for _, _, absolute in groups)
     return specialise(
         adaptive, fastest=unroll.fastest_source(groups), ORDER=f'ORDER = {method.ORDER}\n',
-        trial=unroll.trial_source(method, equations.kind.UNKNOWNS, equations.extra, groups),
+        trial=unroll.trial_source(method, size, 0, groups),
         load_scales=unroll.load_source('load_scales', relative),
         put_scales=unroll.put_source('put_scales', relative), **bindings)
 

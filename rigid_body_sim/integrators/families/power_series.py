@@ -2,7 +2,7 @@
 """Family of the methods by power series: taylor.
 
 Its equations (equations/series.py) are not those of a scene but of a few kinds: what acts is in
-their numbers. They have no quadratures and take no held wrench.
+their numbers. They take no held wrench.
 """
 
 import numpy as np
@@ -13,13 +13,12 @@ from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
 from rigid_body_sim.integrators.marching import batch as batches
 from rigid_body_sim.integrators.marching import taylor_march, taylor_series
 
-ACCOUNTS = False
-SHARED = True
+TAKES_WRENCH = False
 LANES = True
 SAFETY = 0.25    # steps planned from the point before err by up to four times what is allowed
 
 
-def equations_of(scene, wrench, ledger):
+def equations_of(scene, wrench):
     """Return the equations of a scene that `march` is for.
 
     Raises

@@ -10,18 +10,17 @@ from rigid_body_sim.integrators.families.one_step import begin, equations_of, ma
 from rigid_body_sim.integrators.marching import table, unroll
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
-ACCOUNTS = True
-SHARED = True
+TAKES_WRENCH = True
 LANES = False
 
 
-def bind(method, stepped, ledger):
+def bind(method, stepped):
     """Return the method's kernels on the equations of a scene."""
     if stepped.scene.constraint.mechanism is Mechanism.TABLE:
         return table.OnTable(stepped.scene, method, stepped.wrench, stepped.step)
-    return one_step.bind(method, stepped, ledger)
+    return one_step.bind(method, stepped)
 
 
 def step_source(method, equations):
     """Return the source of ``step(p, y, c, k0, h) -> (y, c)``: marching/unroll.py."""
-    return unroll.step_source(method, equations.kind.UNKNOWNS, equations.extra)
+    return unroll.step_source(method, equations.kind.UNKNOWNS, 0)

@@ -17,25 +17,25 @@ import numpy as np
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
-from rigid_body_sim.scene.state import STATE_SIZE, TIME
+from rigid_body_sim.scene.state import TIME
 
-ACCOUNTS = True
-SHARED = False    # the quadratures take part in the step control of SciPy
+TAKES_WRENCH = True
 LANES = False
 FINEST = 100.0 * np.finfo(float).eps
 
 
-def bind(method, stepped, ledger):
+def bind(method, stepped):
     """Return the rates of a scene for one solver."""
-    return Bound(stepped, ledger)
+    return Bound(stepped)
 
 
 class Bound:
     """The rates of one scene for one solver."""
 
-    def __init__(self, stepped, ledger):
-        self.equations = Equations(stepped.scene, stepped.wrench, ledger)
-        self.acts = self.equations.acts
+    EXCHANGES = False
+
+    def __init__(self, stepped):
+        self.equations = Equations(stepped.scene, stepped.wrench)
 
     def course(self, stepped):
         """Return the course of a started solver."""
@@ -102,10 +102,8 @@ class _Course:
             self._enter(self._begin, self._y)
         while not self._reached or self._reached[-1] < times.max():
             self._advance()
-        write, extra = self._equations.kernels.write, self._equations.extra
+        write = self._equations.kernels.write
         for time, row in zip(times, out, strict=True):
             k = bisect.bisect_left(self._reached, time)
             y = self._steps[k](time)
             write(self._parameters[k], time, tuple(y.tolist()), row)
-            if extra:
-                row[STATE_SIZE:] = y[-extra:]

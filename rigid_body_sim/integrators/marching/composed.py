@@ -14,7 +14,7 @@ KICKS = UNBOUND
 
 
 @compiled
-def advance(p, y, c, k0, h):
+def step(p, y, c, k0, h):
     """Return (y, c) after a step of size h; k0 is not needed."""
     for k in range(len(DRIFTS)):
         if KICKS[k] != 0.0:

@@ -32,14 +32,13 @@ class Bound:
     method : Method
         Its family is a MarchingFamily (protocols.py).
     stepped : Stepped
-    ledger : bool
-        Add the quadratures of the ledger.
     """
 
-    def __init__(self, method, stepped, ledger):
+    EXCHANGES = False
+
+    def __init__(self, method, stepped):
         family = method.FAMILY
-        self.equations = equations = family.equations_of(stepped.scene, stepped.wrench, ledger)
-        self.acts = equations.acts
+        self.equations = equations = family.equations_of(stepped.scene, stepped.wrench)
         self.march = family.march(method, equations, stepped.step is None)
         control, point = family.begin(stepped, self.march)
         self._beginning, self._prototypes = np.concatenate((control, point)), {}
@@ -52,7 +51,7 @@ class Bound:
     def _track(self, places):
         """Return the template track.py bound to the march; `places` are those in a piece."""
         bindings = {name: f'{self.march.__name__}:{name}'
-                    for name in ('begin', 'march', 'between', 'SIZE', 'VALUES')}
+                    for name in ('begin', 'march', 'between', 'VALUES')}
         bindings['start'] = f'{self.equations.kernels.__name__}:start'
         bindings['write'] = self.equations.write
         for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):

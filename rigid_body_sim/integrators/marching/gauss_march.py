@@ -8,7 +8,7 @@ at the stages.
 `control` holds [tolerance per second, fixed step or 0, origin] and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
-    RATES       their rates, those of the ledger included
+    RATES       their rates
     MATRIX      h a_ij (at 8 j + i) for one h
     PREDICTOR   the same from the rates of the step before, for one pair of steps
     FOR         the step of the matrix; FOR_STEP, FOR_BEFORE: the two steps of the predictor
@@ -49,9 +49,7 @@ fastest = UNBOUND
 first_scales = UNBOUND
 along = UNBOUND
 end_of_curve = UNBOUND
-# counts of the unknowns, with those of the ledger and without
-SIZE = UNBOUND
-UNKNOWNS = UNBOUND
+SIZE = UNBOUND    # count of the unknowns
 # places in a point
 LAST = UNBOUND
 SWEEPS = UNBOUND
@@ -159,7 +157,7 @@ def _predict(p, S, y, last):
         spread(S, y, PREDICTOR)
         return
     first = rate(p, y)
-    for u in range(UNKNOWNS):
+    for u in range(SIZE):
         for i in range(STAGES):
             S[RATES + STAGES * u + i] = first[u]
     spread(S, y, MATRIX)

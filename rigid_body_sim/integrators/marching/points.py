@@ -42,7 +42,7 @@ class Standing(NamedTuple):
     time, step, scales
         Those of the Head.
     y, lost : tuple of floats
-        The unknowns, those of the ledger included, and what their sums have lost (Kahan).
+        The unknowns, and what their sums have lost (Kahan).
     last : float
         Size of the step that led here, s; 0 where there was none.
     sweeps : int

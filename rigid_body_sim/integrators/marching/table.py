@@ -38,7 +38,6 @@ from rigid_body_sim.scene.state import (
     ANGULAR_VELOCITY,
     ORIENTATION,
     POSITION,
-    STATE_SIZE,
     VELOCITY,
 )
 from rigid_body_sim.scene.state import TIME as STATE_TIME
@@ -55,7 +54,7 @@ FLOOR = 1e-17            # of an error: none is asked to be smaller
 class OnTable:
     """The kernels and the numbers of one scene and wrench."""
 
-    acts = True
+    EXCHANGES = True
 
     def __init__(self, scene, method, wrench, step):
         if step is not None:
@@ -132,11 +131,12 @@ class TableCourse:
             self.state(time, out[row])
 
     def state(self, time, out):
-        """Fill `out` with the state at a time not before the start.
-
-        Columns from 14 on, where `out` has them, get the entries of the ledger.
-        """
+        """Fill `out` with the state at a time not before the start."""
         self._write(time, self._at(time - self._begin), out)
+
+    def exchanged(self, time):
+        """Return the entries of the ledger from the start to a time."""
+        return np.array(self._at(time - self._begin)[UNKNOWNS:])
 
     def events(self, after, until):
         """Return the (time, name, values) after one time (s) and up to another.
@@ -167,7 +167,6 @@ class TableCourse:
         out[STATE_TIME], out[ORIENTATION], out[ANGULAR_VELOCITY] = time, q, rotate_back(*q, *omega)
         out[POSITION] = self._start[POSITION] + [y[PLACE], y[PLACE + 1], 0.0]
         out[VELOCITY] = vx, vy, 0.0
-        out[STATE_SIZE:] = y[UNKNOWNS:][:len(out) - STATE_SIZE]
 
 
 class _Phase:

@@ -14,14 +14,12 @@ points. Its beginning, up to the point, is copied from a prototype.
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import TIME
-from rigid_body_sim.scene.state import STATE_SIZE
 
 start = UNBOUND
 begin = UNBOUND
 march = UNBOUND
 between = UNBOUND
 write = UNBOUND
-SIZE = UNBOUND
 VALUES = UNBOUND
 # places in a piece
 CONTROL = UNBOUND
@@ -107,14 +105,9 @@ def follow(piece, target, end):
 
 @compiled
 def _fill(p, control, point, following, time, out):
-    """Fill `out` with the state at a time within the step from `point`.
-
-    Where `out` has more than 14 columns, the others get the entries of the ledger.
-    """
+    """Fill `out` with the state at a time within the step from `point`."""
     y = between(p, control, point, following, time - point[TIME])
     write(p, time, y, out)
-    for place in range(STATE_SIZE, len(out)):
-        out[place] = y[SIZE - len(out) + place]
 
 
 @compiled

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the rates of the ledger's entries at the states of a body.
+
+exchange.py binds it to what acts in a scene.
+"""
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.mechanics.energy import angular_momentum
+from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE, Entries
+from rigid_body_sim.mechanics.parameters import HINGE, SCENE
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.numerics.vectors import cross, dot, plus, scaled
+from rigid_body_sim.scene.state import STATE
+
+load_scene, load_state, store_entries = SCENE.load, STATE.load, ENTRIES.store
+
+acting = UNBOUND    # (p, q, omega, v, m) -> power of work (W), heat (W), torque (frame, N m)
+
+
+@compiled
+def rates(p, states, out):
+    """Fill the rows of `out` with the rates of the Entries, and |omega| behind them.
+
+    Parameters
+    ----------
+    p : array
+        SceneParameters, and the values of what acts.
+    states : array (n, 14)
+    out : array (n, 6)
+        W, W, N m (world axes), rad/s.
+    """
+    scene = load_scene(p)
+    for k in range(len(states)):
+        now = load_state(states[k])
+        q, axes, omega = now.orientation, scene.frame_axes, now.angular_velocity
+        of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
+        work, heat, torque = acting(p, multiply(*q, *axes), rotate_back(*axes, *omega), of_center,
+                                    rotate_back(*axes, *angular_momentum(scene, omega)))
+        taken = rotate(*q, *_taken(scene, rotate(*axes, *torque)))
+        store_entries(out[k], Entries(work, heat, taken))
+        out[k, ENTRIES_SIZE] = hypot3(*omega)
+
+
+@compiled
+def _taken(scene, torque):
+    """Return the part of a torque that turns the body, body axes.
+
+    Of a hinged body it is the one along the axis. There is none about an axis of zero moment.
+    """
+    if scene.kind == HINGE:
+        return scaled(dot(scene.hinge_axis, torque), scene.hinge_axis)
+    x, y, z = rotate_back(*scene.axes, *torque)
+    I1, I2, I3 = scene.moments
+    x, y, z = x if I1 > 0.0 else 0.0, y if I2 > 0.0 else 0.0, z if I3 > 0.0 else 0.0
+    return rotate(*scene.axes, x, y, z)

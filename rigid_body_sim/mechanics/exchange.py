@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What acts on a body, integrated along the trajectory that is published.
+
+The ledger's entries do not come from the equations that a method solved but from its states: a
+quadrature over these, under control of its own error (panels.py). So the ledger belongs to the
+published trajectory whatever solved it, and does not agree with a method merely because it repeats
+what the method did. Panels are laid from the start on, whenever the ledger is asked: what it says
+does not depend on how often.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.templates import imported, specialise
+from rigid_body_sim.mechanics import booking, parameters
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.energy import DIAGNOSIS
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.panels import (
+    COLUMNS,
+    ENERGY,
+    LONGER,
+    MOMENTUM,
+    NODES,
+    SHORTER,
+    SUMS,
+    add_panels,
+)
+from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
+
+RADIANS = 8.0            # of the fastest turn, in the longest panel
+UNMOVED = 1.0            # s, the first panel where nothing moves
+AT_ONCE = 256            # panels
+ULP = 2.0 ** -52         # of the time, 64 of them: the clock resolves no shorter panel
+TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
+PLACES = np.array([0.0, *NODES])
+MOST = 2 ** 20
+"""Panels between two times that are asked for: seconds of work.
+
+Over more than eight million radians panels are spread evenly: they give the mean of what acts.
+"""
+
+
+class Actors:
+    """What acts in a scene, as the ledger takes it.
+
+    Parameters
+    ----------
+    scene : Scene
+    wrench : effects.wrench.Wrench, optional
+        Held all the time.
+
+    Attributes
+    ----------
+    acts : bool
+        Whether anything exchanges energy or angular momentum with the body.
+    breakpoints : list of float
+        Times at which what acts jumps, s.
+    swing, drive : float
+        Bounds of the rates (bounds.py), rad/s and rad/s^2.
+    """
+
+    def __init__(self, scene, wrench=None):
+        self._frame = scene.constraint.frame(scene.body)
+        self._actors = [effect for effect in scene.effects if effect.acting is not None]
+        self._actors += [wrench] if wrench else []
+        self.breakpoints = sorted({time for actor in self._actors for time in actor.breakpoints})
+        self._scene = parameters.parameters(scene)
+        self._energies = energies(scene)
+        self._kernels, self._held = None, {}
+        found = self._acting(-math.inf)
+        self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
+        self.swing, self.drive = swing_rate(scene), drive(scene, wrench)
+
+    def _acting(self, time):
+        return [one for actor in self._actors for one in actor.acting(self._frame, time)]
+
+    def held(self, time):
+        """Return the parameters that hold just after a time (s), for the kernel `rates`."""
+        place = bisect.bisect_right(self.breakpoints, time)
+        if place not in self._held:
+            values = [value for one in self._acting(time) for value in one.values]
+            self._held[place] = np.array([*self._scene[:parameters.SCENE.size], *values])
+        return self._held[place]
+
+    def rates(self, p, states):
+        """Return the rates of the entries and |omega| at states (n, 14), shape (n, 6)."""
+        if self._kernels is None:
+            source = _source(self._acting(-math.inf))
+            self._kernels = specialise(booking, acting=source)
+        out = np.empty((len(states), COLUMNS))
+        self._kernels.rates(p, states, out)
+        return out
+
+    def sizes(self, vector):
+        """Return the sizes of energy (J) and momentum (kg m^2/s) of a state."""
+        row = np.empty(DIAGNOSIS.size)
+        self._energies.diagnose(self._scene, vector, row)
+        found = DIAGNOSIS.load(row.tolist())
+        return max(found.kinetic, abs(found.potential)), hypot3(*found.momentum)
+
+
+class Exchange:
+    """The entries of the ledger along a trajectory.
+
+    Parameters
+    ----------
+    actors : Actors
+    states : callable
+        (times, out) -> None, as a solver has it.
+    start : array (14,)
+        The state at the start.
+    slack : float
+        By how much the states between two steps of a method are uncertain, relative to 1: panels
+        are not made shorter to resolve that.
+    """
+
+    def __init__(self, actors, states, start, slack):
+        self._actors, self._states, self._start, self._slack = actors, states, start, slack
+        self._rewind()
+
+    def _rewind(self):
+        self._time, self._sums = float(self._start[TIME]), np.zeros(SUMS)
+        self._sums[[ENERGY, MOMENTUM]] = self._actors.sizes(self._start)
+        pace = hypot3(*self._start[ANGULAR_VELOCITY].tolist()) + self._actors.swing
+        self._longest = RADIANS / pace if pace > 0.0 else math.inf
+        self._length = self._first = self._first_panel(pace)
+
+    def _first_panel(self, pace):
+        """Return the time (s) in which the body could turn by RADIANS from the start."""
+        a = self._actors.drive
+        if a > 0.0:
+            return 2.0 * RADIANS / (pace + math.sqrt(pace * pace + 2.0 * a * RADIANS))
+        return RADIANS / pace if pace > 0.0 else UNMOVED
+
+    def until(self, time):
+        """Return the entries from the start to a time (s), array (5,)."""
+        if time < self._time:
+            self._rewind()
+        least, ends = (time - self._time) / MOST, [*self._actors.breakpoints, math.inf]
+        for end in ends[bisect.bisect_right(ends, self._time):]:
+            self._time, self._length = self._lay(self._time, time, end, self._length, least,
+                                                 self._sums)
+            if end > time:
+                break
+        sums = self._sums
+        if self._time < time:    # a part of the next panel
+            sums = sums.copy()
+            self._lay(self._time, time, time, time - self._time, least, sums)
+        return sums[:ENTRIES_SIZE]
+
+    def _lay(self, t, until, end, length, least, sums):
+        """Lay the panels that end not later than a time, in a stretch where parameters hold.
+
+        Parameters
+        ----------
+        t, until : float
+            s, from there to there.
+        end : float
+            The last panel of the stretch ends there exactly, s.
+        length, least : float
+            Of the next panel, and of the shortest one, s.
+        sums : array (SUMS,)
+            Changed.
+
+        Returns
+        -------
+        float, float
+            Where the last panel ends (s), and the length of the next one (s).
+        """
+        p, most = self._actors.held(t), 1
+        while t < until:
+            length = max(length, least)
+            edges = _edges(t, until, end, length, most)
+            if len(edges) < 2:
+                break
+            times = (edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * PLACES).ravel()
+            states = np.empty((len(times), STATE_SIZE))
+            self._states(times, states)
+            shortest = max(least, 64.0 * ULP * abs(t) + TINY * self._first)
+            added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
+                                       shortest, self._slack, sums)
+            most = min(AT_ONCE, 2 * most)
+            if advice == SHORTER:
+                length, most = 0.5 * (edges[added + 1] - edges[added]), 1
+            elif advice == LONGER:
+                length, most = 2.0 * length, 1
+            t = float(edges[added])
+        return t, length
+
+
+def _edges(t, until, end, length, most):
+    """Return the edges of up to `most` panels from a time on; the first edge alone if none fits.
+
+    The panel that would leave less than a tenth of another one before `end` goes up to there.
+    """
+    count = min(most, int((min(until, end) - t) / length))
+    if end < math.inf:
+        count = min(count, int((end - t) / length - 0.1))
+        if count < 1 and t + 1.1 * length >= end and end <= until:
+            return np.array([t, end])
+    # one after the other, so that an edge does not depend on where this call begins
+    edges = np.add.accumulate([t, *[length] * count])
+    return edges if edges[-1] <= until else edges[:-1]
+
+
+def _source(acting):
+    """Return the source of ``acting(p, q, omega, v, m)`` for what acts.
+
+    It returns the power of what does work, minus the power of what makes heat, and the torque in
+    the frame. Energy that effects have as a potential is not exchanged.
+    """
+    lines, at, power, torques = [], parameters.SCENE.size, {'work': [], 'heat': []}, []
+    imports = ['from rigid_body_sim.numerics.vectors import cross, dot, plus']
+    for number, one in enumerate(acting):
+        imports.append(imported(one.kernel, f'kernel_{number}'))
+        values = ''.join(f'p[{at + k}], ' for k in range(len(one.values)))
+        at += len(one.values)
+        name = f'{one.gives}_{number}'
+        lines.append(f'    {name} = kernel_{number}({values}*q, *omega, *v)')
+        if one.gives == 'turning':    # what keeps L = R m: the torque m x u
+            lines.append(f'    {name} = cross(m, {name})')
+        elif one.gives == 'torque':
+            torques.append(name)
+        if one.books in power:
+            power[one.books].append(f'dot({name}, {"v" if one.gives == "force" else "omega"})')
+    total = '(0.0, 0.0, 0.0)'
+    for name in torques:
+        total = name if total.startswith('(') else f'plus({total}, {name})'
+    work = ' + '.join(power['work']) or '0.0'
+    heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'
+    return '\n'.join([*imports, '', '', '@compiled', 'def acting(p, q, omega, v, m):', *lines,
+                      f'    return {work}, {heat}, {total}', ''])

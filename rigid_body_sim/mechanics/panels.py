@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Quadrature panel by panel, under control of its error.
+
+A panel is integrated by Gauss's rule with 16 nodes. The same values give the coefficients c_k of
+its integrand along Legendre's polynomials. Where these fall like a geometric series, as those of
+every analytic function do in the end, the rule errs by about c_32, which the last ones foretell:
+
+    a = max(|c_14|, |c_15|),    b = max(|c_12|, |c_13|),    error = a (a/b)^8
+
+The value at the beginning of a panel must also fit the polynomial through the nodes: what is over
+before the first node would not be seen otherwise. A panel with too large an error is halved.
+Source of the rule: NIST DLMF 3.5(v).
+"""
+
+import numpy as np
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.numerics.gauss import rule
+
+COUNT = 16
+POINTS = COUNT + 1       # of a panel: its beginning and the nodes
+COLUMNS = ENTRIES_SIZE + 1    # of the rates of a point: those of the entries, then |omega|
+FIRST_TAIL = 12
+TAIL = COUNT - FIRST_TAIL
+# places in the array `sums`
+LOST, ENERGY, MOMENTUM = ENTRIES_SIZE, 2 * ENTRIES_SIZE, 2 * ENTRIES_SIZE + 1
+SUMS = 2 * ENTRIES_SIZE + 2
+ROUNDING = 2.0 ** -54    # share of a size: a smaller error is rounding
+SEEN = 2.0 ** -27        # share of an integrand: where c_14 and c_15 are smaller, c_32 is nothing
+SMOOTH = 2.0 ** -40      # the same in a panel twice as long
+FITS = 2.0 ** -20        # share of an integrand: how well its value at the beginning fits
+TURNED = 12.0            # rad: the largest turn of the body in a panel
+# what is to become of a panel's length
+SHORTER, KEPT, LONGER = 0, 1, 2
+
+
+def _legendre(x):
+    """Return P_0 ... P_15 at points x of [-1, 1], shape (16, len(x))."""
+    values = [np.ones_like(x), x]
+    for k in range(1, COUNT - 1):
+        values.append(((2 * k + 1) * x * values[k] - k * values[k - 1]) / (k + 1))
+    return np.array(values)
+
+
+def _tables():
+    """Return nodes and weights on [0, 1], and rows that take values at the nodes.
+
+    The rows give c_12 ... c_15, and the value at 0 of the polynomial through the nodes.
+    """
+    nodes, weights = (np.array(numbers) for numbers in rule(COUNT))
+    values, degrees = _legendre(2.0 * nodes - 1.0), np.arange(COUNT)[:, np.newaxis]
+    rows = (2 * degrees + 1) * weights * values
+    begin = np.zeros(COUNT)
+    for k in range(COUNT):
+        begin += rows[k] if k % 2 == 0 else -rows[k]
+    return nodes, weights, rows[FIRST_TAIL:], begin
+
+
+NODES, WEIGHTS, TAILS, AT_BEGIN = _tables()
+
+
+@compiled
+def _advice(rates, at, first, last, length, size, slack):
+    """Return SHORTER, KEPT or LONGER for integrands of one panel.
+
+    Parameters
+    ----------
+    rates : array (panels POINTS, COLUMNS)
+    at : int
+        The panel's row there.
+    first, last : int
+        Columns; they count as one vector.
+    length : float
+        Of the panel, s.
+    size : float
+        That of the integral: errors count relative to it.
+    slack : float
+        Share of the integrand by which the trajectory itself is uncertain.
+    """
+    head, a, b, off = 0.0, 0.0, 0.0, 0.0
+    for k in range(first, last):
+        for i in range(POINTS):
+            head = max(head, abs(rates[at + i, k]))
+        for j in range(TAIL):
+            total = 0.0
+            for i in range(COUNT):
+                total += TAILS[j, i] * rates[at + 1 + i, k]
+            if j < TAIL // 2:
+                b = max(b, abs(total))
+            else:
+                a = max(a, abs(total))
+        fit = 0.0
+        for i in range(COUNT):
+            fit += AT_BEGIN[i] * rates[at + 1 + i, k]
+        off = max(off, abs(fit - rates[at, k]))
+    nothing = ROUNDING * size
+    if length * off > nothing and off > max(FITS, slack) * head:
+        return SHORTER
+    if length * a <= nothing or a <= SMOOTH * head:
+        return LONGER
+    if a <= max(SEEN, slack) * head:
+        return KEPT
+    ratio = min(1.0, a / b) if b > 0.0 else 1.0
+    square = ratio * ratio
+    fourth = square * square
+    return KEPT if a * (fourth * fourth) <= ROUNDING * head else SHORTER
+
+
+@compiled
+def _add(rates, at, length, sums):
+    """Add the integrals over a panel to `sums`, and their sizes to those of the integrals."""
+    for k in range(ENTRIES_SIZE):
+        total, size = 0.0, 0.0
+        for i in range(COUNT):
+            part = length * WEIGHTS[i] * rates[at + 1 + i, k]
+            total, size = total + part, size + abs(part)
+        total += sums[LOST + k]
+        after = sums[k] + total
+        sums[LOST + k] = total - (after - sums[k])
+        sums[k] = after
+        sums[ENERGY if k < 2 else MOMENTUM] += size
+
+
+@compiled
+def add_panels(rates, edges, longest, shortest, slack, sums):
+    """Add panels of one length, until one should be shorter or the next one longer.
+
+    Parameters
+    ----------
+    rates : array (panels POINTS, COLUMNS)
+        At the beginning and at the nodes of each panel.
+    edges : array (panels + 1,)
+        s.
+    longest, shortest : float
+        Bounds of the length, s: a panel that is shorter is taken as it is.
+    slack : float
+        As in `_advice`.
+    sums : array (SUMS,)
+        Integrals, what their sums lost (Kahan), sizes of energy and momentum. They are changed.
+
+    Returns
+    -------
+    int, int
+        The panels that were added; SHORTER, KEPT (all were added) or LONGER.
+    """
+    for panel in range(len(edges) - 1):
+        at, length, fastest = panel * POINTS, edges[panel + 1] - edges[panel], 0.0
+        for i in range(POINTS):
+            fastest = max(fastest, rates[at + i, ENTRIES_SIZE])
+        energy = _advice(rates, at, 0, 2, length, sums[ENERGY], slack)
+        momentum = _advice(rates, at, 2, ENTRIES_SIZE, length, sums[MOMENTUM], slack)
+        advice = min(energy, momentum)
+        if length > shortest and (advice == SHORTER or length * fastest > TURNED):
+            return panel, SHORTER
+        _add(rates, at, length, sums)
+        if advice == LONGER and 2.0 * length <= longest and 2.0 * length * fastest <= TURNED:
+            return panel + 1, LONGER
+    return len(edges) - 1, KEPT
