@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: the equations of a body on a hinge, in the angle phi and its rate.
 
-phi (rad) is the angle since the start about the axis n (frame components).
+phi (rad) is the angle since the start about the axis n (frame components), less whole turns.
 
     I phi'' = n . Gamma,    q = q0 (n sin(phi/2), cos(phi/2)),    omega = phi' n
 
@@ -9,6 +9,7 @@ I is the moment about the axis, Gamma the torque about the hinge point; the rest
 bearing's.
 """
 
+import math
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
@@ -29,6 +30,8 @@ from rigid_body_sim.scene.state import STATE
 torque = UNBOUND
 
 UNKNOWNS = 2
+TURN = 2.0 * math.pi
+TWO_TURNS, REST = 4.0 * math.pi, 4.898587196589413e-16    # 4 pi as a sum of two doubles
 GROUPS = ((0, 1, True), (1, 2, False))
 
 
@@ -82,7 +85,16 @@ def rate(p, y):
 
 @compiled
 def settled(y, c):
-    """Return both as they are: these unknowns keep no condition."""
+    """Return the unknowns and what their sums have lost, with phi within a turn of 0.
+
+    Two turns leave the attitude and the sign of q as they are. Stages and the attitude are formed
+    from phi as a double: a phi that counted the turns would lose digits with each of them.
+    """
+    phi, lost = y[0], c[0]
+    if phi > TURN:
+        return (phi - TWO_TURNS, y[1]), (lost - REST, c[1])
+    if phi < -TURN:
+        return (phi + TWO_TURNS, y[1]), (lost + REST, c[1])
     return y, c
 
 
