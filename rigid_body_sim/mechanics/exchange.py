@@ -141,19 +141,18 @@ class Exchange:
         """Return the entries from the start to a time (s), array (5,)."""
         if time < self._time:
             self._rewind()
-        least, ends = (time - self._time) / MOST, [*self._actors.breakpoints, math.inf]
+        self._count, ends = 0, [*self._actors.breakpoints, math.inf]
         for end in ends[bisect.bisect_right(ends, self._time):]:
-            self._time, self._length = self._lay(self._time, time, end, self._length, least,
-                                                 self._sums)
+            self._time, self._length = self._lay(self._time, time, end, self._length, self._sums)
             if end > time:
                 break
         sums = self._sums
         if self._time < time:    # a part of the next panel
             sums = sums.copy()
-            self._lay(self._time, time, time, time - self._time, least, sums)
-        return sums[:ENTRIES_SIZE]
+            self._lay(self._time, time, time, time - self._time, sums)
+        return sums[:ENTRIES_SIZE].copy()
 
-    def _lay(self, t, until, end, length, least, sums):
+    def _lay(self, t, until, end, length, sums):
         """Lay the panels that end not later than a time, in a stretch where parameters hold.
 
         Parameters
@@ -162,8 +161,8 @@ class Exchange:
             s, from there to there.
         end : float
             The last panel of the stretch ends there exactly, s.
-        length, least : float
-            Of the next panel, and of the shortest one, s.
+        length : float
+            Of the next panel, s.
         sums : array (SUMS,)
             Changed.
 
@@ -172,8 +171,9 @@ class Exchange:
         float, float
             Where the last panel ends (s), and the length of the next one (s).
         """
-        p, most = self._actors.held(t), 1
-        while t < until:
+        p, most, last = self._actors.held(t), 1, min(until, end)
+        while t < last:
+            least = (until - t) / MOST if self._count > MOST else 0.0
             length = max(length, least)
             edges = _edges(t, until, end, length, most)
             if len(edges) < 2:
@@ -184,7 +184,7 @@ class Exchange:
             shortest = max(least, 64.0 * ULP * abs(t) + TINY * self._first)
             added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
                                        shortest, self._slack, sums)
-            most = min(AT_ONCE, 2 * most)
+            self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)
             if advice == SHORTER:
                 length, most = 0.5 * (edges[added + 1] - edges[added]), 1
             elif advice == LONGER:

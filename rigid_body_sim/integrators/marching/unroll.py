@@ -7,12 +7,15 @@ compilation/templates.py binds the text into the templates of this folder. An un
 values are formed.
 """
 
+import functools
+
 ROUNDING = 2.0 ** -49    # of an increment: what the sums of error estimates carry
 # rad/s, of a body that a torque sets turning from rest as good as exactly: rates relative to it
 # say nothing
 NOTHING = 1e-100
 
 
+@functools.cache
 def step_source(method, n, extra):
     """Return the source of ``step(p, y, c, k0, h) -> (y, c)``.
 
@@ -31,6 +34,7 @@ def step_source(method, n, extra):
     )
 
 
+@functools.cache
 def trial_source(method, n, extra, groups):
     """Return the source of ``trial(p, y, c, k0, h, scales) -> (y, c, scales, error)``.
 
@@ -88,6 +92,7 @@ def trial_source(method, n, extra, groups):
     )
 
 
+@functools.cache
 def fastest_source(groups):
     """Return the source of ``fastest(y, k)``.
 
@@ -111,6 +116,7 @@ def fastest_source(groups):
     return '\n'.join([*lines, f'    return found if found > {NOTHING!r} else 0.0', ''])
 
 
+@functools.cache
 def load_source(name, size):
     """Return the source of ``name(array, at)``: a tuple of `size` entries."""
     return '\n'.join(
@@ -123,6 +129,7 @@ def load_source(name, size):
     )
 
 
+@functools.cache
 def put_source(name, size):
     """Return the source of ``name(values, array, at)``: it writes a tuple into an array."""
     return '\n'.join(

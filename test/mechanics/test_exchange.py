@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ledger's entries: those of the published trajectory, however rarely they are asked for."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.mechanics.exchange import Actors, Exchange
+from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EPSILON = np.finfo(float).eps
+TOP = """
+scene: top
+body: {{mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: {arm}}}
+constraint: pivot
+effects: [gravity: {{g: {g}}}]
+initial: {{euler_zyz: [0.0, {tilt}, 0.0], angular_velocity: {omega}}}
+"""
+# a coin on its edge: nearby motions part by a factor of e in a second or less
+COIN = """
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+import json
+scene = parse_scene('''
+scene: coin
+body: {mass: 0.0075, shape: {cylinder: {radius: 0.01213, length: 0.00175}},
+       center_of_mass: [0, 0.01213, 0]}
+constraint: pivot
+effects: [gravity: {g: 9.81}, drag: {linear: 0, angular: 1.0e-8}]
+initial: {orientation: [0.7071067811865476, 0, 0, 0.7071067811865476],
+          angular_velocity: [0.5, 60, 0]}
+''')
+simulation = Simulation(scene, 'taylor', accuracy=1e-6, horizon=1.5)
+before = simulation.energy
+simulation.advance(1500)
+print(json.dumps(simulation.ledger() | {'lost': before - simulation.energy}))
+"""
+
+
+def test_the_ledger_belongs_to_the_trajectory_that_is_published():
+    """The ledger of taylor once followed the trajectory of dop8, which parts from its own."""
+    settings = os.environ | {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(ROOT)}
+    command = [sys.executable, '-c', COIN]
+    text = subprocess.run(command, capture_output=True, text=True, timeout=200, env=settings,
+                          check=True).stdout
+    ledger = json.loads(text)
+    scale = max(ledger['kinetic'], abs(ledger['potential']))
+    assert abs(ledger['lost'] - ledger['dissipated']) < 1e-8 * scale
+    assert ledger['momentum_residual'] < 1e-7
+
+
+@pytest.mark.parametrize(('g', 'tilt', 'arm', 'omega'), [
+    (981.0, 0.5, [0, 0, 0.1], [0, 0, 60]), (981.0, 2.9, [0, 0, 0.1], [3, 0, 2]),
+    (9.81, 1e-5, [0, 0, 0.1], [0, 0, 30]), (1e4, 1.0, [0, 0, -0.1], [0, 300, 90])])
+def test_momentum_residual_does_not_depend_on_how_rarely_it_is_asked(g, tilt, arm, omega):
+    scene = parse_scene(TOP.format(g=g, tilt=tilt, arm=arm, omega=omega))
+    turned = 20.0 * (np.linalg.norm(omega) + 2.0 * np.sqrt(g * 0.1 / 0.03))
+    for often in (1, 7, 50):
+        simulation, worst = Simulation(scene), 0.0
+        for _ in range(20 * often):
+            simulation.advance(1000 // often)
+            worst = max(worst, simulation.ledger()['momentum_residual'])
+        assert worst < 4.0 * EPSILON * turned
+    once, often = (Simulation(scene).choice.solver(scene.initial.vector, None) for _ in range(2))
+    for time in np.linspace(0.0, 20.0, 37):
+        entries = often.exchanged(time)
+    assert np.array_equal(once.exchanged(20.0), entries)
+
+
+def turning(scene, rate):
+    """Return an Exchange along a turn about z at a rate given as (angle, rate) of time."""
+    def states(times, out):
+        out[:] = 0.0
+        angle, speed = rate(times)
+        out[:, 0], out[:, 3], out[:, 4], out[:, 7] = (
+            times, np.sin(0.5 * angle), np.cos(0.5 * angle), speed)
+    start = np.empty((1, 14))
+    states(np.zeros(1), start)
+    return Exchange(Actors(scene), states, start[0], 0.0)
+
+
+@pytest.mark.parametrize('damping', [1e-3, 1.0, 1e4, 1e10])
+def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
+    """A body of moment 2 that drag stops: omega = 3 exp(-k t/2), heat = 2 9/2."""
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [2, 2, 2]}\nconstraint: free\n'
+                        f'effects: [drag: {{angular: {damping!r}}}]\n'
+                        'initial: {angular_velocity: [0, 0, 3]}\n')
+
+    def rate(t):
+        left = np.exp(-0.5 * damping * t)
+        return 6.0 / damping * (1.0 - left), 3.0 * left
+    exchange = turning(scene, rate)
+    for time in (1e-12, 0.3, 50.0):
+        heat = 9.0 * (1.0 - np.exp(-damping * time))
+        entries = exchange.until(time)
+        assert entries[DISSIPATED] == pytest.approx(heat, rel=1e-13, abs=1e-15)
+        impulse = 6.0 * (np.exp(-0.5 * damping * time) - 1.0)
+        assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-13, abs=1e-15)
+
+
+def test_a_torque_in_pieces_is_integrated_up_to_each_jump():
+    scene = parse_scene(
+        'scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: [torque: '
+        '{times: [0.5, 0.500001, 2.5], values: [[0, 0, 1], [0, 0, -2], [0, 0, 0]], frame: world}]'
+        '\ninitial: {angular_velocity: [0, 0, 7]}\n')
+    exchange = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
+    assert not exchange.until(0.5).any()
+    for time, impulse in ((1.0, 1e-6 - 2.0 * 0.499999), (9.0, 1e-6 - 2.0 * 1.999999)):
+        entries = exchange.until(time)
+        assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-14)
+        assert entries[WORK] == pytest.approx(7.0 * impulse, rel=1e-14)
+
+
+def test_a_short_pulse_in_a_slow_motion_is_seen():
+    """A rate with a pole near the real axis: a peak of width 1e-3 s at 4.567 s."""
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\n'
+                        'effects: [torque: {value: [0, 0, 1], frame: world}]\n'
+                        'initial: {angular_velocity: [0, 0, 7]}\n')
+    width, place = 1e-3, 4.567
+
+    def rate(t):
+        x = (t - place) / width
+        return 0.1 * t + np.arctan(x), 0.1 + 1.0 / (width * (1.0 + x * x))
+    exchange = turning(scene, rate)
+    work = 1.0 + np.arctan((10.0 - place) / width) + np.arctan(place / width)
+    assert exchange.until(10.0)[WORK] == pytest.approx(work, rel=1e-12)
