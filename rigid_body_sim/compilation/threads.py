@@ -1,30 +1,73 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work shared among all cores; it scales because kernels release the interpreter lock."""
+"""Work shared among all cores, and work in slices: kernels release the interpreter lock.
+
+Python hears a signal between two of its own operations, not inside a kernel. So whatever may take
+long is a loop in Python over calls of kernels that end soon. Work that other threads share calls
+`look` between these: the calling thread alone hears the signal.
+"""
 
 import concurrent.futures
 import contextlib
 import os
 import threading
+import time
 
 PARTS = 8    # for each core: the last one to finish is short then
-_THREAD = threading.local()
+SLICE = 0.05    # s that the call of a kernel should take
+_mine = threading.local()
+
+
+class Abandoned(Exception):
+    """Another thread of the same work has failed or was interrupted."""
 
 
 @contextlib.contextmanager
 def one_core():
     """Let the calling thread do all work by itself, where others keep the other cores busy."""
-    before = getattr(_THREAD, 'alone', False)
-    _THREAD.alone = True
+    before = getattr(_mine, 'alone', False)
+    _mine.alone = True
     try:
         yield
     finally:
-        _THREAD.alone = before
+        _mine.alone = before
+
+
+def look():
+    """Raise Abandoned in a thread of `on_all_cores` whose work is no longer wanted."""
+    if getattr(_mine, 'stop', None) is not None and _mine.stop.is_set():
+        raise Abandoned
+
+
+def in_slices(work, size, most=None):
+    """Call work(size), with ever more at a time while that is quick, until it returns True.
+
+    How much is done at a time depends on the clock; what `work` finds must not.
+
+    Parameters
+    ----------
+    work : callable
+    size : int
+        How much the first call is given.
+    most : callable, optional
+        Returns how much the next call may be given.
+    """
+    while True:
+        look()
+        began = time.perf_counter()
+        if work(size if most is None else min(size, most())):
+            return
+        spent = time.perf_counter() - began
+        if spent < SLICE:
+            size *= 2
+        elif spent > 2.0 * SLICE:
+            size = max(1, size // 2)
 
 
 def on_all_cores(work, count, least=1):
     """Call work(slice) on all cores until all of `count` items are done.
 
-    Within :func:`one_core` no thread is started.
+    Within :func:`one_core` no thread is started. What one thread raises, an interrupt of the
+    calling one included, ends the work of the others at their next `look`.
 
     Parameters
     ----------
@@ -33,23 +76,42 @@ def on_all_cores(work, count, least=1):
     least : int
         Smallest number of items in a slice, but for the last one.
     """
-    if getattr(_THREAD, 'alone', False):
+    if getattr(_mine, 'alone', False):
         if count:
             work(slice(0, count))
         return
     chunk = max(1, least, -(-count // (PARTS * os.cpu_count())))
     parts = iter([slice(first, min(first + chunk, count)) for first in range(0, count, chunk)])
 
+    stop, outer = threading.Event(), getattr(_mine, 'stop', None)
+
     def take():
+        _mine.stop = stop
+        try:
+            for part in parts:
+                look()
+                work(part)
+        except BaseException:
+            stop.set()
+            raise
+        finally:
+            _mine.stop = outer
+
+    if count <= chunk:
         for part in parts:
             work(part)
-    if count <= chunk:
-        take()
         return
-    # the calling thread takes its share: starting one more costs as much as a hundred tops in
-    # closed form
+    # the calling thread does its share: another one costs as much as a hundred tops in closed form
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
         others = [threads.submit(take) for _ in range(os.cpu_count() - 1)]
-        take()
+        try:
+            take()
+            concurrent.futures.wait(others)
+        except Abandoned:
+            concurrent.futures.wait(others)
+        except BaseException:
+            stop.set()
+            raise
         for other in others:
-            other.result()
+            if not isinstance(other.exception(), Abandoned):
+                other.result()

@@ -54,6 +54,8 @@ class Stepped:
         Held all the time.
     horizon : float
         s.
+    most : int, optional
+        Steps between two times asked for, after which a march gives up (marching/work.py).
 
     Raises
     ------
@@ -61,10 +63,11 @@ class Stepped:
         By name and value, before anything runs.
     """
 
-    def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0):
+    def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0,
+                 most=None):
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         _check_control(self.method, accuracy, step)
-        self.accuracy, self.step, self.horizon = accuracy, step, horizon
+        self.accuracy, self.step, self.horizon, self.most = accuracy, step, horizon, most
         on_table = scene.constraint.mechanism is Mechanism.TABLE
         if on_table and not self.method.TABLE:
             able = ', '.join(runnable(scene))

@@ -5,14 +5,15 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
-from rigid_body_sim.compilation.threads import on_all_cores
+from rigid_body_sim.compilation.threads import look, on_all_cores
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
 
 CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
 NONE_YET = (-math.inf,) * CROWD
-AT_ONCE = 512    # states of many bodies that a thread takes, at least
+LEAST = 512      # states of many bodies that a thread takes, at least
+AT_ONCE = 32768  # states of one call of a kernel: a tenth of a second at most
 
 
 def loops(motion):
@@ -58,13 +59,27 @@ class Exact:
 
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times, in any order."""
-        self._loops.states(self.anchor, times, out)
+        states, anchor = self._loops.states, self.anchor
+        if len(times) <= AT_ONCE:
+            states(anchor, times, out)
+            return
+        for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between two calls
+            look()
+            states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
 
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores."""
-        parameters = self._parameters[np.newaxis]
-        on_all_cores(lambda part: self._loops.ensemble(parameters, starts[part], times, out[part]), len(starts),
-                     AT_ONCE // max(1, len(times)))
+        parameters, at_once = self._parameters[np.newaxis], max(1, AT_ONCE // max(1, len(times)))
+
+        def work(part):
+            for first in range(part.start, part.stop, at_once):
+                some = slice(first, min(first + at_once, part.stop))
+                for begin in range(0, max(1, len(times)), AT_ONCE):
+                    look()
+                    then = slice(begin, begin + AT_ONCE)
+                    self._loops.ensemble(parameters, starts[some], times[then], out[some, then])
+
+        on_all_cores(work, len(starts), LEAST // max(1, len(times)))
 
     def exchanged(self, time):
         """Return what effects exchanged with the body from the anchor to a time, shape (5,): mechanics/ledger.py."""

@@ -79,7 +79,7 @@ def march(p, control, point, following, target, end, limit):
                 break
         y1, c1 = settled(y1, c1)
         if not good or target < t1 or moved == limit:
-            following[TIME], following[STEP] = t1, h
+            following[TIME], following[STEP] = t1 if good else t, h    # t: none follows
             put_scales(scales1, following, SCALES)
             put(y1, following, VALUES)
             put(c1, following, VALUES + SIZE)

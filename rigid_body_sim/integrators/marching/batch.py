@@ -12,13 +12,21 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.integrators.equations import euler, series
 from rigid_body_sim.integrators.marching import batch_series
-from rigid_body_sim.integrators.marching.batch_march import NOBODY, march
+from rigid_body_sim.integrators.marching.batch_march import (
+    ANYBODY,
+    NOBODY,
+    SEATS,
+    empty,
+    march,
+)
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import from_matrix
 from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
 
+ROUNDS = 64    # of steps in the first call of the march
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
 
 
@@ -108,22 +116,19 @@ class Batch:
         Return (number of a body whose state is no longer finite or whose step fell below what the
         clock resolves, its time), or None.
         """
-        states, seats = starts.copy(), np.empty(2 * LANES, dtype=np.int64)
+        states, seats = starts.copy(), np.empty(SEATS, dtype=np.int64)
         for table, p, turn, first, last, end in self._stretches:
-            body, time = march(
-                _on_lines(table),
-                p.copy(),
-                turn,
-                self._tolerance,
-                seats,
-                states,
-                self._times,
-                self._order,
-                first,
-                last,
-                end,
-                out,
-            )
+            W, numbers, found = _on_lines(table), p.copy(), []
+
+            def arrived(rounds, W=W, numbers=numbers, turn=turn, stretch=(first, last, end),
+                        found=found):
+                found[:] = march(W, numbers, turn, self._tolerance, seats, states, self._times,
+                                 self._order, *stretch, out, rounds)
+                return found[0] != ANYBODY
+
+            empty(seats)
+            in_slices(arrived, ROUNDS)
+            body, time = found
             if body != NOBODY:
                 return body, time
         return None

@@ -23,16 +23,27 @@ from rigid_body_sim.integrators.marching.batch_series import (
 )
 from rigid_body_sim.numerics.rotations import multiply, rotate_back
 
-NOBODY = -1
-# in `seats`: which body sits in a lane, and the place of its next time
-BODY, NEXT = 0, LANES
+NOBODY, ANYBODY = -1, -2    # no number of a body: none has failed; the march has paused
+# in `seats`: which body sits in a lane, and the place of its next time; which body is next, how
+# many sit, and whether a lane may be free
+BODY, NEXT, WAITING, BUSY, FREE = 0, LANES, 2 * LANES, 2 * LANES + 1, 2 * LANES + 2
+SEATS = 2 * LANES + 3
 
 
 @compiled
-def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, out):
+def empty(seats):
+    """Set the seats as they are before the first call of `march`."""
+    for lane in range(len(seats)):
+        seats[lane] = NOBODY if lane < LANES else 0
+    seats[FREE] = 1
+
+
+@compiled
+def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, out, rounds):
     """Fill out with the states at times[order[first]] ... times[order[last - 1]], rising.
 
-    Return (NOBODY, 0.0) or who failed, and when. More than eight arguments: compiled code is
+    Return (NOBODY, 0.0) or who failed, and when; (ANYBODY, 0.0) after so many rounds of steps:
+    the next call with the same W and seats goes on. More than eight arguments: compiled code is
     handed arrays and scalars, and one call marches all bodies.
 
     Parameters
@@ -45,17 +56,16 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         Quaternion that turns the directions of the unknowns to the world's axes.
     tolerance : float
         For a second.
-    seats : int array (2 LANES,)
+    seats : int array (SEATS,)
     states : array (bodies, 14)
         Where the bodies are. With a finite `end` they are brought there, those that are not beyond
         it.
     out : array (bodies, n, 14)
     """
-    target, following, busy, free = (end if end < math.inf else times[order[last - 1]]), 0, 0, True
+    target = end if end < math.inf else times[order[last - 1]]
+    following, busy, free = seats[WAITING], seats[BUSY], seats[FREE] == 1
     lanes = len(p)    # LANES, but the compiler shall not unroll the loops
-    for lane in range(lanes):
-        seats[BODY + lane] = NOBODY
-    while True:
+    for _ in range(rounds):
         if free:
             for lane in range(lanes):
                 while following < len(states) and states[following, 0] > target:
@@ -90,6 +100,8 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
                     if end < math.inf:
                         _write(W, p[lane], turn, lane, QUATERNION, OMEGA, end, states[body])
                     seats[BODY + lane], busy = NOBODY, busy - 1
+    seats[WAITING], seats[BUSY], seats[FREE] = following, busy, 1 if free else 0
+    return ANYBODY, 0.0
 
 
 @compiled

@@ -11,11 +11,14 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching import track
-from rigid_body_sim.integrators.marching.points import TIME, VALUES
+from rigid_body_sim.integrators.marching.points import LOST, REACHED, TIME, VALUES
+from rigid_body_sim.integrators.marching.work import Work
 
 FOR_EVER = (math.inf,)
+AT_ONCE = 4096    # states of one call of a kernel
 
 
 def lost(method, scene, time):
@@ -82,7 +85,7 @@ class Course:
     def __init__(self, stepped, bound):
         # A course does not keep the solver itself: two objects that hold each other stay in
         # memory until the garbage is collected.
-        self._method, self._scene = stepped.method, stepped.scene
+        self._method, self._scene, self._most = stepped.method, stepped.scene, stepped.most
         self._begin, self._vector = stepped.begin, stepped.vector
         self._bound, self._pieces, self._ends = bound, [], FOR_EVER
         if bound.equations.breakpoints:
@@ -112,11 +115,30 @@ class Course:
         if not time < self._ends[0]:
             self.states(np.array([time]), out[np.newaxis])
         elif self._pieces:
-            piece = self._pieces[0]
-            self._check(track.state(piece, time, self._ends[0], out), piece)
+            if track.state(self._pieces[0], time, self._ends[0], out) != REACHED:
+                self._go_on(self._pieces[0], time, out)
         else:
             first = self._first_piece()
-            self._check(track.first_state(*first, time, self._ends[0], out), self._pieces[0])
+            if track.first_state(*first, time, self._ends[0], out) != REACHED:
+                self._go_on(self._pieces[0], time, out)
+
+    def _go_on(self, piece, time, out):
+        """Fill `out` with the state of the first piece at a time far ahead."""
+        self._reach(piece, time, self._ends[0])
+        self._bound.track.state(piece, time, self._ends[0], out)
+
+    def _reach(self, piece, target, end):
+        """March until the step from the point holds a time, in slices (work.py)."""
+        follow, place = self._bound.track.follow, self._bound.point + TIME
+
+        def arrived(limit):
+            status = follow(piece, target, end, limit)
+            if status == LOST:
+                raise lost(self._method, self._scene, piece[place])
+            return status == REACHED
+
+        work = Work(f'{self._method.NAME} on {self._scene.name}', self._most)
+        work.go(arrived, lambda: float(piece[place]), min(float(target), end))
 
     def states(self, times, out):
         """Fill the rows of `out` with the states at times (s) not before the start."""
@@ -129,13 +151,14 @@ class Course:
             if not last < end:
                 until = int(np.searchsorted(times[order], end, side='left'))
             piece = self._pieces[k]
-            filled = done + track.states(piece, times, order[done:until], end, out)
-            self._check(filled == until, piece)
-            done, k = until, k + 1
+            while done < until:
+                look()
+                part = order[done:min(until, done + AT_ONCE)]
+                filled = track.states(piece, times, part, end, out)
+                done += filled
+                if filled < len(part):
+                    self._reach(piece, times[order[done]], end)
+            k += 1
             if done < len(order) and k == len(self._pieces):
-                self._check(track.follow(piece, end, end), piece)
+                self._reach(piece, end, end)
                 self._pieces.append(self._next_piece(end))
-
-    def _check(self, good, piece):
-        if not good:
-            raise lost(self._method, self._scene, piece[self._bound.point + TIME])

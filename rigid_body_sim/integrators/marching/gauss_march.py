@@ -337,6 +337,8 @@ def march(p, control, point, following, target, end, limit):
         if not good or target < reached.time or moved == limit:
             _store_point(reached, following)
             _keep_rates(S, following)
+            if not good:
+                following[TIME] = here.time    # none follows
             break
         here = reached
         moved += 1

@@ -29,6 +29,9 @@ class Head(NamedTuple):
     scales: Vector
 
 
+LOST, REACHED, PAUSED = 0, 1, 2
+"""How a march ended: no step is good; the time asked is within the step; its steps are used up."""
+
 HEAD = layout(Head)
 TIME, STEP, SCALES = (HEAD.part(name).first for name in Head._fields)
 VALUES = HEAD.size

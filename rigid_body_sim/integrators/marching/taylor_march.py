@@ -197,7 +197,8 @@ def march(p, control, point, following, target, end, limit):
         )
         good = t1 > t and y1[0] * y1[0] + y1[4] * y1[4] + y1[5] * y1[5] + y1[6] * y1[6] < math.inf
         if not good or target < t1 or moved == limit:
-            following[TIME], following[STEP], following[SCALE] = t1, step, scale1
+            following[TIME] = t1 if good else t    # t: none follows
+            following[STEP], following[SCALE] = step, scale1
             put(y1, following, VALUES)
             put(c1, following, VALUES + SIZE)
             control[FOR] = t

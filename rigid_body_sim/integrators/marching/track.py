@@ -13,7 +13,7 @@ points. Its beginning, up to the point, is copied from a prototype.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import TIME
+from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, TIME
 
 start = UNBOUND
 begin = UNBOUND
@@ -30,6 +30,7 @@ COUNTS = UNBOUND
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
 CHECKPOINTS = 128                   # how many points are kept
 SPACING = 32                        # at first every which one
+AT_ONCE = 8                         # steps of a call from Python that asks for a state
 
 
 @compiled
@@ -64,8 +65,11 @@ def opened(piece):
 
 
 @compiled
-def follow(piece, target, end):
-    """Bring the point to the last one not later than `target`; return whether it went well."""
+def follow(piece, target, end, limit):
+    """Bring the point to the last one not later than `target`, in at most `limit` steps.
+
+    Return LOST, REACHED or PAUSED; a march that pauses goes on at the next call, to the same bits.
+    """
     p, control, point, following = (
         piece[:CONTROL],
         piece[CONTROL:POINT],
@@ -87,12 +91,14 @@ def follow(piece, target, end):
     while True:
         stride = int(counts[STRIDE])
         until_checkpoint = stride - int(counts[COUNT]) % stride
-        moved, good = march(p, control, point, following, target, end, until_checkpoint)
+        most = min(until_checkpoint, limit)
+        moved, good = march(p, control, point, following, target, end, most)
         counts[COUNT] += moved
+        limit -= moved
         if not good:
-            return False
-        if moved < until_checkpoint:
-            return True
+            return LOST
+        if moved < most:
+            return REACHED
         if counts[COUNT] == counts[STORED] * counts[STRIDE]:
             if counts[STORED] == CHECKPOINTS:
                 for k in range(CHECKPOINTS // 2):
@@ -101,6 +107,8 @@ def follow(piece, target, end):
             if counts[COUNT] == counts[STORED] * counts[STRIDE]:
                 _copy_point(point, 0, store, length * int(counts[STORED]))
                 counts[STORED] += 1.0
+        if limit == 0:
+            return PAUSED
 
 
 @compiled
@@ -112,9 +120,11 @@ def _fill(p, control, point, following, time, out):
 
 @compiled
 def state(piece, time, end, out):
-    """Fill out with the state at a time; return whether it went well."""
-    good = piece[POINT + TIME] <= time < piece[FOLLOWING + TIME] or follow(piece, time, end)
-    if good:
+    """Fill out with the state at a time, unless the march does not reach it; return as `follow`."""
+    status = REACHED
+    if not piece[POINT + TIME] <= time < piece[FOLLOWING + TIME]:
+        status = follow(piece, time, end, AT_ONCE)
+    if status == REACHED:
         _fill(
             piece[:CONTROL],
             piece[CONTROL:POINT],
@@ -123,7 +133,7 @@ def state(piece, time, end, out):
             time,
             out,
         )
-    return good
+    return status
 
 
 @compiled
@@ -137,7 +147,7 @@ def first_state(prototype, vector, piece, time, end, out):
 def states(piece, times, order, end, out):
     """Fill row order[i] of out with the state at times[order[i]], times rising in that order.
 
-    Return how many rows were filled.
+    Return how many rows were filled: fewer than asked where one takes more than AT_ONCE steps.
     """
     p, control, point, following = (
         piece[:CONTROL],
@@ -147,7 +157,8 @@ def states(piece, times, order, end, out):
     )
     for i in range(len(order)):
         k = order[i]
-        if not (point[TIME] <= times[k] < following[TIME] or follow(piece, times[k], end)):
-            return i
+        if not point[TIME] <= times[k] < following[TIME]:
+            if follow(piece, times[k], end, AT_ONCE) != REACHED:
+                return i
         _fill(p, control, point, following, times[k], out[k])
     return len(order)
