@@ -110,7 +110,7 @@ class Inertia:
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
-        moments, axes = _nearest_where_equal(*_nearest_to_the_body(*_eigenvectors(matrix.tolist())))
+        moments, axes = _nearest_where_equal(*_nearest_to_the_body(*eigenvectors(matrix.tolist())))
         return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))))
 
     @cached_property
@@ -263,7 +263,7 @@ def _about(center, parts, centers):
     return tensor
 
 
-def _eigenvectors(matrix):
+def eigenvectors(matrix):
     """Return the eigenvalues of a symmetric 3 x 3 matrix and its eigenvectors, by Jacobi rotations with 40 digits.
 
     Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR

@@ -9,14 +9,35 @@ side: the compiler makes vector code of them without being allowed to reorder an
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
-from rigid_body_sim.integrators.families.one_step import bind, equations_of  # noqa: F401
-from rigid_body_sim.integrators.marching import gauss_march, unroll
+from rigid_body_sim.integrators.equations import equations as general
+from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
+from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
+from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import VALUES
 
 TAKES_WRENCH = True
 LANES = False
 TERMS = 2 * STAGES + 1      # of a curve: P_0 ... P_16
+
+
+class Equations(general.Equations):
+    """The equations of a scene, with what stiff drag relaxes.
+
+    Attributes
+    ----------
+    relaxations : list of Relaxation
+        Empty where no drag is stiff.
+    """
+
+    def __init__(self, scene, wrench=None):
+        super().__init__(scene, wrench)
+        self.relaxations = stiff_relaxations(scene, self.kind.UNKNOWNS)
+
+
+def equations_of(scene, wrench):
+    """Return the equations of a scene that `march` is for."""
+    return Equations(scene, wrench)
 
 
 def march(method, equations, adapts):
@@ -32,6 +53,7 @@ def march(method, equations, adapts):
         load_scales=unroll.load_source('load_scales', relative),
         put_scales=unroll.put_source('put_scales', relative),
         stage_rates=_stage_rates(size, equations.parameter_count),
+        relax=_relax(equations.relaxations, places),
         spread=_spread(size), combined=_combined(size, places['RATES']), advanced=_advanced(size),
         along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(size, places['CURVE']),
         measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),
@@ -49,9 +71,31 @@ def _places(size):
             'TAIL': steps + 4, 'CURVE': steps + 5}
 
 
+def _relax(found, places):
+    """Return what binds the `relax` of gauss_march.py: a kernel, or the source of one that is idle.
+
+    `found` are the Relaxations of the equations.
+    """
+    if not found:
+        return _function('relax(S, y, h, fresh)', ['pass'])
+    first = places['CURVE'] + TERMS * places['SIZE']
+    blocks = tuple((one.first, len(one.rates), first + k * relaxing.PART)
+                   for k, one in enumerate(found))
+    bound = specialise(relaxing, BLOCKS=f'BLOCKS = {blocks!r}\n',
+                       RATES=f'RATES = {places["RATES"]}\n')
+    return f'{bound.__name__}:relax'
+
+
 def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
-    control = np.zeros(march.WORK + march.CURVE + TERMS * march.SIZE)
+    found = stiff_relaxations(stepped.scene, march.SIZE)
+    first = march.WORK + march.CURVE + TERMS * march.SIZE
+    control = np.zeros(first + relaxing.PART * len(found))
+    for k, one in enumerate(found):
+        part, n = control[first + k * relaxing.PART:], len(one.rates)
+        part[relaxing.INTO:relaxing.INTO + n * n] = one.into.ravel()
+        part[relaxing.BACK:relaxing.BACK + n * n] = one.back.ravel()
+        part[relaxing.DECAY:relaxing.DECAY + n] = one.rates
     if stepped.accuracy is not None:
         control[march.TOLERANCE] = stepped.accuracy / stepped.horizon
     control[march.FIXED] = stepped.step or 0.0

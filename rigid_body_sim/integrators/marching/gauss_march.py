@@ -14,7 +14,8 @@ at the stages.
     FOR         the step of the matrix; FOR_STEP, FOR_BEFORE: the two steps of the predictor
     FOR_POINT   the time of the point whose step has its curve kept
     TAIL        the size of the curve's last coefficients
-    CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown
+    CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown; behind it what
+                relaxing.py needs where drag is stiff
 """
 
 import math
@@ -39,6 +40,7 @@ put = UNBOUND
 load_scales = UNBOUND
 put_scales = UNBOUND
 stage_rates = UNBOUND
+relax = UNBOUND         # what stiff drag asks for between two sweeps: relaxing.py, or nothing
 spread = UNBOUND
 combined = UNBOUND
 advanced = UNBOUND
@@ -78,6 +80,7 @@ FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, w
 FIRST_SWEEPS = 4         # of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
+FLOOR = 2.0 ** -50       # the same as a share of the unknowns, where the increments are small
 # The rates of y' = i nu y with x = nu h have Legendre coefficients
 #     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
 # c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by
@@ -190,20 +193,24 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
     _predict(p, S, y, last)
     if not last > 0.0:
         sweeps = max(sweeps, FIRST_SWEEPS)
-    for _ in range(sweeps - 1):
+    for sweep in range(sweeps - 1):
         stage_rates(p, S)
+        relax(S, y, h, sweep == 0)
         spread(S, y, MATRIX)
     stage_rates(p, S)
+    relax(S, y, h, sweeps == 1)
     mean = combined(S, B)
     size = h * h * measure(mean, mean, 0.0, scales)
     enough = max(allowed * allowed, ROUNDING * ROUNDING * size)
+    floor = max(NOISE * NOISE * size, FLOOR * FLOOR)
     least, smallest = sweeps, math.inf
     while True:
         spread(S, y, MATRIX)
         stage_rates(p, S)
+        relax(S, y, h, False)
         before, mean = mean, combined(S, B)
         change = h * h * measure(mean, before, 1.0, scales)
-        if change <= enough or smallest <= change <= NOISE * NOISE * size:
+        if change <= enough or smallest <= change <= floor:
             return mean, sweeps, sweeps == least and change <= ENOUGH * ENOUGH * enough, True
         sweeps, smallest = sweeps + 1, change
         if not sweeps < MOST_SWEEPS or not change < math.inf:
@@ -222,7 +229,7 @@ def _judged(S, h, mean, scales):
     c6 = by_group(combined(S, TAILS[1]), scales)
     c5 = by_group(combined(S, TAILS[2]), scales)
     c4 = by_group(combined(S, TAILS[3]), scales)
-    noise = NOISE * NOISE * measure(mean, mean, 0.0, scales)
+    noise = max(NOISE * NOISE * measure(mean, mean, 0.0, scales), FLOOR * FLOOR / (h * h))
     error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(c7)):
         s7, s6, s5, s4 = s7 + c7[k], s6 + c6[k], s5 + c5[k], s4 + c4[k]

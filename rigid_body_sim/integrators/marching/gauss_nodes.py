@@ -33,6 +33,10 @@ def _integral(polynomial):
     return [Decimal(0), *(coefficient / (k + 1) for k, coefficient in enumerate(polynomial))]
 
 
+def _slope(polynomial):
+    return [k * coefficient for k, coefficient in enumerate(polynomial)][1:]
+
+
 def _continued(polynomial):
     """Return the polynomial in x - 1: the same curve beyond the end of the interval."""
     return [
@@ -71,6 +75,9 @@ with localcontext(CONTEXT):
     C, B = np.array([float(c) for c in _C]), np.array([float(b) for b in _B])
     # A[i, j]: integral of the j-th basis polynomial from 0 to c_i
     A = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _C])
+    # SLOPES, the inverse of A: of a curve that begins at 0, its slopes at the nodes from its values
+    SLOPES = _floats([[value(_slope(polynomial), c)
+                       for polynomial in list(_through([Decimal(0), *_C]))[1:]] for c in _C])
     # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)
     AHEAD = _floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS])
     # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before

@@ -8,7 +8,6 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
@@ -56,9 +55,11 @@ class Drag(Effect):
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple, and the force as a moment about a bearing or as it slows a flight."""
-        r = np.array(frame.arm)
-        # the matrices of the kernels `couple` and `moment`
-        matrix = -self.angular * np.eye(3) - self.linear * (dot(r, r) * np.eye(3) - np.outer(r, r))
+        x, y, z = frame.arm
+        # the matrices of the kernels `couple` and `moment`, without the difference r^2 - z^2
+        of_arm = np.array(((y * y + z * z, -x * y, -x * z), (-x * y, z * z + x * x, -y * z),
+                           (-x * z, -y * z, x * x + y * y)))
+        matrix = -self.angular * np.eye(3) - self.linear * of_arm
         first, second, third = matrix.tolist()
         return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
                     slowing=self.linear if frame.moves else 0.0)
@@ -78,7 +79,10 @@ def couple(k, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
 @compiled
 def moment(c, rx, ry, rz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return r x (-c omega x r) = -c (r^2 omega - (r . omega) r), N m."""
-    square, along = rx * rx + ry * ry + rz * rz, rx * wx + ry * wy + rz * wz
-    return (-c * (square * wx - along * rx), -c * (square * wy - along * ry),
-            -c * (square * wz - along * rz))
+    """Return r x (-c omega x r), N m.
+
+    The products in turn round less than r^2 omega - (r . omega) r, of which a slim body would
+    take the small difference along its axis.
+    """
+    ux, uy, uz = wy * rz - wz * ry, wz * rx - wx * rz, wx * ry - wy * rx
+    return -c * (ry * uz - rz * uy), -c * (rz * ux - rx * uz), -c * (rx * uy - ry * ux)

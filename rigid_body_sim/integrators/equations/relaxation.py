@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The linear drag of a scene in the coordinates in which it is diagonal.
+
+    omega' = -I^-1 K omega + ...,    v' = -(c/M) v + ...
+
+K is symmetric, so with I^(-1/2) K I^(-1/2) = Q diag(lambda) Q^T the coordinates Q^T I^(1/2) omega
+relax at the rates lambda, each by itself.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.parameters import moment_about_hinge
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.bodies import eigenvectors
+
+STIFF = 20.0    # times the rates of the motion: drag that is faster is stiff
+
+
+class Relaxation(NamedTuple):
+    """Drag on unknowns that stand side by side.
+
+    Attributes
+    ----------
+    first : int
+        The first of the unknowns.
+    into, back : array (n, n)
+        To the coordinates that relax by themselves, and from them.
+    rates : list of n floats
+        lambda, 1/s.
+    """
+
+    first: int
+    into: np.ndarray
+    back: np.ndarray
+    rates: list
+
+
+def stiff_relaxations(scene, unknowns):
+    """Return the Relaxations of a scene for equations of so many unknowns, where drag is stiff.
+
+    There are none where no relaxation is much faster than the motion.
+    """
+    found = relaxations(scene, unknowns)
+    motion = (hypot3(*scene.initial.angular_velocity.tolist()) + swing_rate(scene)
+              + math.sqrt(drive(scene, None)))
+    fastest = max((rate for one in found for rate in one.rates), default=0.0)
+    return found if fastest > STIFF * motion else []
+
+
+def relaxations(scene, unknowns):
+    """Return the Relaxations of a scene for equations of so many unknowns."""
+    frame, axis = scene.constraint.frame(scene.body), scene.constraint.axis
+    pulls = [effect.series(frame, -math.inf) for effect in scene.effects
+             if effect.series is not None]
+    matrices = [pull.drag for pull in pulls if pull.drag is not None]
+    matrix = [[math.fsum(one[i][j] for one in matrices) for j in range(3)] for i in range(3)]
+    slowing = math.fsum(pull.slowing for pull in pulls)
+    found = []
+    if matrices and axis is not None:
+        along = math.fsum(axis[i] * matrix[i][j] * axis[j] for i in range(3) for j in range(3))
+        rate = -along / moment_about_hinge(scene.body, scene.constraint)
+        found.append(Relaxation(1, np.eye(1), np.eye(1), [rate]))
+    elif matrices:
+        roots = [math.sqrt(moment) for moment in frame.moments]
+        over = [1.0 / root if root > 0.0 else 0.0 for root in roots]
+        rates, vectors = eigenvectors([[-matrix[i][j] * over[i] * over[j] for j in range(3)]
+                                       for i in range(3)])
+        into, back = np.array(vectors) * roots, (np.array(vectors) * over).T
+        found.append(Relaxation(4, into, back, [max(rate, 0.0) for rate in rates]))
+    if slowing and unknowns > 10:
+        found.append(Relaxation(10, np.eye(3), np.eye(3), [slowing / frame.mass] * 3))
+    return found
