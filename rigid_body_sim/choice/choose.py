@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
-from rigid_body_sim.integrators import GENERAL, METHODS, runnable
+from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
+from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
 from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import absorbing_motion
@@ -22,7 +23,8 @@ from rigid_body_sim.numerics.vectors import apply
 
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
-ENDING = 1e-9   # largest tolerance for stiff dissipation; a coarser one keeps a residual wobble
+ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
+OFTEN = 13      # unknowns of the equations that have most
 HORIZON = 100.0
 """Time over which an accuracy holds where no duration is given, s."""
 
@@ -77,7 +79,9 @@ class Choice:
         if not wrench:
             return self._prototype.start(start)
         method = METHODS.get(self.method, GENERAL)    # GENERAL in place of `exact`
-        name = method.NAME if method.FAMILY.TAKES_WRENCH else GENERAL.NAME
+        if not method.FAMILY.TAKES_WRENCH or (method is GENERAL and self.method == 'exact'):
+            method = GENERAL if not stiff_relaxations(self.scene, OFTEN) else STEADY
+        name = method.NAME
         held = Stepped(self.scene, name, self.tolerance, self.step, wrench, self.horizon)
         return held.start(start)
 
@@ -90,16 +94,19 @@ class Choice:
 
 
 def _stiff(scene):
-    """Return whether internal dissipation is stiff.
+    """Return what is stiff in a scene, a set of the names in Method.STIFF.
 
-    Its rate c L^2/I is c L times the rate of the rotation, L/I.
+    The rate of internal dissipation, c L^2/I, is c L times that of the rotation, L/I.
     """
-    inner = scene.effect('internal_dissipation')
-    if inner is None:
-        return False
-    inertia = scene.body.about_center.matrix.tolist()
-    momentum = apply(inertia, scene.initial.angular_velocity.tolist())
-    return inner.coefficient * hypot3(*momentum) > STIFF
+    found, inner = set(), scene.effect('internal_dissipation')
+    if inner is not None:
+        inertia = scene.body.about_center.matrix.tolist()
+        momentum = apply(inertia, scene.initial.angular_velocity.tolist())
+        if inner.coefficient * hypot3(*momentum) > STIFF:
+            found.add('dissipation')
+    if stiff_relaxations(scene, OFTEN):
+        found.add('drag')
+    return found
 
 
 def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
@@ -136,15 +143,14 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     able, stiff = runnable(scene), _stiff(scene)
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
-        fit = [name for name in able if METHODS[name].STIFF] if stiff else able
-        # a trial run of a stiff scene could take coarse tolerances, whose steps never grow
-        pick = measured.pick if stiff else trial.settle
-        method, tolerance, expected = settled or pick(scene, fit, accuracy, horizon)
+        fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
+        finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
+        method, tolerance, expected = settled or trial.settle(scene, fit, finer, horizon)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',
                        f'those that can: {possible}')
-    if stiff:
+    if 'dissipation' in stiff and tolerance is not None:
         tolerance = min(tolerance, ENDING)
     prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
     return Choice(scene, method, accuracy, step, horizon, tolerance, expected, prototype)

@@ -12,6 +12,7 @@ import numpy as np
 
 from rigid_body_sim.choice import measured
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.numerics.rotations import angle_between
@@ -19,6 +20,7 @@ from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
+STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
 TRIES = 5       # largest number of tolerances
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
@@ -27,22 +29,45 @@ HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 def settle(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene.
 
-    Where none does, the most accurate method of the table is taken. The parameters are those of
+    A method that takes many more steps than the motion asks for is no method for the scene: the
+    next one is tried. Where none meets the accuracy, the most accurate method of the table is taken. The parameters are those of
     :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a long horizon, and errors
     are taken to grow in proportion to time.
+
+    Raises
+    ------
+    NotConverged
+        No method follows the scene.
     """
-    method, tolerance, promised = measured.pick(scene, able, accuracy, horizon)
+    left, failed = list(able), None
+    while left:
+        pick = measured.pick(scene, left, accuracy, horizon)
+        try:
+            return _settled(scene, accuracy, horizon, *pick)
+        except TooMuchWork as error:
+            left.remove(pick[0])
+            failed = error
+    raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
+
+
+def _settled(scene, accuracy, horizon, method, tolerance, promised):
+    """Return what `settle` returns, for one method and the tolerance at which it begins."""
     part, ends = min(1.0, _span(scene) / horizon), {}
     if not part > 0.0:
         return method, tolerance, promised
+    time = part * horizon
+    radians = (measured.pace(scene) + 0.5 * drive(scene, None) * time) * time
+    most = STEPS + int(min(STEPS_PER_RADIAN * radians, STEPS_PER_RADIAN * RADIANS))
 
     def end(tolerance):
         """Return the attitude at the end of a trial run."""
         if tolerance not in ends:
             out = np.empty(STATE_SIZE)
             try:
-                solver = Stepped(scene, method, tolerance, horizon=horizon)
-                solver.start(scene.initial.vector).state(part * horizon, out)
+                solver = Stepped(scene, method, tolerance, horizon=horizon, most=most)
+                solver.start(scene.initial.vector).state(time, out)
+            except TooMuchWork:
+                raise
             except NotConverged:
                 out[:] = math.nan
             ends[tolerance] = out[ORIENTATION]

@@ -24,6 +24,8 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 METHODS = {method.NAME: method for method in (
     dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
+STEADY = gauss16
+"""The method that stands in for them where drag is stiff."""
 GENERAL = dop8
 """The method that runs every scene, under any wrench, with the ledger: it stands in for methods
 whose family does not account for these, and for motions while a wrench is held."""

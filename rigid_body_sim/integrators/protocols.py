@@ -94,9 +94,9 @@ class Method(Protocol):
         ``series``.
     HEAT : bool
         Whether it runs scenes in which anything makes heat.
-    STIFF : bool
-        Whether it controls its error and keeps its pace where dissipation is much faster than the
-        rotation: `auto` takes no other method there.
+    STIFF : tuple of str
+        What may be much faster than the motion while it controls its error and keeps its pace:
+        ``dissipation`` (internal), ``drag`` (linear). `auto` takes no other method there.
     TABLE : bool
         Whether it follows a ball on the table, whose steps end where sliding does: a Runge-Kutta
         method that estimates its error.
@@ -112,7 +112,7 @@ class Method(Protocol):
     SOURCE: str
     NEEDS: str
     HEAT: bool
-    STIFF: bool
+    STIFF: tuple
     TABLE: bool
     TAKES: tuple
     FAMILY: Any

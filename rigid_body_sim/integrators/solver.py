@@ -21,6 +21,7 @@ from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
+from rigid_body_sim.integrators.departure import Departing, applies, departure
 from rigid_body_sim.integrators.events import Watcher, watches
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
@@ -75,6 +76,7 @@ class Stepped:
                            'under a wrench', f'those that can: {able}')
         self._bound = self.method.FAMILY.bind(self.method, self)
         self._actors = None if self._bound.EXCHANGES else Actors(scene, wrench)
+        self._departs = step is None and applies(scene, wrench)
 
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
@@ -83,9 +85,20 @@ class Stepped:
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        started._course = self._bound.course(started)
         started._exchange, started._watcher = None, None
+        near = departure(self.scene, vector) if self._departs else None
+        if near is None:
+            started._course = self._bound.course(started)
+        else:
+            started._course = Departing(near, started._march_from)
         return started
+
+    def _march_from(self, vector):
+        """Return the course that goes on from a state after a departure."""
+        later = object.__new__(Stepped)
+        later.__dict__.update(self.__dict__)
+        later.vector, later.begin = vector, float(vector[TIME])
+        return self._bound.course(later)
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s); raises what `states` raises."""

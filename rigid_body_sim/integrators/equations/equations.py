@@ -34,6 +34,9 @@ class Equations:
     kernels : module
         `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, point,
         at)``, ``write(p, time, y, out)``.
+    groups : tuple of (int, int, bool)
+        Unknowns whose errors are measured together: first, end, whether against 1 or against
+        their own largest size so far.
     write : str
         Where the last of them is: for :func:`rigid_body_sim.compilation.templates.specialise`.
     breakpoints : tuple of floats
@@ -60,6 +63,9 @@ class Equations:
         else:
             self.kind = flying if any(one.gives == 'force' for one in acting) else turning
         fixed = hinged.PARAMETERS.size if self.kind is hinged else euler.FIXED
+        self.groups = self.kind.GROUPS
+        if self.kind is turning and any(one.gives == 'turning' for one in acting):
+            self.groups = turning.APART
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
         self.makes_heat = any(one.books == 'heat' for one in acting)

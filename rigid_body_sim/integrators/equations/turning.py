@@ -27,6 +27,8 @@ axes_rate = UNBOUND
 
 UNKNOWNS = 7
 GROUPS = ((0, 4, True), (4, 7, False))
+APART = ((0, 4, True), (4, 5, False), (5, 6, False), (6, 7, False))
+"""Groups under internal dissipation: what leaves an axis is to be right while it is small."""
 
 
 @compiled

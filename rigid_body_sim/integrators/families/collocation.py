@@ -18,6 +18,8 @@ from rigid_body_sim.integrators.marching.points import VALUES
 
 TAKES_WRENCH = True
 LANES = False
+FLOOR = 2.0 ** -50          # share of the unknowns that is rounding
+RELAXED_FLOOR = 2.0 ** -39  # the same where slopes of the stages take the place of rates
 TERMS = 2 * STAGES + 1      # of a curve: P_0 ... P_16
 
 
@@ -42,7 +44,7 @@ def equations_of(scene, wrench):
 
 def march(method, equations, adapts):
     """Return the module that marches: gauss_march.py bound to equations."""
-    size, groups = equations.kind.UNKNOWNS, equations.kind.GROUPS
+    size, groups = equations.kind.UNKNOWNS, equations.groups
     kernels = equations.kernels.__name__
     relative = sum(not absolute for _, _, absolute in groups)
     places = _places(size)
@@ -54,6 +56,7 @@ def march(method, equations, adapts):
         put_scales=unroll.put_source('put_scales', relative),
         stage_rates=_stage_rates(size, equations.parameter_count),
         relax=_relax(equations.relaxations, places),
+        FLOOR=f'FLOOR = {RELAXED_FLOOR if equations.relaxations else FLOOR!r}\n',
         spread=_spread(size), combined=_combined(size, places['RATES']), advanced=_advanced(size),
         along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(size, places['CURVE']),
         measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),

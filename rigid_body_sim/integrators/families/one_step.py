@@ -24,7 +24,7 @@ def bind(method, stepped):
 
 def march(method, equations, adapts):
     """Return the module that marches: adaptive.py or fixed.py bound to equations and step."""
-    groups, kernels = equations.kind.GROUPS, equations.kernels.__name__
+    groups, kernels = equations.groups, equations.kernels.__name__
     size = equations.kind.UNKNOWNS
     bindings = {'rate': f'{kernels}:rate', 'settled': f'{kernels}:settled',
                 'SIZE': f'SIZE = {size}\n',

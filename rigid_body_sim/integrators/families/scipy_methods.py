@@ -17,6 +17,7 @@ import numpy as np
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.scene.state import TIME
 
 TAKES_WRENCH = True
@@ -55,9 +56,10 @@ class _Course:
         self._first, self._y = equations.start(stepped.vector)
         y = self._y
         self._begin = float(stepped.vector[TIME])
+        self._most = stepped.most
         self._accuracy = max(stepped.accuracy, FINEST)
         self._scales = np.ones(len(y))
-        for first, last, absolute in equations.kind.GROUPS:
+        for first, last, absolute in equations.groups:
             if not absolute:
                 self._scales[first:last] = max(1.0, float(np.linalg.norm(y[first:last])))
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
@@ -100,8 +102,12 @@ class _Course:
         """Fill out with the states at times not before the start."""
         if self._solver is None:
             self._enter(self._begin, self._y)
+        before = len(self._steps)
         while not self._reached or self._reached[-1] < times.max():
             self._advance()
+            if self._most is not None and len(self._steps) - before > self._most:
+                raise TooMuchWork(f'{self._method.NAME} on {self._scene.name}: more than '
+                                  f'{self._most} steps to t = {float(times.max())!r} s')
         write = self._equations.kernels.write
         for time, row in zip(times, out, strict=True):
             k = bisect.bisect_left(self._reached, time)

@@ -52,6 +52,8 @@ first_scales = UNBOUND
 along = UNBOUND
 end_of_curve = UNBOUND
 SIZE = UNBOUND    # count of the unknowns
+# the same as NOISE as a share of the unknowns, where the increments are small
+FLOOR = UNBOUND
 # places in a point
 LAST = UNBOUND
 SWEEPS = UNBOUND
@@ -80,7 +82,6 @@ FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, w
 FIRST_SWEEPS = 4         # of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
-FLOOR = 2.0 ** -50       # the same as a share of the unknowns, where the increments are small
 # The rates of y' = i nu y with x = nu h have Legendre coefficients
 #     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
 # c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by

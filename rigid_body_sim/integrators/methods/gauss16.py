@@ -11,7 +11,8 @@ a step of dop8, and a step of two radians takes about a dozen of them.
 
 Symmetric; a converged step is symplectic and keeps quadratic invariants, so errors of conservative
 scenes grow in proportion to the time. Caveat: substitution converges for steps of a few radians at
-most, whatever the accuracy asked: this is no method for stiff scenes.
+most, whatever the accuracy asked: this is no method for stiff scenes, but for those whose linear
+drag alone is stiff: its part of the equations of the stages is solved (marching/relaxing.py).
 """
 
 from rigid_body_sim.integrators.families import collocation as FAMILY  # noqa: F401, N812
@@ -21,7 +22,7 @@ ORDER = 16
 PRESERVES = ('symplectic form', 'reversal of time', 'quadratic invariants')
 NEEDS = 'acting'
 HEAT = True
-STIFF = False
+STIFF = ('drag',)
 TABLE = False
 TAKES = ('accuracy', 'step')
 SOURCE = (
