@@ -188,7 +188,7 @@ class Course(Protocol):
     ----------
     TELLS_EVENTS : bool
         Whether it has a method ``events(after, until)``, as Solver.events; else the solver
-        watches the states for events (events.py).
+        watches the states for events (mechanics/events.py).
     """
 
     TELLS_EVENTS: bool

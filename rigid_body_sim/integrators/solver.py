@@ -22,9 +22,9 @@ from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.departure import Departing, applies, departure
-from rigid_body_sim.integrators.events import Watcher, watches
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import hypot3

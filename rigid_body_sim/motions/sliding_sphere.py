@@ -120,7 +120,7 @@ load_quaternion, store_quaternion = QUATERNION.load, QUATERNION.store
 
 def absorbs(scene):
     """Return whether the scene is a balanced sphere on a table, with friction or without."""
-    return (isinstance(scene.constraint, Table) and scene.lists_only(SlidingFriction)
+    return (isinstance(scene.constraint, Table) and scene.acts_only(SlidingFriction)
             and scene.body.about_center.moments[0] > 0.0)
 
 

@@ -93,11 +93,21 @@ class Scene:
         return [line for effect in self.effects
                 for line in effect.notes(self.body, self.constraint)]
 
-    def lists_only(self, *classes: type[Effect]) -> bool:
-        """Return whether all effects but impulses (strikes) are of these classes."""
-        return all(isinstance(effect, classes) or
-                   (effect.as_impulse is not None and effect.acting is None)
-                   for effect in self.effects)
+    @property
+    def acting(self) -> tuple[Effect, ...]:
+        """The effects that do something to this body under this constraint, impulses apart.
+
+        One that is listed may do nothing: a coefficient of zero, gravity on a body whose pivot is
+        its centre of mass.
+        """
+        frame = self.constraint.frame(self.body)
+        return tuple(effect for effect in self.effects if effect.contact is not None or (
+            effect.acting is not None
+            and any(effect.acting(frame, time) for time in (0.0, *effect.breakpoints))))
+
+    def acts_only(self, *classes: type[Effect]) -> bool:
+        """Return whether all effects that act are of these classes."""
+        return all(isinstance(effect, classes) for effect in self.acting)
 
     def effect(self, name: str) -> Effect | None:
         """Return the effect of that name, or None if the scene does not list it."""

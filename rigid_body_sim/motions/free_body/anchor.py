@@ -43,6 +43,7 @@ from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete
 from rigid_body_sim.numerics.pairs import TURN, over, pair_of, plus, root_of, scaled, times
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import apply, minus, product, transposed
+from rigid_body_sim.numerics.vectors import plus as plus_vectors
 from rigid_body_sim.numerics.vectors import scaled as stretched
 from rigid_body_sim.scene.state import STATE
 
@@ -351,3 +352,24 @@ def _fill_attitude(start, out):
     i, j, k = multiply(*C, *axis_1, 0.0), multiply(*C, *axis_2, 0.0), multiply(*C, *axis_3, 0.0)
     store_to_world(out, ((i[0], j[0], k[0], C[0]), (i[1], j[1], k[1], C[1]),
                          (i[2], j[2], k[2], C[2]), (i[3], j[3], k[3], C[3])))
+
+
+@compiled_inline
+def attitude_of(attitude, omega, ZS):
+    """Return quaternion and angular velocity of the body for what `turned` returns."""
+    x, y, z, w = ZS
+    scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
+    q = _apply_4(attitude.to_world, (scale * x, scale * y, scale * z, scale * w))
+    return q, plus_vectors(apply(attitude.to_body, omega), attitude.rounding)
+
+
+@compiled_inline
+def _apply_4(matrix, q):
+    """Return the product of a 4 x 4 matrix, given by its rows, and a quaternion."""
+    a, b, c, d = matrix
+    return _dot_4(a, q), _dot_4(b, q), _dot_4(c, q), _dot_4(d, q)
+
+
+@compiled_inline
+def _dot_4(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]

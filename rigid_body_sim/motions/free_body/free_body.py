@@ -21,6 +21,7 @@ from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.motions.free_body.anchor import (
     Inertia,
     RotationAnchor,
+    attitude_of,
     fill_rotation,
     load_attitude,
     rotation_parameters,
@@ -40,7 +41,7 @@ from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate
-from rigid_body_sim.numerics.vectors import apply, cross, minus, plus
+from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene.constraints import Free
 from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.state import STATE, StateView
@@ -85,7 +86,7 @@ load_row, store_row = COLUMNS.load, COLUMNS.store
 
 def absorbs(scene):
     """Return whether this motion solves the whole scene."""
-    return isinstance(scene.constraint, Free) and scene.lists_only(Gravity)
+    return isinstance(scene.constraint, Free) and scene.acts_only(Gravity)
 
 
 def parameters(scene):
@@ -123,27 +124,12 @@ def state(anchor, time, out):
 @compiled_inline
 def _state_of(attitude, flight, time, dt, omega, ZS):
     """Return the state of what `turned` returns, its position that of the centre of mass."""
-    x, y, z, w = ZS
-    scale = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
-    q = _apply_4(attitude.to_world, (scale * x, scale * y, scale * z, scale * w))
-    body_omega = plus(apply(attitude.to_body, omega), attitude.rounding)
+    q, body_omega = attitude_of(attitude, omega, ZS)
     t = dt[0]
     fall = flight.g * t
     vx, vy, vz = flight.velocity
     position = plus(flight.position, (vx * t, vy * t, (vz - 0.5 * fall) * t))
     return StateView(time, q, body_omega, position, (vx, vy, vz - fall))
-
-
-@compiled_inline
-def _apply_4(matrix, q):
-    """Return the product of a 4 x 4 matrix, given by its rows, and a quaternion."""
-    a, b, c, d = matrix
-    return _dot_4(a, q), _dot_4(b, q), _dot_4(c, q), _dot_4(d, q)
-
-
-@compiled_inline
-def _dot_4(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 
 
 @compiled_inline

@@ -65,7 +65,7 @@ exchanged = None
 
 def absorbs(scene):
     """Return whether the scene is a symmetric body on a pivot under its weight alone; symmetric means exactly so (see `symmetry_axis`)."""
-    return (isinstance(scene.constraint, Pivot) and scene.lists_only(Gravity)
+    return (isinstance(scene.constraint, Pivot) and scene.acts_only(Gravity)
             and symmetry_axis(scene.body) is not None)
 
 

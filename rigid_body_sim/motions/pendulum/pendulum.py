@@ -71,7 +71,7 @@ load_state, store_state, store_row = STATE.load, STATE.store, COLUMNS.store
 
 def absorbs(scene):
     """Return whether the scene is a body on a hinge under its weight alone, or under nothing."""
-    return isinstance(scene.constraint, Hinge) and scene.lists_only(Gravity)
+    return isinstance(scene.constraint, Hinge) and scene.acts_only(Gravity)
 
 
 @compiled

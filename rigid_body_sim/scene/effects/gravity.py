@@ -37,8 +37,10 @@ class Gravity(Effect):
         return cls(float(settings['g']))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return the weight, or its torque about the constraint."""
+        """Return the weight, or its torque about the constraint; nothing without either."""
         weight = frame.mass * self.g
+        if weight == 0.0 or not (frame.moves or any(frame.arm)):
+            return ()
         if frame.moves:
             return Acting('rigid_body_sim.scene.effects.elementary:constant',
                           (0.0, 0.0, -weight), 'force', 'potential'),

@@ -45,7 +45,9 @@ class InternalDissipation(Effect):
         return cls(float(settings['coefficient']))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return the extra rate at which the axes turn."""
+        """Return the extra rate at which the axes turn; nothing for a sphere."""
+        if len(set(frame.moments)) == 1:
+            return ()
         values = self.coefficient, *frame.moments
         return Acting(f'{__name__}:turning', values, 'turning', 'heat'),
 

@@ -173,7 +173,8 @@ class Effect(Protocol):
         """``acting(frame, time)``: what acts continuously just after a time (s), each an Acting.
 
         The number, the kernels and the ledger entries of these are the same at all times; only
-        values change, and only at breakpoints.
+        values change, and only at breakpoints. An effect that never does anything to a body in
+        this frame returns none: closed forms match a scene by what acts, not by what it lists.
         """
         return None
 

@@ -71,7 +71,9 @@ class Torque(Effect):
         return self.values[place] if place >= 0 else (0.0, 0.0, 0.0)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return the couple."""
+        """Return the couple; nothing if it is zero at all times."""
+        if not any(map(any, self.values)):
+            return ()
         value = self.value(time)
         if self.frame == 'world':
             return Acting('rigid_body_sim.scene.effects.elementary:to_frame', value, 'torque',
