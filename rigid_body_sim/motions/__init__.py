@@ -13,7 +13,8 @@ MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
            'rigid_body_sim.motions.pendulum.pendulum',
            'rigid_body_sim.motions.sliding_sphere',
            'rigid_body_sim.motions.damped_body',
-           'rigid_body_sim.motions.driven_body')
+           'rigid_body_sim.motions.driven_body',
+           'rigid_body_sim.motions.fixed_axis')
 """Modules in the order in which a scene is offered to them; each is imported when it is asked."""
 
 

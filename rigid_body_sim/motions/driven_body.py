@@ -30,10 +30,10 @@ from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
-from rigid_body_sim.numerics.double_double import multiply_double, two_product, two_sum
-from rigid_body_sim.numerics.functions import atan2, hypot3
-from rigid_body_sim.numerics.pairs import TURN, pair_of, plus, scaled, times
-from rigid_body_sim.numerics.phase import COUNTABLE, nearest, sin_cos
+from rigid_body_sim.numerics.double_double import two_sum
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.pairs import TURN, pair_of, scaled, times
+from rigid_body_sim.numerics.phase import nearest, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import across, cross, dot
@@ -44,7 +44,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ('flip',)
-exchanged = None
+exchanged = takes = None
 fill_columns = None
 
 IN_BODY, IN_WORLD = 0.0, 1.0    # axes in which the torque is constant

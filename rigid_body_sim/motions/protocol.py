@@ -34,8 +34,18 @@ class Motion(Protocol):
     def absorbs(self, scene: Scene) -> bool:
         """Return whether the motion solves the scene whole: constraint, effects and body.
 
-        Effects that are impulses, such as strikes, need no mention: after each the motion is
-        anchored anew.
+        The match is by what acts (``scene.acts_only``, ``mechanics.pulls.total_pull``), not by what
+        the scene lists. Effects that are impulses, such as strikes, need no mention: after each
+        the motion is anchored anew.
+        """
+        ...
+
+    @property
+    def takes(self) -> Callable[[Scene, np.ndarray], bool] | None:
+        """``takes(scene, start)``: whether the motion holds from a state of a scene it absorbs.
+
+        None if it holds from any state. It is asked at each start: an impulse may have changed the
+        state, and then the general method goes on.
         """
         ...
 
@@ -64,7 +74,11 @@ class Motion(Protocol):
 
     @property
     def next_event(self) -> Callable[[np.ndarray, float], tuple[float, int]] | None:
-        """``next_event(anchor, after)``: time (s, infinite if none) and code of the next event."""
+        """``next_event(anchor, after)``: time (s, infinite if none) and code of the next event.
+
+        Events of the scene whose names are not among `EVENTS` are looked for on the states
+        (mechanics/events.py), and so are all events if this is None.
+        """
         ...
 
     @property

@@ -43,7 +43,7 @@ from rigid_body_sim.scene.state import STATE, StateView
 ROUNDING = 2.0 ** -49    # 8 ulp; body axes and back left at most 2.9 in 200,000 random states
 CHECKPOINTS = 32
 EVENTS = ('rolling began',)
-fill_columns = None
+fill_columns = takes = None
 
 
 class Parameters(NamedTuple):

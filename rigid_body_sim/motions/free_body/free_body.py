@@ -47,7 +47,7 @@ from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('flip',)
-exchanged = None
+exchanged = takes = None
 
 
 class Parameters(NamedTuple):

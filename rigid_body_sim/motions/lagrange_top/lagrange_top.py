@@ -60,7 +60,7 @@ TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE +
 ANCHOR_SIZE = NUTATION_SIZE + 9
 
 EVENTS = ('turning point',)
-exchanged = None
+exchanged = takes = None
 
 
 def absorbs(scene):

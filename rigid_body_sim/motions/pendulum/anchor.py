@@ -105,32 +105,50 @@ load_swing, store_swing = ANCHOR.part('swing').load, ANCHOR.part('swing').store
 load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').store
 
 
+class Axle(NamedTuple):
+    """A body on a hinge, in exact numbers; vectors in body axes."""
+
+    axis: list[Fraction]       # n
+    arm: list[Fraction]        # r, m
+    distance: Fraction         # of the centre of mass from the axis, m; 0 to rounding of the scene
+    momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
+    moment: Fraction           # about n, kg m^2
+
+
+def axle(scene):
+    """Return the Axle of a scene with a hinge."""
+    body = scene.body
+    axis, through = _exact(scene.constraint.axis), _exact(scene.constraint.through)
+    r = [c - t for c, t in zip(_exact(body.center_of_mass), through, strict=True)]
+    n = [component / _root(_dot(axis, axis)) for component in axis]
+    side, mass = _cross(n, r), Fraction(body.mass)
+    swung = _cross(r, _cross(r, n))
+    spun = _tensor_times(body.about_center, n)
+    momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
+    d = _root(_dot(side, side))
+    size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
+    if d <= bodies.ULPS * size:
+        d = Fraction(0)         # on the axis, to the rounding of what the scene says
+    return Axle(n, r, d, momentum, _dot(n, momentum))
+
+
 def parameters(scene):
     """Return the numbers of the scene, :class:`Parameters` as an array.
 
     They come from the exact rationals that the doubles of the scene are.
     """
-    body, gravity = scene.body, scene.effect('gravity')
-    axis, through = _exact(scene.constraint.axis), _exact(scene.constraint.through)
-    r = [c - t for c, t in zip(_exact(body.center_of_mass), through, strict=True)]
-    n = [component / _root(_dot(axis, axis)) for component in axis]
+    body, gravity, held = scene.body, scene.effect('gravity'), axle(scene)
+    n, r, d, moment = held.axis, held.arm, held.distance, held.moment
     side, along = _cross(n, r), _dot(n, r)
     down = [along * a - b for a, b in zip(n, r, strict=True)]
     mass, g = Fraction(body.mass), Fraction(gravity.g if gravity else 0.0)
-    swung = _cross(r, _cross(r, n))
-    spun = _tensor_times(body.about_center, n)
-    momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
-    d, moment = _root(_dot(side, side)), _dot(n, momentum)
-    size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
-    if d <= bodies.ULPS * size:
-        d = Fraction(0)         # on the axis, to the rounding of what the scene says
 
     def over_d(vector):
         return [pair_of(component / d) if d else NOTHING for component in vector]
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         [pair_of(component) for component in n], over_d(side), over_d(down),
-        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r, momentum,
+        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r, held.momentum,
         mass * g / moment))
     return numbers
 

@@ -61,7 +61,7 @@ from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
-exchanged = None
+exchanged = takes = None
 
 PARAMETER_SIZE, ANCHOR_SIZE = anchor.PARAMETER_SIZE, anchor.ANCHOR_SIZE
 parameters, anchor = anchor.parameters, anchor.anchor
