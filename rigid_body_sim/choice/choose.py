@@ -9,6 +9,8 @@ import functools
 import logging
 from dataclasses import dataclass
 
+import numpy as np
+
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
@@ -20,6 +22,7 @@ from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
+from rigid_body_sim.scene.effects.wrench import Wrench
 
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
@@ -74,23 +77,41 @@ class Choice:
         """Return a Solver from a state on, shape (14,), under a held wrench.
 
         A motion takes no wrench, nor do methods whose family does not account for one: the
-        general method solves the hold.
+        general method solves the hold. It also goes on where a command has brought the body to a
+        state from which the motion does not hold.
         """
-        if not wrench:
+        if not wrench and self._holds(start):
             return self._prototype.start(start)
-        method = METHODS.get(self.method, GENERAL)    # GENERAL in place of `exact`
-        if not method.FAMILY.TAKES_WRENCH or (method is GENERAL and self.method == 'exact'):
-            method = GENERAL if not stiff_relaxations(self.scene, OFTEN) else STEADY
-        name = method.NAME
-        held = Stepped(self.scene, name, self.tolerance, self.step, wrench, self.horizon)
-        return held.start(start)
+        return self._general(wrench).start(start)
 
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states of many bodies at n times (s).
 
         The bodies start from `starts`, shape (bodies, 14); all cores take part.
         """
-        self._prototype.many(starts, times, out)
+        held = np.array([self._holds(start) for start in starts]) if self._asks else None
+        if held is None or held.all():
+            self._prototype.many(starts, times, out)
+            return
+        for chosen, solver in ((held, self._prototype), (~held, self._general(Wrench()))):
+            part = np.empty((int(chosen.sum()), *out.shape[1:]))
+            solver.many(starts[chosen], times, part)
+            out[chosen] = part
+
+    @property
+    def _asks(self):
+        return self.method == 'exact' and self._prototype.motion.takes is not None
+
+    def _holds(self, start):
+        """Return whether the prototype goes on from a state."""
+        return not self._asks or self._prototype.takes(start)
+
+    def _general(self, wrench):
+        """Return the solver that stands in where the prototype cannot go on."""
+        method = METHODS.get(self.method)
+        if method is None or not method.FAMILY.TAKES_WRENCH:    # None: `exact`
+            method = STEADY if stiff_relaxations(self.scene, OFTEN) else GENERAL
+        return Stepped(self.scene, method.NAME, self.tolerance, self.step, wrench, self.horizon)
 
 
 def _stiff(scene):

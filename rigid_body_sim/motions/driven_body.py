@@ -31,9 +31,9 @@ from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
 from rigid_body_sim.numerics.double_double import two_sum
-from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.functions import atan2, hypot3
 from rigid_body_sim.numerics.pairs import TURN, pair_of, scaled, times
-from rigid_body_sim.numerics.phase import nearest, sin_cos
+from rigid_body_sim.numerics.phase import COUNTABLE, nearest, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import across, cross, dot
@@ -202,3 +202,100 @@ def state(anchor, time, out):
                 stretched(2.0 * sine * cosine, cross(drive.a, rest))))
         q = normalised(*q)
     store_state(out, flown(held.flight, t, time, q, omega))
+
+
+@compiled
+def next_event(anchor, after):
+    """Return the time of the first flip later than `after`, infinite if there is none, and 0.
+
+    The momentum across the axis turns in the body by quarter turns between its greatest size along
+    the middle axis and the next change of sign; where the spin runs through zero it turns back.
+    """
+    held = load_anchor(anchor)
+    middle, k, growth = held.drive.middle, held.drive.excess[0], held.drive.growth[0]
+    if held.across == 0.0 or k == 0.0:
+        return math.inf, 0
+    rest = stretched(-held.across, held.e2)
+    # the angle from the middle axis to the momentum across a, turns, at the start
+    begin = TURN[0] * atan2(dot(cross(middle, rest), held.drive.a), dot(middle, rest))
+    back = -held.along / growth             # the spin is zero then, s after the start
+    # before and after this the spin is so large that no flip comes
+    spun = 2.0 * held.across / (held.drive.ratio[0] * growth)
+    at = max(after - held.start, back - spun)
+    while at <= back + spun:
+        before, at = at, _next_crossing(begin, k, held.along, growth, back, at)
+        if held.start + at > after and _was_strong(held, _crossing_before(
+                begin, k, held.along, growth, back, at), at):
+            return held.start + at, 0
+        if not at > before:
+            break
+    return math.inf, 0
+
+
+@compiled_inline
+def _phase_at(begin, k, along, growth, at):
+    """Return the angle from the middle axis to the momentum across a, turns."""
+    return begin + TURN[0] * k * (along * at + 0.5 * growth * at * at)
+
+
+@compiled
+def _next_crossing(begin, k, along, growth, back, at):
+    """Return when the angle next is an odd number of quarter turns, s after the start."""
+    now, turn = _phase_at(begin, k, along, growth, at), _phase_at(begin, k, along, growth, back)
+    if not abs(now) < COUNTABLE:
+        return math.inf
+    way = -math.copysign(1.0, k)            # of the angle, before the spin runs through zero
+    if at < back:
+        # the next place on the way, if it lies before the place where the angle turns back
+        place = _place_beyond(now, way)
+        while (turn - place) * way > 0.0:
+            time = back - _time_from(k, growth, place - turn)
+            if time > at:
+                return time
+            place += 0.5 * way
+        now, at = turn, back
+    place = _place_beyond(now, -way)
+    time = back + _time_from(k, growth, place - turn)
+    while not time > at:
+        place -= 0.5 * way
+        time = back + _time_from(k, growth, place - turn)
+    return time
+
+
+@compiled_inline
+def _crossing_before(begin, k, along, growth, back, at):
+    """Return when the angle was an odd number of quarter turns before a crossing."""
+    # time runs back: the same motion with the spin reversed
+    return -_next_crossing(begin, k, -along, growth, -back, -at)
+
+
+@compiled_inline
+def _place_beyond(now, way):
+    """Return the first odd number of quarter turns not before an angle, on a way of +1 or -1."""
+    return way * (math.ceil(2.0 * way * now - 0.5) * 0.5 + 0.25)
+
+
+@compiled_inline
+def _time_from(k, growth, turns):
+    """Return how long after its rest the angle has turned that far."""
+    return math.sqrt(max(2.0 * (turns / TURN[0]) / (k * growth), 0.0))
+
+
+@compiled
+def _was_strong(held, begin, end):
+    """Return whether the momentum along the middle axis was L/2 or more between two crossings.
+
+    Sixteen looks suffice: it is like a sine there, over a size that changes little.
+    """
+    ratio, growth = held.drive.ratio[0], held.drive.growth[0]
+    middle, a = held.drive.middle, held.drive.a
+    rest = stretched(-held.across, held.e2)
+    other = cross(a, rest)
+    for n in range(1, 16):
+        t = begin + (end - begin) * (n / 16.0)
+        turns = held.drive.excess[0] * TURN[0] * (held.along * t + 0.5 * growth * t * t)
+        sine, cosine = sin_cos(turns - nearest(turns), 0.0)
+        along = cosine * dot(middle, rest) + sine * dot(middle, other)
+        if abs(along) >= 0.5 * hypot3(held.across, ratio * (held.along + growth * t), 0.0):
+            return True
+    return False

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The exact solver: a motion in closed form, evaluated at any time from its anchor."""
 
 import math
@@ -6,9 +7,13 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import look, on_all_cores
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
+from rigid_body_sim.scene.state import TIME
 
 CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
 NONE_YET = (-math.inf,) * CROWD
@@ -19,7 +24,8 @@ AT_ONCE = 32768  # states of one call of a kernel: a tenth of a second at most
 def loops(motion):
     """Return the module of bulk loops bound to a motion (rigid_body_sim/motions/loops.py)."""
     bindings = {name: f'{motion.__name__}:{name}' for name in template.BINDINGS}
-    for name, binding in (template.IN_COLUMNS if motion.fill_columns is not None else template.ONE_BY_ONE).items():
+    bulk = template.IN_COLUMNS if motion.fill_columns is not None else template.ONE_BY_ONE
+    for name, binding in bulk.items():
         bindings[name] = binding.format(motion.__name__)
     return specialise(template, **bindings)
 
@@ -27,11 +33,12 @@ def loops(motion):
 class Exact:
     """Solve a scene by the motion that absorbs it.
 
-    Nothing accumulates: every state is evaluated from the state given to :meth:`start`, so it depends on no other time that was asked.
+    Nothing accumulates: every state is evaluated from the state given to :meth:`start`, so it
+    depends on no other time that was asked.
 
     Parameters
     ----------
-    scene : scenes.Scene
+    scene : Scene
     motion : module
         What ``motions.absorbing_motion(scene)`` returned.
     """
@@ -43,32 +50,54 @@ class Exact:
         self._scene = scene
         self._parameters = motion.parameters(scene)
         self._loops, self._actors = loops(motion), None if motion.exchanged else Actors(scene)
+        self._watched = watches(scene)
+        self._tells = motion.next_event is not None and all(
+            watch.name in motion.EVENTS for watch in self._watched)
+
+    def takes(self, vector):
+        """Return whether the motion holds from a state (14 doubles)."""
+        return self.motion.takes is None or self.motion.takes(self._scene, vector)
 
     def start(self, vector):
-        """Anchor the motion at a state (14 doubles, its time included) and return a solver from there."""
+        """Anchor the motion at a state (14 doubles, its time included); return a solver from it."""
         started = object.__new__(Exact)
         started.__dict__.update(self.__dict__)
         started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
         self.motion.anchor(self._parameters, vector, started.anchor)
         started._next_event, started._exchange, started._last_events = None, None, NONE_YET
+        started._watcher = None
         return started
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s)."""
         self.motion.state(self.anchor, time, out)
+        if time < self._start[TIME]:
+            _refuse_beyond(out[np.newaxis])
 
     def states(self, times, out):
-        """Fill out, shape (n, 14), with the states at n times, in any order."""
+        """Fill out, shape (n, 14), with the states at n times, in any order.
+
+        Raises
+        ------
+        BadInput
+            A time so long before the start that the motion is beyond what doubles hold.
+        """
         states, anchor = self._loops.states, self.anchor
         if len(times) <= AT_ONCE:
             states(anchor, times, out)
-            return
-        for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between two calls
-            look()
-            states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
+        else:
+            for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between two calls
+                look()
+                states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
+        if len(times) and times.min() < self._start[TIME]:
+            _refuse_beyond(out)
 
     def many(self, starts, times, out):
-        """Fill out, shape (bodies, n, 14), with the states at n times (s) from many starts, shape (bodies, 14), on all cores."""
+        """Fill out, shape (bodies, n, 14), with the states of many bodies at n times (s).
+
+        The bodies start from `starts`, shape (bodies, 14); all cores take part. Raises what
+        `states` raises.
+        """
         parameters, at_once = self._parameters[np.newaxis], max(1, AT_ONCE // max(1, len(times)))
 
         def work(part):
@@ -80,9 +109,11 @@ class Exact:
                     self._loops.ensemble(parameters, starts[some], times[then], out[some, then])
 
         on_all_cores(work, len(starts), LEAST // max(1, len(times)))
+        if len(times) and len(starts) and times.min() < starts[:, TIME].max():
+            _refuse_beyond(out.reshape(-1, out.shape[-1]))
 
     def exchanged(self, time):
-        """Return what effects exchanged with the body from the anchor to a time, shape (5,): mechanics/ledger.py."""
+        """Return the ledger's entries from the anchor to a time, shape (5,) (mechanics/ledger.py)."""
         out = np.zeros(ENTRIES_SIZE)
         if self.motion.exchanged is not None:
             self.motion.exchanged(self.anchor, time, out)
@@ -93,13 +124,18 @@ class Exact:
         return out
 
     def events(self, after, until, tick=0.0):
-        """Return the (time, name, values) of what happens after one time and not later than another, in order.
+        """Return the (time, name, values) of what happens after one time and up to another.
 
-        Where more than CROWD happen within the length of a tick (s), the rest of that time is passed over.
+        They are in order of time. Where more than CROWD happen within the length of a tick (s),
+        the rest of that time is passed over. Events that the motion does not tell are looked for
+        on its states, going forward in time.
         """
+        if not self._tells:
+            if self._watcher is None:
+                self._watcher = Watcher(self, self._watched, float(self._start[TIME]),
+                                        swing_rate(self._scene), drive(self._scene, None))
+            return [event for event in self._watcher.events(until) if event[0] > after]
         found = []
-        if self.motion.next_event is None:
-            return found
         while self._next_event is None or self._next_event[0] <= until:
             if self._next_event is not None:
                 time, code = self._next_event
@@ -108,3 +144,11 @@ class Exact:
                 after = max(time, self._last_events[0] + tick)
             self._next_event = self.motion.next_event(self.anchor, after)
         return found
+
+
+def _refuse_beyond(states):
+    """Raise BadInput if a state is not finite: going back, drag makes a motion grow for ever."""
+    good = np.isfinite(states).all(axis=1)
+    if not good.all():
+        raise BadInput('time', f'at {float(states[~good][0, TIME])!r} s, before the start, the '
+                       'motion is beyond what doubles hold', 'a later time')
