@@ -8,6 +8,7 @@ was measured to meet the accuracy (measured.py), after a trial run on the scene 
 import functools
 import logging
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,11 +19,14 @@ from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
 from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
 from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
+from rigid_body_sim.motions.nearly import nearly_absorbing
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
 from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import Scene
 
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
@@ -156,11 +160,12 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     """
     _say_what_is_slow()
     _check(integrator, accuracy, step, horizon)
-    motion = absorbing_motion(scene)
-    if integrator in ('auto', 'exact') and motion and step is None:
-        floor = measured.floor(scene, horizon)
-        prototype = Exact(scene, motion)
-        return Choice(scene, 'exact', accuracy, None, horizon, accuracy, floor, prototype)
+    if integrator in ('auto', 'exact') and step is None:
+        found = _closed_form(scene, horizon)
+        if found and (integrator == 'exact' or found.error <= max(accuracy, found.floor)):
+            prototype = Exact(scene, found.motion, found.scene)
+            expected = found.floor + found.error
+            return Choice(scene, 'exact', accuracy, None, horizon, accuracy, expected, prototype)
     able, stiff = runnable(scene), _stiff(scene)
     method, tolerance, expected = integrator, accuracy, None
     if integrator == 'auto':
@@ -175,6 +180,27 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
         tolerance = min(tolerance, ENDING)
     prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
     return Choice(scene, method, accuracy, step, horizon, tolerance, expected, prototype)
+
+
+class _Closed(NamedTuple):
+    """A closed form for a scene: the scene it solves, its error but for rounding, and rounding."""
+
+    motion: Any
+    scene: Scene
+    error: float
+    floor: float
+
+
+def _closed_form(scene, horizon):
+    """Return the _Closed of a scene, or None."""
+    # a torque adds to the angle that the body turns over
+    floor = (measured.floor(scene, horizon)
+             + 0.5 * measured.HALF_ULP * drive(scene, None) * horizon * horizon)
+    motion = absorbing_motion(scene)
+    if motion:
+        return _Closed(motion, scene, 0.0, floor)
+    nearly = nearly_absorbing(scene, horizon)
+    return nearly and _Closed(*nearly, floor)
 
 
 def _check(integrator, accuracy, step, horizon):

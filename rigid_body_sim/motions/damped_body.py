@@ -36,17 +36,9 @@ from rigid_body_sim.motions.free_body.anchor import (
     rotation_parameters,
 )
 from rigid_body_sim.motions.free_body.rotation import (
-    CIRCULAR,
-    HYPERBOLIC,
-    circular,
-    hyperbolic,
-    load_circular,
     load_course,
-    load_hyperbolic,
-    steady,
     turned,
 )
-from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.functions import exp
 from rigid_body_sim.numerics.pairs import pair_of, times
@@ -58,7 +50,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ('flip',)
-exchanged = takes = None
+exchanged = takes = fill_columns = None
 
 
 class Parameters(NamedTuple):
@@ -83,7 +75,7 @@ load_given_damping, load_field = PARAMETERS.part('damping').load, PARAMETERS.par
 load_damping, store_damping = ANCHOR.part('damping').load, ANCHOR.part('damping').store
 load_flight, store_flight = ANCHOR.part('flight').load, ANCHOR.part('flight').store
 load_tumbles = ANCHOR.part('rotation_anchor').part('attitude').part('tumbles').load
-load_state, store_state, store_row = STATE.load, STATE.store, COLUMNS.store
+load_state, store_state = STATE.load, STATE.store
 
 
 def absorbs(scene):
@@ -137,47 +129,13 @@ def _slower(damping, dt):
     return times(dt, f1), exp(-x[0])
 
 
-@compiled_inline
-def _state_of(attitude, flight, time, t, omega, ZS, slower):
-    q, body_omega = attitude_of(attitude, omega, ZS)
-    return flown(flight, t, time, q, scaled(slower, body_omega))
-
-
 @compiled
 def state(anchor, time, out):
     """Fill out with the state at any time, before or after the anchor."""
     dt = two_sum(time, -load_course(anchor).start)
     s, slower = _slower(load_damping(anchor), dt)
-    omega, ZS = turned(anchor, s)
-    store_state(out, _state_of(load_attitude(anchor), load_flight(anchor), time, dt[0], omega, ZS,
-                               slower))
-
-
-@compiled
-def fill_columns(anchor, times, columns):
-    """Fill columns with up to BLOCK states: the operations of `state`, arranged as vector code."""
-    course, attitude, flight = load_course(anchor), load_attitude(anchor), load_flight(anchor)
-    damping = load_damping(anchor)
-    if course.form == CIRCULAR:
-        series = load_circular(anchor)
-        for k in range(len(times)):
-            dt = two_sum(times[k], -course.start)
-            s, slower = _slower(damping, dt)
-            omega, ZS = circular(course, series, s)
-            store_row(columns, _state_of(attitude, flight, times[k], dt[0], omega, ZS, slower), k)
-    elif course.form == HYPERBOLIC:
-        series = load_hyperbolic(anchor)
-        for k in range(len(times)):
-            dt = two_sum(times[k], -course.start)
-            s, slower = _slower(damping, dt)
-            omega, ZS = hyperbolic(course, series, s)
-            store_row(columns, _state_of(attitude, flight, times[k], dt[0], omega, ZS, slower), k)
-    else:
-        for k in range(len(times)):
-            dt = two_sum(times[k], -course.start)
-            s, slower = _slower(damping, dt)
-            omega, ZS = steady(course, s)
-            store_row(columns, _state_of(attitude, flight, times[k], dt[0], omega, ZS, slower), k)
+    q, omega = attitude_of(load_attitude(anchor), *turned(anchor, s))
+    store_state(out, flown(load_flight(anchor), dt[0], time, q, scaled(slower, omega)))
 
 
 @compiled

@@ -33,7 +33,7 @@ from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, 
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.functions import atan2, hypot3
 from rigid_body_sim.numerics.pairs import TURN, pair_of, scaled, times
-from rigid_body_sim.numerics.phase import COUNTABLE, nearest, sin_cos
+from rigid_body_sim.numerics.phase import COUNTABLE, fraction, nearest, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import across, cross, dot
@@ -193,8 +193,7 @@ def state(anchor, time, out):
         q = multiply(*held.orientation, -x, -y, -z, w)
         if drive.excess[0] != 0.0:
             turns = times(drive.excess, _spun(held, dt))
-            half, low = 0.5 * (turns[0] - 2.0 * nearest(0.5 * turns[0])), 0.5 * turns[1]
-            sine, cosine = sin_cos(half, low)
+            sine, cosine = sin_cos(*fraction(0.5 * turns[0], 0.5 * turns[1]))
             q = multiply(*q, *stretched(-sine, drive.a), cosine)
             rest = stretched(-held.across, held.e2)
             omega = sum_of(stretched(held.along + gained, drive.a), sum_of(

@@ -30,7 +30,7 @@ from rigid_body_sim.motions.pendulum.anchor import Pairs, axle
 from rigid_body_sim.numerics.double_double import add, two_sum
 from rigid_body_sim.numerics.functions import exp, hypot3
 from rigid_body_sim.numerics.pairs import TURN, pair_of, times
-from rigid_body_sim.numerics.phase import nearest, sin_cos
+from rigid_body_sim.numerics.phase import fraction, sin_cos
 from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, scaled
@@ -186,9 +186,7 @@ def state(anchor, time, out):
     gained = times(held.growth, dt)
     angle = times(dt, _plus(times(held.rate, f1), times(gained, f2)))
     half, low = times(TURN, angle)
-    half, low = 0.5 * half, 0.5 * low
-    half -= nearest(half)
-    sine, cosine = sin_cos(half, low)
+    sine, cosine = sin_cos(*fraction(0.5 * half, 0.5 * low))
     rate = e * held.rate[0] + times(gained, f1)[0]
     q = normalised(*multiply(*held.orientation, *scaled(sine, held.unit), cosine))
     store_state(out, flown(held.flight, dt[0], time, q, scaled(rate, held.unit)))

@@ -41,14 +41,17 @@ class Exact:
     scene : Scene
     motion : module
         What ``motions.absorbing_motion(scene)`` returned.
+    solved : Scene, optional
+        The scene that the motion absorbs, where it differs from the one that is published
+        (nearly.py).
     """
 
     name = 'exact'
 
-    def __init__(self, scene, motion):
+    def __init__(self, scene, motion, solved=None):
         self.motion = motion
-        self._scene = scene
-        self._parameters = motion.parameters(scene)
+        self._scene, self._solved = scene, solved or scene
+        self._parameters = motion.parameters(self._solved)
         self._loops, self._actors = loops(motion), None if motion.exchanged else Actors(scene)
         self._watched = watches(scene)
         self._tells = motion.next_event is not None and all(
@@ -56,7 +59,7 @@ class Exact:
 
     def takes(self, vector):
         """Return whether the motion holds from a state (14 doubles)."""
-        return self.motion.takes is None or self.motion.takes(self._scene, vector)
+        return self.motion.takes is None or self.motion.takes(self._solved, vector)
 
     def start(self, vector):
         """Anchor the motion at a state (14 doubles, its time included); return a solver from it."""

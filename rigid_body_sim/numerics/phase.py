@@ -36,6 +36,13 @@ def phase(rate, rate_low, time, time_low):
 
 
 @compiled_inline
+def fraction(turns, low):
+    """Return a pair of turns less a whole number of turns, as a pair with |high| <= 1/2."""
+    turns, low = two_sum(turns - nearest(turns), low)
+    return turns - nearest(turns), low
+
+
+@compiled_inline
 def sin_cos(turns, low):
     """Return sine and cosine of the angle 2 pi (turns + low), both to 1.5e-16.
 
