@@ -28,9 +28,6 @@ class BadInput(ValueError):
     def __reduce__(self):
         return type(self), (self.where, self.problem, self.remedy)
 
-    def __reduce__(self):
-        return type(self), (self.where, self.problem, self.remedy)
-
 
 class NotConverged(ArithmeticError):
     """A method gave up: it says at which time and why, instead of returning NaN."""

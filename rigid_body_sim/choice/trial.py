@@ -30,9 +30,9 @@ def settle(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene.
 
     A method that takes many more steps than the motion asks for is no method for the scene: the
-    next one is tried. Where none meets the accuracy, the most accurate method of the table is taken. The parameters are those of
-    :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a long horizon, and errors
-    are taken to grow in proportion to time.
+    next one is tried. Where none meets the accuracy, the most accurate method of the table is
+    taken. The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a
+    part of a long horizon, and errors are taken to grow in proportion to time.
 
     Raises
     ------

@@ -25,22 +25,45 @@ CASES = {
     'sphere, angular drag': ('damped', [0.5, 0.5, 0.5], [1.0, 2.0, -3.0], 0.1, LONG),
     'sphere, drag at 1e-300 /s': ('damped', [1.0, 1.0, 1.0], [1.0, 2.0, -3.0], 1e-300, LONG),
     'sphere, drag at 1e-9 /s': ('damped', [1.0, 1.0, 1.0], [1.0, 2.0, -3.0], 1e-9, LONG),
-    'sphere, drag at 1e3 /s': ('damped', [1.0, 1.0, 1.0], [1.0, 2.0, -3.0], 1e3,
-                               [1e-6, 1e-3, 0.7, 1e6, -0.3]),
+    'sphere, drag at 1e3 /s': (
+        'damped',
+        [1.0, 1.0, 1.0],
+        [1.0, 2.0, -3.0],
+        1e3,
+        [1e-6, 1e-3, 0.7, 1e6, -0.3],
+    ),
     'rod, angular drag': ('damped', [0.5, 0.5, 0.0], [1.0, 2.0, 0.0], 0.1, [0.7, 20.0, -3.0, 1e4]),
     'driven through zero': ('driven', [0.8, 0.8, 1.3], [0.4, -0.2, -1.1], [0.0, 0.0, 0.5], SHORT),
     'driven back': ('driven', [0.8, 0.8, 0.3], [0.4, -0.2, 1.1], [0.0, 0.0, -0.2], SHORT),
     'driven about x': ('driven', [0.3, 0.8, 0.8], [0.4, -0.2, 1.1], [-0.2, 0.0, 0.0], SHORT),
     'driven, never across': ('driven', [0.8, 0.8, 0.3], [0.0, 0.0, 1.1], [0.0, 0.0, -0.2], SHORT),
     'driven at 1e-300': ('driven', [0.8, 0.8, 0.3], [0.4, -0.2, 1.1], [0.0, 0.0, 1e-300], SHORT),
-    'sphere, torque in the body': ('driven', [0.8] * 3, [0.4, -0.2, -1.1], [-0.5, 0.1, 0.4], SHORT),
-    'sphere, torque in the world': ('world', [0.8] * 3, [0.4, -0.2, -1.1], [-0.5, 0.1, 0.4], SHORT),
+    'sphere, torque in the body': (
+        'driven',
+        [0.8] * 3,
+        [0.4, -0.2, -1.1],
+        [-0.5, 0.1, 0.4],
+        SHORT,
+    ),
+    'sphere, torque in the world': (
+        'world',
+        [0.8] * 3,
+        [0.4, -0.2, -1.1],
+        [-0.5, 0.1, 0.4],
+        SHORT,
+    ),
     'hinge, drag': ('hinge', [0.5, 0.8, 1.1], -2.0, (0.0, 0.05), LONG),
     'hinge, torque': ('hinge', [0.5, 0.8, 1.1], -2.0, (0.3, 0.0), LONG),
     'hinge, both, through zero': ('hinge', [0.5, 0.8, 1.1], -2.0, (0.3, 0.05), LONG),
     'hinge, drag at 1e-300 /s': ('hinge', [0.5, 0.8, 1.0], -2.0, (0.3, 1e-300), LONG),
-    'hinge, drag at 1e3 /s': ('hinge', [0.5, 0.8, 1.0], -2.0, (0.3, 1e3),
-                              [1e-6, 1e-3, 0.7, 1e6, -0.3])}
+    'hinge, drag at 1e3 /s': (
+        'hinge',
+        [0.5, 0.8, 1.0],
+        -2.0,
+        (0.3, 1e3),
+        [1e-6, 1e-3, 0.7, 1e6, -0.3],
+    ),
+}
 FLIGHTS = {'drag': 0.1, 'drag at 1e-300 /s': 2e-300, 'drag at 1e3 /s': 2e3, 'no drag': 0.0}
 
 

@@ -5,8 +5,8 @@
 
 q attitude (x, y, z, w) and omega in body axes, which are principal; N constant in the body, D a
 diagonal matrix. Nothing here knows of a closed form. A torque that is constant in the world is
-given to a sphere as minus that in the body, on the inverse rotation. Numbers are those of mpmath at
-its present precision.
+given to a sphere as minus that in the body, on the inverse rotation. Numbers are those of mpmath
+at its present precision.
 """
 
 from mpmath import mp, mpf
@@ -28,7 +28,9 @@ def turned(q, omega, time, moments, torque=(0, 0, 0), drag=(0, 0, 0)):
     torque, left = [mpf(x) for x in torque], mpf(time)
     least = min(I for I in moments if I)
     while left:
-        rate = mp.norm(omega) + max(c / I if I else mpf(0) for c, I in zip(drag, moments, strict=True))
+        rate = mp.norm(omega) + max(
+            c / I if I else mpf(0) for c, I in zip(drag, moments, strict=True)
+        )
         rate += mp.sqrt(mp.norm(torque) / least)
         step = REACH / rate if rate else abs(left)
         step = min(step, abs(left)) * (1 if left > 0 else -1)
@@ -64,8 +66,8 @@ def _series(q, omega, moments, torque, drag):
 def sphere_turned(q, omega, time, moment, couple):
     """Return (q, omega) of a sphere under a torque that is constant in the world.
 
-    The inverse rotation p = 1/q has p' = -omega_world-in-reverse p/2: with the roles of body and world
-    exchanged it is that of a sphere turning with -omega_world, under minus the torque.
+    The inverse rotation p = 1/q has p' = -omega_world-in-reverse p/2: with the roles of body and
+    world exchanged it is that of a sphere turning with -omega_world, under minus the torque.
     """
     from high_precision_body import rotation_matrix
     q = [mpf(x) for x in q]
@@ -88,6 +90,9 @@ def flown(position, velocity, force, slowing, time):
         else:
             f1, f2 = t, t * t / 2
         e = mp.exp(-r * t)
-        place = [mpf(p) + mpf(v) * f1 + mpf(g) * f2 for p, v, g in zip(position, velocity, force, strict=True)]
+        place = [
+            mpf(p) + mpf(v) * f1 + mpf(g) * f2
+            for p, v, g in zip(position, velocity, force, strict=True)
+        ]
         speed = [mpf(v) * e + mpf(g) * f1 for v, g in zip(velocity, force, strict=True)]
     return [+p for p in place], [+v for v in speed]

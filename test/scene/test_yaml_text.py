@@ -12,10 +12,29 @@ constraint: free
 effects: []
 initial: {angular_velocity: [0.1, 2.0, 0.1]}
 """
-TAGGED = ('!!bool x', '!!bool', '!!bool [1]', '!!timestamp x', '!!timestamp 2001-13-45',
-          '!!map [1]', '!!map x', '!!set [a]', '!!set {a}', '!!omap [1]', '!!pairs [[1]]',
-          '!!seq {a: 1}', '!!binary "\\xe9"', '!!int x', '!!float {}', '!!null [1]', '!!str 5',
-          '!own 1', '! 5', '!<tag:yaml.org,2002:bool> 7', '!!python/object:os.system x')
+TAGGED = (
+    '!!bool x',
+    '!!bool',
+    '!!bool [1]',
+    '!!timestamp x',
+    '!!timestamp 2001-13-45',
+    '!!map [1]',
+    '!!map x',
+    '!!set [a]',
+    '!!set {a}',
+    '!!omap [1]',
+    '!!pairs [[1]]',
+    '!!seq {a: 1}',
+    '!!binary "\\xe9"',
+    '!!int x',
+    '!!float {}',
+    '!!null [1]',
+    '!!str 5',
+    '!own 1',
+    '! 5',
+    '!<tag:yaml.org,2002:bool> 7',
+    '!!python/object:os.system x',
+)
 
 
 def refusal(text, overrides=()):
@@ -25,10 +44,17 @@ def refusal(text, overrides=()):
 
 
 @pytest.mark.parametrize('value', TAGGED)
-@pytest.mark.parametrize('text', ['{value}', SCENE + 'about: {value}', SCENE + '{value}: 1',
-                                  SCENE.replace('1.0,', '{value},', 1),
-                                  SCENE.replace('[]', '[gravity: {value}]')],
-                         ids=['whole', 'text', 'key', 'number', 'effect'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        '{value}',
+        SCENE + 'about: {value}',
+        SCENE + '{value}: 1',
+        SCENE.replace('1.0,', '{value},', 1),
+        SCENE.replace('[]', '[gravity: {value}]'),
+    ],
+    ids=['whole', 'text', 'key', 'number', 'effect'],
+)
 def test_a_tag_is_refused_in_one_line_wherever_it_stands(text, value):
     line = refusal(text.replace('{value}', value))
     assert '\n' not in line
@@ -40,34 +66,72 @@ def test_a_tag_in_an_override_is_refused_in_one_line(value):
     assert 'a tag (' in refusal(SCENE, [f'body.mass={value}'])
 
 
-@pytest.mark.parametrize(('changed', 'line'), [
-    (SCENE.replace('constraint', 'constrain'), "unknown key 'constrain'; did you mean 'constraint'?"),
-    (SCENE.replace('initial', 'intial'), "unknown key 'intial'; did you mean 'initial'?"),
-    (SCENE.replace('effects', 'forces'), "unknown key 'forces'; the keys are about, body"),
-    (SCENE.replace('[]', '[gravity: {G: 9.81}]'), "effects.gravity: unknown key 'G'"),
-    (SCENE.replace('inertia: [1.0, 2.0, 3.0]', 'parts: [{mas: 1, shape: {rod: {length: 1}}}]'),
-     "body.parts.0: unknown key 'mas'; did you mean 'mass'?")])
+@pytest.mark.parametrize(
+    ('changed', 'line'),
+    [
+        (
+            SCENE.replace('constraint', 'constrain'),
+            "unknown key 'constrain'; did you mean 'constraint'?",
+        ),
+        (SCENE.replace('initial', 'intial'), "unknown key 'intial'; did you mean 'initial'?"),
+        (SCENE.replace('effects', 'forces'), "unknown key 'forces'; the keys are about, body"),
+        (SCENE.replace('[]', '[gravity: {G: 9.81}]'), "effects.gravity: unknown key 'G'"),
+        (
+            SCENE.replace(
+                'inertia: [1.0, 2.0, 3.0]', 'parts: [{mas: 1, shape: {rod: {length: 1}}}]'
+            ),
+            "body.parts.0: unknown key 'mas'; did you mean 'mass'?",
+        ),
+    ],
+)
 def test_a_stray_key_is_named_though_another_is_missing(changed, line):
     assert line in refusal(changed)
 
 
-@pytest.mark.parametrize('effect', ['gravity_gradient', 'rolling_friction', 'spinning_friction',
-                                    'spring', 'magnetic', 'force', 'rotor', 'dry_friction'])
+@pytest.mark.parametrize(
+    'effect',
+    [
+        'gravity_gradient',
+        'rolling_friction',
+        'spinning_friction',
+        'spring',
+        'magnetic',
+        'force',
+        'rotor',
+        'dry_friction',
+    ],
+)
 def test_an_effect_that_does_not_exist_is_not_taken_for_a_misspelling(effect):
     line = refusal(SCENE.replace('[]', f'[{effect}: {{}}]'))
     assert 'did you mean' not in line
     assert 'the effects are gravity' in line
 
 
-@pytest.mark.parametrize(('word', 'meant'), [('gravty', 'gravity'), ('tourqe', 'torque'),
-                                             ('darg', 'drag'), ('Gravity', 'gravity'),
-                                             ('sliding-friction', 'sliding_friction')])
+@pytest.mark.parametrize(
+    ('word', 'meant'),
+    [
+        ('gravty', 'gravity'),
+        ('tourqe', 'torque'),
+        ('darg', 'drag'),
+        ('Gravity', 'gravity'),
+        ('sliding-friction', 'sliding_friction'),
+    ],
+)
 def test_a_misspelt_effect_is_understood(word, meant):
     assert f'did you mean {meant!r}?' in refusal(SCENE.replace('[]', f'[{word}]'))
 
 
-@pytest.mark.parametrize('times', ['[1, 1]', '[1.0, 1]', '[0, 2, 2]', '[2, 1]', '[0, -0.0]',
-                                   '[9007199254740992, 9007199254740993]'])
+@pytest.mark.parametrize(
+    'times',
+    [
+        '[1, 1]',
+        '[1.0, 1]',
+        '[0, 2, 2]',
+        '[2, 1]',
+        '[0, -0.0]',
+        '[9007199254740992, 9007199254740993]',
+    ],
+)
 def test_times_of_a_torque_rise(times):
     values = '[' + ', '.join(['[0, 0, 1]'] * (times.count(',') + 1)) + ']'
     effect = f'[torque: {{times: {times}, values: {values}}}]'
@@ -77,16 +141,23 @@ def test_times_of_a_torque_rise(times):
 @pytest.mark.parametrize('escape', ['\\e[2J', '\\a', '\\x9b31m', '\\u202e', '\\0', '\\n', '\\r'])
 def test_no_unprintable_character_of_a_scene_reaches_the_terminal(escape):
     key = f'"a{escape}b"'
-    texts = (SCENE + f'{key}: 1\n', SCENE.replace('mass', key), SCENE.replace('[]', f'[{key}]'),
-             SCENE.replace('free', f'{{{key}: 1}}'), SCENE.replace('1.0,', f'{{{key}: .nan}},', 1),
-             SCENE.replace('[]', f'[gravity: {{g: {{{key}: .inf}}}}]'))
+    texts = (
+        SCENE + f'{key}: 1\n',
+        SCENE.replace('mass', key),
+        SCENE.replace('[]', f'[{key}]'),
+        SCENE.replace('free', f'{{{key}: 1}}'),
+        SCENE.replace('1.0,', f'{{{key}: .nan}},', 1),
+        SCENE.replace('[]', f'[gravity: {{g: {{{key}: .inf}}}}]'),
+    )
     for text in texts:
         assert refusal(text).isprintable()
     told = parse_scene(SCENE + f'about: {key}\n').about
     assert told.isprintable() and told.startswith('a') and told.endswith('b')
 
 
-@pytest.mark.parametrize('override', ['\x1b[2J=3', 'body.\x07.x=3', 'body.mass=\x9b', 'gravity.\r=1'])
+@pytest.mark.parametrize(
+    'override', ['\x1b[2J=3', 'body.\x07.x=3', 'body.mass=\x9b', 'gravity.\r=1']
+)
 def test_no_unprintable_character_of_an_override_reaches_the_terminal(override):
     assert refusal(SCENE, [override]).isprintable()
 

@@ -75,7 +75,7 @@ def _places(size):
 
 
 def _relax(found, places):
-    """Return what binds the `relax` of gauss_march.py: a kernel, or the source of one that is idle.
+    """Return what binds the `relax` of gauss_march.py: a kernel, or the source of an idle one.
 
     `found` are the Relaxations of the equations.
     """

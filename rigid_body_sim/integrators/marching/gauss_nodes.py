@@ -75,7 +75,8 @@ with localcontext(CONTEXT):
     C, B = np.array([float(c) for c in _C]), np.array([float(b) for b in _B])
     # A[i, j]: integral of the j-th basis polynomial from 0 to c_i
     A = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _C])
-    # SLOPES, the inverse of A: of a curve that begins at 0, its slopes at the nodes from its values
+    # SLOPES, the inverse of A: of a curve that begins at 0, its slopes at the nodes from its
+    # values
     SLOPES = _floats([[value(_slope(polynomial), c)
                        for polynomial in list(_through([Decimal(0), *_C]))[1:]] for c in _C])
     # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)

@@ -120,7 +120,7 @@ def _fill(p, control, point, following, time, out):
 
 @compiled
 def state(piece, time, end, out):
-    """Fill out with the state at a time, unless the march does not reach it; return as `follow`."""
+    """Fill out with the state at a time if the march reaches it; return what `follow` returns."""
     status = REACHED
     if not piece[POINT + TIME] <= time < piece[FOLLOWING + TIME]:
         status = follow(piece, time, end, AT_ONCE)
@@ -157,8 +157,8 @@ def states(piece, times, order, end, out):
     )
     for i in range(len(order)):
         k = order[i]
-        if not point[TIME] <= times[k] < following[TIME]:
-            if follow(piece, times[k], end, AT_ONCE) != REACHED:
-                return i
+        within = point[TIME] <= times[k] < following[TIME]
+        if not within and follow(piece, times[k], end, AT_ONCE) != REACHED:
+            return i
         _fill(p, control, point, following, times[k], out[k])
     return len(order)

@@ -66,7 +66,9 @@ class Work:
         in_slices(arrived, SLICE, self._until_look)
 
     def _until_look(self):
-        most = self._look if self._most is None else min(self._look, max(self._most, self.done + 1))
+        most = (
+            self._look if self._most is None else min(self._look, max(self._most, self.done + 1))
+        )
         return most - self.done
 
     def _look_ahead(self, time, target, begin):
