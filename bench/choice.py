@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error and cost of `auto` on scenes outside its table, beside the best possible choice.
+"""Error and cost of `auto` on scenes outside its table, compared with the best choice.
 
     .venv/bin/python bench/choice.py [--json]
 

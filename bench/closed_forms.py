@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cost of one state in closed form, and of a state every millisecond, beside RK4 and heyoka.
+"""Cost of one state in closed form, and of a state every millisecond; RK4 and heyoka.
 
     .venv/bin/python bench/closed_forms.py [--json]
 

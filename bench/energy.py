@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Energy over a million steps of a composition: compensated sums beside plain ones.
+"""Energy over a million steps of a composition: compensated and plain sums.
 
     .venv/bin/python bench/energy.py [--json] [--steps N]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Speed of ensembles, in closed form and stepped; the latter beside heyoka's batch mode.
+"""Speed of ensembles, in closed form and stepped; the latter against heyoka's batches.
 
     .venv/bin/python bench/ensembles.py [--case 'top 2' 'driven body'] [--goal 1e-6] [--json]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cost of the node beside the floor: a tick thread that only publishes the same bytes.
+"""Cost of the node compared with the floor: a tick thread that only publishes the same bytes.
 
     .venv/bin/python bench/node.py [--seconds 20] [--turns 3] [--rates 1000 4000]
         [--subscribers 1 3] [--rows node] [--normal] [--json]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CPU time of smooth scenes without a closed form beside heyoka, by accuracy reached.
+"""CPU time of smooth scenes without a closed form, ours and heyoka's, by accuracy reached.
 
     .venv/bin/python bench/smooth_scenes.py [--json] [--case NAME ...]
 

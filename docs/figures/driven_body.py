@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Angular velocity of a driven symmetric body, beside the closed form."""
+"""Angular velocity of a driven symmetric body, with the closed form."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cost of the node beside the floor, and the lateness of its ticks.
+"""Cost of the node compared with the floor, and the lateness of its ticks.
 
 The data are docs/node.json, as written by bench/node.py --json.
 """

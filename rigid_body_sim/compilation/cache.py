@@ -13,7 +13,7 @@ class Place(UserProvidedCacheLocator):
     """A folder below ``numba.config.CACHE_DIR``, named by the file's path inside the package.
 
     numba's own locator names the folder by the absolute path, so an installed copy would compile
-    again what the sources beside it have compiled.
+    again what its source tree has compiled.
     """
 
     @classmethod

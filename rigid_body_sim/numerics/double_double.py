@@ -66,7 +66,7 @@ def two_product(a, b):
 
 @compiled
 def add(a, al, b, bl):
-    """Return a + b to 3 u^2 of the result, whatever the signs."""
+    """Return a + b to 3 u^2 of the result, for any signs."""
     s, e = two_sum(a, b)
     t, f = two_sum(al, bl)
     s, e = quick_two_sum(s, e + t)

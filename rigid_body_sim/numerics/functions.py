@@ -112,7 +112,7 @@ COUNTED = 1647099.0                      # rad; smaller angles have at most 2^20
 DIGIT = 2.0 ** -24                       # weight of a digit of TURN_DIGITS after the one before it
 SIGNIFICANT, WHOLE = 9, 4                # digits from whole turns to 2^-139, and those above 1
 SMALLEST_NORMAL = 2.0 ** -1022
-TINY = 2.0 ** -27                        # the square of a smaller number is lost beside 1
+TINY = 2.0 ** -27                        # 1 plus the square of a smaller number rounds to 1
 FAR = 2.0 ** -30                         # below this ratio of sides a triangle is a line, to 2^-61
 SPLIT_27 = 1.5 * 2.0 ** 26               # adding and subtracting it rounds to multiples of 2^-26
 HUGE, TINIER = 2.0 ** 500, 2.0 ** -400   # squares of the numbers between are exact as pairs
@@ -411,7 +411,7 @@ def _power_of_rest(x, y):
 
 @compiled
 def power(x, y):
-    """Return x^y = exp(y log x) for x >= 0, to 0.52 ulp; nan for x < 0, whatever y.
+    """Return x^y = exp(y log x) for x >= 0, to 0.52 ulp; nan for x < 0 and any y.
 
     x^0 = 1^y = 1 for any x and y, and limits at 0 and inf, as in C.
     """
@@ -518,7 +518,7 @@ def _length(a, b, c):
 def hypot(x, y):
     """Return sqrt(x^2 + y^2) to 0.51 ulp (0.76 if subnormal), however large or small.
 
-    As in C, inf beside nan gives inf.
+    As in C, inf and nan together give inf.
     """
     a, b = abs(x), abs(y)
     if a == math.inf or b == math.inf:
@@ -532,7 +532,7 @@ def hypot(x, y):
 def hypot3(x, y, z):
     """Return sqrt(x^2 + y^2 + z^2) to 0.51 ulp (0.76 if subnormal), however large or small.
 
-    As in C, inf beside nan gives inf.
+    As in C, inf and nan together give inf.
     """
     a, b, c = abs(x), abs(y), abs(z)
     if a == math.inf or b == math.inf or c == math.inf:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Print the constants of functions.py: ``python rigid_body_sim/numerics/make_functions.py``.
 
-Each polynomial is fitted to what is left of a function when its leading terms, which functions.py
-adds with more than a double's digits, are taken away. The fit interpolates at the Chebyshev nodes
-of an interval, which comes within a small factor of the best uniform approximation (L. N.
-Trefethen, Approximation Theory and Approximation Practice, theorem 16.1); fits in z = x^2 stand
-for odd and even functions. The script needs mpmath, functions.py does not.
+Each polynomial is fitted to the rest of a function without its leading terms, which functions.py
+adds with more than a double's digits. The fit interpolates at the Chebyshev nodes of an interval,
+which comes within a small factor of the best uniform approximation (L. N. Trefethen, Approximation
+Theory and Approximation Practice, theorem 16.1); fits in z = x^2 serve odd and even functions. The
+script needs mpmath, functions.py does not.
 """
 
 import mpmath as mp
@@ -63,7 +63,7 @@ def parts(value, *bits):
 
 
 def pair(value):
-    """Return the doubles nearest to a value and to what it leaves."""
+    """Return the double nearest to a value, and the one nearest to the rest."""
     return [float(value), float(value - float(value))]
 
 

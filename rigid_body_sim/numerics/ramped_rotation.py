@@ -21,7 +21,7 @@ T = omega_1/sqrt|w|, P = p/sqrt|w|, rho^2 = T^2 + P^2 there are two regions:
   them reach 5e-18, and far from it two do.
 
 Source: M. V. Berry, Histories of adiabatic quantum transitions, Proc. R. Soc. Lond. A 429 (1990)
-61-72 (the series and how far it goes).
+61-72 (the series and its useful length).
 """
 
 import math

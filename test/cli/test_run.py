@@ -21,8 +21,8 @@ def options(domain, folder):
 
 
 def recorded(folder):
-    [path] = [path
-              for path in (folder / 'recordings').iterdir() if not path.name.endswith('_report')]
+    [path] = [path for path in (folder / 'recordings').iterdir()
+              if not path.name.endswith('_report')]
     return path
 
 

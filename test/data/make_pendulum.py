@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make pendulum.json: bodies on hinges from phi'' = -Omega^2 sin(phi), by Taylor series.
 
-The series have order 60 and 70-digit arithmetic. Nothing of the closed form is used: no
-elliptic function, no energy. Long times are reduced by the period, which the same integration
-finds: twice the time between two turning points, or the time of one turn. Cases without a period
-are integrated all the way. Once per case the state is also integrated from the quaternion's
-equation with the torque of the weight, in which no angle occurs.
+The series have order 60 and 70-digit arithmetic. Nothing of the closed form is used: no elliptic
+function, no energy. Long times are reduced by the period, which the same integration finds: twice
+the time between two turning points, or the time of one turn. Cases without a period are integrated
+all the way. Once per case the state is also integrated from the quaternion's equation with the
+torque of the weight, in which no angle occurs.
 
     python test/data/make_pendulum.py
 """
@@ -245,8 +245,8 @@ def record(name):
         if k == 0:
             other = hinged.by_quaternion(time)
             scale = max(abs(rate_then), mpf(10) ** -400)
-            assert max(abs(a - b) for a, b in zip(state, other, strict=True)) < mpf(
-                10) ** -45 * max(1, scale), name
+            assert (max(abs(a - b) for a, b in zip(state, other, strict=True))
+                    < mpf(10) ** -45 * max(1, scale)), name
         states.append({'time': time.hex(), 'state': [nstr(x, 36) for x in state]})
     print(name, nstr(period, 12) if period is not None else 'no period', flush=True)
     return {

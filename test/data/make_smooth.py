@@ -172,10 +172,9 @@ class Body:
             force, torque, work, heat = self.acting(time, R, spin, velocity)
             if not all(self.I):    # no couple about an axis without moment
                 A = turn(self.axes)
-                torque = out(R,
-                             out(A,
-                                 [c if moment else mp.mpf(0)
-                                  for moment, c in zip(self.I, back(A, back(R, torque)))]))
+                torque = out(R, out(A, [
+                    c if moment else mp.mpf(0)
+                    for moment, c in zip(self.I, back(A, back(R, torque)))]))
                 work = dot(torque, spin)
             heat += dot(u, cross(m, omega))
             moving = self.kind == 'free'

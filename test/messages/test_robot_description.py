@@ -67,8 +67,8 @@ def test_a_hinge_at_its_angle_puts_the_body_where_the_simulation_has_it(override
     [('{mass: 1.0, shape: {solid_sphere: {radius: 0.1}}}', ['sphere']),
      ('{mass: 1.0, shape: {cylinder: {radius: 0.1, length: 1}}}', ['cylinder']),
      ('{mass: 1.0, shape: {torus: {radius: 0.5, tube: 0.1}}}', ['box']),
-     ('{parts: [{mass: 1.0, shape: {rod: {length: 1.0}}}, {mass: 2.0, shape: {box: {size: [1, 2, '
-      '3]}}, at: [0, 0, 1]}]}',
+     ('{parts: [{mass: 1.0, shape: {rod: {length: 1.0}}}, '
+      '{mass: 2.0, shape: {box: {size: [1, 2, 3]}}, at: [0, 0, 1]}]}',
       ['cylinder', 'box'])])
 def test_what_is_seen_is_the_true_shape_where_urdf_has_it(body, tags):
     found = robot('free_body', f'body={body}')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The peers beside a case: their error at one time, or what they say.
+"""The peers on a hard case: their error at one time, or the message that they give instead.
 
 They run as their users run them (steps of 1 ms, tolerances of 1e-12). Each question is asked in a
 process of its own, so that a peer that crashes or never ends gives one more answer.

@@ -3,7 +3,7 @@
 
 Stationary noise (anchored exact motion): least squares over the run gives a slope whose own
 uncertainty is known from the scatter; a trend is a slope beyond 5 of these. Random walk (anchored
-anew at each tick): its steps are the noise, and their mean is compared with 5 of its own
+again at each tick): its steps are the noise, and their mean is compared with 5 of its own
 uncertainty; a walk of n steps may reach 5 sqrt(n) of a step.
 """
 
@@ -88,7 +88,7 @@ def anchored(name):
 
 @compiled_allocating
 def walk(parameters, start, ticks, every, moments, out):
-    """Anchor anew at every tick of 1 ms; store 2 E, L^2 and |q|^2 - 1 at every `every` ticks."""
+    """Anchor again at every tick of 1 ms; store 2 E, L^2 and |q|^2 - 1 at every `every` ticks."""
     anchor, state = np.empty(free_body.ANCHOR_SIZE), start.copy()
     for k in range(ticks):
         free_body.anchor(parameters, state, anchor)

@@ -7,7 +7,7 @@
     python -m rigid_body_sim.study.machines.digests --json    # the digests of this machine
     python -m rigid_body_sim.study.machines.digests --write   # store them: another arithmetic
 
-Whoever changes the arithmetic on purpose writes the file anew and says so in CHANGELOG.rst:
+Whoever changes the arithmetic on purpose rewrites the file and says so in CHANGELOG.rst:
 recordings made before then resimulate within a tolerance, no longer to the bit.
 """
 

@@ -17,7 +17,7 @@ from rigid_body_sim.theory import sleeping_top as theory
 # seeds over the one that changes the frequency by 1e-7, for the limit of small seeds
 SEEDS = (4.0, 2.0, 1.0)
 SEED = 1e-6                         # rad/s across, if the scene has none
-SIDES = (1.001, 0.999)              # P_gamma^2 over its threshold, whatever the scene's own spin
+SIDES = (1.001, 0.999)              # P_gamma^2 over its threshold, for any spin of the scene
 
 
 def check(run):
