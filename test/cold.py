@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run each test file alone, with an empty cache of compiled kernels: none may lean on another.
+"""Run each test file alone, with an empty kernel cache: none may depend on another.
 
 ::
 

@@ -18,7 +18,7 @@ SHARE = pathlib.Path(__file__).resolve().parent.parent
 
 
 class Context:
-    """What launch hands to functions: the values of the arguments."""
+    """The object that launch hands to functions: the values of the arguments."""
 
     def __init__(self, configurations):
         self.launch_configurations = dict(configurations)

@@ -43,7 +43,7 @@ SHOWN = 10           # of what differs on one machine
 
 
 class Unavailable(Exception):
-    """What this machine lacks to stand for another one."""
+    """Error that names what this machine lacks to stand for another one."""
 
 
 class Machine(typing.NamedTuple):
@@ -133,7 +133,7 @@ def _run(call, settings):
 
 
 def visit(machine, recording):
-    """Run what is to be run on a machine; return (number of digests, what differs, tests)."""
+    """Run the digests and tests of a machine; return (number of digests, differences, tests)."""
     if not _processor_has(machine.needs):
         raise Unavailable(f'this processor has no {machine.needs}')
     python = machine.python()
@@ -159,7 +159,7 @@ def visit(machine, recording):
 
 
 def _tell(machine, apart):
-    """Print the beginning of what differs on a machine, and write all of it into a file."""
+    """Print the first differences on a machine, and write all of them into a file."""
     path = CACHE / f'{machine.name}.txt'
     path.write_text('\n'.join(apart))
     for line in apart[:SHOWN]:
@@ -169,7 +169,7 @@ def _tell(machine, apart):
 
 
 def main(words):
-    """Visit the machines; print what differs on each one and a table; return the exit status."""
+    """Visit the machines; print the differences of each and a table; return the exit status."""
     rows, bad = [], False
     CACHE.mkdir(parents=True, exist_ok=True)
     recording = _record()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures of every test on real ROS: a domain of its own, and processes that die with the test.
+"""Domains and processes for tests on real ROS: each test has its own, and they die with it.
 
 Domain ids are 1 to 101: a user's own nodes live in 0, and from 102 on the ports of a domain
 collide with ephemeral ones. A lock on a file holds an id for as long as its test runs, against

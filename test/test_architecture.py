@@ -16,7 +16,7 @@ ROOMS = ('errors', 'command_line', 'compilation', 'numerics', 'scene', 'theory',
 """Rooms from the ground up: one may import those before it. The front door is above them all."""
 FRONT_DOOR = ('__init__', '__main__', 'testing')
 ROS = ('rclpy', 'rcl_interfaces', 'rosidl_runtime_py', 'std_srvs')
-"""What only ROS has; packages whose name ends in _msgs are counted in."""
+"""Packages that only ROS has, besides those whose names end in _msgs."""
 
 
 def room_of(module):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The bits of every scene and method are those kept in the repo, on whatever machine this runs.
+"""The bits of every scene and method are those stored in the repo, on every machine.
 
 Plain Python computes all of them. Compiled are the closed forms of every scene, and every method
 on one scene; compiling every method for every scene takes seven minutes: ``make soak`` does it
@@ -52,7 +52,7 @@ def test_every_scene_and_method_has_a_digest():
 
 
 def test_ways_to_ask_for_the_same_have_the_same_digests():
-    """Ticks one by one, in slices, foreseen, backwards; bodies on one, two and five threads."""
+    """Ticks come one by one, in slices, foreseen and backwards; bodies use 1, 2 and 5 threads."""
     table = cases()
     pairs = {name: case.same_as for name, case in table.items() if case.same_as}
     assert len(pairs) > 40

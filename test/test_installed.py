@@ -31,7 +31,7 @@ def prefix():
 
 def run(prefix, domain, folder, name, *arguments):
     """Run an installed executable in an empty folder."""
-    # the command compiles first, beside other load on the machine
+    # the command compiles first, with other load on the machine
     return subprocess.run(
         [prefix / 'lib' / 'rigid_body_sim' / name, *arguments], cwd=folder,
         env=domain.environment, capture_output=True, text=True, timeout=240)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files: which processes each starts, with which parameters."""
+"""The launch files start the right processes with the right parameters."""
 
 import pathlib
 

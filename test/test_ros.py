@@ -18,7 +18,7 @@ def test_two_tests_never_hold_one_domain(tmp_path):
 
 @pytest.fixture
 def one_domain(monkeypatch):
-    """Leave one id to hold, which no other test run looks at."""
+    """Leave only one id to hold, which no other test run uses."""
     only = 1000 + os.getpid()
     monkeypatch.setattr(ros, 'FIRST_DOMAIN', only)
     monkeypatch.setattr(ros, 'LAST_DOMAIN', only)

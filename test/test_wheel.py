@@ -28,7 +28,7 @@ BUILDS_WHEELS = (70, 1)
 
 
 def missing():
-    """Return what a build of a wheel lacks here, or ''."""
+    """Return what is missing here to build a wheel, or ''."""
     if importlib.util.find_spec('pip') is None:
         return 'pip is not installed'
     version = tuple(map(int, importlib.metadata.version('setuptools').split('.')[:2]))
@@ -40,7 +40,7 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or 'nothing is
 
 
 def not_copied(folder, names):
-    """Return which of the names in a folder are no sources."""
+    """Return the names in a folder that are not sources."""
     made = MADE_HERE if pathlib.Path(folder) == ROOT else set()
     return [name for name in names
             if name in made or name[0] == '.' or name.endswith(('.egg-info', '__pycache__'))]
@@ -112,7 +112,7 @@ def test_a_scene_runs_from_the_installed_files(environment):
 
 
 def test_a_missing_package_is_one_line_with_its_remedy(environment, tmp_path):
-    # an import of rclpy that fails as if it were not there
+    # makes the import of rclpy fail, as if it were not installed
     code = ("import sys; sys.modules['rclpy'] = None; sys.argv = ['rigid_body_sim', 'sim_node']\n"
             'from rigid_body_sim.__main__ import main; sys.exit(main())')
     done = subprocess.run([environment[0] / 'python', '-c', code], cwd=tmp_path, env=CLEAN,

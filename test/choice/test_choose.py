@@ -45,7 +45,7 @@ def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
 
 @pytest.mark.parametrize('name', choice_cases.CASES)
 def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
-    # what the table says, untried: trials of all kinds take minutes to compile
+    # choices of the table without trial runs: compiling those of all kinds takes minutes
     monkeypatch.setattr(trial, 'settle', measured.pick)
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)

@@ -64,7 +64,7 @@ def test_a_signal_ends_the_node_and_leaves_a_whole_recording(ros_domain, tmp_pat
     assert process.returncode == status, error
     path = recorded(tmp_path)
     assert Recording(path).topics['/pose'].count > 1000
-    # who presses Ctrl-C wants the report
+    # a user who presses Ctrl-C wants the report
     assert ('drops' in output) == (number == signal.SIGINT)
     assert path.with_name(f'{path.name}_report').is_dir() == (number == signal.SIGINT)
 

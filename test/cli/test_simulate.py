@@ -69,7 +69,7 @@ def test_a_stranger_reads_every_tick_with_all_its_bits(flipping):
     epoch = found['/pose'][0][0]
     for name in ('/pose', '/angular_velocity', '/energy', '/angular_momentum_squared'):
         assert [stamp - epoch for stamp, _ in found[name]] == [k * 2_000_000 for k in range(5001)]
-    # one by one, not in blocks
+    # here the states come one by one, not in blocks
     for k in range(5001):
         pose, omega = found['/pose'][k][1], found['/angular_velocity'][k][1]
         assert (pose.header.frame_id, omega.header.frame_id) == ('world', 'body')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fused multiply-add: one rounding, whatever way it is computed."""
+"""The fused multiply-add has one rounding in all its implementations."""
 
 import itertools
 import math
@@ -22,7 +22,7 @@ CORNERS = [0.0, -0.0, 1.0, -1.0, 1.0 + 2.0 ** -52, 1.0 - 2.0 ** -53, 3.0, 2.0 **
 
 @compiled
 def machine(a, b, c, out):
-    """Write what compiled code gives for arrays."""
+    """Store the results of compiled code for arrays."""
     for i in range(a.size):
         out[i] = fused.fma(a[i], b[i], c[i])
 
@@ -66,7 +66,7 @@ def triples(seed, count):
     a, b = short(27), short(26)
     yield a, b, power(52, 108)                                # products of 53 bits beside a power
     yield 1.0 + short(8) * 2.0 ** -52, 1.0 + short(8) * 2.0 ** -53, power(-110, 2)
-    # products of 54 bits end halfway between two doubles, with less than an ulp of them more
+    # products of 54 bits end halfway between two doubles, plus less than an ulp of the product
     yield short(28), short(27), power(-60, 2)
     yield short(28), short(27), number() * power(-1000, 10)
     yield 2.0 ** 53 + short(3), 1.0 + 2.0 ** -52 * short(3), power(-3, 3) + short(2)

@@ -24,7 +24,7 @@ needs_numba = pytest.mark.skipif(not jit.HAVE_NUMBA, reason='about the cache of 
 
 def run(code, folder, **environment):
     """Run code in a fresh process on the package in `folder` and return what it printed."""
-    # Python's own bytecode goes by the time stamp, which is not what is tested here
+    # Python's own bytecode depends on the time stamp, which is not tested here
     settings = {
         **os.environ, 'PYTHONPATH': str(folder), 'PYTHONDONTWRITEBYTECODE': '1', **environment}
     return subprocess.run([sys.executable, '-c', code], env=settings, cwd=folder,
@@ -50,7 +50,7 @@ def test_editing_a_callee_changes_the_answer_of_its_cached_caller(copy_of_packag
     stamp = module.stat()
     module.write_text(module.read_text().replace(
         '+ qy * tz - qz * ty,', '- qy * tz + qz * ty,', 1))
-    # as an unpacked archive may leave it
+    # an unpacked archive may have such a time stamp
     os.utime(module, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert run(caller, copy_of_package, **cache) != before
 
@@ -64,7 +64,7 @@ def test_two_processes_on_a_cold_cache_agree(copy_of_package):
     answers = [process.communicate(timeout=100)[0] for process in both]
     assert answers[0] == answers[1] != ''
     assert all(process.returncode == 0 for process in both)
-    # what is installed elsewhere from the same sources finds it all compiled
+    # a copy installed elsewhere from the same sources finds all kernels compiled
     found = set((copy_of_package / 'cache').rglob('*.nbc'))
     shutil.copytree(
         copy_of_package / 'rigid_body_sim', copy_of_package / 'elsewhere' / 'rigid_body_sim')

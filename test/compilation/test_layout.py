@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Named views of flat arrays: each number has a place, and a kernel pays for what it uses."""
+"""Named views of flat arrays: each number has a place, and unused numbers cost nothing."""
 
 import os
 import pathlib
@@ -47,14 +47,14 @@ def by_name(array, out):
 
 @compiled
 def by_hand(array, out):
-    """Do what `by_name` does."""
+    """Compute the same as `by_name`."""
     for k in range(len(out)):
         out[k] += array[18] * array[9] + array[1] * array[17]
 
 
 @compiled
 def copied(array, out, at):
-    """Load and store, some places on."""
+    """Load and store at an offset."""
     store_ball(out, load_ball(array, at))
 
 
@@ -117,7 +117,7 @@ def test_numbers_that_a_kernel_does_not_use_are_not_loaded():
     def loads(kernel):
         lines = next(iter(kernel.inspect_llvm().values())).splitlines()
         return sum('= load double' in line for line in lines)
-    # LLVM unrolls the loop of one as it likes; both kernels load four numbers and elements of out
+    # LLVM may unroll the loop of one kernel; both load four numbers and elements of out
     assert loads(by_name) <= loads(by_hand)
 
 

@@ -39,7 +39,7 @@ class Flow:
             x, y, z, w = q = [component / norm for component in q]
             gamma = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
             omega = [mpf(rate) for rate in omega]
-            # a unit of time in which rates are of order one
+            # in this unit of time rates are of order one
             pull = mp.sqrt(mp.fsum(mpf(x) ** 2 for x in self.weight_arm)) / sorted(self.moments)[1]
             fastest = mp.sqrt(mp.fsum(rate * rate for rate in omega)) + mp.sqrt(pull)
             self.unit = mpf(2) ** (-int(mp.ceil(mp.log(fastest, 2))))
@@ -81,7 +81,7 @@ class Flow:
         u, v, w = (1 / moment if moment > 0 else mpf(0) for moment in (i1, i2, i3))
         self._gyro = [
             self._fixed((i2 - i3) * u), self._fixed((i3 - i1) * v), self._fixed((i1 - i2) * w)]
-        # of -(M g c x) / I
+        # rows of -(M g c x) / I
         rows = ((0, z * u, -y * u), (-z * v, 0, x * v), (y * w, -x * w, 0))
         self._pull = [[self._fixed(entry) for entry in row] for row in rows]
 

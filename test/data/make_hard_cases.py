@@ -74,7 +74,7 @@ TOPS = {
 
 
 def main():
-    """Collect and write."""
+    """Collect the references and write them."""
     free = {record['name']: record for record in json.loads((DATA / 'free_body.json').read_text())}
     tops = json.loads((DATA / 'lagrange_top.json').read_text())
     found = []

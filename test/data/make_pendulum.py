@@ -229,7 +229,7 @@ class Hinged:
 
 
 def record(name):
-    """Return what the JSON file has of a case."""
+    """Return the record of a case for the JSON file."""
     body, orientation, rate, instants = CASES[name]
     hinged = Hinged(body, orientation, rate)
     swings = name not in ENDLESS and hinged.swings()

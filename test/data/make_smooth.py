@@ -118,7 +118,7 @@ class Body:
         self.needle = 0 < min(self.I) < max(self.I) / 1000
 
     def tensor(self, power):
-        """Return v -> I^power v, body axes (0 where the moment is 0)."""
+        """Return the map v -> I^power v in body axes (0 where the moment is 0)."""
         A = turn(self.axes)
         return lambda v: out(
             A, [(moment ** power if moment else 0) * c for moment, c in zip(self.I, back(A, v))])
@@ -146,7 +146,7 @@ class Body:
         return force, couple
 
     def acting(self, time, R, spin, velocity):
-        """Return force, torque about the point of reference, powers of work and heat.
+        """Return force, torque about the point of reference, and powers of work and heat.
 
         `spin` is omega in world axes, `velocity` the velocity of the centre of mass.
         """

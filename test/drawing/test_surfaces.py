@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drawn surfaces are those of the shapes: closed, of their volume, with their moments."""
+"""The drawn surfaces are closed and have the volumes and moments of the shapes."""
 
 import numpy as np
 import pytest

@@ -147,7 +147,7 @@ def test_ball_slides_rolls_and_is_pushed():
     np.testing.assert_allclose(pushed.force, [-2.0 / 7.0 * F, 0.0, weight], rtol=1e-14)
     np.testing.assert_allclose(
         pushed.acceleration, [5.0 / 7.0 * F / M, 0.0, 0.0], rtol=1e-14, atol=1e-16)
-    # too strong a push makes it slide: friction is all that mu allows
+    # a stronger push makes it slide, with the largest friction that mu allows
     assert abs(dynamics.balance(rolling, Wrench((100.0 * F, 0.0, 0.0))).force[0]) == pytest.approx(
         friction.mu * weight, rel=1e-15)
 

@@ -89,7 +89,7 @@ def test_rclpy_reads_the_same(type_name):
     data = encode(type_name, SAMPLES[type_name])
     message = serialization.deserialize_message(data, message_type)
     assert in_full(message) == decode(schema(type_name), type_name, data)
-    # the other way: what rclpy packs (its padding is arbitrary) means the same to us
+    # the other way: we decode what rclpy packs (its padding is arbitrary) to the same values
     assert decode(
         schema(type_name), type_name, serialization.serialize_message(message)) == in_full(message)
 

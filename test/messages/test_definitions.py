@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Definitions: those of the installed ROS 2 and of rosbags agree; no text of a stranger hurts."""
+"""Definitions of the installed ROS 2 and of rosbags agree; foreign texts do no harm."""
 
 import sys
 

@@ -44,14 +44,14 @@ def test_messages_of_another_form_do_not_fit():
     one, other = (encode(type_name, {'header': {'frame_id': frame}})
                   for frame in ('world', 'earth'))
     longer = encode(type_name, {'header': {'frame_id': 'worlds'}})
-    # the padding hides the difference; the length of the string tells
+    # padding makes the sizes equal; only the length of the string differs
     assert len(longer) == len(one)
     rows = np.array([list(one), list(longer), list(other)], np.uint8)
     assert Layout(schema(type_name), type_name, one).fits(rows).tolist() == [True, False, True]
 
 
 def test_a_struct_that_only_resembles_a_time_keeps_its_numbers():
-    """As in the definition of a stranger, or in a damaged one."""
+    """Such fields occur in foreign or damaged definitions."""
     schemas = parse('a/msg/B', f'T t\n{"=" * 80}\nMSG: a/T\nint32 sec\nuint32 nanosed\n')
     layout = Layout(schemas, 'a/msg/B', b'\0\1\0\0' + bytes(8))
     rows = np.frombuffer(b'\0\1\0\0' + b'\5\0\0\0\7\0\0\0', np.uint8)[np.newaxis]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The URDF of a scene: its links, its joint and its inertia say what the scene says."""
+"""The URDF of a scene has the links, the joint and the inertia of the scene."""
 
 import xml.etree.ElementTree as ElementTree
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of a tick: decoded by the message classes of ROS, they hold what the state says."""
+"""Messages of a tick, decoded by the message classes of ROS, hold the numbers of the state."""
 
 import importlib
 import math
@@ -216,7 +216,7 @@ def test_clock_is_the_stamp():
 
 
 def test_transform_is_the_pose():
-    """No class for tf2_msgs among the wheels: decoded by our own codec."""
+    """The wheels have no class for tf2_msgs, so our own codec decodes it."""
     kind = 'tf2_msgs/msg/TFMessage'
     made = TickMessages([state_topics.OUTPUTS['energy'], state_topics.OUTPUTS['tf']],
                         load_scene('free_body'), FRAMES)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments for which functions are tested: the same numbers on every machine.
+"""Arguments of the tests of functions: the same numbers on every machine.
 
 Run as a script from the source tree, it prints, as JSON, a digest of what each function gives for
 them: ``PYTHONPATH=.:test python test/numerics/arguments.py``.
@@ -21,7 +21,7 @@ SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.5, 2.0, math.inf, -math.inf, math.nan, 5e-324
 
 
 class Arguments:
-    """Random arguments, made without any function of a library that might differ."""
+    """Random arguments, made without library functions whose results may differ."""
 
     def __init__(self, seed, count):
         self._rng = np.random.default_rng(seed)
@@ -111,7 +111,7 @@ def _fused(x, y, z):
 
 
 def digests():
-    """Return {name: digest of the bits} of functions.py and of what it is made of."""
+    """Return {name: digest of the bits} of functions.py and of the functions below it."""
     made = Arguments(2, 4 * COUNT)
     given = {name: (getattr(functions, name), kinds)
              for name, kinds in arguments(1, COUNT).items()}

@@ -32,7 +32,7 @@ def exact(pair):
                          [('add', operator.add, 3.0), ('multiply', operator.mul, 7.0),
                           ('divide', operator.truediv, 15.0)])
 def test_operations_on_pairs(name, operation, bound):
-    """Bounds of the literature, in units of 2^-106; sums of opposite signs included."""
+    """Bounds of the literature hold, in units of 2^-106, for sums of opposite signs too."""
     for a, b in zip(pairs(1), pairs(2), strict=True):
         for b_near in (b, (-a[0] * (1.0 + 1e-9), b[1] * a[0] / b[0])):
             right = operation(exact(a), exact(b_near))

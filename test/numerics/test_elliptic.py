@@ -54,7 +54,7 @@ def test_elementary_limit():
 
 
 def test_third_kind():
-    """Also for p far below the others, where the usual form of the duplication loses digits."""
+    """R_J is accurate for p far below the others, where the usual duplication loses digits."""
     # measured 3.0
     assert (worst((carlson_rj(x, y, z, p), mp.elliprj(x, y, z, p)) for x, y, z, p in TRIPLES)
             < 5.0 * EPSILON)
@@ -113,7 +113,7 @@ def test_jacobi_functions_at_their_limits():
             (np.tanh(u), 1.0 / np.cosh(u), 1.0 / np.cosh(u)), rel=4.0 * EPSILON, abs=0.0)
         assert jacobi(u, 0.0, 1.0) == pytest.approx(
             (np.sin(u), np.cos(u), 1.0), rel=0.0, abs=8.0 * EPSILON)
-    # a quarter period of 692 (k' = 1e-300): half-way dn is 1e-150, at the end it is k'
+    # the quarter period is 692 (k' = 1e-300): half-way dn is 1e-150, at the end it is k'
     quarter = complete_k(1e-300)
     sn, cn, dn = jacobi(quarter, 1.0, 1e-300)
     assert sn == 1.0

@@ -53,7 +53,7 @@ def test_accuracy(name):
     worst = (0.0, ())
     for kind in arguments(SEED, COUNT)[name]:
         for numbers in zip(*(k.tolist() for k in kind), strict=True):
-            # sums with an angle or beside 1 need the digits of both
+            # sums with an angle or with 1 need the digits of both
             small = min(abs(math.frexp(x)[1]) for x in numbers)
             large = max(abs(math.frexp(x)[1]) for x in numbers)
             with mp.workdps(digits + (large if len(numbers) == 1 else min(small, large)) // 3):
@@ -67,7 +67,7 @@ def test_accuracy(name):
 
 
 def test_arguments_that_are_hardest_to_reduce():
-    """The double that is nearest to a multiple of pi/2 (Muller, section 11.3.2), and its like."""
+    """Doubles very near a multiple of pi/2, as the nearest one (Muller, section 11.3.2), work too."""
     for x in (6381956970095103.0 * 2.0 ** 797, 5.319372648326541e255, 6.123233995736766e-17,
               math.pi, 355.0, 1e22, 1.7976931348623157e308, 1647099.0, 1647099.5, 2.0 ** 53):
         with mp.workdps(700):
@@ -95,7 +95,7 @@ def same(a, b):
 
 
 def c_library(function, *numbers):
-    """Return what the C library gives; Python raises where that is inf or nan."""
+    """Return the result of the C library; Python raises where it is inf or nan."""
     with np.errstate(all='ignore'):
         return float(function(*map(np.float64, numbers)))
 
@@ -112,7 +112,7 @@ def test_special_values_of_one_number(name, function):
 @pytest.mark.parametrize(('name', 'function'), [('atan2', np.arctan2), ('hypot', np.hypot),
                                                 ('power', np.power)])
 def test_special_values_of_two_numbers(name, function):
-    """All signs of zeros and infinities."""
+    """All signs of zeros and infinities are tried."""
     for x in SPECIAL:
         for y in SPECIAL:
             found, expected = getattr(functions, name)(x, y), c_library(function, x, y)
@@ -182,7 +182,7 @@ def plain(digests):
     {},
     # 64-bit x86 without AVX and FMA, or the plain instruction set of another processor
     {'NUMBA_CPU_NAME': 'generic', 'NUMBA_CPU_FEATURES': ''},
-    # likewise with the C library's own fma in software, where that is glibc on x86
+    # the same with the C library's own fma in software, on x86 with glibc
     {'NUMBA_CPU_NAME': 'generic', 'NUMBA_CPU_FEATURES': '',
      'GLIBC_TUNABLES': 'glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4'}],
     ids=['this processor', 'any processor', 'any processor, fma in software'])

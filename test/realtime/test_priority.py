@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a thread that keeps deadlines is scheduled where real-time scheduling is not allowed."""
+"""Scheduling of a thread that keeps deadlines where real-time scheduling is not allowed."""
 
 import ctypes
 import os

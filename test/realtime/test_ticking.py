@@ -17,7 +17,7 @@ START = 5_000_000_000
 
 @pytest.fixture(autouse=True)
 def plain_scheduling(monkeypatch):
-    """Leave the scheduling of the test process alone: here the ticker runs in its main thread."""
+    """Keep the scheduling of the test process, as the ticker runs in its main thread."""
     monkeypatch.setattr(Ticker, '_take_priority', lambda self: None)
 
 
@@ -38,7 +38,7 @@ class Clock:
 
 
 class ClockTopic:
-    """/clock as a script of instants, one for each wait."""
+    """A script of instants in place of /clock, one for each wait."""
 
     follows_clock_topic = True
 
@@ -53,7 +53,7 @@ class ClockTopic:
 
 
 class Work:
-    """Notes when each tick was run; `costs` maps ticks to the time they take, ns."""
+    """A work that notes the time of each tick; `costs` maps ticks to their durations, ns."""
 
     def __init__(self, clock, ticks, costs=None, between=lambda work: None):
         self._clock, self._ticks, self._costs, self._between = clock, ticks, costs or {}, between

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON Schema of scene files: an editor and this package say the same of a file."""
+"""The JSON Schema of scene files: an editor and this package judge a file alike."""
 
 import json
 import pathlib
@@ -30,7 +30,7 @@ def test_it_is_a_schema():
 @pytest.mark.parametrize('name', scene_names())
 def test_every_scene_that_ships_fits(name):
     text = (scene_folder() / f'{name}.yaml').read_text()
-    # as this package reads YAML: plain YAML 1.1 takes 5.972e24 for a word
+    # this package reads 5.972e24 as a number; plain YAML 1.1 takes it for a word
     assert not faults(yaml_text.parse(text, name))
 
 

@@ -24,19 +24,19 @@ def test_none_is_missing():
 
 @pytest.mark.parametrize('name', NOTES)
 def test_scene(name):
-    """Named as its file, says its section of the notes, runs, and balances its ledger."""
+    """A scene has the name of its file, names its section of the notes, runs, and balances."""
     scene = load_scene(name)
     assert scene.name == name
     assert '(notes, ' in scene.about
     simulation = Simulation(scene)
     simulation.advance(50)
     assert np.isfinite(simulation.vector).all()
-    # worst measured: see the scene's own tests; this only asks that nothing is lost
+    # the scene's own tests have the measured errors; this only asks that nothing is lost
     assert abs(simulation.ledger()['energy_residual']) < 1e-12
 
 
 def test_the_pendulum_hangs_the_same_way_from_both_edges():
-    """Turned over, the centre of mass is again below the edge, and the start is the same swing."""
+    """The pendulum is turned over: its centre of mass is below the edge and the swing the same."""
     for name, below in (('kater_pendulum', 0.4), ('kater_pendulum_from_p', 0.6)):
         scene = load_scene(name)
         height = np.array(scene.body.center_of_mass) - scene.constraint.through

@@ -107,7 +107,7 @@ def test_body_at_rest_held_at_every_tick_by_another_wrench_by_hand():
         simulation.advance()
     h = 1e-3
     speed = h * sum(range(50))                                                  # v = sum of F h/M
-    # each F/M h goes on for the ticks left
+    # each F/M h acts for the ticks left
     place = h * h * sum(k * (49 - k) + 0.5 * k for k in range(50))
     assert simulation.state.velocity == pytest.approx([0.0, 0.0, speed], abs=1e-15)
     assert simulation.state.position == pytest.approx([0.0, 0.0, place], abs=1e-17)

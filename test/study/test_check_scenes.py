@@ -150,7 +150,7 @@ def test_limit_finds_order_and_what_is_left():
 
 
 def test_billiard_height_decides_the_formula():
-    """As the check uses it: the notes' time above 2a/5 is seven times too long."""
+    """The notes' time above 2a/5 is seven times too long, as the check finds it."""
     a, h = 0.03, 0.02
     right = billiard.onset_of_rolling(1.5, h, a, 0.2, 9.81)
     assert billiard.onset_of_rolling_above_as_written(1.5, h, a, 0.2, 9.81) == pytest.approx(

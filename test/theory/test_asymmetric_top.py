@@ -56,7 +56,7 @@ def test_linear_equations_and_their_frequency(moments):
 
 
 def test_tennis_racket_by_hand():
-    """Moments 1, 3 across and 2 along omega0 = 3: Omega^2 = 9 (1)(-1)/3 = -3."""
+    """Moments 1, 3 across and 2 along omega0 = 3 give Omega^2 = 9 (1)(-1)/3 = -3."""
     assert theory.growth_rate(OMEGA0, 1.0, 3.0, 2.0) == near(3.0**0.5, 1e-15)
 
 

@@ -11,7 +11,7 @@ M, LENGTH, GYRATION = 0.9, 0.55, 0.2
 
 @pytest.mark.parametrize('d', [0.0, 0.3, 0.6227, 0.8])
 def test_both_equations_of_motion(d):
-    """M l phi'' = F - F_R and M (l^2 + a^2) phi'' = F d."""
+    """The equations M l phi'' = F - F_R and M (l^2 + a^2) phi'' = F d hold."""
     F = 12.0
     acceleration = theory.angular_acceleration(F, d, M, LENGTH, GYRATION)
     assert (M * LENGTH * acceleration

@@ -65,7 +65,7 @@ def test_body_rates_and_back():
 
 
 def test_energy_and_p_alpha():
-    """T from R alone; p_alpha = dT/dalpha' = the vertical component of L."""
+    """T follows from R alone, and p_alpha = dT/dalpha' is the vertical component of L."""
     with mpmath.workdps(30):
         energy = float(kinetic_energy(RATES))
         momentum = float(mpmath.diff(lambda rate: kinetic_energy((rate, *RATES[1:])), RATES[0]))

@@ -72,7 +72,7 @@ def test_driven_symmetric_body_obeys_them():
 
 
 def test_symmetric_top_obeys_them_and_the_notes_rate_does_not():
-    """Flattened body I = 1, 1, 1.3: Omega = 0.3 omega3, as written 0.2308 omega3."""
+    """A flattened body I = 1, 1, 1.3 has Omega = 0.3 omega3; as written it is 0.2308 omega3."""
     I1, I3 = 1.0, 1.3
     omega = symmetric_top.angular_velocity(0.6, 2.0, 0.4, I1, I3)
     rate = derivative(lambda at: symmetric_top.angular_velocity(at, 2.0, 0.4, I1, I3), 0.6)
@@ -115,7 +115,7 @@ def test_chandler_wobble():
     written = symmetric_top.precession_rate_as_written(2.0 * np.pi / day, 1.0, I3)
     assert (2.0 * np.pi / written / day
             == near(chandler_wobble.period_in_sidereal_days_as_written(), 1e-13))
-    # for the Earth the two differ by 0.3 % only; both are far from what is observed
+    # for the Earth the two differ by 0.3 % only; both are far from the observed period
     assert chandler_wobble.period_in_sidereal_days_as_written() == near(306.0, 1e-15)
     assert (chandler_wobble.OBSERVED_PERIOD / chandler_wobble.period_in_solar_days()
             == pytest.approx(1.43, abs=0.005))

@@ -61,7 +61,7 @@ def test_momenta_and_rates():
 
 
 def test_beta_acceleration_from_the_lagrangian():
-    """I1 beta'' = dL/dbeta at fixed rates."""
+    """The acceleration is I1 beta'' = dL/dbeta at fixed rates."""
     P_alpha, P_gamma = (float(value) for value in momenta())
     expected = float(mpmath.diff(lambda beta: lagrangian(beta, *RATES), BETA)) / I1
     assert theory.beta_acceleration(BETA, P_alpha, P_gamma, I1, MGL) == near(expected, 1e-13)

@@ -44,7 +44,7 @@ def test_rod():
 
 
 def test_lamina_of_any_shape():
-    """A triangle: the moment about the normal is the sum of the other two."""
+    """The moment of a triangle about its normal is the sum of the other two."""
     u, wu = along(0.0, 1.0)
     x, y = np.meshgrid(u, u)
     points = (x, 0.5 * (1.0 - x) * y, 0.0 * x)
