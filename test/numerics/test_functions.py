@@ -67,7 +67,7 @@ def test_accuracy(name):
 
 
 def test_arguments_that_are_hardest_to_reduce():
-    """Doubles very near multiples of pi/2 (the nearest one: Muller, section 11.3.2) are right too."""
+    """Doubles very near multiples of pi/2 (Muller, section 11.3.2, has the nearest) are right."""
     for x in (6381956970095103.0 * 2.0 ** 797, 5.319372648326541e255, 6.123233995736766e-17,
               math.pi, 355.0, 1e22, 1.7976931348623157e308, 1647099.0, 1647099.5, 2.0 ** 53):
         with mp.workdps(700):
