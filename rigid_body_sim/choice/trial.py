@@ -22,6 +22,7 @@ RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
+FINER_ONES = FINER, 0.03, 0.3    # where a run that much finer takes too much work
 TRIES = 5       # largest number of tolerances
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 
@@ -60,7 +61,7 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
     most = STEPS + int(min(STEPS_PER_RADIAN * radians, STEPS_PER_RADIAN * RADIANS))
 
     def end(tolerance):
-        """Return the attitude at the end of a trial run."""
+        """Return the attitude at the end of a trial run; TooMuchWork is raised."""
         if tolerance not in ends:
             out = np.empty(STATE_SIZE)
             try:
@@ -73,6 +74,16 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
             ends[tolerance] = out[ORIENTATION]
         return ends[tolerance]
 
+    def end_of_finer(tolerance):
+        """Return the attitude at the end of a finer run, or None if none is within the work."""
+        for share in FINER_ONES:
+            finer = at_most(share * tolerance)
+            try:
+                return end(finer) if finer < tolerance else None
+            except TooMuchWork:
+                continue
+        return None
+
     def at_most(tolerance):
         """Return the coarsest tolerance of the table up to a bound, else its finest."""
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
@@ -80,11 +91,11 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
 
     floor, before = measured.floor(scene, horizon), (tolerance, math.inf)
     for _ in range(TRIES):
-        finer = at_most(FINER * tolerance)
-        if finer == tolerance:    # no finer run to compare with: the error is below the last one
+        here, finer = end(tolerance), end_of_finer(tolerance)
+        if finer is None:    # no finer run to compare with: the error is below the last one
             error = before[1]
             break
-        error = angle_between(*end(tolerance), *end(finer)) / part
+        error = angle_between(*here, *finer) / part
         error = math.inf if math.isnan(error) else error
         if error <= accuracy:
             break

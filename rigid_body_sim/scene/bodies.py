@@ -22,6 +22,8 @@ from rigid_body_sim.numerics.vectors import cross, dot
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 LARGEST_MOMENT = 1e150    # kg m^2: squares of it are doubles
+SMALLEST_MOMENT = 1e-150  # kg m^2, of a moment that is not zero: what it divides stays a double
+SMALLEST_MASS = 1e-75     # kg
 PLANES = (0, 1), (0, 2), (1, 2)
 DIGITS, SWEEPS = 40, 20    # of the eigenvectors; four sweeps do for most tensors
 NEGLIGIBLE = Decimal('1e-70')    # square of an entry beside the product of the diagonal ones
@@ -185,6 +187,8 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     """
     if not M > 0.0:
         raise BadInput(f'{where}.mass', f'got {M!r}', 'a mass is positive, in kg')
+    if M < SMALLEST_MASS:
+        raise BadInput(f'{where}.mass', f'got {M!r} kg', f'at least {SMALLEST_MASS:g}')
     tensor = np.asarray(moments_or_matrix, dtype=float)
     if tensor.shape == (3,):
         tensor = np.diag(tensor)
@@ -225,6 +229,9 @@ def _check_moments(body, given, where):
         if moment > others + slack:
             raise BadInput(f'{where}.inertia', f'moments {list(moments)} {point} break the triangle inequality (I{k + 1} = {moment!r})',
                            f'I{k + 1} may be at most the sum of the other two, {others!r}')
+        if 0.0 < moment < SMALLEST_MOMENT:
+            raise BadInput(f'{where}.inertia', f'moment {moment!r} {point} is too small',
+                           f'zero, or at least {SMALLEST_MOMENT:g}')
     if not any(moment > 0.0 for moment in moments) and not any(moment > 0.0 for moment in body.about_origin.moments):
         raise BadInput(f'{where}.inertia', f'got {list(moments)}', 'at least two moments are positive')
 

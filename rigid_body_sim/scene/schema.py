@@ -12,6 +12,9 @@ from rigid_body_sim.scene import yaml_text
 
 Schema = dict[str, Any]
 
+LARGEST = 1e75
+"""Largest size of a number in a scene, SI units: the product of four is a double."""
+
 NUMBER: Schema = {'type': 'number'}
 POSITIVE: Schema = {'type': 'number', 'exclusiveMinimum': 0}
 VECTOR: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 3, 'maxItems': 3}
@@ -105,6 +108,7 @@ def _refuse_non_finite(value: Any, where: str) -> None:
             _refuse_non_finite(entry, at(where, place))
     elif isinstance(value, float) and not math.isfinite(value):
         raise BadInput(where, f'got {value!r}', 'needs a finite number')
-    elif isinstance(value, int) and not isinstance(value, bool) and abs(value) > 1e300:
+    elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) > LARGEST:
         raise BadInput(where, f'got {yaml_text.brief(value)}',
-                       'needs a number that a double can hold')
+                       f'needs a number from {-LARGEST:g} to {LARGEST:g}: products of those are '
+                       'doubles')

@@ -25,7 +25,12 @@ PULL = 2.0 * math.pi * 0.8
 DAMPING = 0.7
 """Damping of the spring, relative to critical."""
 SLACK = 1e-6
-"""The hand exerts no torque about an axis whose moment is this small, relative to the largest."""
+"""The hand exerts no torque about an axis whose moment is this small, relative to the largest.
+
+A body that has such a moment, and it is not zero, is drawn by its centre of mass: the couple of a
+drag stands still in the world, the axis turns into it, and within a frame the body would spin
+about it by millions of turns.
+"""
 
 
 class Hand:
@@ -38,7 +43,7 @@ class Hand:
 
     def __init__(self, mechanics):
         self._mechanics = mechanics
-        self._slack = _slack_axes(mechanics.scene)
+        self._slack, self._spins_up = _slack_axes(mechanics.scene)
 
     def pull(self, vector, grabbed, cursor, pace):
         """Return the row that holds the spring's wrench.
@@ -58,6 +63,10 @@ class Hand:
             None where no force can move that point.
         """
         velocity = self._mechanics.velocity_at(vector, grabbed)
+        if self._spins_up:
+            center = self._mechanics.center(vector)
+            cursor, grabbed = cursor - grabbed + center, center
+            velocity = self._mechanics.velocity_at(vector, grabbed)
         wanted = pace * (pace * (np.subtract(cursor, grabbed)) - 2.0 * DAMPING * velocity)
         size = float(np.linalg.norm(wanted))
         if size == 0.0 or not math.isfinite(size):
@@ -97,10 +106,14 @@ def release():
 
 
 def _slack_axes(scene):
-    """Return the principal axes of (nearly) zero moment in body axes, array (n, 3)."""
+    """Return the principal axes of (nearly) zero moment, and whether a torque spins one up.
+
+    The axes are in body axes, array (n, 3).
+    """
     inertia = (scene.constraint.inertia(scene.body))
     axes = Rotation.from_quat(inertia.axes).as_matrix().T
     if scene.constraint.mechanism is Mechanism.AXIS:
-        return np.empty((0, 3))
+        return np.empty((0, 3)), False
     moments = np.array(inertia.moments)
-    return axes[moments < SLACK * moments.max()]
+    slack = moments < SLACK * moments.max()
+    return axes[slack], bool((moments[slack] > 0.0).any())

@@ -44,8 +44,7 @@ def test_the_wrench_is_the_force_at_the_grabbed_point():
     assert row[TORQUE] == pytest.approx(np.cross(grabbed, row[FORCE]))
 
 
-# A pull on the needle hangs in a kernel; the cause is not found yet, so it is left out here.
-@pytest.mark.parametrize('name', [name for name in scene_names() if name != 'needle'])
+@pytest.mark.parametrize('name', scene_names())
 def test_a_pull_at_sixty_frames_a_second_is_taken_and_stays_bounded_in_every_scene(name):
     simulation = Simulation(name, rate=600.0)
     mechanics = Mechanics(simulation.scene)

@@ -10,7 +10,14 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES, onward
+from rigid_body_sim.integrators.marching.points import (
+    LEAST_ERROR,
+    SCALES,
+    STEP,
+    TIME,
+    VALUES,
+    onward,
+)
 from rigid_body_sim.numerics.functions import power
 
 rate = UNBOUND
@@ -67,7 +74,7 @@ def march(p, control, point, following, target, end, limit):
         for _ in range(TRIALS):
             t1 = end if t + 1.1 * h >= end else t + h
             y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
-            allowed = tolerance * (t1 - t)
+            allowed = max(tolerance * (t1 - t), LEAST_ERROR)
             good = error <= allowed and t1 > t
             if error > 1e-9 * allowed and error < math.inf:
                 h = (t1 - t) * min(

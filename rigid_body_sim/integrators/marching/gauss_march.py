@@ -24,6 +24,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
 from rigid_body_sim.integrators.marching.points import (
+    LEAST_ERROR,
     SCALES,
     STEP,
     TIME,
@@ -302,7 +303,7 @@ def _step(p, control, here, end):
     scales, h, before = grown(here.scales, here.y), here.step, here.last
     for _ in range(TRIALS):
         t1, h = _span(control, here, h, end)
-        allowed = control[TOLERANCE] * h
+        allowed = max(control[TOLERANCE] * h, LEAST_ERROR)
         mean, used, fewer, good = solve(p, S, here.y, h, before, here.sweeps, allowed, scales)
         if fixed:
             next_step = here.step + 1.0

@@ -32,6 +32,9 @@ class Head(NamedTuple):
 LOST, REACHED, PAUSED = 0, 1, 2
 """How a march ended: no step is good; the time asked is within the step; its steps are used up."""
 
+LEAST_ERROR = 2.0 ** -62
+"""Of a step, as a share of the unknowns: it is not asked to err by less, however short it is."""
+
 HEAD = layout(Head)
 TIME, STEP, SCALES = (HEAD.part(name).first for name in Head._fields)
 VALUES = HEAD.size
