@@ -177,15 +177,14 @@ class Stepped:
         """Return the (time, name, values) of what happens after one time (s) and up to another.
 
         They are in order of time. A solver only goes forward: later calls ask for later times.
-        `tick` (s) is for motions in closed form, whose events may crowd; a method that steps takes
-        a step or more for each event.
+        Where events crowd within a `tick` (s), the rest of it may be passed over (events.py).
         """
         if self._course.TELLS_EVENTS:
             return self._course.events(after, until)
         if self._watcher is None:
             self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]),
                                     swing_rate(self.scene), drive(self.scene, self.wrench))
-        return [event for event in self._watcher.events(until) if event[0] > after]
+        return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
     def exchanged(self, time):
         """Return the ledger's entries from the start to a time, shape (5,).

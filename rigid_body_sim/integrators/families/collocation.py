@@ -20,6 +20,7 @@ TAKES_WRENCH = True
 LANES = False
 FLOOR = 2.0 ** -50          # share of the unknowns that is rounding
 RELAXED_FLOOR = 2.0 ** -39  # the same where slopes of the stages take the place of rates
+RELAXED_SETTLED = 2.0 ** -46
 TERMS = 2 * STAGES + 1      # of a curve: P_0 ... P_16
 
 
@@ -57,6 +58,7 @@ def march(method, equations, adapts):
         stage_rates=_stage_rates(size, equations.parameter_count),
         relax=_relax(equations.relaxations, places),
         FLOOR=f'FLOOR = {RELAXED_FLOOR if equations.relaxations else FLOOR!r}\n',
+        SETTLED=f'SETTLED = {RELAXED_SETTLED if equations.relaxations else 0.0!r}\n',
         spread=_spread(size), combined=_combined(size, places['RATES']), advanced=_advanced(size),
         along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(size, places['CURVE']),
         measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),

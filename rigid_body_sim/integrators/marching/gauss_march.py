@@ -55,6 +55,7 @@ end_of_curve = UNBOUND
 SIZE = UNBOUND    # count of the unknowns
 # the same as NOISE as a share of the unknowns, where the increments are small
 FLOOR = UNBOUND
+SETTLED = UNBOUND    # a change that is enough whatever was asked, as a share of the unknowns
 # places in a point
 LAST = UNBOUND
 SWEEPS = UNBOUND
@@ -203,7 +204,7 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
     relax(S, y, h, sweeps == 1)
     mean = combined(S, B)
     size = h * h * measure(mean, mean, 0.0, scales)
-    enough = max(allowed * allowed, ROUNDING * ROUNDING * size)
+    enough = max(allowed * allowed, ROUNDING * ROUNDING * size, SETTLED * SETTLED)
     floor = max(NOISE * NOISE * size, FLOOR * FLOOR)
     least, smallest = sweeps, math.inf
     while True:
