@@ -37,18 +37,18 @@ def followed(scene, horizon):
 
 
 def slim():
-    """A slim body whose drag about its axis is nothing but rounding."""
+    """Run a slim body whose drag about its axis is nothing but rounding."""
     return followed(scene(**SLIM), 2.0)
 
 
 def hinge():
-    """A pendulum in something like tar: it creeps."""
+    """Run a pendulum in something like tar: it creeps."""
     effects = json.dumps([{'gravity': {'g': 9.81}}, {'drag': {'angular': 1e8, 'linear': 0.1}}])
     return followed(load_scene('kater_pendulum_from_p', [f'effects={effects}']), 100.0)
 
 
 def spinning():
-    """A top whose axis creeps while it spins."""
+    """Run a top whose axis creeps while it spins."""
     return followed(scene(body={'mass': 1.0, 'inertia': [0.02, 0.02, 0.01],
                                 'center_of_mass': [0, 0, 0.2]},
                           effects=[{'gravity': {'g': 9.81}}, {'drag': {'linear': 1e6}}],
@@ -56,15 +56,15 @@ def spinning():
 
 
 def skew():
-    """A body whose arm is along none of its axes."""
+    """Run a body whose arm is along none of its axes."""
     return followed(scene(body={'mass': 1.0, 'inertia': [0.02, 0.03, 0.04],
                                 'center_of_mass': [0.1, 0.05, 0.2]},
                           effects=[{'gravity': {'g': 9.81}}, {'drag': {'linear': 1e8}}],
                           initial={'tilt': 0.5, 'spin': 3.0}), 1.0)
 
 
-def thin():
-    """A body whose third moment is next to nothing, with drag."""
+def driven():
+    """Run a driven body that reaches its last rate at once."""
     return followed(scene('free', body={'mass': 1.0, 'inertia': [0.02, 0.03, 1.5e-2]},
                           effects=[{'drag': {'angular': 1e5}},
                                    {'torque': {'value': [0.1, 0.2, 0.3]}}],
@@ -72,7 +72,7 @@ def thin():
 
 
 def needle():
-    """The same with a third moment of 1e-100."""
+    """Run a body with drag whose third moment is 1e-100."""
     return followed(scene('free', body={'mass': 1.0, 'inertia': [0.02, 0.02, 1e-100]},
                           effects=[{'drag': {'angular': 0.001}}],
                           initial={'angular_velocity': [1, 2, 3]}), 1.0)

@@ -107,7 +107,7 @@ class _Course:
         while not self._reached or self._reached[-1] < times.max():
             self._advance()
             if self._most is not None and DEAR * (len(self._steps) - before) > self._most:
-                raise TooMuchWork(f"{self._method.NAME} on {self._scene.name}: more than "
+                raise TooMuchWork(f'{self._method.NAME} on {self._scene.name}: more than '
                                   f'{self._most} steps to t = {float(times.max())!r} s')
         write = self._equations.kernels.write
         for time, row in zip(times, out, strict=True):

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Group 13, slim and stiffly damped bodies: nothing hangs, and what is followed is right."""
+
+import concurrent.futures
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+from hard_cases.stiff_scenes import scene
+
+from rigid_body_sim.compilation import threads
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.motions import solver as closed_forms
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+TEST = pathlib.Path(__file__).resolve().parents[1]
+DEPARTURES = json.loads((TEST / 'data' / 'departures.json').read_text())
+NAMES = 'slim', 'hinge', 'spinning', 'skew', 'driven', 'needle'
+
+
+def plain(script, *arguments):
+    """Start a script in plain Python, which compiles nothing."""
+    settings = os.environ | {'NUMBA_DISABLE_JIT': '1',
+                             'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
+    return subprocess.Popen([sys.executable, str(script), *arguments], env=settings, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+@pytest.fixture(scope='module')
+def stiff():
+    def run(name):
+        process = plain(TEST / 'hard_cases' / 'stiff_scenes.py', name)
+        try:
+            out, error = process.communicate(timeout=200)    # 10 to 20 s each; a hang has no end
+        finally:
+            process.kill()
+        assert process.returncode == 0, error
+        return json.loads(out)
+    with concurrent.futures.ThreadPoolExecutor(2) as two:
+        return dict(zip(NAMES, two.map(run, NAMES), strict=True))
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_auto_takes_a_method_that_keeps_the_pace_of_the_motion(stiff, name):
+    assert stiff[name]['method'] in ('gauss16', 'exact')
+    assert stiff[name]['expected'] < 1e-11
+
+
+def test_a_pendulum_in_tar_creeps_at_the_rate_of_torque_over_drag(stiff):
+    pendulum = load_scene('kater_pendulum_from_p')
+    arm = pendulum.constraint.arm(pendulum.body)
+    end = stiff['hinge']['end']
+    angle, rate = 2.0 * math.atan2(end[2], end[4]), end[6]
+    down = math.hypot(arm[0], arm[2])
+    torque = -pendulum.body.mass * 9.81 * down * math.sin(angle - math.pi)
+    # the hinge's drag is 1e8 N m s, the rest of it a part in 1e9; which way the angle counts is
+    # the scene's affair
+    assert abs(abs(rate) - abs(torque) / 1e8) < 1e-8 * abs(rate)
+
+
+def test_an_overdamped_top_keeps_its_spin_and_its_axis_falls_as_the_sum_says(stiff):
+    _, x, y, z, w, _, _, spin, *_ = stiff['spinning']['end']
+    assert abs(spin - 30.0) < 1e-12
+    tilt = 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
+    # c r^2 theta' = M g r sin(theta), gyroscopic corrections are (I3 w3/(c r^2))^2 = 6e-11 of it
+    expected = 2.0 * math.atan(math.tan(0.25) * math.exp(9.81 * 1.0 / (1e6 * 0.2)))
+    assert abs(tilt - expected) < 1e-9
+
+
+def test_a_driven_body_in_tar_turns_with_torque_over_drag(stiff):
+    omega = np.array(stiff['driven']['end'][5:8])
+    assert np.abs(omega - np.array([0.1, 0.2, 0.3]) / 1e5).max() < 1e-15
+
+
+def test_drag_slows_a_needle_as_it_slows_a_disk(stiff):
+    # I1 = I2 and I3 = 0: omega1 and omega2 fall by e^(-k t/I1), the axis turns in a plane
+    omega = np.array(stiff['needle']['end'][5:8])
+    assert np.abs(omega - np.array([1.0, 2.0, 0.0]) * math.exp(-0.05)).max() < 1e-13
+
+
+def departing(moments, coefficient, omega):
+    return scene('free', body={'mass': 1.0, 'inertia': list(moments)},
+                 effects=[{'internal_dissipation': {'coefficient': coefficient}}],
+                 initial={'angular_velocity': list(omega)})
+
+
+@pytest.mark.parametrize('accuracy', [1e-6, 1e-12])
+@pytest.mark.parametrize('name', DEPARTURES)
+def test_internal_dissipation_leaves_an_axis_at_the_right_time(name, accuracy):
+    case, out = DEPARTURES[name], np.empty(14)
+    body = departing(case['moments'], case['coefficient'], case['angular_velocity'])
+    simulation = Simulation(body, accuracy=accuracy, horizon=case['time'])
+    out = simulation.states([case['time']]).vector[0]
+    error = 2.0 * np.linalg.norm(out[1:5] - case['orientation_after'])
+    # measured: at most 2e-15 at 1e-12
+    assert error < accuracy
+    assert simulation.choice.expected_error < accuracy
+    assert np.abs(out[5:8] - case['angular_velocity_after']).max() < 10.0 * accuracy
+
+
+@pytest.mark.parametrize('coefficient', [100.0, 1000.0, 1e9])
+def test_a_body_1e_300_off_its_smallest_axis_leaves_when_it_has_grown_by_that(coefficient):
+    # omega3 grows at c I1 w1^2 (I3 - I1)/I3, from 1e-300 to about 1 in log(1e300) of its times
+    expected = 300.0 * math.log(10.0) / (coefficient * 4.0 * 2.0 / 3.0)
+    body = departing((1, 2, 3), coefficient, (2, 1e-300, 1e-300))
+    solver = Stepped(body, 'dop8', 1e-12).start(body.initial.vector)
+    before, after = np.empty(14), np.empty(14)
+    solver.state(0.98 * expected, before)
+    solver.state(1.02 * expected, after)
+    assert abs(before[5] - 2.0) < 1e-9
+    assert abs(after[5]) < 1e-3
+
+
+def test_a_body_far_from_the_origin_departs_about_its_centre():
+    parts = {'effects': [{'internal_dissipation': {'coefficient': 5.0}}],
+             'initial': {'angular_velocity': [1e-12, 2.0, 1e-12], 'velocity': [0.1, 0.2, 0.3]}}
+    skew = scene('free', body={'mass': 2.0, 'center_of_mass': [0.1, -0.2, 0.3],
+                               'inertia': [1.0, 2.0, 3.0]}, **parts)
+    solver = Stepped(skew, 'dop8', 1e-12).start(skew.initial.vector)
+    times, states = np.linspace(0.0, 3.0, 7), np.empty((7, 14))
+    solver.states(times, states)
+    simulation = Simulation(skew, 'dop8')
+    for state in states:    # the centre of mass moves in a straight line all the way
+        x, y, z, w = state[1:5]
+        u, c = np.array([x, y, z]), np.array([0.1, -0.2, 0.3])
+        center = state[8:11] + c + 2.0 * np.cross(u, np.cross(u, c) + w * c)
+        start = simulation.states([0.0]).vector[0]
+        drift = start[11:14] + np.cross(start[5:8], c)
+        assert np.abs(center - (c + state[0] * drift)).max() < 1e-12
+
+
+def refused_in_one_line(text):
+    with pytest.raises((BadInput, NotConverged)) as found:
+        parse_scene(json.dumps({'scene': 'extreme'} | text))
+    assert str(found.value).isprintable()
+
+
+@pytest.mark.parametrize('scene_of', [
+    lambda: {'body': {'mass': 1.0, 'inertia': [1, 2, 3], 'center_of_mass': [0, 0, 1]},
+             'constraint': 'pivot', 'effects': [{'gravity': {'g': 1e308}}], 'initial': {}},
+    lambda: {'body': {'mass': 1.0, 'inertia': [1, 2, 3]}, 'constraint': 'free',
+             'effects': [{'gravity': {'g': 1e160}}], 'initial': {}},
+    lambda: {'body': {'mass': 1.0, 'shape': {'solid_sphere': {'radius': 0.03}}},
+             'constraint': 'table', 'effects': [{'sliding_friction': {'mu': 0.2, 'g': 9.81}}],
+             'initial': {'velocity': [1e308, 0.0, 0.0]}},
+    lambda: {'body': {'mass': 1.0, 'inertia': [1, 1, 1e-310]}, 'constraint': 'free',
+             'effects': [], 'initial': {'angular_velocity': [1, 2, 3]}},
+    lambda: {'body': {'mass': 1e-310, 'inertia': [1, 1, 1]}, 'constraint': 'free',
+             'effects': [], 'initial': {'angular_velocity': [1, 2, 3]}}],
+    ids=['weight', 'fall', 'ball', 'needle', 'mass'])
+def test_numbers_whose_products_are_no_doubles_are_refused(scene_of):
+    refused_in_one_line(scene_of())
+
+
+def test_a_march_gives_up_where_the_way_ahead_asks_for_too_many_steps():
+    top = scene(body={'mass': 1.0, 'inertia': [1, 2, 3], 'center_of_mass': [0, 0, 1]},
+                effects=[{'gravity': {'g': 1e60}}], initial={'tilt': 1.0})
+    solver = Stepped(top, 'dop8', 1e-9).start(top.initial.vector)
+    with pytest.raises(TooMuchWork, match='too many'):
+        solver.state(10.0, np.empty(14))
+    bounded = Stepped(top, 'dop8', 1e-9, most=100).start(top.initial.vector)
+    with pytest.raises(TooMuchWork, match=r'^dop8 on stiff: \d+ steps'):
+        bounded.state(1e-20, np.empty(14))
+
+
+def test_a_march_in_slices_has_the_bits_of_one_that_is_asked_for_each_state():
+    top = load_scene('driven_body')
+    once, often = (Stepped(top, 'dop8', 1e-9).start(top.initial.vector) for _ in range(2))
+    end, other = np.empty(14), np.empty(14)
+    once.state(40.0, end)
+    for at in np.linspace(0.0, 40.0, 4001):
+        often.state(at, other)
+    assert np.array_equal(end, other)
+
+
+@pytest.mark.skipif(os.environ.get('NUMBA_DISABLE_JIT') == '1', reason='about compiled loops')
+def test_an_interrupt_from_the_keyboard_is_heard_in_a_compiled_loop():
+    code = """
+from rigid_body_sim import load_scene
+from rigid_body_sim.integrators.solver import Stepped
+import numpy as np
+body = load_scene('driven_body', ['effects=[{torque: {value: [1.0e-9, 0, 0]}}]',
+                                  'initial.angular_velocity=[1, 2, 3]'])
+solver = Stepped(body, 'dop8', 1e-6).start(body.initial.vector)
+solver.state(1.0, np.empty(14))
+print('on the way', flush=True)
+solver.state(3e7, np.empty(14))
+"""
+    process = subprocess.Popen([sys.executable, '-c', code], cwd=TEST.parent, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        assert process.stdout.readline() == 'on the way\n'
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        # it takes a tenth of a second; the march itself would take minutes
+        _, error = process.communicate(timeout=20)
+    finally:
+        process.kill()
+    assert 'KeyboardInterrupt' in error
+
+
+def test_an_interrupt_ends_the_work_of_all_threads(monkeypatch):
+    monkeypatch.setattr(os, 'cpu_count', lambda: 2)
+    main, ended = threading.get_ident(), []
+
+    def work(part):
+        if threading.get_ident() == main:
+            raise KeyboardInterrupt
+        try:
+            while True:
+                threads.look()
+                time.sleep(0.001)
+        except threads.Abandoned:
+            ended.append(part)
+            raise
+
+    with pytest.raises(KeyboardInterrupt):
+        threads.on_all_cores(work, 100)
+    assert len(ended) <= 1
+    threads.look()    # the work is over: nothing is abandoned
+
+
+def test_closed_forms_give_their_states_in_slices(monkeypatch):
+    times = np.linspace(0.0, 10.0, 1000)
+    whole = Simulation('tennis_racket').states(times).vector
+    monkeypatch.setattr(closed_forms, 'AT_ONCE', 100)
+    simulation, asked = Simulation('tennis_racket'), []
+    loops = simulation._spans[0].solver._loops
+
+    def states(anchor, times, out):
+        asked.append(len(times))
+        return slow(anchor, times, out)
+    slow = loops.states
+    monkeypatch.setattr(loops, 'states', states)
+    assert np.array_equal(simulation.states(times).vector, whole)
+    assert asked == 10 * [100]
