@@ -123,8 +123,8 @@ def alarm(*_):
 def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
-    work.FIRST_LOOK, work.MOST, work.PATIENCE = 64, 300.0, 1e6
-    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS = 150, 10, 10.0, 50
+    work.FIRST_LOOK, work.MOST, work.PATIENCE = 32, 100.0, 1e5
+    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS = 50, 5, 2.0, 20
     signal.signal(signal.SIGALRM, alarm)
     bad = 0
     for seed in range(first, end):
