@@ -43,9 +43,10 @@ def drawing_of(scene):
         return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown')
     mapping = yaml.safe_load(scene.text)['body']
     if 'parts' in mapping:
-        count = len(mapping['parts'])
-        return Drawing([_part(part) for part in mapping['parts']],
-                       f'the true shape, {count} part{"s" if count > 1 else ""}')
+        shaped = [part for part in mapping['parts'] if 'shape' in part and not _is_hole(part)]
+        if shaped:
+            return Drawing([_part(part) for part in shaped],
+                           _about_parts(mapping['parts'], shaped))
     if 'shape' in mapping:
         return Drawing([_shape(mapping['shape'], scene.body.center_of_mass)],
                        f'the true shape, a {next(iter(mapping["shape"])).replace("_", " ")}')
@@ -67,6 +68,20 @@ def _shape(mapping, at, orientation=IDENTITY):
     (name, dimensions), = mapping.items()
     surface = surfaces.SURFACES[name](**dimensions)
     return surface.placed(Rotation.from_quat(orientation), at)
+
+
+def _is_hole(part):
+    return part.get('mass', part.get('density')) < 0.0
+
+
+def _about_parts(parts, shaped):
+    """Return what is drawn of a composite, in words."""
+    count, holes = len(shaped), sum(map(_is_hole, parts))
+    left_out = [f'{number} {name}{"s" if number > 1 else ""}' for number, name in (
+        (holes, 'hole'), (len(parts) - count - holes, 'shapeless part')) if number]
+    if not left_out:
+        return f'the true shape, {count} part{"s" if count > 1 else ""}'
+    return f'{count} of {len(parts)} parts; not drawn: {", ".join(left_out)}'
 
 
 def _part(mapping):

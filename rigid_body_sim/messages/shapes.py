@@ -56,8 +56,8 @@ def solids_of(scene) -> list[Solid] | None:
     """Return the solids of a scene's body, or None if solids cannot show its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
     if 'parts' in mapping:
-        found = [_solid(part.get('shape'), part.get('at', (0.0, 0.0, 0.0)),
-                        part.get('orientation', IDENTITY))
+        found = [_solid(None if _is_hole(part) else part.get('shape'),
+                        part.get('at', (0.0, 0.0, 0.0)), part.get('orientation', IDENTITY))
                  for part in mapping['parts']]
     elif 'shape' in mapping:
         found = [_solid(mapping['shape'], scene.body.center_of_mass, IDENTITY)]
@@ -66,6 +66,10 @@ def solids_of(scene) -> list[Solid] | None:
     else:
         return None
     return found if all(found) else None
+
+
+def _is_hole(part):
+    return part.get('mass', part.get('density')) < 0.0
 
 
 def _solid(shape, at, orientation):

@@ -93,6 +93,21 @@ def torus(M, radius, tube):
 
 SHAPES = {shape.__name__: shape for shape in (rod, lamina, hoop, disk, spherical_shell, solid_sphere, box, cylinder, cone, ellipsoid, torus)}
 SPHERES = ('spherical_shell', 'solid_sphere')
+EXTENTS = {
+    'rod': lambda length: length,
+    'lamina': lambda width, height: width * height,
+    'hoop': lambda radius: 2.0 * math.pi * radius,
+    'disk': lambda radius: math.pi * radius * radius,
+    'spherical_shell': lambda radius: 4.0 * math.pi * radius * radius,
+    'solid_sphere': lambda radius: 4.0 * math.pi / 3.0 * radius * radius * radius,
+    'box': lambda size: size[0] * size[1] * size[2],
+    'cylinder': lambda radius, length: math.pi * radius * radius * length,
+    'cone': lambda radius, height: math.pi / 3.0 * radius * radius * height,
+    'ellipsoid': lambda semi_axes: 4.0 * math.pi / 3.0 * semi_axes[0] * semi_axes[1] * semi_axes[2],
+    'torus': lambda radius, tube: 2.0 * math.pi * math.pi * radius * tube * tube,
+}
+"""What a density is multiplied by: the volume (m^3) of a solid, the area (m^2) of a thin body, the
+length (m) of a rod or a hoop."""
 
 
 @dataclass(frozen=True)
@@ -242,21 +257,44 @@ def of_shape(name, M, dimensions, center_of_mass=(0.0, 0.0, 0.0), where='body'):
     return make_body(M, SHAPES[name](M, **dimensions), center_of_mass, radius=radius, where=where)
 
 
-def composite(parts):
+def hole(part):
+    """Return the part that takes away what another one adds: negative mass and moments."""
+    return Body(-part.mass, part.center_of_mass, _negative(part.about_center),
+                _negative(part.about_origin), part.radius)
+
+
+def _negative(inertia):
+    return Inertia(tuple(-moment for moment in inertia.moments), inertia.axes)
+
+
+def composite(parts, where='body'):
     """Return the body made of placed parts.
 
     Parameters
     ----------
     parts : sequence of (Body, at, orientation)
-        `at`: the part's origin in the composite's axes, m; `orientation`: quaternion that turns part axes into the composite's.
+        `at`: the part's origin in the composite's axes, m; `orientation`: the quaternion that turns
+        part axes into the composite's. A part may be a :func:`hole`.
+    where : str
+        Place for the error line.
+
+    Raises
+    ------
+    BadInput
+        If the holes take away more than there is.
     """
     # sum() of floats rounds otherwise from Python 3.12 on: the same file would be another body
     M = reduce(add, (part.mass for part, _, _ in parts))
-    centers = [np.add(at, rotate(*orientation, *part.center_of_mass)) for part, at, orientation in parts]
-    center = reduce(add, (part.mass * at for (part, _, _), at in zip(parts, centers, strict=True))) / M
+    if not M > 0.0:
+        raise BadInput(f'{where}.parts', f'have the mass {M!r} kg together',
+                       'holes take away less than there is')
+    centers = [np.add(at, rotate(*orientation, *part.center_of_mass))
+               for part, at, orientation in parts]
+    center = reduce(add, (part.mass * at
+                          for (part, _, _), at in zip(parts, centers, strict=True))) / M
     with np.errstate(over='ignore', invalid='ignore'):    # make_body refuses what is not finite
         tensor = _about(center, parts, centers)
-    return make_body(M, (tensor + tensor.T) / 2.0, center)
+    return make_body(M, (tensor + tensor.T) / 2.0, center, where=where)
 
 
 def _about(center, parts, centers):

@@ -10,13 +10,16 @@ from typing import Any, Self
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics import rotations
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.schema import NUMBER, QUATERNION, VECTOR, Schema
 from rigid_body_sim.scene.state import State
 
-ORIENTATION: dict[str, Schema] = {'orientation': QUATERNION, 'euler_zyz': VECTOR}
+ORIENTATION: dict[str, Schema] = {'orientation': QUATERNION, 'euler_zyz': VECTOR,
+                                  'euler': VECTOR, 'rotation_vector': VECTOR}
 TILT: dict[str, Schema] = {'tilt': NUMBER, 'spin': NUMBER}
-TURNING: dict[str, Schema] = {'angular_velocity': VECTOR}
+TURNING: dict[str, Schema] = {'angular_velocity': VECTOR, 'angular_velocity_world': VECTOR,
+                              'angular_momentum': VECTOR}
 PLACE: dict[str, Schema] = {'position': VECTOR}
 MOTION: dict[str, Schema] = {'velocity': VECTOR}
 
@@ -44,15 +47,25 @@ class Start:
     velocity: tuple[float, ...]
 
     @classmethod
-    def of(cls, mapping: dict[str, Any], where: str) -> Self:
-        """Return the initial conditions of a mapping; BadInput if two keys say the same thing."""
+    def of(cls, mapping: dict[str, Any], inertia: bodies.Inertia, where: str) -> Self:
+        """Return the initial conditions of a mapping.
+
+        Parameters
+        ----------
+        mapping : dict
+            The keys of `initial`.
+        inertia : Inertia
+            About the constraint's reference point: it makes omega of an angular momentum.
+        where : str
+            File and key path, for error lines.
+
+        Raises
+        ------
+        BadInput
+            If two keys say the same thing, or an angular momentum asks for what the body lacks.
+        """
         orientation = _orientation(mapping, where)
-        omega = mapping.get('angular_velocity', (0.0, 0.0, 0.0))
-        if 'spin' in mapping:
-            if 'angular_velocity' in mapping:
-                raise BadInput(f'{where}.spin', 'stands beside angular_velocity',
-                               'give one of them')
-            omega = 0.0, 0.0, mapping['spin']
+        omega = _omega(mapping, orientation, inertia, where)
         position, velocity = (mapping.get(key, (0.0, 0.0, 0.0)) for key in ('position', 'velocity'))
         return cls(mapping, orientation, *(tuple(map(float, vector))
                                            for vector in (omega, position, velocity)))
@@ -78,16 +91,63 @@ class Start:
                                'angular momentum')
 
 
+def _only(mapping: dict[str, Any], ways: Sequence[str], what: str, where: str) -> str | None:
+    """Return the key that is given of those that say the same thing, or None."""
+    given = [way for way in ways if way in mapping]
+    if len(given) > 1:
+        raise BadInput(f'{where}.{given[1]}', f'stands beside {given[0]}', f'give {what} once')
+    return given[0] if given else None
+
+
 def _orientation(mapping: dict[str, Any], where: str) -> tuple[float, ...]:
-    ways = [way for way in ('orientation', 'euler_zyz', 'tilt') if way in mapping]
-    if len(ways) > 1:
-        raise BadInput(f'{where}.{ways[1]}', f'stands beside {ways[0]}',
-                       'give the orientation once')
-    if 'euler_zyz' in mapping:
-        return rotations.from_euler_zyz(*(float(x) for x in mapping['euler_zyz']))
-    if 'tilt' in mapping:
-        return rotations.from_euler_zyz(0.0, float(mapping['tilt']), 0.0)
-    return unit_quaternion(mapping.get('orientation', bodies.IDENTITY), f'{where}.orientation')
+    """Return the unit quaternion of the start.
+
+    `euler` are roll, pitch and yaw about the fixed axes x, y and z of the world, in this order
+    (REP 103); `euler_zyz` are the angles of the notes; the angle of `rotation_vector` is its
+    length.
+    """
+    ways = 'orientation', 'euler_zyz', 'euler', 'rotation_vector', 'tilt'
+    way = _only(mapping, ways, 'the orientation', where)
+    if way is None:
+        return bodies.IDENTITY
+    if way == 'orientation':
+        return unit_quaternion(mapping[way], f'{where}.{way}')
+    if way == 'tilt':
+        return rotations.from_euler_zyz(0.0, float(mapping[way]), 0.0)
+    x, y, z = map(float, mapping[way])
+    if way == 'euler_zyz':
+        return rotations.from_euler_zyz(x, y, z)
+    if way == 'rotation_vector':
+        return rotations.from_rotation_vector(x, y, z)
+    pitched = rotations.multiply(*rotations.from_rotation_vector(0.0, y, 0.0),
+                                 *rotations.from_rotation_vector(x, 0.0, 0.0))
+    return rotations.multiply(*rotations.from_rotation_vector(0.0, 0.0, z), *pitched)
+
+
+def _omega(mapping: dict[str, Any], orientation: Sequence[float], inertia: bodies.Inertia,
+           where: str) -> Sequence[float]:
+    """Return the angular velocity of the start, body axes, rad/s."""
+    way = _only(mapping, ('angular_velocity', 'angular_velocity_world', 'angular_momentum',
+                          'spin'), 'the angular velocity', where)
+    if way is None:
+        return 0.0, 0.0, 0.0
+    if way == 'spin':
+        return 0.0, 0.0, mapping[way]
+    x, y, z = map(float, mapping[way])
+    if way == 'angular_velocity':
+        return x, y, z
+    x, y, z = rotations.rotate_back(*orientation, x, y, z)
+    if way == 'angular_velocity_world':
+        return x, y, z
+    x, y, z = rotations.rotate_back(*inertia.axes, x, y, z)
+    slack, omega = bodies.ULPS * hypot3(x, y, z), []
+    for k, (L, moment) in enumerate(zip((x, y, z), inertia.moments, strict=True)):
+        if moment == 0.0 and abs(L) > slack:
+            raise BadInput(f'{where}.angular_momentum', f'{L!r} kg m^2/s about principal axis '
+                           f'{k + 1}, whose moment is zero',
+                           'no part about that axis: it carries no angular momentum')
+        omega.append(L / moment if moment else 0.0)
+    return rotations.rotate(*inertia.axes, *omega)
 
 
 def unit_quaternion(values: Sequence[float], where: str) -> tuple[float, float, float, float]:

@@ -19,7 +19,9 @@ def json_schema():
     """Return the schema (draft 2020-12) as plain data."""
     schema = copy.deepcopy(scene_schema())
     properties = schema['properties']
-    properties['body']['properties']['inertia'] = {'anyOf': [VECTOR, MATRIX]}
+    body = properties['body']['properties']
+    body['inertia'] = {'anyOf': [VECTOR, MATRIX]}
+    body['parts']['items']['properties']['inertia'] = body['inertia']
     properties['constraint'] = {'anyOf': [
         {'enum': [kind for kind, one in CONSTRAINTS.items() if one.SCHEMA is None]},
         *(_one_key(kind, one.SCHEMA) for kind, one in CONSTRAINTS.items() if one.SCHEMA)]}

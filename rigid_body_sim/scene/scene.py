@@ -39,10 +39,11 @@ SHAPE = mapping_of(
     ellipsoid=mapping_of(['semi_axes'], semi_axes={**VECTOR, 'items': POSITIVE}),
     torus=_lengths('radius', 'tube'))
 SHAPE |= {'minProperties': 1, 'maxProperties': 1}
-PART = mapping_of(['mass', 'shape'], mass=POSITIVE, shape=SHAPE, at=VECTOR,
-                  orientation=QUATERNION)
+NOT_ZERO = {'type': 'number', 'not': {'const': 0}}
+PART = mapping_of(mass=NOT_ZERO, density=NOT_ZERO, shape=SHAPE, inertia={'type': 'array'},
+                  point=VECTOR, at=VECTOR, orientation=QUATERNION)
 BODY = mapping_of(
-    mass=POSITIVE, inertia={'type': 'array'},
+    mass=POSITIVE, density=POSITIVE, inertia={'type': 'array'},
     inertia_about={'enum': ['center_of_mass', 'origin']}, center_of_mass=VECTOR, shape=SHAPE,
     radius=POSITIVE, parts={'type': 'array', 'items': PART, 'minItems': 1, 'maxItems': 1000})
 
@@ -205,21 +206,15 @@ def _scene(mapping, where):
 
 
 def _body(mapping, where):
-    ways = [way for way in ('inertia', 'shape', 'parts') if way in mapping]
-    if len(ways) != 1:
-        raise BadInput(where, f'got {", ".join(ways) or "none of them"}',
-                       'give exactly one of inertia, shape, parts')
-    way = ways[0]
+    way = _one_of(mapping, ('inertia', 'shape', 'parts'), where)
     if way == 'parts':
         surplus = [key for key in mapping if key != 'parts']
         if surplus:
             raise BadInput(f'{where}.{surplus[0]}', 'stands beside parts',
                            'a composite takes mass and centre of mass from its parts')
         return bodies.composite([_part(part, f'{where}.parts.{place}')
-                                 for place, part in enumerate(mapping['parts'])])
-    if 'mass' not in mapping:
-        raise BadInput(where, "the key 'mass' is missing", 'a mass in kg')
-    M = float(mapping['mass'])
+                                 for place, part in enumerate(mapping['parts'])], where)
+    M = _mass(mapping, where)
     center = [float(x) for x in mapping.get('center_of_mass', (0.0, 0.0, 0.0))]
     if way == 'shape':
         for key in ('inertia_about', 'radius'):
@@ -227,10 +222,8 @@ def _body(mapping, where):
                 raise BadInput(f'{where}.{key}', 'stands beside shape', 'the shape already says it')
         (name, dimensions), = mapping['shape'].items()
         return bodies.of_shape(name, M, dimensions, center, where)
-    inertia = mapping['inertia']
-    schema = MATRIX if inertia and isinstance(inertia[0], list) else VECTOR
-    check(inertia, schema, f'{where}.inertia')
-    body = bodies.make_body(M, inertia, center, mapping.get('inertia_about', 'center_of_mass'),
+    body = bodies.make_body(M, _tensor(mapping['inertia'], where), center,
+                            mapping.get('inertia_about', 'center_of_mass'),
                             mapping.get('radius'), where)
     moments = body.about_center.moments
     if body.radius is not None and len(set(moments)) != 1:
@@ -239,11 +232,57 @@ def _body(mapping, where):
     return body
 
 
-def _part(mapping, where):
+def _one_of(mapping, ways, where):
+    """Return the only key of those that is given."""
+    given = [way for way in ways if way in mapping]
+    if len(given) != 1:
+        raise BadInput(where, f'got {", ".join(given) or "none of them"}',
+                       f'give exactly one of {", ".join(ways)}')
+    return given[0]
+
+
+def _mass(mapping, where):
+    """Return the mass (kg) of a body or a part, given as such or as the density of its shape."""
+    if 'mass' not in mapping and 'density' not in mapping:
+        raise BadInput(where, "the key 'mass' is missing", 'a mass in kg')
+    if 'density' not in mapping:
+        return float(mapping['mass'])
+    if 'mass' in mapping:
+        raise BadInput(f'{where}.density', 'stands beside mass', 'give one of them')
+    if 'shape' not in mapping:
+        raise BadInput(f'{where}.density', 'stands without a shape',
+                       'a density needs the volume of a shape: give mass')
     (name, dimensions), = mapping['shape'].items()
-    part = bodies.of_shape(name, float(mapping['mass']), dimensions, where=where)
+    return float(mapping['density']) * bodies.EXTENTS[name](**dimensions)
+
+
+def _tensor(inertia, where):
+    """Return the entry `inertia`, three moments or a matrix, checked."""
+    schema = MATRIX if inertia and isinstance(inertia[0], list) else VECTOR
+    check(inertia, schema, f'{where}.inertia')
+    return inertia
+
+
+def _part(mapping, where):
+    """Return a part of a body: its Body, place and orientation. A negative mass is a hole."""
+    way = _one_of(mapping, ('shape', 'inertia', 'point'), where)
+    M = _mass(mapping, where)
+    if way == 'shape':
+        (name, dimensions), = mapping['shape'].items()
+        part = bodies.of_shape(name, abs(M), dimensions, where=where)
+    elif way == 'inertia':
+        part = bodies.make_body(abs(M), _tensor(mapping['inertia'], where), where=where)
+    else:
+        for key in ('at', 'orientation'):
+            if key in mapping:
+                raise BadInput(f'{where}.{key}', 'stands beside point',
+                               'point: [x, y, z] says where it is')
+        nothing = bodies.Inertia((0.0, 0.0, 0.0))
+        part = bodies.Body(abs(M), (0.0, 0.0, 0.0), nothing, nothing)
+        return bodies.hole(part) if M < 0.0 else part, mapping['point'], bodies.IDENTITY
     turn = unit_quaternion(mapping.get('orientation', bodies.IDENTITY), f'{where}.orientation')
-    return part, mapping.get('at', (0.0, 0.0, 0.0)), turn
+    at = mapping.get('at', (0.0, 0.0, 0.0))
+    return bodies.hole(part) if M < 0.0 else part, at, turn
 
 
 def _constraint(value, body, where):
@@ -306,4 +345,5 @@ def _initial(mapping, body, constraint, where):
         if key not in constraint.INITIAL:
             raise BadInput(f'{where}.{key}', f'has no meaning on constraint {constraint.kind!r}',
                            f'the keys there are {", ".join(constraint.INITIAL)}')
-    return constraint.initial(Start.of(mapping, where), body, where)
+    start = Start.of(mapping, constraint.inertia(body), where)
+    return constraint.initial(start, body, where)

@@ -84,6 +84,8 @@ def _remedy(error: Any) -> str:
             return f'takes at most {limit} entries'
         case 'enum':
             return f'one of {", ".join(map(str, limit))}'
+        case 'not':
+            return 'needs a number that is not 0'
         case 'pattern':
             return 'a name is letters, digits and underscores, at most 64, a letter first'
         case 'minProperties':

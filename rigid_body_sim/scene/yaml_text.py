@@ -12,8 +12,9 @@ from rigid_body_sim.errors import BadInput
 MAXIMUM_BYTES = 256 * 1024
 MAXIMUM_DEPTH = 12
 ALTERNATIVES = (
-    ('orientation', 'euler_zyz', 'tilt'),
-    ('angular_velocity', 'spin'),
+    ('orientation', 'euler_zyz', 'euler', 'rotation_vector', 'tilt'),
+    ('angular_velocity', 'angular_velocity_world', 'angular_momentum', 'spin'),
+    ('mass', 'density'),
     ('through', 'distance'),
     ('point', 'height', 'distance'),
     ('impulse', 'speed'),

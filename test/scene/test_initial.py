@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ways to give the start: each means what it says, checked by SciPy's rotations and by hand."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.scene import parse_scene
+
+SKEW = '{mass: 2.0, inertia: [[0.05, 0.004, -0.002], [0.004, 0.06, 0.003], [-0.002, 0.003, 0.03]]}'
+ANGLES, VECTOR = [0.3, -1.1, 2.5], [0.4, -0.2, 3.0]
+
+
+def start(initial, body=SKEW, constraint='free'):
+    return parse_scene(f'scene: start\nbody: {body}\nconstraint: {constraint}\neffects: []\n'
+                       f'initial: {{{initial}}}').initial
+
+
+@pytest.mark.parametrize(('key', 'rotation'), [
+    ('euler', Rotation.from_euler('xyz', ANGLES)),
+    ('euler_zyz', Rotation.from_euler('ZYZ', ANGLES)),
+    ('rotation_vector', Rotation.from_rotvec(ANGLES))])
+def test_orientation_is_the_rotation_that_its_key_names(key, rotation):
+    found = Rotation.from_quat(start(f'{key}: {ANGLES}').orientation)
+    assert (found * rotation.inv()).magnitude() < 1e-15       # measured 3.2e-16
+
+
+def test_roll_alone_turns_about_x():
+    found = start('euler: [0.5, 0, 0]').orientation
+    assert found == pytest.approx([np.sin(0.25), 0.0, 0.0, np.cos(0.25)], rel=1e-15)
+
+
+def test_angular_velocity_of_the_world_is_turned_into_body_axes():
+    found = start(f'euler: {ANGLES}, angular_velocity_world: {VECTOR}')
+    assert Rotation.from_quat(found.orientation).apply(found.angular_velocity) == \
+        pytest.approx(VECTOR, rel=1e-15)
+
+
+@pytest.mark.parametrize(('constraint', 'center'), [
+    ('free', [0, 0, 0]), ('pivot', [0, 0, 0]), ('pivot', [0.02, -0.01, 0.1])])
+def test_angular_momentum_is_that_of_the_world_about_the_point_of_reference(constraint, center):
+    body = SKEW.replace('}', f', center_of_mass: {center}}}')
+    scene = parse_scene(f'scene: a\nbody: {body}\nconstraint: {constraint}\neffects: []\n'
+                        f'initial: {{euler: {ANGLES}, angular_momentum: {VECTOR}}}')
+    R = Rotation.from_quat(scene.initial.orientation)
+    tensor = scene.body.about_center if constraint == 'free' else scene.body.about_origin
+    L = R.apply(tensor.matrix @ scene.initial.angular_velocity)
+    assert np.abs(L - VECTOR).max() < 4e-15      # of 3; measured 9e-16
+
+
+@pytest.mark.parametrize(('initial', 'line'), [
+    ('euler: [0, 0, 1], tilt: 1',
+     'scene, line 5: initial.tilt: stands beside euler; give the orientation once'),
+    ('spin: 1, angular_momentum: [1, 2, 3]',
+     'scene, line 5: initial.spin: stands beside angular_momentum; give the angular velocity once'),
+    ('angular_velocity: [1, 2, 3], angular_velocity_world: [1, 2, 3]',
+     'scene, line 5: initial.angular_velocity_world: stands beside angular_velocity; '
+     'give the angular velocity once')])
+def test_saying_it_twice_gets_one_line(initial, line):
+    with pytest.raises(BadInput) as refusal:
+        start(initial)
+    assert str(refusal.value) == line
+
+
+def test_no_angular_momentum_about_an_axis_without_moment():
+    rod = '{mass: 1.0, shape: {rod: {length: 2.0}}}'
+    assert start('angular_momentum: [1, 0, 0]', rod).angular_velocity[0] == \
+        pytest.approx(3.0, rel=1e-15)
+    with pytest.raises(BadInput, match='about principal axis 3, whose moment is zero'):
+        start('angular_momentum: [1, 0, 0.1]', rod)
+
+
+def test_an_override_takes_the_place_of_the_other_ways():
+    text = 'scene: a\nbody: {mass: 1, inertia: [1, 2, 3]}\nconstraint: free\neffects: []\n' \
+        'initial: {tilt: 1, spin: 4}'
+    found = parse_scene(text, ['initial.rotation_vector=[0, 0, 1]',
+                               'initial.angular_momentum=[1, 2, 3]']).initial
+    assert found.orientation[:2].tolist() == [0.0, 0.0]
+    assert found.angular_velocity[2] == 1.0
