@@ -74,10 +74,10 @@ def _bound(template, bindings):
         module, _, function = binding.partition(':')
         return f'from {module} import {function} as {name}'
 
-    return _load(_DECLARATION.sub(definition, source), template.__name__.rpartition('.')[2])
+    return module_of(_DECLARATION.sub(definition, source), template.__name__.rpartition('.')[2])
 
 
-def _load(source, stem):
+def module_of(source, stem):
     """Import the source as a module.
 
     The source is written to the cache folder, where there is one, so that its compiled code is

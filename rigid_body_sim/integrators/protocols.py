@@ -94,6 +94,9 @@ class Method(Protocol):
         ``series``.
     HEAT : bool
         Whether it runs scenes in which anything makes heat.
+    FIELD : bool
+        Whether it runs scenes in which what acts depends on time or place: its stages then have a
+        clock.
     STIFF : tuple of str
         What may be much faster than the motion while it controls its error and keeps its pace:
         ``dissipation`` (internal), ``drag`` (linear). `auto` takes no other method there.
@@ -112,6 +115,7 @@ class Method(Protocol):
     SOURCE: str
     NEEDS: str
     HEAT: bool
+    FIELD: bool
     STIFF: tuple
     TABLE: bool
     TAKES: tuple

@@ -144,7 +144,8 @@ class Dynamics:
         time, q, omega, position, velocity = STATE.load(vector.tolist())
         R = matrix(*q)
         of_center = plus(velocity, apply(R, cross(omega, self._scene.center)))
-        acting = self._actions(time, q, omega, of_center, wrench)
+        center = plus(position, apply(R, self._scene.center))
+        acting = self._actions(time, q, omega, of_center, center, wrench)
         found = self._of(Motion(R, omega, position, velocity), acting)
         return Balance(*(np.array(part) for part in found))
 
@@ -155,14 +156,15 @@ class Dynamics:
         parts = np.array([(one.force, one.torque, one.point) for one in found]).reshape(-1, 3, 3)
         return Reactions(*(np.ascontiguousarray(parts[:, k]) for k in range(3)))
 
-    def _actions(self, time, q, omega, velocity, wrench):
-        """Return the Actions of effects and wrench; `velocity` is that of the centre of mass."""
+    def _actions(self, time, q, omega, velocity, center, wrench):
+        """Return the Actions of effects and wrench, by velocity and place of the centre of mass."""
         axes = self._frame.axes
         q_frame, omega_frame = multiply(*q, *axes), rotate_back(*axes, *omega)
         sums = {'force': NOTHING, 'torque': NOTHING, 'turning': NOTHING}
         for actor in [*self._effects, *([wrench] if wrench else [])]:
             for one in actor.acting(self._frame, time):
-                added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity)
+                field = (time, *center) if one.in_field else ()
+                added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity, *field)
                 sums[one.gives] = plus(sums[one.gives], added)
         couple, turning = rotate(*axes, *sums['torque']), rotate(*axes, *sums['turning'])
         return Actions(sums['force'], couple, turning)

@@ -8,7 +8,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.mechanics.energy import angular_momentum
 from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE, Entries
-from rigid_body_sim.mechanics.parameters import HINGE, SCENE
+from rigid_body_sim.mechanics.parameters import FREE, HINGE, SCENE
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, plus, scaled
@@ -16,7 +16,8 @@ from rigid_body_sim.scene.state import STATE
 
 load_scene, load_state, store_entries = SCENE.load, STATE.load, ENTRIES.store
 
-acting = UNBOUND    # (p, q, omega, v, m) -> power of work (W), heat (W), torque (frame, N m)
+# (p, q, omega, v, m, time, place) -> power of work (W), heat (W), torque (frame, N m)
+acting = UNBOUND
 
 
 @compiled
@@ -36,8 +37,11 @@ def rates(p, states, out):
         now = load_state(states[k])
         q, axes, omega = now.orientation, scene.frame_axes, now.angular_velocity
         of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
+        reference = scene.center if scene.kind == FREE else scene.through
+        place = plus(now.position, rotate(*q, *reference))
         work, heat, torque = acting(p, multiply(*q, *axes), rotate_back(*axes, *omega), of_center,
-                                    rotate_back(*axes, *angular_momentum(scene, omega)))
+                                    rotate_back(*axes, *angular_momentum(scene, omega)), now.time,
+                                    place)
         taken = rotate(*q, *_taken(scene, rotate(*axes, *torque)))
         store_entries(out[k], Entries(work, heat, taken))
         out[k, ENTRIES_SIZE] = hypot3(*omega)

@@ -209,7 +209,7 @@ def _edges(t, until, end, length, most):
 
 
 def _source(acting):
-    """Return the source of ``acting(p, q, omega, v, m)`` for what acts.
+    """Return the source of ``acting(p, q, omega, v, m, time, place)`` for what acts.
 
     It returns the power of what does work, minus the power of what makes heat, and the torque in
     the frame. Energy that effects have as a potential is not exchanged.
@@ -221,7 +221,8 @@ def _source(acting):
         values = ''.join(f'p[{at + k}], ' for k in range(len(one.values)))
         at += len(one.values)
         name = f'{one.gives}_{number}'
-        lines.append(f'    {name} = kernel_{number}({values}*q, *omega, *v)')
+        field = ', time, *place' * one.in_field
+        lines.append(f'    {name} = kernel_{number}({values}*q, *omega, *v{field})')
         if one.gives == 'turning':    # what keeps L = R m: the torque m x u
             lines.append(f'    {name} = cross(m, {name})')
         elif one.gives == 'torque':
@@ -233,5 +234,6 @@ def _source(acting):
         total = name if total.startswith('(') else f'plus({total}, {name})'
     work = ' + '.join(power['work']) or '0.0'
     heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'
-    return '\n'.join([*imports, '', '', '@compiled', 'def acting(p, q, omega, v, m):', *lines,
+    return '\n'.join([*imports, '', '', '@compiled', 'def acting(p, q, omega, v, m, time, place):',
+                      *lines,
                       f'    return {work}, {heat}, {total}', ''])

@@ -20,6 +20,11 @@ from rigid_body_sim.scene.constraints import CONSTRAINTS
 from rigid_body_sim.scene.constraints.protocol import Constraint
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
 from rigid_body_sim.scene.effects.protocol import Effect
+from rigid_body_sim.scene.expressions.expression import (
+    PARAMETERS,
+    checked_parameters,
+    with_expressions,
+)
 from rigid_body_sim.scene.initial import Start, unit_quaternion
 from rigid_body_sim.scene.schema import MATRIX, POSITIVE, QUATERNION, VECTOR, check, mapping_of
 from rigid_body_sim.scene.state import State
@@ -55,7 +60,7 @@ def scene_schema():
     return mapping_of(
         ['scene', 'body', 'constraint', 'effects', 'initial'],
         scene={'type': 'string', 'pattern': r'^[A-Za-z][A-Za-z0-9_]{0,63}$'},
-        about={'type': 'string'}, body=BODY, constraint={'type': ['string', 'object']},
+        about={'type': 'string'}, parameters=PARAMETERS, body=BODY, constraint={'type': ['string', 'object']},
         effects={'type': 'array', 'maxItems': 32}, initial=mapping_of(**initial),
         commands={'enum': ['accept', 'refuse']})
 
@@ -197,7 +202,9 @@ def _scene(mapping, where):
     check(mapping, scene_schema(), where)
     body = _body(mapping['body'], f'{where}: body')
     constraint = _constraint(mapping['constraint'], body, f'{where}: constraint')
-    effects = tuple(_effects(mapping['effects'], body, constraint, f'{where}: effects'))
+    parameters = checked_parameters(mapping.get('parameters', {}), f'{where}: parameters')
+    effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
+                             f'{where}: effects'))
     initial = _initial(mapping['initial'], body, constraint, f'{where}: initial')
     text = yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)
     about = printable(' '.join(mapping.get('about', '').split()))
@@ -307,7 +314,7 @@ def _constraint(value, body, where):
     return constraint.from_scene(settings, body, f'{where}.{kind}')
 
 
-def _effects(entries, body, constraint, where):
+def _effects(entries, body, constraint, parameters, where):
     seen = set()
     for place, entry in enumerate(entries):
         name, settings = _named(entry)
@@ -327,6 +334,7 @@ def _effects(entries, body, constraint, where):
             raise BadInput(at, f'cannot act on constraint {constraint.kind!r}',
                            f'it can on {", ".join(able)}')
         check(settings, effect.SCHEMA, at)
+        settings = with_expressions(settings, effect.SCHEMA, parameters)
         yield effect.from_scene(settings, body, constraint, at)
 
 

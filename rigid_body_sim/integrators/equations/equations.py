@@ -10,11 +10,12 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.equations import euler, flying, hinged, turning
+from rigid_body_sim.integrators.equations import euler, field, flying, hinged, turning
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.scene.state import TIME
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
+FIELD = ', t, x, y, z'
 OMEGA = 'wx', 'wy', 'wz'
 
 
@@ -30,7 +31,7 @@ class Equations:
     Attributes
     ----------
     kind : module
-        turning, flying or hinged: which unknowns there are.
+        turning, flying, field or hinged: which unknowns there are.
     kernels : module
         `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, point,
         at)``, ``write(p, time, y, out)``.
@@ -61,7 +62,8 @@ class Equations:
         if self._axis is not None:
             self.kind, self._moment = hinged, moment_on_hinge(scene)
         else:
-            self.kind = flying if any(one.gives == 'force' for one in acting) else turning
+            self.kind = (field if any(one.in_field for one in acting) else
+                         flying if any(one.gives == 'force' for one in acting) else turning)
         fixed = hinged.PARAMETERS.size if self.kind is hinged else euler.FIXED
         self.groups = self.kind.GROUPS
         if self.kind is turning and any(one.gives == 'turning' for one in acting):
@@ -69,12 +71,14 @@ class Equations:
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
         self.makes_heat = any(one.books == 'heat' for one in acting)
+        state = STATE + FIELD if self.kind is field else STATE
         if self.kind is hinged:
             sources = {'torque': torque_source(calls)}
         else:
-            sources = {'omega_rate': _omega_rate(calls), 'axes_rate': _axes_rate(calls)}
-        if self.kind is flying:
-            sources['force'] = force_source(calls)
+            sources = {'omega_rate': _omega_rate(calls, state),
+                       'axes_rate': _axes_rate(calls, state)}
+        if self.kind in (flying, field):
+            sources['force'] = force_source(calls, state)
         self.kernels = specialise(self.kind, **sources)
         self.write = f'{self.kernels.__name__}:write'
         self._fixed, self._held = self._constants(), {}
@@ -156,7 +160,8 @@ class _Call:
         self.imported = imported(acting.kernel, self.name)
         values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
         self.x, self.y, self.z = (f'{self.gives}{number}_{axis}' for axis in 'xyz')
-        self.lines = [f'    {self.x}, {self.y}, {self.z} = {self.name}({values}{STATE})']
+        state = STATE + FIELD * acting.in_field
+        self.lines = [f'    {self.x}, {self.y}, {self.z} = {self.name}({values}{state})']
         if self.gives == 'turning':    # what keeps L = R m: the torque m x u
             m = euler.MOMENTS
             self.turns = ux, uy, uz = self.x, self.y, self.z
@@ -175,7 +180,7 @@ def _calls(acting, at):
         at += len(one.values)
 
 
-def _kernel(name, calls, results):
+def _kernel(name, calls, results, state=STATE):
     """Return the source of a kernel that makes the calls and returns the results (expressions)."""
     return '\n'.join(
         [
@@ -183,7 +188,7 @@ def _kernel(name, calls, results):
             '',
             '',
             '@compiled',
-            f'def {name}(p, {STATE}):',
+            f'def {name}(p, {state}):',
             *(line for call in calls for line in call.lines),
             f'    return ({"".join(f"{result}, " for result in results)})',
             '',
@@ -201,10 +206,10 @@ def torque_source(calls):
     return _kernel('torque', calls, _sums(calls))
 
 
-def force_source(calls):
+def force_source(calls, state=STATE):
     """Return the source of ``force(p, q, omega, v)``, the sum of all forces."""
     calls = [call for call in calls if call.gives == 'force']
-    return _kernel('force', calls, _sums(calls))
+    return _kernel('force', calls, _sums(calls), state)
 
 
 def turning_source(calls):
@@ -213,7 +218,7 @@ def turning_source(calls):
     return _kernel('turning', calls, _turning_rates(calls) if calls else ('0.0',) * 3)
 
 
-def _omega_rate(calls):
+def _omega_rate(calls, state):
     """Euler's terms, with the torques' where there are any."""
     calls = [call for call in calls if call.gives != 'force']
     terms = [
@@ -225,14 +230,14 @@ def _omega_rate(calls):
             f'{term} + p[{euler.INVERSE + k}] * ({total})'
             for k, (term, total) in enumerate(zip(terms, _sums(calls), strict=True))
         ]
-    return _kernel('omega_rate', calls, terms)
+    return _kernel('omega_rate', calls, terms, state)
 
 
-def _axes_rate(calls):
+def _axes_rate(calls, state):
     """omega, with the extra turning rate of internal dissipation where there is one."""
     calls = [call for call in calls if call.gives == 'turning']
     rates = [' + '.join(terms) for terms in zip(OMEGA, _turning_rates(calls), strict=True)]
-    return _kernel('axes_rate', calls, rates if calls else OMEGA)
+    return _kernel('axes_rate', calls, rates if calls else OMEGA, state)
 
 
 def _turning_rates(calls):

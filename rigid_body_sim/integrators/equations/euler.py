@@ -65,8 +65,8 @@ class EquationParameters(NamedTuple):
 
 
 EQUATION = layout(EquationParameters)
-EULER, INVERSE, MOMENTS, MASS = (
-    EQUATION.part(name).first for name in ('euler', 'inverse', 'moments', 'mass'))
+EULER, INVERSE, MOMENTS, MASS, MOVES = (
+    EQUATION.part(name).first for name in ('euler', 'inverse', 'moments', 'mass', 'moves'))
 FIXED = EQUATION.size
 NO_START = Start(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 load_equation = EQUATION.load

@@ -17,6 +17,7 @@ ORDER = 8
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+FIELD = True
 STIFF = ('dissipation',)
 TABLE = True
 TAKES = ('accuracy', 'step')

@@ -22,6 +22,7 @@ ORDER = 16
 PRESERVES = ('symplectic form', 'reversal of time', 'quadratic invariants')
 NEEDS = 'acting'
 HEAT = True
+FIELD = True
 STIFF = ('drag',)
 TABLE = False
 TAKES = ('accuracy', 'step')

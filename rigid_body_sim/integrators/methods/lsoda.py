@@ -13,6 +13,7 @@ ORDER = 12
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+FIELD = True
 STIFF = ('dissipation', 'drag')
 TABLE = False
 TAKES = ('accuracy',)

@@ -10,6 +10,7 @@ ORDER = 5
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+FIELD = True
 STIFF = ('dissipation', 'drag')
 TABLE = False
 TAKES = ('accuracy',)

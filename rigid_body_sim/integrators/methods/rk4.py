@@ -13,6 +13,7 @@ ORDER = 4
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+FIELD = True
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

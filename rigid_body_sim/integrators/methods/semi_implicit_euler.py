@@ -15,6 +15,7 @@ ORDER = 1
 PRESERVES = ()
 NEEDS = 'acting'
 HEAT = True
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

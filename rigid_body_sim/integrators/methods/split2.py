@@ -14,6 +14,7 @@ ORDER = 2
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = True
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

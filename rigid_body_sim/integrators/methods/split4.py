@@ -14,6 +14,7 @@ ORDER = 4
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

@@ -16,6 +16,7 @@ ORDER = 6
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

@@ -17,6 +17,7 @@ ORDER = 8
 PRESERVES = ('symplectic form', 'reversal of time')
 NEEDS = 'acting'
 HEAT = False
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('step',)

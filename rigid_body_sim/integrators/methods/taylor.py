@@ -24,6 +24,7 @@ NAME = 'taylor'
 PRESERVES = ()
 NEEDS = 'series'
 HEAT = True
+FIELD = False
 STIFF = ()
 TABLE = False
 TAKES = ('accuracy', 'step')

@@ -9,10 +9,15 @@ import importlib.metadata
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.effects.drag import Drag
+from rigid_body_sim.scene.effects.expressed import PotentialEnergy
+from rigid_body_sim.scene.effects.force import Force
 from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.effects.gravity_gradient import GravityGradient
 from rigid_body_sim.scene.effects.internal_dissipation import InternalDissipation
+from rigid_body_sim.scene.effects.magnetic import Magnetic
 from rigid_body_sim.scene.effects.protocol import Effect
 from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
+from rigid_body_sim.scene.effects.spring import Spring
 from rigid_body_sim.scene.effects.strike import Strike
 from rigid_body_sim.scene.effects.torque import Torque
 
@@ -20,7 +25,9 @@ GROUP = 'rigid_body_sim.effects'
 
 EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
-    for effect in (Gravity, Torque, Strike, SlidingFriction, InternalDissipation, Drag)}
+    for effect in (
+        Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation, Drag,
+        Spring, Magnetic, GravityGradient)}
 
 
 def effect_class(name: str) -> type[Effect] | None:

@@ -38,12 +38,17 @@ class Acting:
     books : str
         Where the ledger writes the power: ``potential`` (the view `potential` has the energy),
         ``work`` (done on the body) or ``heat`` (taken from it).
+    in_field : bool
+        True if it depends on time, on place, or on the velocity of a free body that no force moves.
+        The kernel then has four more arguments ``t, x, y, z``: the time (s) and the place of the
+        point of reference (world, m).
     """
 
     kernel: str
     values: tuple[float, ...]
     gives: str
     books: str
+    in_field: bool = False
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,9 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.expressed import ExpressedTorque
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull, as_floats
+from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, mapping_of
 
@@ -25,7 +27,7 @@ class Torque(Effect):
     ``torque: {times: [t0, t1, ...], values: [[x, y, z], ...], frame: world}`` acts in pieces.
     Values are in N m; values[i] acts from times[i] to times[i + 1], the last one stays, and before
     the first there is none. `frame` (body, the default, or world) names the axes of the
-    components. A scene may list several.
+    components. A `value` of expressions is an :class:`ExpressedTorque`. A scene may list several.
     """
 
     times: tuple[float, ...]
@@ -33,7 +35,7 @@ class Torque(Effect):
     frame: str
     name: ClassVar[str] = 'torque'
     SCHEMA: ClassVar[dict] = mapping_of(
-        value=VECTOR, values={'type': 'array', 'items': VECTOR, 'minItems': 1},
+        value=EXPRESSIONS, books={'enum': ['work', 'heat']}, values={'type': 'array', 'items': VECTOR, 'minItems': 1},
         times={'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
         frame={'enum': ['body', 'world']})
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
@@ -41,15 +43,17 @@ class Torque(Effect):
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
-                   where: str) -> Self:
+                   where: str) -> Self | ExpressedTorque:
         """Return the effect of its settings in a scene file."""
         frame = settings.get('frame', 'body')
         if (('value' in settings) == ('values' in settings)
                 or ('values' in settings) != ('times' in settings)):
             raise BadInput(where, f'got the keys {", ".join(sorted(settings)) or "none"}',
                            'give value alone, or times with values')
+        if not is_constant(settings.get('value')) or settings.get('books') == 'heat':
+            return ExpressedTorque.from_scene(settings, body, constraint, where)
         if 'value' in settings:
-            return cls((0.0,), (as_floats(settings['value']),), frame)
+            return cls((0.0,), (as_floats(one.text for one in settings['value']),), frame)
         times = as_floats(settings['times'])
         values = tuple(as_floats(value) for value in settings['values'])
         if len(times) != len(values):

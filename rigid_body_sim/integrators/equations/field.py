@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the equations of a body on which something acts that depends on time or place.
+
+Unknowns are those of flying.py, and the time:
+
+    t' = 1
+
+The clock runs as an unknown, so every method that evaluates rates knows the time of its stages.
+Of a pivoted body the point of reference stays: x' = v = 0.
+"""
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+    MASS,
+    MOVES,
+    attitude_rate,
+    load_start,
+    read_state,
+    taken,
+    unit,
+    write_state,
+)
+from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
+
+# `taken` and `rotate` are for the bound sums
+omega_rate = UNBOUND
+axes_rate = UNBOUND
+force = UNBOUND
+booked = UNBOUND
+
+UNKNOWNS = 14
+GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
+"""Nothing is ever in doubt about the clock: it belongs to no group."""
+
+
+@compiled
+def start(p, vector, point, at):
+    """Set the parameters that a start decides, and fill `point` from `at` on with its unknowns."""
+    q, omega, place, drift = read_state(p, vector)
+    y = (*q, *omega, *place, *drift, load_start(p).time)
+    for u in range(UNKNOWNS):
+        point[at + u] = y[u]
+
+
+@compiled
+def rate(p, y):
+    """Return the rates of the unknowns, then of the ledger."""
+    qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
+    x, y_, z, vx, vy, vz, t = y[7], y[8], y[9], y[10], y[11], y[12], y[13]
+    ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
+    fx, fy, fz = force(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
+    free = p[MOVES] / p[MASS]
+    return (
+        *attitude_rate(qx, qy, qz, qw, ax, ay, az),
+        *omega_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z),
+        vx, vy, vz,
+        free * fx, free * fy, free * fz,
+        1.0,
+        *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z),
+    )
+
+
+@compiled
+def settled(y, c):
+    """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
+    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
+    return (*q, *y[4:]), (*lost, *c[4:])
+
+
+@compiled
+def write(p, time, y, out):
+    """Fill `out`, the state vector."""
+    write_state(p, time, y[:4], y[4:7], y[7:10], y[10:13], out)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Torques and potentials that a scene writes as expressions of time and state."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
+from rigid_body_sim.scene.expressions import actions, tree
+from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
+from rigid_body_sim.scene.expressions.source import ATTITUDE, PLACE, STATE_NAMES
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import mapping_of
+
+
+def trees_of(value: list[Expression], where: str) -> tuple[tree.Node, ...]:
+    """Return the trees of three expressions."""
+    return tuple(one.tree(f'{where}.{place}') for place, one in enumerate(value))
+
+
+def refuse_on_hinge(trees: tuple[tree.Node, ...], constraint: Constraint, where: str) -> None:
+    """Refuse what depends on time or place where the body turns about an axis."""
+    known = tree.names(*trees) & actions.IN_FIELD
+    if constraint.mechanism is Mechanism.AXIS and known:
+        raise BadInput(where, f'depends on {", ".join(sorted(known))}',
+                       'on a hinge expressions know attitude and angular velocity only')
+
+
+@dataclass(frozen=True)
+class ExpressedTorque(Effect):
+    """``torque: {value: [e, e, e], frame: body, books: work}`` with expressions e, in N m.
+
+    Attributes
+    ----------
+    trees : tuple of 3 Nodes
+    frame : str
+        Axes of the components: ``body`` or ``world``.
+    books : str
+        Where the ledger writes its power: ``work`` or ``heat``.
+    parameters : tuple of (str, float)
+    """
+
+    trees: tuple[tree.Node, ...]
+    frame: str
+    books: str
+    parameters: tuple[tuple[str, float], ...]
+    name: ClassVar[str] = 'torque'
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    repeatable: ClassVar[bool] = True
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        value = settings['value']
+        trees = trees_of(value, f'{where}.value')
+        refuse_on_hinge(trees, constraint, f'{where}.value')
+        return cls(trees, settings.get('frame', 'body'), settings.get('books', 'work'),
+                   value[0].parameters)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the couple."""
+        return actions.torque(self.trees, self.frame, self.parameters, frame, self.books),
+
+
+@dataclass(frozen=True)
+class PotentialEnergy(Effect):
+    """``potential: {energy: "0.5*k*(z - 1)^2"}``: U in J, of place and attitude.
+
+    Force and torque follow by differentiation: F = -dU/d(x, y, z) at the body's origin, and what
+    a turn about it takes. A scene may list several.
+    """
+
+    energy: tree.Node
+    parameters: tuple[tuple[str, float], ...]
+    name: ClassVar[str] = 'potential'
+    SCHEMA: ClassVar[dict] = mapping_of(['energy'], energy=EXPRESSION)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    repeatable: ClassVar[bool] = True
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        where = f'{where}.energy'
+        energy = settings['energy'].tree(where)
+        known = sorted(tree.names(energy) & {*STATE_NAMES} - {*PLACE, *ATTITUDE})
+        if known:
+            raise BadInput(where, f'depends on {", ".join(known)}',
+                           f'a potential is a function of {", ".join((*PLACE, *ATTITUDE))}: '
+                           'write what depends on time or velocity as a force or a torque')
+        refuse_on_hinge((energy,), constraint, where)
+        return cls(energy, settings['energy'].parameters)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return force and torque."""
+        return actions.pulls(self.energy, self.parameters, frame)
+
+    def potential(self, frame: Frame) -> Potential:
+        """Return the energy."""
+        return actions.potential(self.energy, self.parameters, frame)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Force: at a point of the body, constant or an expression of time and state."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.expressed import refuse_on_hinge, trees_of
+from rigid_body_sim.scene.effects.protocol import Acting, Effect
+from rigid_body_sim.scene.expressions import actions, tree
+from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import VECTOR, mapping_of
+
+
+@dataclass(frozen=True)
+class Force(Effect):
+    """``force: {value: [e, e, e], at: [x, y, z], frame: body, books: work}``.
+
+    The components are numbers or expressions, in N; `frame` (body, the default, or world) names
+    their axes. `at` is the point of the body on which it acts (body axes, m); by default the
+    centre of mass. The ledger books its power as `work`, or as `heat` if the scene says so. A
+    scene may list several.
+    """
+
+    trees: tuple[tree.Node, ...]
+    at: tuple[float, float, float]
+    frame: str
+    books: str
+    parameters: tuple[tuple[str, float], ...]
+    name: ClassVar[str] = 'force'
+    SCHEMA: ClassVar[dict] = mapping_of(
+        ['value'], value=EXPRESSIONS, at=VECTOR, frame={'enum': ['body', 'world']},
+        books={'enum': ['work', 'heat']})
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    repeatable: ClassVar[bool] = True
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        value = settings['value']
+        trees = trees_of(value, f'{where}.value')
+        refuse_on_hinge(trees, constraint, f'{where}.value')
+        x, y, z = map(float, settings.get('at', body.center_of_mass))
+        return cls(trees, (x, y, z), settings.get('frame', 'body'),
+                   settings.get('books', 'work'), value[0].parameters)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the force and its moment."""
+        return actions.force(self.trees, self.frame, self.parameters, self.at, frame, self.books)

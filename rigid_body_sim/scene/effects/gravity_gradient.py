@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Gravity gradient: a far body attracts the near side more than the far one, and turns the body."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import scaled
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
+from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import POSITIVE, VECTOR, mapping_of
+
+
+@dataclass(frozen=True)
+class GravityGradient(Effect):
+    """``gravity_gradient: {mu: 3.986e14, position: [7.0e6, 0, 0]}``.
+
+    The centre of mass is at `position` (m, world axes) from a point that attracts with mu = G M
+    (m^3/s^2). To first order in the size of the body
+
+        U = (3 mu/(2 r^3)) n . I n,    Gamma = (3 mu/r^3) n x I n
+
+    with n the direction of the position and I the tensor about the centre of mass (Hughes,
+    Spacecraft Attitude Dynamics, section 8.1). It turns the body and does not move it.
+    """
+
+    energy: tree.Node
+    most: float
+    name: ClassVar[str] = 'gravity_gradient'
+    SCHEMA: ClassVar[dict] = mapping_of(['mu', 'position'], mu=POSITIVE, position=VECTOR)
+    mechanisms: ClassVar = (Mechanism.FREE,)
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        place = tuple(map(float, settings['position']))
+        r = hypot3(*place)
+        if not r > 0.0:
+            raise BadInput(f'{where}.position', f'got {settings["position"]}',
+                           'a place that is not the attracting point itself')
+        share = 1.5 * (float(settings['mu']) / r / r / r)
+        n = vectors.to_body(vectors.constant(scaled(1.0 / r, place)))
+        rows = body.about_center.matrix.tolist()
+        pulled = tuple(vectors.dot(vectors.constant(row), n) for row in rows)
+        energy = tree.times(tree.number(share), vectors.dot(n, pulled))
+        return cls(energy, share * (max(body.about_center.moments)
+                                    - min(body.about_center.moments)))
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the torque."""
+        return actions.pulls(self.energy, (), frame)
+
+    def potential(self, frame: Frame) -> Potential:
+        """Return the energy."""
+        return actions.potential(self.energy, (), frame)
+
+    def bounds(self, body: Body, constraint: Constraint) -> Bounds:
+        """Return half of what the energy can change by."""
+        return Bounds(0.5 * self.most, 0.0)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Magnetic: a moment fixed in the body, in a field of the world."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.expressed import refuse_on_hinge, trees_of
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
+from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
+from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import VECTOR, mapping_of
+
+
+@dataclass(frozen=True)
+class Magnetic(Effect):
+    """``magnetic: {moment: [x, y, z], field: [e, e, e]}``: A m^2 in body axes, T in world axes.
+
+    U = -m . B, from which the torque m x B and, in a field that depends on place, the force on the
+    body's origin follow. The components of the field are numbers or expressions of x, y, z.
+    """
+
+    energy: tree.Node
+    most: float
+    parameters: tuple[tuple[str, float], ...]
+    name: ClassVar[str] = 'magnetic'
+    SCHEMA: ClassVar[dict] = mapping_of(['moment', 'field'], moment=VECTOR, field=EXPRESSIONS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    repeatable: ClassVar[bool] = True
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        where, field = f'{where}.field', settings['field']
+        trees = trees_of(field, where)
+        known = sorted(tree.names(*trees) & {*STATE_NAMES} - {*PLACE})
+        if known:
+            raise BadInput(where, f'depends on {", ".join(known)}',
+                           'a field of the place x, y, z')
+        refuse_on_hinge(trees, constraint, where)
+        moment = vectors.to_world(vectors.constant(settings['moment']))
+        most = 0.0
+        if is_constant(field):
+            most = _size(settings['moment']) * _size([one.text for one in field])
+        return cls(tree.negative(vectors.dot(moment, trees)), most, field[0].parameters)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return torque and force."""
+        return actions.pulls(self.energy, self.parameters, frame)
+
+    def potential(self, frame: Frame) -> Potential:
+        """Return the energy."""
+        return actions.potential(self.energy, self.parameters, frame)
+
+    def bounds(self, body: Body, constraint: Constraint) -> Bounds:
+        """Return |m| |B| of a uniform field."""
+        return Bounds(self.most, 0.0)
+
+
+def _size(vector):
+    x, y, z = map(float, vector)
+    return (x * x + y * y + z * z) ** 0.5

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Spring: between a point of the body and a point of the world, with damping along it."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
+from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.schema import VECTOR, mapping_of
+
+COEFFICIENT = {'type': 'number', 'minimum': 0}
+
+
+@dataclass(frozen=True)
+class Spring(Effect):
+    """``spring: {at: [x, y, z], anchor: [x, y, z], stiffness: k, damping: c, length: l}``.
+
+    It pulls the point `at` (body axes, m) toward `anchor` (world axes, m). With d from anchor to
+    point,
+
+        U = k (|d| - l)^2/2,    F = -c (d . v/|d|) d/|d|
+
+    where v is the velocity of the point; U is booked as potential, what c takes as heat. Without
+    a `length` U = k d^2/2, and c damps all of v. A scene may list several.
+    """
+
+    energy: tree.Node
+    damper: tuple[tree.Node, ...]
+    at: tuple[float, float, float]
+    name: ClassVar[str] = 'spring'
+    SCHEMA: ClassVar[dict] = mapping_of(
+        ['at', 'anchor', 'stiffness'], at=VECTOR, anchor=VECTOR, stiffness=COEFFICIENT,
+        damping=COEFFICIENT, length=COEFFICIENT)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT)
+    repeatable: ClassVar[bool] = True
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Self:
+        """Return the effect of its settings in a scene file."""
+        k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
+        at = tuple(map(float, settings['at']))
+        body_at = vectors.constant(at)
+        d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(body_at)),
+                               vectors.constant(settings['anchor']))
+        carried = vectors.to_world(vectors.cross(vectors.named(RATES), body_at))
+        v = vectors.total(vectors.named(VELOCITY), carried)
+        square = vectors.dot(d, d)
+        if l:
+            stretch = tree.minus(tree.node('sqrt', square), tree.number(l))
+            square = tree.times(stretch, stretch)
+            along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
+            v = tuple(tree.times(along, part) for part in d)
+        damper = tuple(tree.times(tree.number(-c), part) for part in v) if c else ()
+        return cls(tree.times(tree.number(0.5 * k), square), damper, at)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the pull and the damping."""
+        pulls = actions.pulls(self.energy, (), frame)
+        if not self.damper:
+            return pulls
+        return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
+
+    def potential(self, frame: Frame) -> Potential:
+        """Return the energy."""
+        return actions.potential(self.energy, (), frame)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kernels of forces, torques and potentials that expressions give (scene/effects/protocol.py).
+
+Symbols: R turns body components into world components, q is its quaternion; c is the centre of
+mass, o the body's origin, P the point of reference of the equations.
+"""
+
+import functools
+
+from rigid_body_sim.numerics.vectors import minus, plus
+from rigid_body_sim.scene.effects.protocol import Acting, Potential
+from rigid_body_sim.scene.expressions import tree
+from rigid_body_sim.scene.expressions.source import (
+    ATTITUDE,
+    PLACE,
+    TIME,
+    VELOCITY,
+    Lines,
+    kernel,
+    prelude,
+)
+
+STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
+IN_FIELD = {*TIME, *PLACE, *VELOCITY}
+
+
+def _acting(lines, trees, frame, result, gives, books, before=()):
+    """Return the Acting whose kernel computes trees and returns a result."""
+    used = tree.names(*trees)
+    in_field = bool(used & IN_FIELD)
+    begin = prelude(lines, used, frame)
+    made = kernel(gives, STATE + ', t, x, y, z' * in_field, lines, [*begin, *before], result)
+    return Acting(made.name, made.values, gives, books, in_field)
+
+
+@functools.lru_cache(maxsize=256)
+def torque(trees, axes, parameters, frame, books):
+    """Return the Acting of a torque by three trees.
+
+    Parameters
+    ----------
+    trees : tuple of 3 Nodes
+        Components, N m.
+    axes : str
+        ``body`` or ``world``: of the components.
+    parameters : tuple of (str, float)
+    frame : Frame
+    books : str
+    """
+    lines = Lines(dict(parameters))
+    components = ', '.join(lines.of(*trees))
+    return _acting(lines, trees, frame, _to_frame(lines, components, axes, frame), 'torque', books)
+
+
+@functools.lru_cache(maxsize=256)
+def force(trees, axes, parameters, at, frame, books):
+    """Return the Actings of a force by three trees at a point: force and moment, or the moment.
+
+    Parameters
+    ----------
+    at : tuple of 3 floats
+        The point, body axes, m.
+    trees, axes, parameters, frame, books
+        As those of `torque`, in N.
+    """
+    arm = minus(frame.from_body(at), frame.from_body(frame.point))
+    found = []
+    if frame.moves:
+        lines = Lines(dict(parameters))
+        components = ', '.join(lines.of(*trees))
+        found.append(_acting(lines, trees, frame, _to_world(lines, components, axes, frame),
+                             'force', books))
+    if any(arm):
+        lines = Lines(dict(parameters))
+        components = ', '.join(lines.of(*trees))
+        r = ', '.join(lines.value(f'arm{k}', part) for k, part in enumerate(arm))
+        turned = _to_frame(lines, components, axes, frame)
+        found.append(_acting(lines, trees, frame, f'cross(({r}), {turned})', 'torque', books))
+    return tuple(found)
+
+
+def _to_frame(lines, components, axes, frame):
+    """Return the text of components along the frame's axes."""
+    if axes == 'world':
+        return f'rotate_back(qx, qy, qz, qw, {components})'
+    turn = ', '.join(lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes))
+    return f'rotate_back({turn}, {components})'
+
+
+def _to_world(lines, components, axes, frame):
+    """Return the text of world components."""
+    if axes == 'world':
+        return f'({components})'
+    return f'rotate(qx, qy, qz, qw, *{_to_frame(lines, components, axes, frame)})'
+
+
+@functools.lru_cache(maxsize=256)
+def pulls(energy, parameters, frame):
+    """Return the Actings of a potential: force and torque by differentiation.
+
+        F = -dU/do,    torque about o: Gamma_i = -dU/dq . (q e_i)/2
+
+    (a turn by the small angle a about body axis i changes q by q e_i a/2). The force acts at o; so
+    about the point of reference P the torque is Gamma + (o - P) x F.
+
+    Parameters
+    ----------
+    energy : Node
+        U in J, of place and attitude.
+    parameters : tuple of (str, float)
+    frame : Frame
+    """
+    x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
+    place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
+    by_q = tree.derivatives(energy, ATTITUDE)
+    columns = ((w, z, tree.negative(y), tree.negative(x)),
+               (tree.negative(z), w, x, tree.negative(y)),
+               (y, tree.negative(x), w, tree.negative(z)))
+    half = tree.number(-0.5)
+    turn = [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
+            for column in columns]
+    found, moved = [], any(one is not tree.ZERO for one in place)
+    if frame.moves and moved:
+        lines = Lines(dict(parameters))
+        found.append(_acting(lines, place, frame, f'({", ".join(lines.of(*place))})', 'force',
+                             'potential'))
+    if moved and any(frame.point) or any(one is not tree.ZERO for one in turn):
+        lines = Lines(dict(parameters))
+        about = _to_frame(lines, ', '.join(lines.of(*turn)), 'body', frame)
+        used = [*turn]
+        if moved and any(frame.point):
+            used += place
+            at_origin = _to_frame(lines, ', '.join(lines.of(*place)), 'world', frame)
+            r = ', '.join(lines.value(f'arm{k}', -part)
+                          for k, part in enumerate(frame.from_body(frame.point)))
+            about = f'plus({about}, cross(({r}), {at_origin}))'
+        found.append(_acting(lines, used, frame, about, 'torque', 'potential'))
+    return tuple(found)
+
+
+@functools.lru_cache(maxsize=256)
+def potential(energy, parameters, frame):
+    """Return the Potential of a tree; arguments as those of `pulls`."""
+    lines = Lines(dict(parameters))
+    result, = lines.of(energy)
+    point = plus(frame.from_body(frame.point), frame.arm)
+    before, used = [], tree.names(energy)
+    if used & {*ATTITUDE}:
+        before += prelude(lines, {*ATTITUDE}, frame)
+    if used & {*PLACE}:
+        r = ', '.join(lines.value(f'back{k}', part) for k, part in enumerate(point))
+        before.append('    the_x, the_y, the_z = '
+                      f'minus((x, y, z), rotate(qx, qy, qz, qw, {r}))')
+    made = kernel('energy', 'qx, qy, qz, qw, x, y, z', lines, before, result)
+    return Potential(made.name, made.values)

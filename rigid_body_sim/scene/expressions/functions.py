@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The operations of expressions that can fail: NaN or infinity, where plain Python would raise."""
+
+import math
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.numerics import functions
+
+LEVELS = 11
+"""Of the continued fraction of tanh: to round-off for |x| < 1."""
+
+
+@compiled
+def divided(a, b):
+    """Return a/b; infinity or NaN for b = 0."""
+    if b == 0.0:
+        return math.nan if not a * a > 0.0 else math.copysign(math.inf, a)
+    return a / b
+
+
+@compiled
+def root(x):
+    """Return the square root of x; NaN below 0."""
+    return math.sqrt(x) if x >= 0.0 else math.nan
+
+
+@compiled
+def logarithm(x):
+    """Return log x; -infinity at 0, NaN below."""
+    if x > 0.0:
+        return functions.log(x)
+    return -math.inf if x == 0.0 else math.nan
+
+
+@compiled
+def raised(x, y):
+    """Return x to the power y, for any exponent; NaN where it is not real."""
+    if x > 0.0:
+        return functions.power(x, y)
+    if x == 0.0:
+        return 0.0 if y > 0.0 else 1.0 if y == 0.0 else math.inf
+    if y != math.floor(y):
+        return math.nan
+    size = functions.power(-x, y)
+    return size if 2.0 * math.floor(0.5 * y) == y else -size
+
+
+@compiled
+def tangent(x):
+    """Return tan x."""
+    sine, cosine = functions.sin_cos(x)
+    return divided(sine, cosine)
+
+
+@compiled
+def hyperbolic_tangent(x):
+    """Return tanh x: Lambert's continued fraction where |x| < 1, else by exp(-2 |x|)."""
+    if abs(x) < 1.0:
+        square, below = x * x, 2.0 * LEVELS + 1.0
+        for k in range(LEVELS, 0, -1):
+            below = (2.0 * k - 1.0) + square / below
+        return x / below
+    small = functions.exp(-2.0 * abs(x))
+    return math.copysign((1.0 - small) / (1.0 + small), x)
+
+
+@compiled
+def smaller(a, b):
+    """Return the smaller of two numbers."""
+    return a if a < b else b
+
+
+@compiled
+def larger(a, b):
+    """Return the larger of two numbers."""
+    return a if a > b else b
+
+
+@compiled
+def less(a, b):
+    """Return 1 where a < b, else 0."""
+    return 1.0 if a < b else 0.0

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trees -> compiled kernels: straight lines, each part of an expression computed once.
+
+Numbers and parameters are values of the kernel, not part of its code: a scene with other numbers
+uses the same compiled kernel.
+"""
+
+from dataclasses import dataclass
+
+from rigid_body_sim.compilation.templates import module_of
+from rigid_body_sim.scene.expressions import tree
+
+TIME, PLACE, VELOCITY = ('t',), ('x', 'y', 'z'), ('vx', 'vy', 'vz')
+ATTITUDE, RATES, WORLD_RATES = (('qx', 'qy', 'qz', 'qw'), ('wx', 'wy', 'wz'), ('Wx', 'Wy', 'Wz'))
+STATE_NAMES = (*TIME, *PLACE, *VELOCITY, *ATTITUDE, *RATES, *WORLD_RATES)
+"""What expressions know of the state: time (s); place (m) and velocity (m/s) of the body's origin,
+world axes; the quaternion body -> world; angular velocity (rad/s) in body and in world axes."""
+PLAIN = (0.0, 1.0, 2.0, 0.5)
+"""Numbers that stay in the code, as they come from rules of calculus."""
+INTEGER_POWERS = range(2, 9)
+CALLS = {'/': 'divided', 'sqrt': 'root', 'log': 'logarithm', 'tan': 'tangent',
+         'tanh': 'hyperbolic_tangent', 'min': 'smaller', 'max': 'larger', 'less': 'less',
+         '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp', 'abs': 'abs'}
+HEAD = '''from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.numerics.functions import cos, exp, sin
+from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.numerics.vectors import cross, minus, plus
+from rigid_body_sim.scene.expressions.functions import (
+    divided, hyperbolic_tangent, larger, less, logarithm, raised, root, smaller, tangent)
+'''
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A kernel and its values.
+
+    Attributes
+    ----------
+    name : str
+        ``'module:function'``.
+    values : tuple of floats
+    """
+
+    name: str
+    values: tuple
+
+
+class Lines:
+    """The lines that compute trees, and the values that they ask for.
+
+    Parameters
+    ----------
+    parameters : mapping of str to float
+    """
+
+    def __init__(self, parameters):
+        self._parameters, self._names = parameters, {}
+        self.lines, self.values = [], {}
+
+    def value(self, name, number):
+        """Return the name of a value of the kernel."""
+        self.values[name] = float(number)
+        return name
+
+    def of(self, *trees):
+        """Add the lines that compute trees; return the names of the results."""
+        for one in tree.parts(*trees):
+            if one not in self._names:
+                self._names[one] = self._line(one)
+        return [self._names[one] for one in trees]
+
+    def _line(self, one):
+        if one.op == 'name':
+            name, = one.args
+            if name in self._parameters:
+                return self.value(f'parameter_{name}', self._parameters[name])
+            return f'the_{name}'
+        if one.op == 'number':
+            number, = one.args
+            if number in PLAIN:
+                return repr(number)
+            known = next((name for name, value in self.values.items()
+                          if value == number and name.startswith('number')), None)
+            return known or self.value(f'number{len(self.values)}', number)
+        args = [self._names[arg] for arg in one.args]
+        name = f'part{len(self.lines)}'
+        self.lines.append(f'    {name} = {self._operation(one, args)}')
+        return name
+
+    def _operation(self, one, args):
+        if one.op in ('+', '-', '*'):
+            return f'{args[0]} {one.op} {args[1]}'
+        if one.op == 'negative':
+            return f'-{args[0]}'
+        exponent = one.args[1].args[0] if one.op == '^' and one.args[1].op == 'number' else None
+        if exponent in INTEGER_POWERS:
+            # in this order: ((x x) x) x ...
+            return ' * '.join([args[0]] * int(exponent))
+        if exponent is not None and -exponent in (1, *INTEGER_POWERS):
+            return f'divided(1.0, {" * ".join([args[0]] * int(-exponent))})'
+        if exponent == 0.5:
+            return f'root({args[0]})'
+        return f'{CALLS[one.op]}({", ".join(args)})'
+
+
+def prelude(lines, used, frame):
+    """Return the lines that make what expressions know of what kernels are given.
+
+    Kernels are given the attitude and the angular velocity of a frame, and place and velocity of
+    its point of reference (scene/frame.py).
+
+    Parameters
+    ----------
+    lines : Lines
+        Gets the values that are needed.
+    used : set of str
+        Of STATE_NAMES.
+    frame : Frame
+    """
+    axes = [lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes)]
+    ax, ay, az, aw = axes
+    found = []
+    if used & {*PLACE, *VELOCITY}:
+        point = ', '.join(lines.value(f'point{k}', part)
+                          for k, part in enumerate(frame.from_body(frame.point)))
+    if used & {*ATTITUDE}:
+        found.append(f'    {_names(ATTITUDE)} = multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})')
+    if used & {*RATES}:
+        found.append(f'    {_names(RATES)} = rotate({", ".join(axes)}, wx, wy, wz)')
+    if used & {*WORLD_RATES}:
+        found.append(f'    {_names(WORLD_RATES)} = rotate(qx, qy, qz, qw, wx, wy, wz)')
+    if used & {*TIME}:
+        found.append('    the_t = t')
+    if used & {*PLACE}:
+        found.append(f'    {_names(PLACE)} = minus((x, y, z), rotate(qx, qy, qz, qw, {point}))')
+    if used & {*VELOCITY}:
+        drift = '(vx, vy, vz)' if frame.moves else '(0.0, 0.0, 0.0)'
+        found.append(f'    {_names(VELOCITY)} = minus({drift}, rotate(qx, qy, qz, qw, '
+                     f'*cross((wx, wy, wz), ({point}))))')
+    return found
+
+
+def _names(group):
+    return ', '.join(f'the_{name}' for name in group)
+
+
+def kernel(name, arguments, lines, before, result):
+    """Return the Kernel of lines: a module of its own in the cache of compiled code.
+
+    Parameters
+    ----------
+    name : str
+    arguments : str
+        Behind the values.
+    lines : Lines
+    before : list of str
+        Lines in front.
+    result : str
+        What it returns.
+    """
+    values = ''.join(f'{one}, ' for one in lines.values)
+    source = '\n'.join([HEAD, '', '@compiled', f'def {name}({values}{arguments}):', *before,
+                        *lines.lines, f'    return {result}', ''])
+    return Kernel(f'{module_of(source, "expression").__name__}:{name}',
+                  tuple(lines.values.values()))

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Expressions as trees: what a scene file writes, and its derivatives.
+
+A node is kept once, so that equal parts of an expression are the same object and are computed
+once. The order of operations is that of the text: the bits of a scene do not depend on the
+version of a computer algebra system, which sorts terms as it likes.
+"""
+
+import functools
+from dataclasses import dataclass
+
+FUNCTIONS = {'sqrt': 1, 'sin': 1, 'cos': 1, 'tan': 1, 'exp': 1, 'log': 1, 'tanh': 1, 'abs': 1,
+             'min': 2, 'max': 2}
+"""Function -> number of arguments."""
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A number, a name, or an operation on other nodes.
+
+    Attributes
+    ----------
+    op : str
+        ``number``, ``name``, ``+ - * / ^``, ``negative``, ``less`` (1 where the first is below the
+        second, else 0), or a key of FUNCTIONS.
+    args : tuple
+        A float, a text, or nodes.
+    """
+
+    op: str
+    args: tuple
+
+    def __str__(self):
+        if self.op in ('number', 'name'):
+            return f'{self.args[0]}'
+        if self.op in ('+', '-', '*', '/', '^'):
+            return f'({self.args[0]} {self.op} {self.args[1]})'
+        return f'{"-" if self.op == "negative" else self.op}({", ".join(map(str, self.args))})'
+
+
+@functools.lru_cache(maxsize=100_000)
+def node(op, *args):
+    """Return the node of an operation: the same object for the same operation."""
+    return Node(op, args)
+
+
+def number(value):
+    """Return the node of a number."""
+    return node('number', float(value))
+
+
+ZERO, ONE, TWO = number(0.0), number(1.0), number(2.0)
+
+
+def _is(one, value):
+    return one.op == 'number' and one.args[0] == value
+
+
+def plus(a, b):
+    """Return a + b; a zero adds nothing."""
+    return b if _is(a, 0.0) else a if _is(b, 0.0) else node('+', a, b)
+
+
+def minus(a, b):
+    """Return a - b; a zero takes nothing away."""
+    return a if _is(b, 0.0) else negative(b) if _is(a, 0.0) else node('-', a, b)
+
+
+def times(a, b):
+    """Return a b; zero and one are not multiplied out."""
+    if _is(a, 0.0) or _is(b, 0.0):
+        return ZERO
+    return b if _is(a, 1.0) else a if _is(b, 1.0) else node('*', a, b)
+
+
+def over(a, b):
+    """Return a/b."""
+    return ZERO if _is(a, 0.0) else a if _is(b, 1.0) else node('/', a, b)
+
+
+def negative(a):
+    """Return -a."""
+    if a.op == 'number':
+        return number(-a.args[0])
+    return a.args[0] if a.op == 'negative' else node('negative', a)
+
+
+def power(a, b):
+    """Return a to the power b."""
+    return ONE if _is(b, 0.0) else a if _is(b, 1.0) else node('^', a, b)
+
+
+def names(*trees):
+    """Return the names that stand in trees."""
+    return {one.args[0] for one in _parts(trees) if one.op == 'name'}
+
+
+def operations(*trees):
+    """Return the operations of trees."""
+    return {one.op for one in _parts(trees)}
+
+
+def _parts(trees):
+    """Return each node of trees once, what it is made of before it."""
+    found, stack = {}, [(one, False) for one in reversed(trees)]
+    while stack:
+        one, done = stack.pop()
+        if one in found:
+            continue
+        if done or one.op in ('number', 'name'):
+            found[one] = None
+            continue
+        stack.append((one, True))
+        stack += [(arg, False) for arg in reversed(one.args)]
+    return list(found)
+
+
+def parts(*trees):
+    """Return each node of trees once, in an order in which what it is made of comes before it."""
+    return _parts(trees)
+
+
+def derivatives(tree, variables):
+    """Return the partial derivatives of a tree by names (the rules of any calculus textbook).
+
+    Parameters
+    ----------
+    tree : Node
+    variables : sequence of str
+
+    Returns
+    -------
+    list of Node
+    """
+    found = []
+    for variable in variables:
+        rates = {}
+        for one in _parts([tree]):
+            rates[one] = _derivative(one, variable, rates)
+        found.append(rates[tree])
+    return found
+
+
+def _derivative(one, variable, rates):
+    """Return d(one)/d(variable), the derivatives of its arguments being known."""
+    op, args = one.op, one.args
+    if op == 'number':
+        return ZERO
+    if op == 'name':
+        return ONE if args[0] == variable else ZERO
+    u, v, *_ = *args, None
+    du, dv = rates[u], rates.get(v)
+    if du is ZERO and (dv is None or dv is ZERO):
+        return ZERO
+    match op:
+        case '+':
+            return plus(du, dv)
+        case '-':
+            return minus(du, dv)
+        case '*':
+            return plus(times(du, v), times(u, dv))
+        case '/':
+            return over(minus(du, times(one, dv)), v)
+        case 'negative':
+            return negative(du)
+        case '^':
+            slope = times(times(v, power(u, minus_one(v))), du)
+            return slope if dv is ZERO else plus(slope, times(times(one, node('log', u)), dv))
+        case 'sqrt':
+            return over(du, times(TWO, one))
+        case 'sin':
+            return times(node('cos', u), du)
+        case 'cos':
+            return negative(times(node('sin', u), du))
+        case 'tan':
+            return times(plus(ONE, times(one, one)), du)
+        case 'exp':
+            return times(one, du)
+        case 'log':
+            return over(du, u)
+        case 'tanh':
+            return times(minus(ONE, times(one, one)), du)
+        case 'abs':
+            below = node('less', u, ZERO)
+            return times(minus(ONE, times(TWO, below)), du)
+        case 'min' | 'max':
+            first = node('less', *((u, v) if op == 'min' else (v, u)))
+            return plus(times(first, du), times(minus(ONE, first), dv))
+    raise AssertionError(op)    # `less` has no slope, and is not differentiated
+
+
+def minus_one(v):
+    """Return v - 1."""
+    return number(v.args[0] - 1.0) if v.op == 'number' else minus(v, ONE)
