@@ -34,9 +34,9 @@ whose family does not account for these, and for motions while a wrench is held.
 def runnable(scene):
     """Return the names of the methods that can run a scene.
 
-    These find the view they need in every effect, bear the heat that the effects make, and know the
-    time and place of their stages where an effect asks for them. No method sees an effect that is
-    an impulse and nothing else. On the table only methods that declare TABLE run.
+    These find the view they need in every effect, bear the heat that the effects make, and know
+    the time and place of their stages where an effect asks for them. No method sees an effect that
+    is an impulse and nothing else. On the table only methods that declare TABLE run.
     """
     if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]

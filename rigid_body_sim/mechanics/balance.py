@@ -157,7 +157,7 @@ class Dynamics:
         return Reactions(*(np.ascontiguousarray(parts[:, k]) for k in range(3)))
 
     def _actions(self, time, q, omega, velocity, center, wrench):
-        """Return the Actions of effects and wrench, by velocity and place of the centre of mass."""
+        """Return the Actions of effects and wrench; velocity and place are of the mass centre."""
         axes = self._frame.axes
         q_frame, omega_frame = multiply(*q, *axes), rotate_back(*axes, *omega)
         sums = {'force': NOTHING, 'torque': NOTHING, 'turning': NOTHING}

@@ -26,6 +26,7 @@ import numpy as np
 
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.effects.expressed import ExpressedTorque
 from rigid_body_sim.theory import (
     asymmetric_top,
     baseball_bat,
@@ -45,6 +46,8 @@ def expectation(scene, state):
     names = {effect.name for effect in scene.effects if effect.name != 'strike'}
     if any(effect.name == 'strike' and effect.time > state.time for effect in scene.effects):
         return None
+    if any(isinstance(effect, ExpressedTorque) for effect in scene.effects):
+        return None    # theory knows constant torques only
     kind = scene.constraint.kind
     if kind == 'free' and not names - {'gravity'}:
         return _flips(scene, state) or _round_the_axis(scene, state)

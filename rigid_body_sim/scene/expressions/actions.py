@@ -124,7 +124,7 @@ def pulls(energy, parameters, frame):
         lines = Lines(dict(parameters))
         found.append(_acting(lines, place, frame, f'({", ".join(lines.of(*place))})', 'force',
                              'potential'))
-    if moved and any(frame.point) or any(one is not tree.ZERO for one in turn):
+    if (moved and any(frame.point)) or any(one is not tree.ZERO for one in turn):
         lines = Lines(dict(parameters))
         about = _to_frame(lines, ', '.join(lines.of(*turn)), 'body', frame)
         used = [*turn]

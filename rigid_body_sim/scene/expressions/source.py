@@ -21,13 +21,13 @@ INTEGER_POWERS = range(2, 9)
 CALLS = {'/': 'divided', 'sqrt': 'root', 'log': 'logarithm', 'tan': 'tangent',
          'tanh': 'hyperbolic_tangent', 'min': 'smaller', 'max': 'larger', 'less': 'less',
          '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp', 'abs': 'abs'}
-HEAD = '''from rigid_body_sim.compilation.jit import compiled
+HEAD = """from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.functions import cos, exp, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
     divided, hyperbolic_tangent, larger, less, logarithm, raised, root, smaller, tangent)
-'''
+"""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Run scenes of the scene language without numba: a second each, where compiling takes ten.
+
+From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test/scene python test/scene/language_cases.py
+prints JSON: case -> state (14 numbers) and ledger at its time.
+"""
+
+import json
+
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+SKEW = '{mass: 1.3, inertia: [0.05, 0.08, 0.11], center_of_mass: [0.02, -0.03, 0.1]}'
+DISK = '{mass: 2.0, inertia: [0.3, 0.3, 0.5]}'
+TURNING = '{orientation: [0.1, -0.4, 0.2, 0.888], angular_velocity: [1, -2, 3]}'
+
+# case: body, constraint, parameters, effects, initial, time (s)
+CASES = {
+    # what has a closed form
+    'torque of time': (
+        DISK, 'free', 'Gamma: 0.1, w0: 12.0', "torque: {value: [0, 0, 'Gamma*sin(w0*t)']}",
+        '{spin: 3.0}', 2.0),
+    'torque of the world': (
+        DISK, 'free', 'Gamma: 0.1', "torque: {value: [0, 0, 'Gamma*exp(-t)'], frame: world}",
+        '{spin: 3.0}', 2.0),
+    'drag of a disk by the square': (
+        DISK, 'free', 'k: 0.7', "torque: {value: [0, 0, '-k*wz*abs(wz)'], books: heat}",
+        '{spin: 3.0}', 2.0),
+    'fall with drag by the square': (
+        DISK, 'free', 'c: 0.7',
+        "gravity: {g: 9.81}}, {force: {value: [0, 0, '-c*vz*abs(vz)'], frame: world, books: heat}",
+        '{}', 3.0),
+    'on a spring': (
+        DISK, 'free', '', 'spring: {at: [0, 0, 0], anchor: [0, 0, 1], stiffness: 50}',
+        '{velocity: [0.5, 0, 0]}', 2.0),
+    'on a damped spring': (
+        DISK, 'free', '',
+        'spring: {at: [0, 0, 0], anchor: [0, 0, 1], stiffness: 50, damping: 3}',
+        '{position: [0, 0, 1], velocity: [0.5, 0, 0]}', 2.0),
+    'spring of a length': (
+        DISK, 'free', '',
+        'spring: {at: [0, 0, 0], anchor: [0, 0, 0], stiffness: 50, length: 0.4, damping: 3}',
+        '{position: [0, 0, 0.5]}', 2.0),
+    'in a well': (
+        DISK, 'free', 'k: 50', "potential: {energy: '0.5*k*(x^2 + y^2 + (z - 1)^2)'}",
+        '{velocity: [0.5, 0, 0]}', 2.0),
+    'compass needle': (
+        '{mass: 1, inertia: [0.3, 0.3, 0.5]}', 'pivot', '',
+        'magnetic: {moment: [2, 0, 0], field: [0.5, 0, 0]}',
+        '{rotation_vector: [0, 0, 1.0e-4]}', 2.0),
+    'satellite': (
+        '{mass: 1, inertia: [0.2, 0.3, 0.4]}', 'free', '',
+        'gravity_gradient: {mu: 90, position: [0, 3, 0]}',
+        '{rotation_vector: [0, 0, 1.5708963267948966]}', 2.0),    # 1e-4 rad beyond upright
+    'force at a point': (
+        DISK, 'free', '', 'force: {value: [0, 0.3, 0], at: [0.5, 0, 0]}', '{spin: 3.0}', 2.0),
+    # what has none: the ledger balances, potential and force fit together
+    'body axes': (SKEW, 'free', 'k: 0.02, w0: 12.0',
+                  "torque: {value: ['-k*wx', 0, '0.1*sin(w0*t)']}", TURNING, 1.0),
+    'pivoted, body axes': (SKEW, 'pivot', 'k: 0.02, w0: 12.0',
+                           "torque: {value: ['-k*wx', 0, '0.1*sin(w0*t)']}", TURNING, 1.0),
+    'potential of place and attitude': (
+        SKEW, 'free', 'k: 0.7', "potential: {energy: '0.5*k*(z - 1)^2 + 0.1*qx*qw*x'}", TURNING,
+        1.0),
+    'potential at a pivot': (SKEW, 'pivot', '', "potential: {energy: '0.3*qx*qw*qz^2'}", TURNING,
+                             1.0),
+    'push of the world': (SKEW, 'pivot', '', "force: {value: [0, 0.2, '3*cos(t)'], "
+                          'at: [0.1, 0, 0], frame: world}', TURNING, 1.0),
+    'spring off the middle': (
+        SKEW, 'free', '', 'spring: {at: [0.1, 0, 0], anchor: [0, 0, 1], stiffness: 4.0, '
+        'damping: 0.1, length: 0.2}', TURNING, 1.0),
+    'uneven field': (SKEW, 'free', '', "magnetic: {moment: [0, 0.1, 1.2], "
+                     "field: ['0.1*x', 0.2, '0.4 - 0.1*z']}", TURNING, 1.0),
+    'at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', 'k: 0.1',
+                   "gravity: {g: 9.81}}, {torque: {value: ['-k*wx^3', 0, 0], books: heat}}, "
+                   "{potential: {energy: '0.2*qx^2'}", '{angle: 1.0, rate: 2.0}', 1.0),
+    'four at once': (
+        SKEW, 'free', '', 'gravity: {g: 9.81}}, {spring: {at: [0.1, 0, 0.3], anchor: [0, 0, 1], '
+        'stiffness: 4.0}}, {drag: {linear: 0.1, angular: 0.01}}, '
+        "{torque: {value: ['-0.1*wx^3', 0, '0.01*tanh(Wz)'], books: heat}", TURNING, 1.0),
+}
+
+
+def text(name):
+    """Return the scene of a case."""
+    body, constraint, parameters, effects, initial, _ = CASES[name]
+    return (f'scene: case\nparameters: {{{parameters}}}\nbody: {body}\nconstraint: {constraint}\n'
+            f'effects: [{{{effects}}}]\ninitial: {initial}\n')
+
+
+def run(name, method='dop8'):
+    """Return the state (14 numbers), its acceleration and the ledger of a case at its time."""
+    simulation = Simulation(parse_scene(text(name)), method, accuracy=1e-13,
+                            rate=1.0 / CASES[name][-1])
+    simulation.advance()
+    return {'state': simulation.vector.tolist(), 'ledger': simulation.ledger()}
+
+
+if __name__ == '__main__':
+    print(json.dumps({name: run(name) for name in CASES}
+                     | {f'{name} by gauss16': run(name, 'gauss16')
+                        for name in ('four at once', 'body axes')}))

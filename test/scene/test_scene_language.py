@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Effects in the scene's own words: closed forms, ledgers at round-off, refusals in one line."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scene import language_cases
+
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators import runnable
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.ensemble import ensemble
+from rigid_body_sim.simulation.simulation import Simulation
+
+HERE = pathlib.Path(language_cases.__file__)
+
+
+@pytest.fixture(scope='module')
+def found():
+    """What the cases give without numba."""
+    run = subprocess.run([sys.executable, HERE], capture_output=True, text=True, timeout=280,
+                         env=os.environ | {'NUMBA_DISABLE_JIT': '1',
+                                           'PYTHONPATH': str(HERE.parents[2])})
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+def damped(t, M, k, c, v):
+    rate, decay = math.sqrt(k / M - (c / M / 2) ** 2), c / M / 2
+    return v / rate * math.exp(-decay * t) * math.sin(rate * t)
+
+
+def approach(t, M, k, c, x):
+    rate, decay = math.sqrt(k / M - (c / M / 2) ** 2), c / M / 2
+    return x * math.exp(-decay * t) * (math.cos(rate * t) + decay / rate * math.sin(rate * t))
+
+
+CLOSED = {
+    # case: (place in the state, value by hand)
+    'torque of time': (7, 3.0 + 0.1 * (1 - math.cos(24.0)) / (12.0 * 0.5)),
+    'torque of the world': (7, 3.0 + 0.1 * -math.expm1(-2.0) / 0.5),
+    'drag of a disk by the square': (7, 3.0 / (1 + 0.7 * 3.0 * 2.0 / 0.5)),
+    'fall with drag by the square': (13, -math.sqrt(2 * 9.81 / 0.7)
+                                     * math.tanh(3.0 * math.sqrt(9.81 * 0.7 / 2))),
+    'on a spring': (8, 0.1 * math.sin(10.0)),
+    'on a damped spring': (8, damped(2.0, 2.0, 50.0, 3.0, 0.5)),
+    'spring of a length': (10, 0.4 + approach(2.0, 2.0, 50.0, 3.0, 0.1)),
+    'in a well': (8, 0.1 * math.sin(10.0)),
+    'force at a point': (7, 3.0 + 0.5 * 0.3 / 0.5 * 2.0),
+}
+
+
+@pytest.mark.parametrize('case', CLOSED)
+def test_it_meets_the_closed_form(found, case):
+    place, exact = CLOSED[case]
+    # measured: 3.3e-14 at most of the value
+    assert found[case]['state'][place] == pytest.approx(exact, rel=2e-13)
+
+
+@pytest.mark.parametrize(('case', 'rate'), [
+    # small swings: sqrt(m B/I) and sqrt(3 mu/r^3 (I2 - I1)/I3), 1e-4 rad: to 1e-9 of the angle
+    ('compass needle', math.sqrt(2 * 0.5 / 0.5)),
+    ('satellite', math.sqrt(3 * 90 / 27 * 0.1 / 0.4))])
+def test_small_swings_have_the_frequency_of_the_formula(found, case, rate):
+    *_, z, w = found[case]['state'][1:5]
+    rest = math.pi / 2 if case == 'satellite' else 0.0
+    angle = 2 * math.atan2(z, w) - rest
+    assert angle == pytest.approx(1e-4 * math.cos(2 * rate), abs=1e-12)
+
+
+@pytest.mark.parametrize('case', language_cases.CASES)
+def test_the_ledger_balances(found, case):
+    """Measured: 5e-16 of energy and momentum at most."""
+    ledger = found[case]['ledger']
+    assert abs(ledger['energy_residual']) < 5e-15
+    assert ledger['momentum_residual'] < 5e-15
+
+
+@pytest.mark.parametrize('case', ['four at once', 'body axes'])
+def test_two_methods_agree(found, case):
+    one, other = (np.array(found[name]['state']) for name in (case, f'{case} by gauss16'))
+    assert np.abs(one - other).max() < 2e-13
+
+
+def test_compiled_it_has_the_same_bits(found):
+    assert language_cases.run('four at once')['state'] == found['four at once']['state']
+
+
+def scene_of(effect, constraint='free', parameters=''):
+    return parse_scene(f'scene: a\nparameters: {{{parameters}}}\n'
+                       'body: {mass: 1, inertia: [1, 2, 3]}\n'
+                       f'constraint: {constraint}\neffects: [{{{effect}}}]\ninitial: {{}}\n')
+
+
+@pytest.mark.parametrize(('effect', 'parameters', 'words'), [
+    ("torque: {value: ['-c*wx', 0, 0]}", 'k: 1', "effects.torque.value.0: got '-c*wx': c is not"),
+    ("torque: {value: ['os.system(1)', 0, 0]}", '', 'is no function here'),
+    ("torque: {value: [0, 0, 0]}", 'wx: 1', 'parameters.wx: wx means something else'),
+    ("torque: {value: [0, 0, 0]}", '3x: 1', "parameters.3x: got the name '3x'"),
+    ("torque: {value: [0, 0]}", '', 'needs at least 3 entries'),
+    ("torque: {values: [['x', 0, 0]], times: [0]}", '', 'the type is number'),
+    ("potential: {energy: 't*x'}", '', 'potential.energy: depends on t; a potential is'),
+    ("magnetic: {moment: [0, 0, 1], field: ['wx', 0, 0]}", '', 'depends on wx; a field of'),
+    ('gravity_gradient: {mu: 1, position: [0, 0, 0]}', '', 'not the attracting point'),
+    ('spring: {at: [0, 0, 0], anchor: [0, 0, 1]}', '', "the key 'stiffness' is missing")])
+def test_what_does_not_fit_gets_one_line(effect, parameters, words):
+    with pytest.raises(BadInput, match=re.escape(words)) as refusal:
+        scene_of(effect, parameters=parameters)
+    assert str(refusal.value).isprintable()
+
+
+def test_on_a_hinge_time_and_place_are_refused():
+    with pytest.raises(BadInput, match='depends on t; on a hinge expressions know'):
+        scene_of("torque: {value: ['t', 0, 0]}", '{hinge: {axis: [0, 0, 1]}}')
+
+
+def test_only_methods_with_a_clock_run_what_depends_on_time():
+    assert runnable(scene_of("torque: {value: ['t', 0, 0]}")) == \
+        ['dop8', 'gauss16', 'rk4', 'lsoda', 'radau']
+    assert 'split4' in runnable(scene_of("torque: {value: ['sin(qx)', 0, 0]}"))
+
+
+def test_a_constant_torque_is_the_effect_it_always_was():
+    one, other = scene_of('torque: {value: [1, 2, 3]}'), scene_of('torque: {value: [1, 2.0, 3]}')
+    assert one.effects == other.effects
+    assert one.effects[0].values == ((1.0, 2.0, 3.0),)
+
+
+def test_a_parameter_is_one_override_and_needs_no_other_kernel():
+    text = language_cases.text('torque of time')
+    scenes = [parse_scene(text, [f'parameters.Gamma={size}']) for size in (0.1, 0.2)]
+    frame = scenes[0].constraint.frame(scenes[0].body)
+    (one,), (other,) = (scene.effects[0].acting(frame, 0.0) for scene in scenes)
+    assert one.kernel == other.kernel
+    assert (one.values[0], other.values[0]) == (0.1, 0.2)
+
+
+def test_commands_the_past_and_an_ensemble():
+    """Compiled, the same kind as `test_compiled_it_has_the_same_bits`."""
+    scene = parse_scene(language_cases.text('four at once'))
+    simulation = Simulation(scene, 'dop8', accuracy=1e-12, rate=10.0)
+    simulation.advance(3)
+    simulation.impulse(force=(0.1, 0.0, 0.0), torque=(0.0, 0.01, 0.0))
+    simulation.advance(3)
+    ledger = simulation.ledger()
+    assert abs(ledger['energy_residual']) < 5e-15
+    assert ledger['momentum_residual'] < 5e-15
+    end = simulation.vector.copy()
+    assert simulation.states([0.6]).vector[0].tobytes() == end.tobytes()
+    many = ensemble(scene, np.array([scene.initial.vector] * 3), [0.0, 0.3], 'dop8', 1e-12)
+    assert many.vector[0].tobytes() == many.vector[2].tobytes()
