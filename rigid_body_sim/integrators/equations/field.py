@@ -11,23 +11,19 @@ Of a pivoted body the point of reference stays: x' = v = 0.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import (  # noqa: F401
+from rigid_body_sim.integrators.equations.euler import (
     MASS,
     MOVES,
     attitude_rate,
     load_start,
     read_state,
-    taken,
     unit,
     write_state,
 )
-from rigid_body_sim.numerics.rotations import rotate  # noqa: F401
 
-# `taken` and `rotate` are for the bound sums
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND
-booked = UNBOUND
 
 UNKNOWNS = 14
 GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
@@ -45,7 +41,7 @@ def start(p, vector, point, at):
 
 @compiled
 def rate(p, y):
-    """Return the rates of the unknowns, then of the ledger."""
+    """Return the rates of the unknowns."""
     qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     x, y_, z, vx, vy, vz, t = y[7], y[8], y[9], y[10], y[11], y[12], y[13]
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
@@ -57,7 +53,6 @@ def rate(p, y):
         vx, vy, vz,
         free * fx, free * fy, free * fz,
         1.0,
-        *booked(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z),
     )
 
 
