@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/extending.md: its files are written to a temporary package, registered and run."""
+"""docs/extending.md: its files are written to a temporary package, registered and run.
+
+One test compiles them; the others run without numba, which is quicker.
+"""
 
 import dataclasses
 import importlib
@@ -81,6 +84,7 @@ def test_effects_of_another_package_pass_the_check(package):
     assert abs(energy) < 1e-14 and abs(momentum) < 1e-13
 
 
+@pytest.mark.without_numba
 def test_the_check_finds_a_potential_of_the_wrong_sign(package):
     compass = of('compass')
 
@@ -107,6 +111,7 @@ def test_the_check_finds_a_potential_of_the_wrong_sign(package):
         check_effect(Turned(moment, field))
 
 
+@pytest.mark.without_numba
 def test_a_compass_moves_like_a_top_under_its_weight(package):
     """M g h along e3 in a field along -z of size 1 is the weight: the closed form is the truth."""
     truth = Simulation(parse_scene(TOP), 'exact')
@@ -122,6 +127,7 @@ def test_a_compass_moves_like_a_top_under_its_weight(package):
     assert ledger['kinetic'] + ledger['potential'] == pytest.approx(weighed, rel=1e-13)
 
 
+@pytest.mark.without_numba
 def test_two_potentials_are_summed(package):
     both = TOP.replace('9.81}]', '9.81}, compass: {moment: [0.2, 0.1, 0.4], field: [0.3, 0, 1]}]')
     simulation = Simulation(parse_scene(both), 'dop8', accuracy=1e-12, rate=10.0)
@@ -131,6 +137,7 @@ def test_two_potentials_are_summed(package):
     assert abs(ledger['momentum_residual']) < 1e-12
 
 
+@pytest.mark.without_numba
 def test_a_ball_joint_is_a_pivot_of_the_shifted_body(package):
     pivoted = parse_scene("""scene: pivoted
 body: {mass: 0.5, inertia: [0.02, 0.03, 0.015], center_of_mass: [0.01, 0.02, 0.1]}
@@ -172,6 +179,7 @@ initial: {angular_velocity: [1.0, 2.0, -2.0], velocity: [0.1, 0.0, 0.3]}
 """
 
 
+@pytest.mark.without_numba
 def test_a_sphere_under_a_paddle_slows_down_in_closed_form(package):
     scene = parse_scene(SPHERE)
     assert isinstance(of('slowing_sphere'), Motion)
@@ -192,6 +200,7 @@ def test_a_sphere_under_a_paddle_slows_down_in_closed_form(package):
         assert abs(ledger['momentum_residual']) < 1e-13
 
 
+@pytest.mark.without_numba
 def test_the_method_has_its_order(package):
     assert isinstance(of('ralston3'), Method)
     scene = parse_scene(TOP)
@@ -204,6 +213,7 @@ def test_the_method_has_its_order(package):
     assert of('ralston3').ORDER - 0.2 < slope < of('ralston3').ORDER + 0.5
 
 
+@pytest.mark.without_numba
 def test_the_scene_runs_with_all_of_them(package):
     scene = load_scene(package / 'compass_needle.yaml')
     simulation = Simulation(scene, accuracy=1e-11, rate=10.0)

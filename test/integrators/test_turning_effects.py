@@ -11,6 +11,7 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('method', 'settings', 'near'), [
     ('dop8', {'accuracy': 1e-12}, 1e-12), ('semi_implicit_euler', {'step': 1e-2}, 1e-12)])
 def test_two_dissipations_are_one_of_their_sum(method, settings, near):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run scenes of the scene language without numba: a second each, where compiling takes ten.
 
-From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test/scene python test/scene/language_cases.py
+``NUMBA_DISABLE_JIT=1 PYTHONPATH=. python test/scene/language_cases.py``, from the source tree,
 prints JSON: case -> state (14 numbers) and ledger at its time.
 """
 

@@ -53,7 +53,8 @@ def test_angular_momentum_is_that_of_the_world_about_the_point_of_reference(cons
     ('euler: [0, 0, 1], tilt: 1',
      'scene, line 5: initial.tilt: stands beside euler; give the orientation once'),
     ('spin: 1, angular_momentum: [1, 2, 3]',
-     'scene, line 5: initial.spin: stands beside angular_momentum; give the angular velocity once'),
+     'scene, line 5: initial.spin: stands beside angular_momentum; '
+     'give the angular velocity once'),
     ('angular_velocity: [1, 2, 3], angular_velocity_world: [1, 2, 3]',
      'scene, line 5: initial.angular_velocity_world: stands beside angular_velocity; '
      'give the angular velocity once')])

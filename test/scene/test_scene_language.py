@@ -24,7 +24,7 @@ HERE = pathlib.Path(language_cases.__file__)
 
 @pytest.fixture(scope='module')
 def found():
-    """What the cases give without numba."""
+    """Return what the cases give without numba."""
     run = subprocess.run([sys.executable, HERE], capture_output=True, text=True, timeout=280,
                          env=os.environ | {'NUMBA_DISABLE_JIT': '1',
                                            'PYTHONPATH': str(HERE.parents[2])})
@@ -102,9 +102,9 @@ def scene_of(effect, constraint='free', parameters=''):
 @pytest.mark.parametrize(('effect', 'parameters', 'words'), [
     ("torque: {value: ['-c*wx', 0, 0]}", 'k: 1', "effects.torque.value.0: got '-c*wx': c is not"),
     ("torque: {value: ['os.system(1)', 0, 0]}", '', 'is no function here'),
-    ("torque: {value: [0, 0, 0]}", 'wx: 1', 'parameters.wx: wx means something else'),
-    ("torque: {value: [0, 0, 0]}", '3x: 1', "parameters.3x: got the name '3x'"),
-    ("torque: {value: [0, 0]}", '', 'needs at least 3 entries'),
+    ('torque: {value: [0, 0, 0]}', 'wx: 1', 'parameters.wx: wx means something else'),
+    ('torque: {value: [0, 0, 0]}', '3x: 1', "parameters.3x: got the name '3x'"),
+    ('torque: {value: [0, 0]}', '', 'needs at least 3 entries'),
     ("torque: {values: [['x', 0, 0]], times: [0]}", '', 'the type is number'),
     ("potential: {energy: 't*x'}", '', 'potential.energy: depends on t; a potential is'),
     ("magnetic: {moment: [0, 0, 1], field: ['wx', 0, 0]}", '', 'depends on wx; a field of'),
