@@ -92,7 +92,8 @@ def test_what_no_body_is_gets_one_line(body, line):
 
 def test_the_picture_says_what_it_leaves_out():
     scene = scene_of('{parts: [{mass: 4, shape: {disk: {radius: 2}}}, '
-                     '{mass: 1, point: [0, 0, 1]}, {mass: -1, shape: {disk: {radius: 1}}, at: [1, 0, 0]}]}')
+                     '{mass: 1, point: [0, 0, 1]}, '
+                     '{mass: -1, shape: {disk: {radius: 1}}, at: [1, 0, 0]}]}')
     drawing = drawing_of(scene)
     assert len(drawing.surfaces) == 1
     assert drawing.about == '1 of 3 parts; not drawn: 1 hole, 1 shapeless part'
