@@ -10,6 +10,9 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES
+from rigid_body_sim.mechanics.bounds import swing_rate
+
+ROUNDING = 2.0 ** -51    # of the largest term of an angular acceleration, in an error estimate
 
 
 def equations_of(scene, wrench):
@@ -43,5 +46,7 @@ def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
     point = np.zeros(VALUES + 2 * march.SIZE)
     if stepped.step is None:
-        return np.array([stepped.accuracy / stepped.horizon]), point
+        # what potentials do, undiminished: swing_rate^2 = 4 U/I
+        rounding = ROUNDING * swing_rate(stepped.scene) ** 2
+        return np.array([stepped.accuracy / stepped.horizon, rounding]), point
     return np.array([stepped.step, 0.0]), point

@@ -53,14 +53,14 @@ def march(p, control, point, following, target, end, limit):
     Parameters
     ----------
     control : array
-        [tolerance per second].
+        [tolerance per second, rounding of the rates of the first relative group per second].
     point, following : array
         The step from `point` ends at `following`, which is not known yet if its time is not later.
         Both are changed.
     end : float
         The last point stands there exactly.
     """
-    tolerance = control[0]
+    tolerance, rounding = control[0], control[1]
     moved = onward(point, following, target)
     if moved < 0:
         return 0, True
@@ -74,7 +74,10 @@ def march(p, control, point, following, target, end, limit):
         for _ in range(TRIALS):
             t1 = end if t + 1.1 * h >= end else t + h
             y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
-            allowed = max(tolerance * (t1 - t), LEAST_ERROR)
+            # near a balance large terms nearly cancel, and leave their rounding in every stage: to
+            # ask for less would make steps shorter for ever
+            noise = rounding / math.sqrt(scales1[0]) if scales1[0] > 0.0 else 0.0
+            allowed = max(max(tolerance, noise) * (t1 - t), LEAST_ERROR)
             good = error <= allowed and t1 > t
             if error > 1e-9 * allowed and error < math.inf:
                 h = (t1 - t) * min(
