@@ -15,6 +15,7 @@ from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
 from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import VALUES
+from rigid_body_sim.mechanics.bounds import swing_rate
 
 TAKES_WRENCH = True
 LANES = False
@@ -104,6 +105,7 @@ def begin(stepped, march):
     if stepped.accuracy is not None:
         control[march.TOLERANCE] = stepped.accuracy / stepped.horizon
     control[march.FIXED] = stepped.step or 0.0
+    control[march.SWING] = swing_rate(stepped.scene) ** 2
     return control, np.zeros(march.KEPT + STAGES * march.SIZE)
 
 

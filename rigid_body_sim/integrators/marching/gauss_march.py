@@ -5,7 +5,8 @@ A point holds, behind its Head (points.py), the unknowns and what their sums los
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds [tolerance per second, fixed step or 0, origin] and from WORK on a workspace S:
+`control` holds [tolerance per second, fixed step or 0, origin, square of the rate that potentials
+can give (rad/s)] and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
     RATES       their rates
@@ -71,7 +72,7 @@ FOR_POINT = UNBOUND
 TAIL = UNBOUND
 CURVE = UNBOUND
 
-TOLERANCE, FIXED, ORIGIN, WORK = 0, 1, 2, 3      # in control
+TOLERANCE, FIXED, ORIGIN, SWING, WORK = 0, 1, 2, 3, 4      # in control
 
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
 GROWTH, SHRINK, SAFETY = 1.5, 0.3, 0.9
@@ -84,6 +85,7 @@ FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, w
 FIRST_SWEEPS = 4         # of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
+CANCELLED = 2.0 ** -51   # share of terms that cancel, which a step is not asked to resolve
 # The rates of y' = i nu y with x = nu h have Legendre coefficients
 #     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
 # c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by
@@ -170,7 +172,7 @@ def _predict(p, S, y, last):
 
 
 @compiled
-def solve(p, S, y, h, last, sweeps, allowed, scales):
+def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
     """Solve the equations of the stages of a step by substitution.
 
     Parameters
@@ -183,6 +185,9 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
         How many sweeps before the first look at the change that the next one makes.
     allowed : float
         Change at which it is enough.
+    pull : float
+        What potentials can do in the step, as a share of the first relative group: their terms
+        may nearly cancel, and leave their rounding.
     scales : tuple of floats
         Squared scales.
 
@@ -205,7 +210,7 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
     mean = combined(S, B)
     size = h * h * measure(mean, mean, 0.0, scales)
     enough = max(allowed * allowed, ROUNDING * ROUNDING * size, SETTLED * SETTLED)
-    floor = max(NOISE * NOISE * size, FLOOR * FLOOR)
+    floor = max(NOISE * NOISE * (size + pull * pull), FLOOR * FLOOR)
     least, smallest = sweeps, math.inf
     while True:
         spread(S, y, MATRIX)
@@ -221,7 +226,7 @@ def solve(p, S, y, h, last, sweeps, allowed, scales):
 
 
 @compiled
-def _judged(S, h, mean, scales):
+def _judged(S, h, mean, pull, scales):
     """Return the estimated error of a step, and its length in radians of its largest motion.
 
     (0, 0) where the coefficients are but rounding. Each group of unknowns errs by its own fastest
@@ -232,7 +237,8 @@ def _judged(S, h, mean, scales):
     c6 = by_group(combined(S, TAILS[1]), scales)
     c5 = by_group(combined(S, TAILS[2]), scales)
     c4 = by_group(combined(S, TAILS[3]), scales)
-    noise = max(NOISE * NOISE * measure(mean, mean, 0.0, scales), FLOOR * FLOOR / (h * h))
+    size = measure(mean, mean, 0.0, scales) + pull * pull / (h * h)
+    noise = max(NOISE * NOISE * size, FLOOR * FLOOR / (h * h))
     error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(c7)):
         s7, s6, s5, s4 = s7 + c7[k], s6 + c6[k], s5 + c5[k], s4 + c4[k]
@@ -254,6 +260,12 @@ def _fastest_square(c7, c6, c5, c4, noise):
     """
     return math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise),
                          FALL_64 * FALL_64 * c6 / (c4 + noise)))
+
+
+@compiled
+def _pull(control, h, scales):
+    """Return what potentials can do in a step, as a share of the first relative group."""
+    return control[SWING] * h / math.sqrt(scales[0]) if scales[0] > 0.0 else 0.0
 
 
 @compiled
@@ -304,14 +316,16 @@ def _step(p, control, here, end):
     scales, h, before = grown(here.scales, here.y), here.step, here.last
     for _ in range(TRIALS):
         t1, h = _span(control, here, h, end)
-        allowed = max(control[TOLERANCE] * h, LEAST_ERROR)
-        mean, used, fewer, good = solve(p, S, here.y, h, before, here.sweeps, allowed, scales)
+        pull = _pull(control, h, scales)
+        allowed = max(control[TOLERANCE] * h, LEAST_ERROR, CANCELLED * pull)
+        mean, used, fewer, good = solve(
+            p, S, here.y, h, before, here.sweeps, allowed, pull, scales)
         if fixed:
             next_step = here.step + 1.0
             break
         error, x, converged = 0.0, 0.0, good
         if converged:
-            error, x = _judged(S, h, mean, scales)
+            error, x = _judged(S, h, mean, pull, scales)
             good = error <= allowed and x <= LONGEST and t1 > here.time
         factor = _factor(error, x, allowed, used, converged, good)
         next_step = h if good and t1 < end and 1.0 <= factor < WORTH else h * factor
@@ -378,7 +392,8 @@ def between(p, control, point, following, dt):
             return along(S, y, dt / h)
     _take_rates(point, S)
     sweeps = max(1, int(dt / last * point[SWEEPS])) if last > 0.0 else 1
-    mean, _, _, _ = solve(p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, scales)
+    pull = _pull(control, dt, scales)
+    mean, _, _, _ = solve(p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, pull, scales)
     y, _ = advanced(y, mean, load(point, VALUES + SIZE), dt)
     return y
 
