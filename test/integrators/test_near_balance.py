@@ -26,7 +26,7 @@ def hanging():
 
 def let_go(effects, orientation, body=SKEW, constraint='pivot'):
     return parse_scene(f'scene: let_go\nbody: {body}\nconstraint: {constraint}\n'
-                       f'effects: [{{{effects}}}]\ninitial: {{orientation: {list(orientation)}}}')
+                       f'effects: [{{{effects}}}]\ninitial: {{orientation: {list(map(float, orientation))}}}')
 
 
 @pytest.mark.without_numba

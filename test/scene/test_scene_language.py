@@ -77,10 +77,15 @@ def test_small_swings_have_the_frequency_of_the_formula(found, case, rate):
 
 @pytest.mark.parametrize('case', language_cases.CASES)
 def test_the_ledger_balances(found, case):
-    """Measured: 5e-16 of energy and momentum at most."""
+    """Measured: 1.3e-15 of energy and 8e-16 of momentum at most, but for small swings.
+
+    Their momentum is 1e-5 of the terms of the torque, which cancel but for their rounding: there
+    1.3e-9.
+    """
     ledger = found[case]['ledger']
     assert abs(ledger['energy_residual']) < 5e-15
-    assert ledger['momentum_residual'] < 5e-15
+    assert ledger['momentum_residual'] < (1e-8 if case in ('compass needle', 'satellite')
+                                          else 5e-15)
 
 
 @pytest.mark.parametrize('case', ['four at once', 'body axes'])
@@ -101,7 +106,7 @@ def scene_of(effect, constraint='free', parameters=''):
 
 @pytest.mark.parametrize(('effect', 'parameters', 'words'), [
     ("torque: {value: ['-c*wx', 0, 0]}", 'k: 1', "effects.torque.value.0: got '-c*wx': c is not"),
-    ("torque: {value: ['os.system(1)', 0, 0]}", '', 'is no function here'),
+    ("torque: {value: ['os.system(1)', 0, 0]}", '', 'is not part of the language'),
     ('torque: {value: [0, 0, 0]}', 'wx: 1', 'parameters.wx: wx means something else'),
     ('torque: {value: [0, 0, 0]}', '3x: 1', "parameters.3x: got the name '3x'"),
     ('torque: {value: [0, 0]}', '', 'needs at least 3 entries'),
