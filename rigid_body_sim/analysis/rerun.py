@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 
+from rigid_body_sim.choice.trial import Settled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
@@ -72,11 +73,10 @@ class Rerun:
     def _simulation(self, text, asked):
         asked = {**asked, **self._method}
         # what auto chose then, not what it would choose now
-        settled = (
-            None
-            if self._method
-            else (asked['method'], asked['tolerance'], asked['expected_error'])
-        )
+        settled = None
+        if not self._method and asked['expected_error'] is not None:
+            settled = Settled(asked['method'], asked['tolerance'], asked['expected_error'],
+                              asked.get('met_until', asked['horizon']))
         return Simulation(
             parse_scene(text),
             asked['integrator'],

@@ -7,12 +7,14 @@ was measured to meet the accuracy (measured.py), after a trial run on the scene 
 
 import functools
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.choice import measured, trial
+from rigid_body_sim.choice import trial
+from rigid_body_sim.choice.forecast import Forecast, of_exact
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
@@ -64,8 +66,6 @@ class Choice:
         Time over which the accuracy holds, s.
     tolerance : float or None
         The accuracy that the method is given: what `auto` found sufficient, else `accuracy`.
-    expected_error : float or None
-        Error of the attitude at the end of the horizon (rad), where `auto` chose.
     """
 
     scene: object
@@ -74,8 +74,41 @@ class Choice:
     step: float | None
     horizon: float
     tolerance: float | None
-    expected_error: float | None
     _prototype: Solver
+    _find: Callable[[], Forecast] | None
+
+    @functools.cached_property
+    def _forecast(self):
+        return self._find() if self._find else Forecast(None, None)
+
+    @property
+    def expected_error(self):
+        """Largest error of the attitude within the horizon (rad), where `auto` chose, or None."""
+        return self._forecast.error
+
+    @property
+    def met_until(self):
+        """Time until which the accuracy is met (s), where `auto` chose: the horizon, or less."""
+        return self._forecast.met_until
+
+    @property
+    def settled(self):
+        """What `auto` chose, as `choose` takes it again; None of a method that was named."""
+        if self.expected_error is None:
+            return None
+        return trial.Settled(self.method, self.tolerance, self.expected_error, self.met_until)
+
+    @property
+    def missed(self):
+        """One line that says that the accuracy is missed and until when it is met; else None."""
+        if self.expected_error is None or self.expected_error <= self.accuracy:
+            return None
+        if self.met_until > 0.0:
+            until = f'it is met until {self.met_until:.3g} s'
+        else:
+            until = 'it is met at no time'
+        return (f'the accuracy asked, {self.accuracy:g} rad, is missed: the error expected within '
+                f'{self.horizon:g} s is {self.expected_error:.1e} rad; {until}')
 
     def solver(self, start, wrench):
         """Return a Solver from a state on, shape (14,), under a held wrench.
@@ -148,9 +181,8 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
         s.
     horizon : float
         s.
-    settled : tuple, optional
-        (method, tolerance, expected error) of an earlier choice by `auto`, which is taken again
-        whatever the table says now.
+    settled : trial.Settled, optional
+        An earlier choice by `auto`, which is taken again whatever the table says now.
 
     Raises
     ------
@@ -160,18 +192,23 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     """
     _say_what_is_slow()
     _check(integrator, accuracy, step, horizon)
-    if integrator in ('auto', 'exact') and step is None:
+    by_motion = not settled or settled.method == 'exact'
+    if integrator in ('auto', 'exact') and step is None and by_motion:
         found = _closed_form(scene, horizon)
-        if found and (integrator == 'exact' or found.error <= max(accuracy, found.floor)):
+        if found and (integrator == 'exact' or settled
+                      or found.error <= max(accuracy, found.floor)):
             prototype = Exact(scene, found.motion, found.scene)
-            expected = found.floor + found.error
-            return Choice(scene, 'exact', accuracy, None, horizon, accuracy, expected, prototype)
+            # the forecast of a closed form decides nothing: it is made when somebody asks
+            find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
+            return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
+                          _known(settled) if settled else find)
     able, stiff = runnable(scene), _stiff(scene)
-    method, tolerance, expected = integrator, accuracy, None
+    method, tolerance, find = integrator, accuracy, None
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
-        method, tolerance, expected = settled or trial.settle(scene, fit, finer, horizon)
+        settled = settled or trial.settle(scene, fit, finer, horizon)
+        method, tolerance, find = settled.method, settled.tolerance, _known(settled)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',
@@ -179,7 +216,12 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     if 'dissipation' in stiff and tolerance is not None:
         tolerance = min(tolerance, ENDING)
     prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
-    return Choice(scene, method, accuracy, step, horizon, tolerance, expected, prototype)
+    return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, find)
+
+
+def _known(settled):
+    """Return what makes the Forecast of a choice that was settled."""
+    return functools.partial(Forecast, settled.expected_error, settled.met_until)
 
 
 class _Closed(NamedTuple):

@@ -1,34 +1,56 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trial runs of a choice on the scene itself: a motion may magnify errors, which no table knows.
 
-The chosen method runs from the scene's start, and again with a tolerance a thousand times finer;
-the difference is the error of the choice. Where the error is too large, the tolerance is made
-finer by as much, until that helps no more.
+The chosen method runs from the scene's start, strikes included, and again with a tolerance a
+thousand times finer; the difference is the error of the choice. Where the error is too large, the
+tolerance is made finer by as much, until that helps no more. Both runs lose the same digits of the
+start: what that does to the attitude is added (forecast.py).
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.choice import measured
+from rigid_body_sim.choice import forecast, measured
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.numerics.rotations import angle_between
-from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
+LONGER = 10.0   # times that: up to there a trial goes on to a strike
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
 FINER_ONES = FINER, 0.03, 0.3    # where a run that much finer takes too much work
 TRIES = 5       # largest number of tolerances
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
+MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
+
+
+class Settled(NamedTuple):
+    """What `auto` chose.
+
+    Attributes
+    ----------
+    method : str
+    tolerance : float
+        rad.
+    expected_error : float
+        Largest error of the attitude within the horizon, rad.
+    met_until : float
+        Time until which the accuracy asked is met, s.
+    """
+
+    method: str
+    tolerance: float
+    expected_error: float
+    met_until: float
 
 
 def settle(scene, able, accuracy, horizon):
-    """Return (method, tolerance, expected error in rad) that meets an accuracy on this scene.
+    """Return the Settled choice that meets an accuracy on this scene.
 
     A method that takes many more steps than the motion asks for is no method for the scene: the
     next one is tried. Where none meets the accuracy, the most accurate method of the table is
@@ -42,44 +64,42 @@ def settle(scene, able, accuracy, horizon):
     """
     left, failed = list(able), None
     while left:
-        pick = measured.pick(scene, left, accuracy, horizon)
+        method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
         try:
-            return _settled(scene, accuracy, horizon, *pick)
+            return _settled(scene, accuracy, horizon, method, tolerance, promised)
         except TooMuchWork as error:
-            left.remove(pick[0])
+            left.remove(method)
             failed = error
     raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
 
 
 def _settled(scene, accuracy, horizon, method, tolerance, promised):
     """Return what `settle` returns, for one method and the tolerance at which it begins."""
-    part, ends = min(1.0, _span(scene) / horizon), {}
-    if not part > 0.0:
-        return method, tolerance, promised
-    time = part * horizon
-    radians = (measured.pace(scene) + 0.5 * drive(scene, None) * time) * time
-    most = STEPS + int(min(STEPS_PER_RADIAN * radians, STEPS_PER_RADIAN * RADIANS))
+    time = min(horizon, _span(scene, horizon))
+    if not time > 0.0:
+        return Settled(method, tolerance, promised, horizon)
+    part, runs = time / horizon, {}
+    times = forecast.looks(time)
+    radians = (_pace(scene) + 0.5 * drive(scene, None) * time) * time
+    most = STEPS + int(min(STEPS_PER_RADIAN * radians, LONGER * STEPS_PER_RADIAN * RADIANS))
 
-    def end(tolerance):
-        """Return the attitude at the end of a trial run; TooMuchWork is raised."""
-        if tolerance not in ends:
-            out = np.empty(STATE_SIZE)
-            try:
-                solver = Stepped(scene, method, tolerance, horizon=horizon, most=most)
-                solver.start(scene.initial.vector).state(time, out)
-            except TooMuchWork:
-                raise
-            except NotConverged:
-                out[:] = math.nan
-            ends[tolerance] = out[ORIENTATION]
-        return ends[tolerance]
+    def prototype(tolerance):
+        return Stepped(scene, method, tolerance, horizon=horizon, most=most)
 
-    def end_of_finer(tolerance):
-        """Return the attitude at the end of a finer run, or None if none is within the work."""
+    def states(tolerance):
+        """Return the states of a trial run; TooMuchWork is raised."""
+        if tolerance not in runs:
+            runs[tolerance] = forecast.run(
+                scene, prototype(tolerance), scene.initial.vector, times)
+        return runs[tolerance]
+
+    def finer_run(tolerance):
+        """Return the tolerance of a finer run, or None if none is within the work."""
         for share in FINER_ONES:
             finer = at_most(share * tolerance)
             try:
-                return end(finer) if finer < tolerance else None
+                states(finer)
+                return finer if finer < tolerance else None
             except TooMuchWork:
                 continue
         return None
@@ -89,27 +109,45 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         return max((one for one in known if one <= tolerance * (1.0 + 1e-9)), default=min(known))
 
-    floor, before = measured.floor(scene, horizon), (tolerance, math.inf)
+    before, errors, finest = None, None, tolerance
     for _ in range(TRIES):
-        here, finer = end(tolerance), end_of_finer(tolerance)
+        here, finer = states(tolerance), finer_run(tolerance)
         if finer is None:    # no finer run to compare with: the error is below the last one
-            error = before[1]
+            errors = before[1] if before else None
             break
-        error = angle_between(*here, *finer) / part
-        error = math.inf if math.isnan(error) else error
+        errors, finest = forecast.apart(here, states(finer)), finer
+        error = float(errors.max()) / part
         if error <= accuracy:
             break
-        if before[1] < math.inf and error > HELPS * before[1]:    # the motion magnifies round-off
-            tolerance, error = before
+        if before and error > HELPS * float(before[1].max()) / part:
+            tolerance, errors = before    # the motion magnifies round-off
             break
-        before = tolerance, error
+        before = tolerance, errors
         tolerance = at_most(tolerance * max(FINER, 0.5 * accuracy / error))
-    return method, tolerance, max(error, floor) if error < math.inf else promised
+    if errors is None or not float(errors[0]) < math.inf:
+        return Settled(method, tolerance, promised, horizon if promised <= accuracy else 0.0)
+    best = states(finest)
+    lost = forecast.rounding(best, times)
+    if float(errors[-1]) < MAGNIFIED:
+        lost = np.maximum(
+            lost, forecast.conditioning(scene, prototype(finest), times, best))
+    found = forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon)
+    return Settled(method, tolerance, *found)
 
 
-def _span(scene):
-    """Return the shortest time (s) in which the body could turn by RADIANS."""
-    rate, acceleration = measured.pace(scene), drive(scene, None)
+def _pace(scene):
+    """Return a bound of the rate of a body (rad/s), about, with what strikes add."""
+    return measured.pace(scene) + forecast.struck_rate(scene)
+
+
+def _span(scene, horizon):
+    """Return the length of a trial, s: until the body could have turned by RADIANS.
+
+    It goes on to a strike that comes later, within the horizon, and then for that angle again.
+    """
+    rate, acceleration = _pace(scene), drive(scene, None)
+    times = [strike.time for strike in forecast.strikes(scene) if strike.time < horizon]
+    own = RADIANS / rate if rate else math.inf
     if acceleration:
-        return 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))
-    return RADIANS / rate if rate else math.inf
+        own = 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))
+    return min(own + (times[-1] if times else 0.0), LONGER * own)

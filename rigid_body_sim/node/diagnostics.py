@@ -105,9 +105,12 @@ class Diagnostics:
         level, message = self._bounded(
             {name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')}
         )
+        choice = self._session.simulation.choice
+        if level == OK and choice.missed:
+            level, message = WARN, choice.missed
         method = {
             name: value
-            for name, value in about.method_of(self._session.simulation.choice).items()
+            for name, value in about.method_of(choice).items()
             if value is not None
         }
         return self._status(

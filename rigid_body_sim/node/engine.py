@@ -70,6 +70,8 @@ class Engine:
         simulation = self._prepare({})
         for line in simulation.scene.notes:
             node.get_logger().info(line)
+        if simulation.choice.missed:
+            node.get_logger().warning(f'{simulation.scene.name}: {simulation.choice.missed}')
         frames = frames_of(node, settings)
         outputs = state_topics.chosen(settings.publish)
         messages = state_topics.scene_messages(outputs, simulation.scene, frames)

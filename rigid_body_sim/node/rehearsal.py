@@ -60,7 +60,7 @@ def _rehearse(simulation, messages):
         simulation.accuracy,
         max(simulation.rate, FASTEST),
         horizon=choice.horizon,
-        settled=(choice.method, choice.tolerance, choice.expected_error),
+        settled=choice.settled,
     )
     queue = _Queue()
     settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0, display_rate=FASTEST)

@@ -88,7 +88,7 @@ def run_of(simulation):
 def method_of(choice):
     """Return a Choice as a dict; `settled` of choice.choose takes it back."""
     return {'method': choice.method, 'horizon': choice.horizon, 'tolerance': choice.tolerance,
-            'expected_error': choice.expected_error}
+            'expected_error': choice.expected_error, 'met_until': choice.met_until}
 
 
 def state_entry(tick, simulation):

@@ -71,7 +71,7 @@ class Simulation:
         Fixed step of the method, s, instead of step control.
     horizon : float
         Duration over which the accuracy is asked for, s.
-    settled : tuple, optional
+    settled : choice.trial.Settled, optional
         What `auto` chose in an earlier run (choice.choose).
     overrides : mapping of str to value, or sequence of str
         Changes of the scene: ``{'body.mass': 2.0}``, or lines ``body.mass=2.0``.
@@ -183,7 +183,6 @@ class Simulation:
 
     def __reduce__(self):
         choice = self.choice
-        settled = (choice.method, choice.tolerance, choice.expected_error)
         made = (
             self.scene,
             self.integrator,
@@ -191,7 +190,7 @@ class Simulation:
             self.rate,
             choice.step,
             choice.horizon,
-            settled,
+            choice.settled,
         )
         spans = [
             (span.time, span.start, span.wrench, span.strikes, span.given) for span in self._spans

@@ -46,7 +46,8 @@ def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
 @pytest.mark.parametrize('name', choice_cases.CASES)
 def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
     # choices of the table without trial runs: compiling those of all kinds takes minutes
-    monkeypatch.setattr(trial, 'settle', measured.pick)
+    monkeypatch.setattr(
+        trial, 'settle', lambda *asked: trial.Settled(*measured.pick(*asked), asked[-1]))
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)
     assert [choice.expected_error for choice in choices] == sorted(
@@ -92,8 +93,7 @@ def test_closed_forms_cost_no_choice():
 def test_a_recorded_choice_is_taken_whatever_the_table_says(monkeypatch):
     now = choose(scene_of('slow_top'), accuracy=1e-6)
     monkeypatch.setattr(trial, 'settle', lambda *_: pytest.fail('it looked into the table'))
-    then = choose(scene_of('slow_top'), accuracy=1e-6,
-                  settled=(now.method, now.tolerance, now.expected_error))
+    then = choose(scene_of('slow_top'), accuracy=1e-6, settled=now.settled)
     assert (then.method, then.tolerance) == (now.method, now.tolerance)
 
 
@@ -112,7 +112,7 @@ def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch)
     method = json.loads(capsys.readouterr().out)['method']
     assert method['horizon'] == 0.2
     assert 0.0 < method['expected_error'] <= 1e-6
-    monkeypatch.setattr(trial, 'settle', lambda *_: ('rk4', None, 1.0))
+    monkeypatch.setattr(trial, 'settle', lambda *_: trial.Settled('rk4', None, 1.0, 0.0))
     assert resimulate.main([str(tmp_path / 'run')]) == 0
     assert 'identical' in capsys.readouterr().out
 

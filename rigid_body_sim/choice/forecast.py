@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run of a scene may err by: trial runs with strikes, and how far rounding is magnified.
+
+A motion magnifies what is lost on its way by rounding, whatever solves it. How much shows when the
+start is moved: with G the change of the attitude for changes of the start, and D half an ulp of
+each of its numbers,
+
+    conditioning = |G D| (Frobenius) = sqrt(mean |G D s|^2) over signs s
+
+which finite differences along a few orthogonal rows of signs give.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rigid_body_sim.choice.measured import HALF_ULP
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.mechanics import impulse
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import angle_between, normalised
+from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+
+LOOKS = 24               # times at which runs are compared
+SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
+         (1, -1, -1, 1, 1, -1, -1))
+"""Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
+MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # by how many half ulps the start is moved
+LINEAR = 0.03            # rad: beyond it a change is no longer in proportion to its cause
+
+
+class Forecast(NamedTuple):
+    """What a run is expected to err by.
+
+    Attributes
+    ----------
+    error : float
+        Largest error of the attitude within the horizon, rad.
+    met_until : float
+        Time until which the accuracy asked is met, s: the horizon if it is met throughout, else
+        the last time at which it was seen to be met.
+    """
+
+    error: float
+    met_until: float
+
+
+def looks(time):
+    """Return the times (s) up to one at which runs are compared, shape (LOOKS,)."""
+    return time * (np.arange(1, LOOKS + 1) / LOOKS)
+
+
+def run(scene, prototype, vector, times):
+    """Return the states at rising times (s), shape (n, 14), with the strikes of the scene.
+
+    They are NaN where the run did not converge.
+
+    Parameters
+    ----------
+    prototype : Solver
+    vector : array (14,)
+        The start.
+
+    Raises
+    ------
+    TooMuchWork
+    """
+    out = np.full((len(times), STATE_SIZE), math.nan)
+    try:
+        solver, first = prototype.start(vector), 0
+        for strike in strikes(scene):
+            if strike.time > times[-1]:
+                break
+            last = int(np.searchsorted(times, strike.time))
+            for k in range(first, last):
+                solver.state(float(times[k]), out[k])
+            solver, first = prototype.start(_struck(scene, strike, solver)), last
+        for k in range(first, len(times)):
+            solver.state(float(times[k]), out[k])
+    except TooMuchWork:
+        raise
+    except NotConverged:
+        out[:] = math.nan
+    return out
+
+
+def strikes(scene):
+    """Return the strikes of a scene in the order of their times."""
+    struck = (effect for effect in scene.effects if effect.as_impulse is not None)
+    return sorted(struck, key=lambda effect: effect.time)
+
+
+def _struck(scene, strike, solver):
+    """Return the state just after a strike."""
+    vector = np.empty(STATE_SIZE)
+    solver.state(max(strike.time, 0.0), vector)
+    return _pushed(scene, strike, vector)
+
+
+def _pushed(scene, strike, vector):
+    impulse.push(parameters(scene), vector, *strike.as_impulse(scene.body, vector),
+                 np.zeros(ENTRIES_SIZE))
+    return vector
+
+
+def struck_rate(scene):
+    """Return what the strikes of a scene add to the rate of its body (rad/s), about."""
+    total, start = 0.0, scene.initial.vector
+    for strike in strikes(scene):
+        after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
+        total += hypot3(*(after - start[ANGULAR_VELOCITY]).tolist())
+    return total
+
+
+def apart(states, others):
+    """Return the angles between the attitudes of two runs (rad), shape (n,); infinite for NaN."""
+    angles = [angle_between(*one, *other) for one, other in zip(
+        states[:, ORIENTATION].tolist(), others[:, ORIENTATION].tolist(), strict=True)]
+    return np.array([math.inf if math.isnan(angle) else angle for angle in angles])
+
+
+def rounding(states, times):
+    """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,)."""
+    rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
+    fastest = np.maximum.accumulate(rates)
+    return HALF_ULP * (4.0 + fastest * times)
+
+
+def conditioning(scene, prototype, times, states):
+    """Return what half an ulp on each number of the start does to the attitude, rad, shape (n,).
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run from the scene's own start.
+    """
+    start, found = scene.initial.vector, np.full(len(times), math.inf)
+    for many in MOVED:
+        squares = np.zeros(len(times))
+        for signs in SIGNS:
+            moved = run(scene, prototype, _moved(scene, start, signs, many), times)
+            squares += apart(moved, states) ** 2
+        change = np.sqrt(squares / len(SIGNS))
+        small = np.maximum.accumulate(change) <= LINEAR
+        found = np.where(small & (found == math.inf), change / many, found)
+        if small.all():
+            return found
+    return np.where(found == math.inf, change, found)
+
+
+def _moved(scene, start, signs, many):
+    """Return a start moved by so many half ulps of its numbers, with signs."""
+    vector, by = start.copy(), HALF_ULP * many * np.array(signs, dtype=float)
+    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + by[:4]).tolist())
+    size = np.abs(vector[ANGULAR_VELOCITY])
+    inertia = scene.constraint.inertia(scene.body)
+    if tuple(inertia.axes) != IDENTITY and min(inertia.moments) > 0.0:
+        size = np.full(3, hypot3(*size.tolist()))    # components along the principal axes mix
+    if scene.constraint.axis is not None:
+        vector[ANGULAR_VELOCITY] *= 1.0 + by[4]      # it stays along the hinge
+    else:
+        vector[ANGULAR_VELOCITY] += by[4:] * size
+    return vector
+
+
+def forecast(errors, times, accuracy, horizon):
+    """Return the Forecast from errors (rad) at times (s), which grow with time beyond the last.
+
+    Parameters
+    ----------
+    errors, times : array (n,)
+    accuracy : float
+        rad.
+    horizon : float
+        s.
+    """
+    errors = np.maximum.accumulate(errors)
+    error = float(errors[-1]) * max(1.0, horizon / float(times[-1]))
+    if error <= accuracy:
+        return Forecast(error, horizon)
+    k = int(np.searchsorted(errors, accuracy, side='right'))    # errors[k] is too large
+    if 0 < k < len(errors):
+        return Forecast(error, float(times[k - 1]))
+    # in proportion to time before the first look and after the last one
+    k = min(k, len(errors) - 1)
+    return Forecast(error, float(times[k]) * accuracy / float(errors[k]))
+
+
+def of_exact(scene, prototype, own, accuracy, horizon):
+    """Return the Forecast of a motion in closed form.
+
+    It errs by rounding, magnified, and by `own` (rad, at the horizon) where it is the closed form
+    of a scene that is nearly this one.
+    """
+    times = looks(horizon)
+    states = run(scene, prototype, scene.initial.vector, times)
+    errors = np.maximum(rounding(states, times), conditioning(scene, prototype, times, states))
+    return forecast(errors + own * (times / horizon), times, accuracy, horizon)

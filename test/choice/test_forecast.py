@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `auto` expects a run to err by: strikes belong to it, and so does the conditioning."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.choice import forecast
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.choice.trial import Settled
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.recording import about
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SLOW = """
+scene: struck
+body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
+constraint: free
+effects: [EFFECTS]
+initial: {angular_velocity: [0.3, 0.2, 0.1]}
+"""
+TORQUE = 'torque: {value: [0.01, 0.02, 0.01], frame: world}'
+STRIKE = 'strike: {impulse: [0, 0, 12], point: [0.5, 1.0, 0], time: 4.0}'
+IN_PLAIN_PYTHON = """
+import json
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+found = {}
+for accuracy in (1e-5,):
+    simulation = Simulation(parse_scene(TEXT), accuracy=accuracy, horizon=6.0)
+    choice = simulation.choice
+    fine = Simulation(parse_scene(TEXT), choice.method, accuracy=1e-10, horizon=6.0)
+    times = [4.5, 5.0, 5.5, 6.0]
+    found[accuracy] = {'expected': choice.expected_error, 'met_until': choice.met_until,
+                       'of': [run.states(times).vector.tolist() for run in (simulation, fine)]}
+print(json.dumps(found))
+"""
+
+
+def test_a_strike_that_is_known_belongs_to_the_trial():
+    """A body at 0.4 rad/s that a strike brings to 12: the tolerance must fit what comes after."""
+    text = SLOW.replace('EFFECTS', f'{TORQUE}, {STRIKE}')
+    settings = os.environ | {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(ROOT)}
+    told = subprocess.run([sys.executable, '-c', f'TEXT = {text!r}\n{IN_PLAIN_PYTHON}'],
+                          capture_output=True, text=True, timeout=250, env=settings, check=True)
+    for accuracy, found in json.loads(told.stdout).items():
+        one, best = np.array(found['of'])
+        error = max(angle_between(*a[1:5], *b[1:5]) for a, b in zip(one, best, strict=True))
+        assert error <= float(accuracy)
+        assert error / 3.0 <= found['expected'] <= float(accuracy)
+        assert found['met_until'] == 6.0
+
+
+def test_the_expected_error_knows_how_far_the_motion_magnifies_rounding():
+    """A racket that stands still for long on its unstable axis: half an ulp grows by e^(l t)."""
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 2, 3]}\nconstraint: free\n'
+                        'effects: []\ninitial: {angular_velocity: [1e-4, 5, 1e-4]}\n')
+    horizon = 8.0
+    choice = choose(scene, horizon=horizon)
+    start, out, moved = scene.initial.vector, np.empty(14), np.empty(14)
+    times = np.linspace(0.0, horizon, 200)[1:]
+    worst = 0.0
+    for part in (5, 6, 7):
+        other = start.copy()
+        other[part] += np.spacing(other[part]) * 2 ** 20
+        for time in times:
+            for vector, row in ((start, out), (other, moved)):
+                choice.solver(vector, Wrench()).state(time, row)
+            worst = max(worst, 0.5 * angle_between(*out[1:5], *moved[1:5]) / 2 ** 20)
+    assert worst / 3.0 < choice.expected_error < 3.0 * (worst + 2 ** -53 * 5.0 * horizon)
+    # a racket on its stable axis magnifies nothing
+    calm = parse_scene(scene.text, {'initial.angular_velocity': [5, 1e-4, 1e-4]})
+    assert choose(calm, horizon=horizon).expected_error < 2e-14
+
+
+@pytest.mark.parametrize(('errors', 'accuracy', 'horizon', 'error', 'met_until'), [
+    ([1e-9, 2e-9, 3e-9, 4e-9], 1e-8, 4.0, 4e-9, 4.0),
+    ([1e-9, 2e-9, 3e-9, 4e-9], 1e-8, 16.0, 1.6e-8, 10.0),    # in proportion to time
+    ([1e-9, 2e-9, 3e-7, 1e-9], 1e-8, 4.0, 3e-7, 2.0),        # what was seen to be met
+    ([4e-8, 5e-8, 6e-8, 7e-8], 1e-8, 4.0, 7e-8, 0.25),
+    ([1e-9, math.inf, math.inf, math.inf], 1e-8, 4.0, math.inf, 1.0)])
+def test_forecast_from_errors_on_the_way(errors, accuracy, horizon, error, met_until):
+    found = forecast.forecast(np.array(errors), np.arange(1.0, 5.0), accuracy, horizon)
+    assert found == pytest.approx((error, met_until))
+
+
+def test_a_missed_accuracy_is_said_with_the_time_until_which_it_is_met():
+    scene = load_scene('tennis_racket')
+    missed = choose(scene, accuracy=1e-9, settled=Settled('dop8', 1e-9, 1.64, 12.5)).missed
+    assert 'accuracy asked, 1e-09 rad, is missed' in missed
+    assert '1.6e+00 rad' in missed and 'met until 12.5 s' in missed
+    assert choose(scene, accuracy=1e-9, settled=Settled('dop8', 1e-9, 1e-9, 100.0)).missed is None
+    assert choose(scene, 'dop8', accuracy=1e-9).missed is None    # nothing was foretold
+    assert choose(scene, accuracy=1e-15).missed    # closed forms have a floor, too
+
+
+def test_simulate_says_it(tmp_path, capsys):
+    from rigid_body_sim.cli import simulate
+    asked = ['--scene', 'tennis_racket', '--duration', '0.1', '--accuracy', '1e-15']
+    assert simulate.main(asked) == 0
+    captured = capsys.readouterr()
+    assert 'tennis_racket: the accuracy asked, 1e-15 rad, is missed' in captured.err
+    assert simulate.main([*asked[:-1], '1e-9']) == 0
+    assert 'missed' not in capsys.readouterr().err
+
+
+def test_a_copy_and_a_recording_take_the_forecast_along():
+    simulation = Simulation('tennis_racket', accuracy=1e-15, horizon=7.0)
+    other = simulation.copy()
+    assert other.choice.settled == simulation.choice.settled
+    told = about.method_of(simulation.choice)
+    assert told['expected_error'] > 1e-15 and 0.0 <= told['met_until'] < 7.0
