@@ -106,7 +106,7 @@ def test_a_missed_accuracy_is_said_with_the_time_until_which_it_is_met():
 
 def test_simulate_says_it(tmp_path, capsys):
     from rigid_body_sim.cli import simulate
-    asked = ['--scene', 'tennis_racket', '--duration', '0.1', '--accuracy', '1e-15']
+    asked = ['--scene', 'tennis_racket', '--duration', '3', '--accuracy', '1e-15']
     assert simulate.main(asked) == 0
     captured = capsys.readouterr()
     assert 'tennis_racket: the accuracy asked, 1e-15 rad, is missed' in captured.err
