@@ -46,10 +46,11 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py \
 	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py
+	.venv/bin/python bench/choice_random.py --count 300
 
 test-machines: .venv/test.stamp ## the bits as on other machines: processors, C library, BLAS, NumPy, Pythons, ARM64 emulated; docs/machines.md anew
 	.venv/bin/python test/machines.py; good=$$?; .venv/bin/python docs/make_machines.py && exit $$good

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.choice import trial
+from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.choice.forecast import Forecast, of_exact
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest

@@ -149,8 +149,11 @@ def conditioning(scene, prototype, times, states):
         small = np.maximum.accumulate(change) <= LINEAR
         found = np.where(small & (found == math.inf), change / many, found)
         if small.all():
-            return found
-    return np.where(found == math.inf, change, found)
+            break
+    found = np.where(found == math.inf, change, found)
+    # each strike starts the motion anew, with roundings of its own
+    begun = 1 + np.searchsorted([strike.time for strike in strikes(scene)], times)
+    return found * np.sqrt(begun.astype(float))
 
 
 def _moved(scene, start, signs, many):

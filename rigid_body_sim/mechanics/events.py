@@ -19,7 +19,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
 
 RADIANS_BETWEEN_LOOKS = 0.2
-LOOKS = 20000    # within a tick, at most: of a body at 1e9 rad/s the rest is passed over
+LOOKS = 20000    # in a tick, at most: of a body at 1e9 rad/s the rest of the tick is passed over
 
 
 @dataclass(frozen=True)
