@@ -13,7 +13,7 @@ number of the start does, by finite differences of the truth. Exit 1 unless on e
     the expected error is within a factor of 3 of max(error, floor), or says that nothing is known
         of the attitude (above SENSELESS),
     the ledger's residuals are below max(asked, floor) times 10,
-    nothing hangs (LONGEST s) and nothing is raised.
+    nothing hangs (LONGEST s of the processor) and nothing is raised.
 """
 
 import argparse
@@ -30,7 +30,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACIES = 1e-6, 1e-11
 LOOKS = 8
-LONGEST = 120            # s, a scene
+LONGEST = 120            # s of the processor, a scene with its compilation
 TURNS = 60.0             # rad/s times s, at most: the truth takes a second for each hundred
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
@@ -433,9 +433,9 @@ def main():
     print(f'{"":5}{"scene":44}{"s":>7}{"asked":>8}{"method":>9}{"told":>8}{"expected":>9}'
           f'{"error":>9}{"floor":>9}{"ledger":>9}')
     counts, hung, began = {}, 0, time.monotonic()
-    signal.signal(signal.SIGALRM, _late)
+    signal.signal(signal.SIGVTALRM, _late)
     for number in range(options.first, options.first + options.count):
-        signal.alarm(LONGEST)
+        signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
         try:
             for accuracy, (line, *good) in zip(ACCURACIES, tried(number, options.seed),
                                                strict=True):
@@ -444,7 +444,7 @@ def main():
         except Exception as error:    # whatever a scene raises is a finding, and the next is tried
             hung += 1
             print(f'{number:4} {type(error).__name__}: {error}  RAISED', flush=True)
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
     for accuracy, good in counts.items():
         met, fits, balanced = (sum(column) for column in zip(*good, strict=True))
         print(f'{accuracy:g} rad: {met} of {len(good)} met, {fits} foretold within a factor of 3, '

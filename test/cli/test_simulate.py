@@ -104,7 +104,8 @@ def test_it_says_all_that_is_needed_to_run_it_again(flipping):
     assert about['simulation'] == {
         'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'rate': 500.0, 'method': 'exact',
         'horizon': 10.0, 'tolerance': 1e-12,
-        'expected_error': about['simulation']['expected_error']}
+        'expected_error': about['simulation']['expected_error'],
+        'met_until': 10.0}
     assert 0.0 < about['simulation']['expected_error'] < 1e-13
     assert about['parameters'] == {
         'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'],
