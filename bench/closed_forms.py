@@ -23,8 +23,19 @@ from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import STATE_SIZE
 
-SCENES = {'free body': 'tennis_racket', 'free body, generic': 'asymmetric_top',
-          'Lagrange top': 'heavy_top', 'pendulum': 'kater_pendulum', 'ball': 'billiard_follow'}
+FALLING = {'effects': [{'gravity': {'g': 9.81}}, {'drag': {'linear': 0.1}}]}
+DAMPED = {'body.inertia': [1.0, 1.0, 1.0], 'effects': [{'drag': {'angular': 0.1}}]}
+WORLD = {'body.inertia': [1.0, 1.0, 1.0],
+         'effects': [{'torque': {'value': [0.5, 0.1, 0.0], 'frame': 'world'}}]}
+MOTOR = {'effects': [{'torque': {'value': [0.0, 0.1, 0.1]}}, {'drag': {'angular': 0.01}}]}
+SCENES = {'free body': ('tennis_racket', {}), 'free body, generic': ('asymmetric_top', {}),
+          'Lagrange top': ('heavy_top', {}), 'pendulum': ('kater_pendulum', {}),
+          'ball': ('billiard_follow', {}), 'free body, linear drag': ('tennis_racket', FALLING),
+          'pivot without weight': ('tennis_racket', {'constraint': 'pivot'}),
+          'sphere, angular drag': ('tennis_racket', DAMPED),
+          'axial torque': ('driven_body', {}), 'sphere, torque in the world': ('tennis_racket', WORLD),
+          'hinge, torque and drag': ('tennis_racket', {
+              **MOTOR, 'constraint': {'hinge': {'axis': [0, 0, 1]}}, 'initial': {'rate': 2.0}})}
 MILLISECONDS = 20_000
 REPEATS = 15
 
@@ -62,8 +73,8 @@ def timed(act, count):
 
 def cases():
     """Yield (name, callable, units per call)."""
-    for kind, name in SCENES.items():
-        scene = load_scene(name)
+    for kind, (name, overrides) in SCENES.items():
+        scene = load_scene(name, overrides)
         solver = Exact(scene, absorbing_motion(scene))
         start, out = scene.initial.vector, np.empty(STATE_SIZE)
         motion, parameters, started = solver.motion, solver._parameters, solver.start(start)

@@ -2,10 +2,16 @@
 """Bodies whose moments are equal but for so little that it does not show: taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
-that lie within NEARLY of each other. What that does to the attitude is measured: the same closed
-form with the smaller and with the larger of these moments brackets the body. The largest angle
-between the two, at LOOKS times up to the horizon, counts as the error; it knows how the motion
-magnifies a small change, which no bound by the rates does.
+that lie within NEARLY of each other: both of a pair become their mean I. What that leaves out of
+Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third axis k, in cyclic order, is
+
+    omega_i' by -d/(2 I) (omega_i' + omega_j omega_k),
+    omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
+
+It is summed up along the closed form, stretch by stretch, and given to the body as a kick at the
+begin of each stretch. What a kick does until the horizon the closed form says itself, so the way in
+which a motion magnifies or averages out is in it. The changes of attitude by all kicks are added as
+vectors, because they are small; TWICE their largest sum counts as the error.
 """
 
 import dataclasses
@@ -14,14 +20,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
-from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import matrix
+from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.scene import Scene
-from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-NEARLY = 1e-9     # of the larger moment
-LOOKS = 64
+NEARLY = 1e-9                           # of the larger moment
+STRETCHES = 32                          # kicks about each axis, and looks at what they do
+LOOKS_A_RADIAN, MOST_LOOKS = 8.0, 2 ** 17
+SHOWN = 1e-7                            # rad/s over those of the body: kicks that rounding spares
+TWICE = 2.0
 
 
 class Nearly(NamedTuple):
@@ -44,6 +56,8 @@ class Nearly(NamedTuple):
 def nearly_absorbing(scene, horizon):
     """Return the Nearly of a scene that no motion absorbs, or None.
 
+    None also where the body turns too often in the horizon for the error to be summed up.
+
     Parameters
     ----------
     scene : Scene
@@ -51,25 +65,77 @@ def nearly_absorbing(scene, horizon):
         s.
     """
     moments = scene.constraint.inertia(scene.body).moments
-    groups = _groups(moments)
-    if all(len(set(group)) == 1 for group in groups):
+    equal = _made_equal(moments)
+    if equal == moments:
         return None
-    means = _with_moments(scene, moments, groups, lambda group: 0.5 * (group[0] + group[-1]))
-    motion = absorbing_motion(means)
+    symmetric = _with_moments(scene, equal)
+    motion = absorbing_motion(symmetric)
     if motion is None:
         return None
-    times, ends = np.arange(1, LOOKS + 1) * (horizon / LOOKS), []
-    for k in (0, -1):
-        bound = _with_moments(scene, moments, groups, lambda group, k=k: group[k])
-        out = np.empty((LOOKS, STATE_SIZE))
-        Exact(bound, motion).start(scene.initial.vector).states(times, out)
-        ends.append(out[:, ORIENTATION].tolist())
-    error = max(angle_between(*p, *q) for p, q in zip(*ends, strict=True))
-    return Nearly(motion, means, error)
+    pace = hypot3(*scene.initial.angular_velocity.tolist()) + swing_rate(scene)
+    looks = LOOKS_A_RADIAN * (pace + drive(scene, None) * horizon) * horizon
+    if not looks <= MOST_LOOKS:
+        return None
+    each = int(looks / STRETCHES) + 2
+    return Nearly(motion, symmetric, _error(Exact(symmetric, motion), scene, equal, horizon, each))
 
 
-def _groups(moments):
-    """Return the moments in groups that lie within NEARLY of each other, each in order."""
+def _error(solver, scene, equal, horizon, each):
+    """Return the error; the sums along a stretch have `each` terms."""
+    solver = solver.start(scene.initial.vector)
+    axes = matrix(*scene.constraint.inertia(scene.body).axes)
+    edges = np.arange(STRETCHES + 1) * (horizon / STRETCHES)
+    ends, looks = np.empty((STRETCHES + 1, STATE_SIZE)), np.empty((STRETCHES * each, STATE_SIZE))
+    solver.states(edges, ends)
+    step = horizon / (STRETCHES * each)
+    solver.states((np.arange(STRETCHES * each) + 0.5) * step, looks)
+    rises = np.diff(apply(transposed(axes), ends[:, ANGULAR_VELOCITY].T), axis=1)
+    w = apply(transposed(axes), looks[:, ANGULAR_VELOCITY].T)
+    sums = [(w[(k + 1) % 3] * w[(k + 2) % 3]).reshape(STRETCHES, each).cumsum(axis=1)[:, -1] * step
+            for k in range(3)]
+    kicks = _kicks(scene.constraint.inertia(scene.body).moments, equal, rises, sums)
+    size = np.abs(kicks).max()
+    if not size > 0.0:
+        return 0.0
+    fastest = max(np.abs(looks[:, ANGULAR_VELOCITY]).max(), 1e-300)
+    larger = SHOWN * fastest / size
+    changes = np.zeros((STRETCHES + 1, 3))
+    for m in range(STRETCHES):
+        start, part = ends[m].copy(), np.empty((STRETCHES + 1 - m, STATE_SIZE))
+        start[ANGULAR_VELOCITY] += larger * np.array(apply(axes, kicks[:, m]))
+        solver.start(start).states(edges[m:], part)
+        changes[m:] += _between(ends[m:, ORIENTATION], part[:, ORIENTATION])
+    return float(TWICE * np.sqrt((changes * changes).sum(axis=1)).max() / larger)
+
+
+def _kicks(moments, equal, rises, sums):
+    """Return the kicks about the principal axes, shape (3, STRETCHES), rad/s."""
+    kicks = np.zeros((3, STRETCHES))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        d, I = moments[i] - moments[j], equal[i]
+        if equal[i] != equal[j] or I == 0.0:
+            continue
+        kicks[i] -= 0.5 * d / I * (rises[i] + sums[i])
+        kicks[j] += 0.5 * d / I * (rises[j] - sums[j])
+        if moments[k] > 0.0:
+            kicks[k] += d / moments[k] * sums[k]
+    return kicks
+
+
+def _between(p, q):
+    """Return the small rotation vectors (rad) from attitudes to others, shape (n, 3)."""
+    px, py, pz, pw = p.T
+    qx, qy, qz, qw = q.T
+    sign = np.where(px * qx + py * qy + pz * qz + pw * qw < 0.0, -2.0, 2.0)
+    # the vector part of q p^-1, world axes
+    return (sign * np.array([qx * pw - qw * px - qy * pz + qz * py,
+                             qy * pw - qw * py - qz * px + qx * pz,
+                             qz * pw - qw * pz - qx * py + qy * px])).T
+
+
+def _made_equal(moments):
+    """Return the moments with those that lie within NEARLY of each other replaced by their mean."""
     ordered = sorted(moments)
     groups = [[ordered[0]]]
     for before, moment in pairwise(ordered):
@@ -77,15 +143,14 @@ def _groups(moments):
             groups[-1].append(moment)
         else:
             groups.append([moment])
-    return groups
+    means = {moment: 0.5 * group[0] + 0.5 * group[-1] for group in groups for moment in group}
+    return tuple(means[moment] for moment in moments)
 
 
-def _with_moments(scene, moments, groups, pick):
-    """Return the scene with each moment replaced by what `pick` makes of its group."""
-    picked = {moment: pick(group) for group in groups for moment in group}
-    inertia = scene.constraint.inertia(scene.body)
-    equal = dataclasses.replace(inertia, moments=tuple(picked[moment] for moment in moments))
-    body = scene.body
-    changes = {name: equal for name in ('about_center', 'about_origin')
-               if getattr(body, name) is inertia or getattr(body, name) == inertia}
+def _with_moments(scene, equal):
+    """Return the scene with other moments about the point that its constraint holds."""
+    inertia, body = scene.constraint.inertia(scene.body), scene.body
+    changed = dataclasses.replace(inertia, moments=equal)
+    changes = {name: changed for name in ('about_center', 'about_origin')
+               if getattr(body, name) == inertia}
     return dataclasses.replace(scene, body=dataclasses.replace(body, **changes))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tops whose moments are equal but for the last digits: taken as symmetric, with an error that is known."""
+
+import pathlib
+import sys
+
+import pytest
+from mpmath import mpf
+
+from rigid_body_sim.motions.nearly import nearly_absorbing
+from rigid_body_sim.numerics.rotations import angle_between
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'data'))
+from heavy_body import Flow
+
+SLOW = {'initial': {'euler_zyz': [0.0, 1.5, 0.3], 'angular_velocity': [0.1, 0.2, 0.0]}}
+OVER = {'initial': {'euler_zyz': [0.0, 3.1, 0.3], 'angular_velocity': [11.0, 0.0, 0.0]}}
+
+
+def top(difference, **changes):
+    """Return a heavy top whose first two moments differ by that share."""
+    return load_scene('heavy_top', {'body.inertia': [0.03, 0.03 * (1.0 + difference), 0.01],
+                                    **changes})
+
+
+def error_of(simulation, times):
+    """Return the largest error of the attitude (rad) at times, by 30 digits."""
+    scene = simulation.scene
+    flow = Flow(100, [mpf(moment) for moment in scene.body.about_origin.moments],
+                [mpf(scene.body.mass) * mpf(9.81) * mpf(x) for x in scene.body.center_of_mass])
+    flow.start(scene.initial.orientation, scene.initial.angular_velocity)
+    return max(angle_between(*q, *map(float, flow.go(time)[0]))
+               for time, q in zip(times, simulation.states(times).orientation, strict=True))
+
+
+def test_moments_that_differ_in_the_last_digit_take_the_closed_form():
+    """One part in 1e15, at default settings: the error over 100 s stays below what is asked."""
+    simulation = Simulation(top(1e-15))
+    assert simulation.choice.method == 'exact'
+    assert simulation.choice.expected_error < 1e-12
+    # worst measured: 3e-16
+    assert error_of(simulation, [1.0]) <= 1e-15
+    simulation.advance(1000)
+    assert abs(simulation.ledger()['energy_residual']) <= 5e-15
+
+
+@pytest.mark.parametrize('start', [SLOW, OVER])
+@pytest.mark.parametrize('difference', [1e-14, 1e-11])
+def test_the_expected_error_knows_what_is_left_out(start, difference):
+    """A slow top's spin is not kept by unequal moments: the error grows as the time squared."""
+    simulation = Simulation(top(difference, **start), accuracy=1e-6, horizon=2.0)
+    assert simulation.choice.method == 'exact'
+    found = error_of(simulation, [1.0, 1.5, 2.0])
+    floor = 1e-14
+    # measured: 2.0 to 2.6 times
+    assert found <= simulation.choice.expected_error <= 6.0 * found + floor
+
+
+@pytest.mark.parametrize(('difference', 'accuracy'), [(1e-13, 1e-12), (1e-10, 1e-9), (1e-6, 1e-2)])
+def test_a_difference_that_would_show_is_left_to_methods(difference, accuracy):
+    """Beyond the accuracy, and always beyond one part in 1e9."""
+    found = nearly_absorbing(top(difference, **SLOW), 100.0)
+    assert found is None or found.error > accuracy
+    assert nearly_absorbing(load_scene('heavy_top'), 100.0) is None
