@@ -33,7 +33,8 @@ SCENES = {'free body': ('tennis_racket', {}), 'free body, generic': ('asymmetric
           'ball': ('billiard_follow', {}), 'free body, linear drag': ('tennis_racket', FALLING),
           'pivot without weight': ('tennis_racket', {'constraint': 'pivot'}),
           'sphere, angular drag': ('tennis_racket', DAMPED),
-          'axial torque': ('driven_body', {}), 'sphere, torque in the world': ('tennis_racket', WORLD),
+          'axial torque': ('driven_body', {}),
+          'sphere, torque in the world': ('tennis_racket', WORLD),
           'hinge, torque and drag': ('tennis_racket', {
               **MOTOR, 'constraint': {'hinge': {'axis': [0, 0, 1]}}, 'initial': {'rate': 2.0}})}
 MILLISECONDS = 20_000

@@ -19,7 +19,9 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
 
 RADIANS_BETWEEN_LOOKS = 0.2
-LOOKS = 20000    # in a tick, at most: of a body at 1e9 rad/s the rest of the tick is passed over
+RADIANS_BLIND = 3.0
+MOST_LOOKS = 2 ** 22
+LOOKS_A_TICK = 20000    # at most
 
 
 @dataclass(frozen=True)
@@ -144,22 +146,26 @@ class Watcher:
     def events(self, until, tick=0.0):
         """Return the (time, name, values) of the events since the last call, in order.
 
-        None is later than `until`. Where a tick (s) would take more than LOOKS, its rest is
-        passed over.
+        None is later than `until`.
+
+        Parameters
+        ----------
+        until, tick : float
+            s; there are at most LOOKS_A_TICK looks in a tick, and MOST_LOOKS in all. Of a body that
+            turns over half a turn between two looks, events are passed over.
         """
-        found, looks, window = [], 0, self._time + tick
+        found = []
+        least = max(tick / LOOKS_A_TICK, (until - self._time) / MOST_LOOKS, 4.0 * math.ulp(until))
         while self._watched and self._time < until:
-            if self._time >= window:
-                looks, window = 0, self._time + tick
-            looks += 1
-            if looks > LOOKS and tick > 0.0:
-                self._time = min(until, window)
-                self._values = self._look(self._time)
-                self._strong = [abs(value) >= watch.share for watch, value in
-                                zip(self._watched, self._values, strict=True)]
-                continue
-            time = min(until, self._time + self._spacing)
+            # in a look the body turns over so much that changes of sign are no more seen
+            blind = RADIANS_BLIND * self._spacing < least * RADIANS_BETWEEN_LOOKS
+            time = min(until, self._time + max(self._spacing, 32.0 * least if blind else least))
             values = self._look(time)
+            if blind:
+                self._time, self._values = time, values
+                self._strong = [abs(value) >= watch.share
+                                for watch, value in zip(self._watched, values, strict=True)]
+                continue
             for k, (watch, before, after) in enumerate(
                 zip(self._watched, self._values, values, strict=True)
             ):

@@ -240,24 +240,25 @@ def _phase_at(begin, k, along, growth, at):
 @compiled
 def _next_crossing(begin, k, along, growth, back, at):
     """Return when the angle next is an odd number of quarter turns, s after the start."""
-    now, turn = _phase_at(begin, k, along, growth, at), _phase_at(begin, k, along, growth, back)
+    now = _phase_at(begin, k, along, growth, at)
     if not abs(now) < COUNTABLE:
         return math.inf
     way = -math.copysign(1.0, k)            # of the angle, before the spin runs through zero
     if at < back:
         # the next place on the way, if it lies before the place where the angle turns back
+        turn = begin - TURN[0] * k * (0.5 * along * (along / growth))
         place = _place_beyond(now, way)
         while (turn - place) * way > 0.0:
-            time = back - _time_from(k, growth, place - turn)
+            time = _time_at((place - begin) / (TURN[0] * k), along, growth, -1.0)
             if time > at:
                 return time
             place += 0.5 * way
         now, at = turn, back
     place = _place_beyond(now, -way)
-    time = back + _time_from(k, growth, place - turn)
+    time = _time_at((place - begin) / (TURN[0] * k), along, growth, 1.0)
     while not time > at:
         place -= 0.5 * way
-        time = back + _time_from(k, growth, place - turn)
+        time = _time_at((place - begin) / (TURN[0] * k), along, growth, 1.0)
     return time
 
 
@@ -275,9 +276,15 @@ def _place_beyond(now, way):
 
 
 @compiled_inline
-def _time_from(k, growth, turns):
-    """Return how long after its rest the angle has turned that far."""
-    return math.sqrt(max(2.0 * (turns / TURN[0]) / (k * growth), 0.0))
+def _time_at(Phi, along, growth, side):
+    """Return t with along t + growth t^2/2 = Phi, where the spin has the sign of `side`.
+
+    Of the two forms of the root, the one whose terms do not cancel.
+    """
+    spin = math.sqrt(max(along * along + 2.0 * growth * Phi, 0.0))
+    if side * along >= 0.0 and (along != 0.0 or spin != 0.0):
+        return 2.0 * Phi / (along + side * spin)
+    return (side * spin - along) / growth
 
 
 @compiled

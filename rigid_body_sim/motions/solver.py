@@ -137,7 +137,8 @@ class Exact:
             if self._watcher is None:
                 self._watcher = Watcher(self, self._watched, float(self._start[TIME]),
                                         swing_rate(self._scene), drive(self._scene, None))
-            return [event for event in self._watcher.events(until, tick) if event[0] > after]
+            found = self._watcher.events(until, tick)
+            return [event for event in found if event[0] > after]
         found = []
         while self._next_event is None or self._next_event[0] <= until:
             if self._next_event is not None:

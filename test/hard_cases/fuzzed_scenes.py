@@ -124,7 +124,7 @@ def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
     work.FIRST_LOOK, work.MOST, work.PATIENCE = 32, 100.0, 1e5
-    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS = 50, 5, 2.0, 20
+    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 50, 5, 2.0, 20
     signal.signal(signal.SIGALRM, alarm)
     bad = 0
     for seed in range(first, end):

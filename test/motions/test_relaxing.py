@@ -240,6 +240,31 @@ def test_flips_of_a_driven_body():
     assert steps.events == simulation.events
 
 
+@pytest.mark.parametrize('torque', [1e-300, 1e-5, -0.02])
+def test_flips_do_not_depend_on_the_size_of_the_torque(torque):
+    """Roots of the quadratic are taken without cancellation, from a spin that hardly changes."""
+    scene = scene_of('free', [{'torque': {'value': [0, 0, torque]}}], (0.8, 0.8, 1.1),
+                     angular_velocity=[1.1, 0.2, -1.3])
+    solver, out = started(scene), np.empty((30_000, 14))
+    solver.states(np.arange(30_000) / 1000.0, out)
+    expected, times = flips(out[:, 5:8]), [event[0] for event in solver.events(0.0, 29.999)]
+    assert len(times) == len(expected) >= 2
+    assert np.abs(times - expected).max() <= 1.001e-3
+
+
+def test_events_of_a_body_that_turns_over_and_over_within_a_tick_are_passed_over():
+    """On a pivot they are looked for on the states: never oftener than the ticks ask for."""
+    simulation = Simulation(scene_of('pivot', [DRAG], (0.5, 0.5, 0.5),
+                                     angular_velocity=[1.0, 2.0, 1e60]))
+    simulation.advance(100)
+    assert simulation.events == []
+
+
+def test_a_hinge_along_a_rod_is_refused():
+    with pytest.raises(BadInput, match='about which the body has no moment of inertia'):
+        scene_of(HINGE, [DRAG], (0.5, 0.5, 0.0), rate=1.0)
+
+
 def test_flips_of_a_damped_body():
     """The phase of the free rotation runs slower and slower; an infinite number of flips stops."""
     inertia = (0.5, 0.8, 1.1)

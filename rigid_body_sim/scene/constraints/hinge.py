@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
+from rigid_body_sim.numerics.vectors import across, apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene import initial
 from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia, refuse_beyond, square_of
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
@@ -52,6 +52,11 @@ class Hinge(Constraint):
             x, y, z = map(float, settings.get('through', (0.0, 0.0, 0.0)))
             through = x, y, z
         refuse_beyond(body.mass * square_of(through), where)
+        lever = cross(axis, minus(body.center_of_mass, through))
+        about_center = dot(axis, apply(body.about_center.matrix.tolist(), axis))
+        if not about_center + body.mass * dot(lever, lever) > 0.0:
+            raise BadInput(f'{where}.axis', f'got {settings["axis"]}, about which the body has no '
+                           'moment of inertia', 'an axis that a rod does not lie along')
         return cls(axis, through)
 
     def initial(self, start: Start, body: Body, where: str) -> State:
