@@ -41,7 +41,7 @@ def executables():
     ``export`` have no place in the bin folder of an environment.
     """
     if {'install', 'develop'} & set(sys.argv):
-        return [f'{name} = {target}' for name, (target, _) in COMMANDS.items()]
+        return [f'{name} = {NAME}.__main__:{name}' for name in COMMANDS]
     return [f'{NAME} = {NAME}.__main__:main']
 
 

@@ -6,7 +6,7 @@ import os
 import sys
 
 from rigid_body_sim.cli.subcommands import COMMANDS, MISSING
-from rigid_body_sim.command_line import BAD_INPUT, GOOD
+from rigid_body_sim.command_line import BAD_INPUT, GOOD, interruptible
 from rigid_body_sim.errors import nearest
 
 PROGRAM = 'rigid_body_sim'
@@ -14,7 +14,20 @@ PROGRAM = 'rigid_body_sim'
 
 def main(arguments=None):
     """Run the command that the first argument names; return its exit status."""
-    arguments = sys.argv[1:] if arguments is None else arguments
+    return interruptible(_main, sys.argv[1:] if arguments is None else arguments)
+
+
+def __getattr__(name):
+    """Return the function of a command, by its name: what ``ros2 run rigid_body_sim NAME`` calls.
+
+    Its modules are imported when it is called.
+    """
+    if name not in COMMANDS:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    return lambda: main([name, *sys.argv[1:]])
+
+
+def _main(arguments):
     if not arguments or arguments[0] in ('-h', '--help'):
         _show_commands()
         return GOOD

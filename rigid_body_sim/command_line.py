@@ -1,14 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all commands share: the parser, the exit status of bad input, JSON with 17 digits."""
+"""What all commands share.
+
+These are the parser, the exit statuses, JSON with 17 digits, Ctrl-C, and the line about what
+takes long. Nothing here takes long to import.
+"""
 
 import argparse
+import contextlib
 import json
 import os
+import signal
 import sys
+import threading
+import time
 
 from rigid_body_sim.errors import BadInput, NotConverged
 
-GOOD, CHECK_FAILED, BAD_INPUT = 0, 1, 2
+GOOD, CHECK_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+PATIENCE, LOOK = 4.0, 0.5
+"""After which time a command says that it compiles, and how often it looks if it does, s."""
+COMPILER = 'numba.core.compiler'
+"""The module whose functions run while a kernel is compiled, not while it comes from the cache."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -26,7 +38,8 @@ def parser(name, about, example):
 def run(function, arguments):
     """Run a command's function on its parsed arguments; return the exit status."""
     try:
-        return function(arguments)
+        with patience():
+            return function(arguments)
     except BadInput as error:
         print(error, file=sys.stderr)
         return BAD_INPUT
@@ -35,11 +48,111 @@ def run(function, arguments):
         return CHECK_FAILED
     except KeyboardInterrupt:
         print('interrupted', file=sys.stderr)
-        return 130
+        return INTERRUPTED
     except BrokenPipeError:
         # the reader of our output has gone: nothing is left to tell it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return GOOD
+
+
+def interruptible(function, *arguments):
+    """Call a function; Ctrl-C ends the process in one line, wherever it strikes.
+
+    It may strike in an import, before a command could handle it, and in libraries that make
+    another error of it or print it. The function may still handle SIGINT in its own way.
+    """
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        # in the background, or within a program that has a way of its own
+        return function(*arguments)
+    heard = []
+
+    def hear(number, _):
+        if heard and sys.exc_info()[0] is not None:
+            return    # the command is ending already, and may finish what it has to
+        if not heard:
+            # what threads and destructors say from here on is about the interrupt
+            sys.unraisablehook = threading.excepthook = lambda _: None
+            threading.Thread(target=_insist, name='interrupt', daemon=True).start()
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, hear)
+    try:
+        status = function(*arguments)
+        if heard:
+            _leave(status)
+        return status
+    except BaseException:
+        if not heard:
+            raise
+        with contextlib.suppress(OSError, ValueError):
+            print('interrupted', file=sys.stderr)
+        # in here: to free what a compiler was interrupted at may crash
+        _leave(INTERRUPTED)
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _insist():
+    """Interrupt the main thread until it ends: a library may swallow a KeyboardInterrupt."""
+    while True:
+        time.sleep(LOOK)
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+
+def _leave(status):
+    """End the process at once: with numba loaded the usual way out takes up to a second."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(status)
+
+
+@contextlib.contextmanager
+def deaf_children():
+    """Start child processes here that do not hear Ctrl-C.
+
+    The terminal sends it to all processes of a command; the parent alone answers, and ends its
+    children. What is ignored stays so in a child, forked or not; a mask does not, as
+    multiprocessing changes it. Only a main thread can do this.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
+def patience():
+    """Say in one line if kernels are being compiled in this thread for longer than PATIENCE."""
+    done, thread, began = threading.Event(), threading.get_ident(), time.monotonic()
+
+    def watch():
+        while not done.wait(LOOK):
+            if time.monotonic() - began > PATIENCE and _compiles(thread):
+                with contextlib.suppress(OSError, ValueError):
+                    print('compiling the kernels of this scene, once for this machine and '
+                          'version ...', file=sys.stderr, flush=True)
+                return
+    threading.Thread(target=watch, name='patience', daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
+
+
+def _compiles(thread):
+    """Return whether a thread is compiling a kernel now."""
+    frame = sys._current_frames().get(thread)
+    while frame is not None:
+        if frame.f_globals.get('__name__') == COMPILER:
+            return True
+        frame = frame.f_back
+    return False
 
 
 def print_json(value):

@@ -82,6 +82,8 @@ class Rerun:
             asked['integrator'],
             asked['accuracy'],
             asked['rate'],
+            # the step was that of the recorded method
+            None if self._method else asked.get('step'),
             horizon=asked['horizon'],
             settled=settled,
         )

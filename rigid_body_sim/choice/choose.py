@@ -202,6 +202,9 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
             find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
             return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
                           _known(settled) if settled else find)
+    if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
+        raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
+                       'leave it out, or name a method that does')
     able, stiff = runnable(scene), _stiff(scene)
     method, tolerance, find = integrator, accuracy, None
     if integrator == 'auto':

@@ -196,6 +196,8 @@ def main(arguments=None):
         help='method (auto: exact if there is one, else the cheapest that meets --accuracy)')
     add('--accuracy', type=float, default=1e-12,
         help='error of the attitude that is asked for, rad (1e-12)')
+    add('--step', type=float, metavar='SECONDS',
+        help='fixed step of the method, instead of steps that meet --accuracy')
     add('--set', action='append', default=[], metavar='KEY=VALUE',
         help='change of the scene, key.path=value; may be repeated')
     add('--output', metavar='FOLDER', help='recording to make; it must not exist yet')
@@ -227,7 +229,7 @@ def _simulate(options, bar):
         raise BadInput('--duration', f'got {options.duration!r}',
                        f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
     simulation = Simulation(scene, options.integrator, options.accuracy, options.rate,
-                            horizon=options.duration or HORIZON)
+                            options.step, horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
         recording = Recording(options.output, simulation, _parameters(options), options.publish,
@@ -269,7 +271,7 @@ def _parameters(options):
     """Return what was asked, by the names that the node's parameters have."""
     return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate,
             'integrator': options.integrator, 'accuracy': options.accuracy,
-            'duration': options.duration, 'publish': options.publish}
+            'step': options.step, 'duration': options.duration, 'publish': options.publish}
 
 
 def _writing(options):

@@ -129,6 +129,7 @@ class Engine:
             wanted['integrator'],
             wanted['accuracy'],
             wanted['rate'],
+            wanted['step'] or None,
             horizon=self._settings.duration or HORIZON,
         )
 

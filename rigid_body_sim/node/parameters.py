@@ -193,6 +193,14 @@ TABLE = (
         changeable=True,
     ),
     Entry(
+        'step',
+        0.0,
+        'fixed step of the method (s); 0: steps that meet accuracy',
+        0.0,
+        1e3,
+        changeable=True,
+    ),
+    Entry(
         'real_time_factor',
         1.0,
         'simulated seconds per second; 0: as fast as it goes',

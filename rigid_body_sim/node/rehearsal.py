@@ -7,20 +7,17 @@ simulation of its own and with outputs that lead nowhere: through ticks made one
 commands, a reset, a balance.
 """
 
-import threading
 import types
 
 import numpy as np
 
+from rigid_body_sim.command_line import patience
 from rigid_body_sim.node.journal import NoJournal
 from rigid_body_sim.realtime.session import QUIET, Session
-from rigid_body_sim.realtime.shutdown import say
 from rigid_body_sim.recording import about
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WORLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
 
-PATIENCE = 4.0
-"""After this time (s) the node says what it is doing."""
 FASTEST = 1000.0
 """Least rate of the rehearsal (Hz), so that it covers a tenth of a second of the motion."""
 SMALL = (1e-9, 1e-9, 1e-9)
@@ -39,17 +36,8 @@ def rehearse(simulation, messages):
     messages : state_topics.SceneMessages
         Makes the messages of its scene.
     """
-    patience = threading.Timer(
-        PATIENCE,
-        say,
-        ['compiling the kernels of this scene, once for this machine and version ...'],
-    )
-    patience.daemon = True
-    patience.start()
-    try:
+    with patience():
         _rehearse(simulation, messages)
-    finally:
-        patience.cancel()
 
 
 def _rehearse(simulation, messages):
@@ -59,6 +47,7 @@ def _rehearse(simulation, messages):
         simulation.integrator,
         simulation.accuracy,
         max(simulation.rate, FASTEST),
+        choice.step,
         horizon=choice.horizon,
         settled=choice.settled,
     )

@@ -20,7 +20,7 @@ from rigid_body_sim.simulation import arithmetic
 
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
 OK, WARN, ERROR = 0, 1, 2
-SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'rate'}
+SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'step', 'rate'}
 """Parameters whose change makes a new Simulation, which continues the one before."""
 
 

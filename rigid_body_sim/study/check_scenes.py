@@ -71,9 +71,12 @@ def _tables(held, overrides):
             spawn = multiprocessing.get_context('spawn')
             workers = [stack.enter_context(concurrent.futures.ProcessPoolExecutor(1, spawn))
                        for _ in range(2)]
-            futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
             for worker in workers:
                 stack.callback(worker.shutdown, cancel_futures=True)
+            # called first: whatever ends this early does not wait for what nobody reads
+            stack.push(_end_children)
+            with command_line.deaf_children():
+                futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
             pending = [future.result for future in futures]
         progress = stack.enter_context(tqdm(
             zip(held, pending), total=len(pending), disable=None, leave=False, unit=' systems'))
@@ -86,8 +89,20 @@ def _tables(held, overrides):
             yield table
 
 
+def _end_children(kind, *_):
+    """End the worker processes where an exception ends the command."""
+    if kind is not None:
+        for child in multiprocessing.active_children():
+            child.terminate()
+
+
 def _table(name, overrides):
     """Return the table of a system as plain data, or (where, problem, remedy) of an error."""
+    with command_line.patience():
+        return _confirmed(name, overrides)
+
+
+def _confirmed(name, overrides):
     scene = None if name == SHAPES else load_scene(name, overrides)
     try:
         rows = confirm(scene) if scene else confirm_shapes()

@@ -6,6 +6,7 @@ import multiprocessing
 
 import numpy as np
 
+from rigid_body_sim.command_line import deaf_children
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.view import runner
 
@@ -48,7 +49,8 @@ class Live:
         context = multiprocessing.get_context('spawn')
         self._pipe, other = context.Pipe()
         self._process = context.Process(target=runner.serve, args=(other, settings), daemon=True)
-        self._process.start()
+        with deaf_children():
+            self._process.start()
         other.close()
         self.begin(text)
 

@@ -19,7 +19,10 @@ import numpy as np
 import pytest
 import yaml
 
+from rigid_body_sim.analysis.resimulate import main as resimulate
+from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.cli.simulate import main
+from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.scene.scene import load_scene
@@ -109,7 +112,8 @@ def test_it_says_all_that_is_needed_to_run_it_again(flipping):
     assert 0.0 < about['simulation']['expected_error'] < 1e-13
     assert about['parameters'] == {
         'scene': str(flipping.parent / 'flipping.yaml'), 'scene_overrides': ['body.mass=2.0'],
-        'rate': 500.0, 'integrator': 'auto', 'accuracy': 1e-12, 'duration': 10.0, 'publish': []}
+        'rate': 500.0, 'integrator': 'auto', 'accuracy': 1e-12, 'step': None, 'duration': 10.0,
+        'publish': []}
     assert {'processor', 'libc', 'python', 'numpy', 'numba', 'sources'} <= set(about['machine'])
     begin, state = recording.journal()
     assert begin['kind'] == 'begin' and begin['scene'] == recording.about['scene']
@@ -173,6 +177,10 @@ def test_no_duration_is_the_first_state_alone(tmp_path, capsys):
     (['--set', 'body.mass=-1'], 'body.mass'),
     (['--integrator', 'exakt'], "did you mean 'exact'?"),
     (['--accuracy', '0'], 'accuracy'),
+    (['--integrator', 'rk4'], 'rk4 does not control its error, it needs a step'),
+    (['--integrator', 'rk4', '--step', '-1'], 'step: got -1.0'),
+    (['--integrator', 'exact', '--step', '1e-3'], 'a closed form takes no steps'),
+    (['--integrator', 'lsoda', '--step', '1e-3'], 'lsoda chooses its own steps'),
     (['--rate', '-5'], 'rate'),
     (['--rate', 'abc'], "invalid float value: 'abc'"),
     (['--duration', 'nan'], '--duration: got nan'),
@@ -266,3 +274,22 @@ def test_a_terminal_sees_from_the_first_moment_what_is_done(tmp_path):
     assert first.startswith('setting up: 0')
     assert 'tennis_racket: ' in shown.decode()
     assert '/5.00k' in shown.decode()
+
+
+@pytest.mark.parametrize('scene', ['heavy_top', 'driven_body'])
+def test_every_method_that_is_listed_can_be_taken(scene, capsys):
+    for method in methods_for(load_scene(scene)):
+        steps = [] if method == 'exact' or 'accuracy' in METHODS[method].TAKES else [
+            '--step', '1e-3']
+        given = ['--scene', scene, '--duration', '0.01', '--integrator', method, *steps, '--json']
+        assert main([*given, '--accuracy', '1e-6']) == 0
+        told = json.loads(capsys.readouterr().out)['method']
+        assert told['method'] == method
+        assert told['step'] == (1e-3 if steps else None)
+
+
+def test_a_run_in_fixed_steps_runs_again_to_the_same_bits(tmp_path, capsys):
+    given = ['--duration', '0.2', '--integrator', 'rk4', '--step', '2e-3']
+    assert main([*given, '--output', str(tmp_path / 'run')]) == 0
+    capsys.readouterr()
+    assert resimulate([str(tmp_path / 'run')]) == 0

@@ -11,6 +11,7 @@ import multiprocessing
 
 from mpmath import mp, mpf
 
+from rigid_body_sim.command_line import deaf_children
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.study.hard_cases.case import Question
 
@@ -50,7 +51,8 @@ def answer(module, question):
     context = multiprocessing.get_context('fork')
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=lambda: theirs.send(_asked(module, question)))
-    process.start()
+    with deaf_children():
+        process.start()
     theirs.close()
     try:
         found = ours.recv() if ours.poll(PATIENCE) else f'no answer in {PATIENCE:g} s'
