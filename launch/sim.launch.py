@@ -38,6 +38,16 @@ def nodes(context):
     return [Node(executable='sim_node', name='sim_node', **settings)]
 
 
+def rviz(context):
+    """Return RViz in the namespace of the node: its topics are relative, its frame is not."""
+    namespace = context.launch_configurations['namespace'].strip('/')
+    configuration = PathJoinSubstitution(
+        [FindPackageShare('rigid_body_sim'), 'config', 'rigid_body_sim.rviz'])
+    frame = ['-f', f'{namespace}/world'] if namespace else []
+    return [Node(package='rviz2', executable='rviz2', output='screen', namespace=namespace,
+                 arguments=['-d', configuration, *frame])]
+
+
 def view(context):
     """Return the page in the browser, which shows and pushes the node."""
     name = 'lifecycle_sim_node' if context.launch_configurations['lifecycle'] == 'true' else \
@@ -72,9 +82,6 @@ def generate_launch_description():
         declare('view', default_value='false', choices=BOOLEAN,
                 description='whether to show the body in a browser'),
         OpaqueFunction(function=nodes),
-        Node(package='rviz2', executable='rviz2', output='screen',
-             namespace=LaunchConfiguration('namespace'),
-             arguments=['-d', PathJoinSubstitution([share, 'config', 'rigid_body_sim.rviz'])],
-             condition=IfCondition(LaunchConfiguration('rviz'))),
+        OpaqueFunction(function=rviz, condition=IfCondition(LaunchConfiguration('rviz'))),
         OpaqueFunction(function=view, condition=IfCondition(LaunchConfiguration('view'))),
     ])

@@ -2,6 +2,7 @@
 """The launch files start the right processes with the right parameters."""
 
 import pathlib
+import re
 
 import pytest
 import yaml
@@ -49,7 +50,13 @@ def test_rviz_opens_with_what_it_shows():
     node, rviz = evaluate(SIM, rviz='true', namespace='left').processes
     assert node['given'] == {'publish': ['marker', 'odom']}
     assert (rviz['package'], rviz['executable'], rviz['namespace']) == ('rviz2', 'rviz2', 'left')
-    assert rviz['arguments'] == ['-d', str(ROOT / 'config' / 'rigid_body_sim.rviz')]
+    file = ROOT / 'config' / 'rigid_body_sim.rviz'
+    assert rviz['arguments'] == ['-d', str(file), '-f', 'left/world']
+    # relative names, which the namespace completes
+    assert re.findall(r'Value: (/?)(marker|pose|odom|reaction),', file.read_text()) == [
+        ('', 'marker'), ('', 'pose'), ('', 'odom'), ('', 'reaction')]
+    _, alone = evaluate(SIM, rviz='true').processes
+    assert (alone['namespace'], alone['arguments']) == ('', ['-d', str(file)])
 
 
 @pytest.mark.parametrize(('arguments', 'name'), [

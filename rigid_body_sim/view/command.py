@@ -47,10 +47,14 @@ def _run(options):
     print(f'{page.address}   (Ctrl-C ends it)', flush=True)
     try:
         page.run()
-    except KeyboardInterrupt:
-        return command_line.GOOD
-    finally:
+    except BaseException as end:
+        # closed in here, where another Ctrl-C is not heard any more
         page.close()
+        if isinstance(end, KeyboardInterrupt):
+            return command_line.GOOD
+        raise
+    page.close()
+    return command_line.GOOD
 
 
 def _source(options):

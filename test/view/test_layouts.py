@@ -14,7 +14,7 @@ TOPICS = {*OUTPUTS, 'diagnostics', 'events', 'scene', 'cmd_wrench', 'cmd_impulse
 
 
 @pytest.mark.parametrize(('name', 'pattern'), [
-    ('rigid_body_sim.rviz', r'Value: /(\w+)'), ('plotjuggler.xml', r'curve name="/(\w+)'),
+    ('rigid_body_sim.rviz', r'Value: (\w+), Depth'), ('plotjuggler.xml', r'curve name="/(\w+)'),
     ('foxglove.json', r'"/(\w+)')])
 def test_every_topic_of_a_layout_is_one_of_the_node(name, pattern):
     found = set(re.findall(pattern, (CONFIG / name).read_text()))
