@@ -5,11 +5,12 @@
         [--subscribers 1 3] [--rows node] [--normal] [--json]
 
 The floor has no simulation, commands, diagnostics or recording. Each row is a process of its own,
-with its subscriber processes (plain rclpy). Floor, node without recording and node with recording
-take turns, so that other load on the machine affects all; the figures are medians over the turns.
-CPU is in percent of one core and lateness in microseconds, over the whole life of the process;
-memory counts from one second after the first message. Where the system allows it the tick threads
-have real-time priority; with --normal they do not.
+with its subscriber processes (plain rclpy). Floor, node without recording, node with recording and
+node with the server of `view --node` attached (without a browser) take turns, so that other load
+on the machine affects all; the figures are medians over the turns. CPU is in percent of one core
+and lateness in microseconds, over the whole life of the process; memory counts from one second
+after the first message. Where the system allows it the tick threads have real-time priority; with
+--normal they do not.
 """
 
 import argparse
@@ -30,7 +31,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TOPICS = ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
 SETTLED = 1.0
-ROWS = ('floor', 'node', 'node, recording')
+VIEWED = 'node, view'
+ROWS = ('floor', 'node', 'node, recording', VIEWED)
 PR_CAPBSET_DROP, CAP_SYS_NICE = 24, 23
 LATENESS = re.compile(r'p50 (\d+), p99 (\d+), max (\d+) us')
 ACHIEVED = re.compile(r'(\d+) ticks in ([\d.]+) s \(([\d.]+) Hz\)')
@@ -169,9 +171,16 @@ def measure(row, rate, seconds, subscribers, folder, normal):
         process = spawn('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'rate:={rate}',
                         '-p', f'record:={record}', '-p', f'recording.directory:={folder}',
                         before=before)
+    viewers = []
     try:
         for listener in listeners:
             listener.stdout.readline()
+        if row == VIEWED:
+            # the node is there now; the address is printed when its topics are subscribed
+            viewers.append(spawn('-m', 'rigid_body_sim', 'view', '--node', '/sim_node',
+                                 '--port', 0))
+            if not viewers[0].stdout.readline():
+                raise SystemExit('the view did not start: see above')
         time.sleep(SETTLED)
         recorders = children(process.pid)
         began, cpu, size = time.monotonic(), cpu_seconds(process.pid), memory(process.pid)
@@ -183,6 +192,9 @@ def measure(row, rate, seconds, subscribers, folder, normal):
     finally:
         for one in (process, *listeners):
             one.send_signal(signal.SIGTERM)
+        for one in viewers:
+            one.kill()
+            one.wait()
     text, _ = process.communicate(timeout=10.0)
     counts = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
     p50, p99, worst = map(int, LATENESS.search(text).groups())
@@ -206,7 +218,7 @@ def main():
     parser.add_argument('--subscribers', type=int, nargs='+', default=[1],
                         help='subscriber processes, at least 1 (1)')
     parser.add_argument('--rows', nargs='+', choices=ROWS, default=ROWS,
-                        help='rows to measure, of these three (all)')
+                        help='rows to measure, of these four (all)')
     parser.add_argument('--normal', action='store_true', help='without real-time priority')
     parser.add_argument('--json', action='store_true')
     parser.add_argument('--floor', type=float, help=argparse.SUPPRESS)
