@@ -34,6 +34,7 @@ class Comparison:
 
     Attributes
     ----------
+    topics : dict
     messages, ticks : int
         Compared so far; `ticks` counts those of which anything was recorded.
     parting : dict or None
@@ -47,7 +48,7 @@ class Comparison:
     """
 
     def __init__(self, rerun, topics, source):
-        self._rerun, self._topics, self._start = rerun, topics, source.start
+        self._rerun, self.topics, self._start = rerun, topics, source.start
         self.messages = self.ticks = 0
         self.parting = None
         self.largest = {}
@@ -63,7 +64,7 @@ class Comparison:
         ticks_of = {
             topic: self._rerun.ticks(columns['log_time']) for topic, columns in stretch.items()
         }
-        for name, topic in self._topics.items():
+        for name, topic in self.topics.items():
             if topic in stretch:
                 check_numbers(topic, stretch[topic], name)
         for topic, ticks in ticks_of.items():
@@ -104,7 +105,7 @@ class Comparison:
             'angular_momentum_squared': momenta,
             **{name: vectors[:, part] for name, part in SLICES.items()},
         }
-        for name, topic in self._topics.items():
+        for name, topic in self.topics.items():
             if topic not in stretch or not len(ticks_of[topic]):
                 continue
             rows = ticks_of[topic] - ticks[0]

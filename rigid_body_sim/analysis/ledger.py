@@ -10,13 +10,14 @@ TERMS = ('kinetic', 'potential', 'dissipated', 'work', 'energy_residual', 'momen
 
 def ledger(source):
     """Return (times in s since the first tick, dict of TERMS -> array) of a Source at evenly spaced ticks; BadInput where there is no rerun."""
-    rerun = Rerun(source.entries, {})
-    last = rerun.ticks(np.array([source.end]))[0]
+    first, end = source.stamps or (source.start, source.end)
+    rerun = Rerun(source.entries, {}, source.stamps and first)
+    last = rerun.ticks(np.array([end]))[0]
     ticks = np.unique(np.linspace(0, last, POINTS).astype(int))
     rows = []
     for tick in ticks.tolist():
         rerun.to(tick)
         balance = rerun.simulation.ledger()
         rows.append([balance[term] for term in TERMS])
-    times = (np.array([rerun.stamp(tick) for tick in ticks.tolist()]) - source.start) * 1e-9
+    times = (np.array([rerun.stamp(tick) for tick in ticks.tolist()]) - first) * 1e-9
     return times, dict(zip(TERMS, np.array(rows).T, strict=True))

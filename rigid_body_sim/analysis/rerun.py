@@ -25,6 +25,9 @@ class Rerun:
         The journal of one body, see recording.reader.Recording.journal.
     method : dict
         What to change: ``integrator``, ``accuracy``; it then holds for the whole run.
+    first_stamp : int, optional
+        Stamp (ns) of the first tick, where the journal's log times are not the stamps and the
+        journal does not tell.
 
     Attributes
     ----------
@@ -41,7 +44,7 @@ class Rerun:
         If there is no journal, or it does not reach back to the start.
     """
 
-    def __init__(self, entries, method):
+    def __init__(self, entries, method, first_stamp=None):
         self.begin = next(
             (entry for entry in entries if entry['kind'] == 'begin' and 'simulation' in entry),
             None,
@@ -56,7 +59,8 @@ class Rerun:
         self._method = method
         self.recorded = json.loads(self.begin['simulation'])
         self.simulation = self._simulation(self.begin['scene'], self.recorded)
-        self._lines = [_line(anchor, self.recorded['rate'])]
+        stamp = anchor.get('stamp', anchor['log_time'] if first_stamp is None else first_stamp)
+        self._lines = [_line(stamp, anchor['tick'], self.recorded['rate'])]
         self._actions = []
         rate = self.recorded['rate']
         for entry in entries:
@@ -187,6 +191,6 @@ class Rerun:
         return acted
 
 
-def _line(anchor, rate):
-    """Return the Timeline on which an entry's tick has its stamp."""
-    return Timeline(anchor['log_time'] - Timeline(0, rate).instant(anchor['tick']), rate)
+def _line(stamp, tick, rate):
+    """Return the Timeline on which a tick has a stamp."""
+    return Timeline(stamp - Timeline(0, rate).instant(tick), rate)

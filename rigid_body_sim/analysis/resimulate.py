@@ -14,6 +14,7 @@ from rigid_body_sim import command_line
 from rigid_body_sim.analysis.align import aligned
 from rigid_body_sim.analysis.analyze import report_folder
 from rigid_body_sim.analysis.compare import QUANTITIES, Comparison, within
+from rigid_body_sim.analysis.replayed import HAVE_STAMPS, Restamped
 from rigid_body_sim.analysis.rerun import Rerun
 from rigid_body_sim.analysis.source import journal_of, sources
 from rigid_body_sim.errors import BadInput
@@ -41,15 +42,20 @@ def resimulate(path, method=None):
     results = []
     with Recording(path) as recording:
         for source in sources(recording):
+            messages = recording
             with journal_of(recording.path):
-                rerun = Rerun(source.entries, method or {})
+                rerun = Rerun(source.entries, method or {}, source.stamps and source.stamps[0])
             topics = {name: source.topics[name] for name in QUANTITIES if name in source.topics}
+            if source.stamps:
+                paced_by = next(topics[name] for name in HAVE_STAMPS if name in topics)
+                messages = Restamped(recording, paced_by)
+                topics = {name: topic for name, topic in topics.items() if messages.can(topic)}
             comparison = Comparison(rerun, topics, source)
             total = sum(recording.topics[topic].count for topic in topics.values())
             with tqdm(
                 total=total, unit=' messages', unit_scale=True, disable=None, leave=False
             ) as progress:
-                for stretch in aligned(recording, list(topics.values()), progress.update):
+                for stretch in aligned(messages, list(topics.values()), progress.update):
                     with journal_of(recording.path):
                         comparison.take(stretch)
             results.append((source, rerun, comparison))
@@ -98,6 +104,7 @@ def verdict(source, rerun, comparison, changed, allowed):
         'namespace': source.namespace,
         'identical': identical,
         'messages': comparison.messages,
+        'not_compared': [name for name in QUANTITIES if name not in comparison.topics],
         'states': comparison.ticks,
         'parting': comparison.parting,
         'largest': comparison.largest,
@@ -114,7 +121,10 @@ def lines(found, changed):
     text = []
     where = f'{found["namespace"]}: ' if found['namespace'] != '/' else ''
     if found['identical']:
-        text.append(f'{where}identical, {found["states"]} states ({found["messages"]} messages)')
+        compared = len(QUANTITIES) - len(found['not_compared'])
+        what = f' in {compared} of {len(QUANTITIES)} topics' if found['not_compared'] else ''
+        text.append(f'{where}identical{what}, {found["states"]} states '
+                    f'({found["messages"]} messages)')
     else:
         parting = found['parting']
         text.append(
@@ -129,6 +139,9 @@ def lines(found, changed):
             f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, {worst["since_start"]:.9g} s after the start'
             for name, worst in found['largest'].items()
         ]
+    if found['not_compared']:
+        text.append(f'  not compared: {", ".join(found["not_compared"])} (not recorded under this '
+                    f'name, or played again without all of its messages)')
     if found['unpromised'] and not (found['identical'] or changed):
         text.append(f'  bits are not promised: {found["unpromised"][0]}')
         text.append(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_body_sim.analysis.history import History, Segment, history
+from rigid_body_sim.analysis.replayed import stamps_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.scene.scene import parse_scene
@@ -59,6 +60,9 @@ class Source:
         Log times of the first tick, which is t = 0 of all curves, and of the last one, ns.
     ticks : int
         Messages on the topic of every tick that has most of them.
+    stamps : (int, int) or None
+        Stamps of the first and the last tick in a recording of one that was played, where they
+        are not the log times.
     """
 
     namespace: str
@@ -71,6 +75,7 @@ class Source:
     start: int
     end: int
     ticks: int
+    stamps: tuple | None = None
 
     @property
     def scene(self):
@@ -80,13 +85,15 @@ class Source:
 
 def sources(recording):
     """Return the Sources in a Recording, by namespace; BadInput where there is none."""
-    found = {}
+    found, journal = {}, recording.journal()
+    with journal_of(recording.path):
+        renamed = _renamed(journal)
     for name, topic in recording.topics.items():
-        namespace, _, last = name.rpartition('/')
+        namespace, last = renamed.get(name) or name.rpartition('/')[::2]
         if TYPES.get(last) == topic.type and topic.count:
             found.setdefault(namespace, {})[last] = name
     bodies = [
-        _source(recording, namespace or '/', topics)
+        _source(recording, namespace or '/', topics, journal)
         for namespace, topics in sorted(found.items())
         if set(topics) & set(EVERY_TICK)
     ]
@@ -99,8 +106,15 @@ def sources(recording):
     return bodies
 
 
-def _source(recording, namespace, topics):
-    entries = [entry for entry in recording.journal() if entry['topic'] == topics.get('journal')]
+def _renamed(journal):
+    """Return what journals tell of remapped topics: complete name -> (namespace, name in TYPES)."""
+    return {name: (entry['topic'].rpartition('/')[0], last)
+            for entry in journal if entry['kind'] == 'begin' and 'topics' in entry
+            for last, name in json.loads(entry['topics']).items()}
+
+
+def _source(recording, namespace, topics, journal):
+    entries = [entry for entry in journal if entry['topic'] == topics.get('journal')]
     ticking = [recording.topics[topics[name]] for name in EVERY_TICK if name in topics]
     start = min(_first_time(recording, topic.name) for topic in ticking)
     end = _last_time(recording, ticking[0].name)
@@ -117,6 +131,7 @@ def _source(recording, namespace, topics):
         start,
         end,
         max(topic.count for topic in ticking),
+        stamps_of(recording, topics, end) if entries else None,
     )
 
 

@@ -107,7 +107,7 @@ class Recording:
         """Put the full state into the journal of a new file."""
         if self._writer.state_wanted:
             self._writer.state_wanted = False
-            entry = about.state_entry(self._simulation.tick, self._simulation)
+            entry = about.state_entry(self._simulation.tick, stamp, self._simulation)
             self._message(self._journal, stamp, journal_message('state', **entry))
 
     def _message(self, topic, stamp, data):

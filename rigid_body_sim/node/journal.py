@@ -10,6 +10,7 @@ from that tick on).
 
 import datetime
 import itertools
+import json
 import pathlib
 import time
 
@@ -60,6 +61,7 @@ class Journal:
             zip(publishing.every_tick(), publishing.messages.ticking.sizes, strict=True)
         )
         told = about.about('sim_node', simulation, settings.values)
+        told['topics'] = json.dumps(publishing.names())
         asked = settings['recording.compression']
         options = (
             compression.DEFAULT if asked == 'auto' else asked,
@@ -94,7 +96,8 @@ class Journal:
         """Record the full state of a tick, after its messages."""
         self._recorder.state_wanted = False
         self._recorder.journal(
-            'state', stamp, time.time_ns(), **about.state_entry(simulation.tick, simulation)
+            'state', stamp, time.time_ns(),
+            **about.state_entry(simulation.tick, stamp, simulation)
         )
 
     def message(self, topic, stamp, data):

@@ -130,6 +130,13 @@ class Publishing:
             for publisher, output in zip(self._ticking, self._outputs.ticking, strict=True)
         ]
 
+    def names(self) -> dict[str, str]:
+        """Return the complete name of each topic of every tick; it may be remapped."""
+        return {
+            output.name: publisher.topic_name
+            for publisher, output in zip(self._ticking, self._outputs.ticking, strict=True)
+        }
+
     def others(self) -> list[Topic]:
         """Return all other topics."""
         return [

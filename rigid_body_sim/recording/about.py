@@ -91,13 +91,15 @@ def method_of(choice):
             'expected_error': choice.expected_error, 'met_until': choice.met_until}
 
 
-def state_entry(tick, simulation):
+def state_entry(tick, stamp, simulation):
     """Return the values of the journal's entry ``state``.
 
-    These are the full state at a tick, the wrench that is held, and the run as it is now.
+    These are the full state at a tick, its stamp (ns; the log time is another if the recording is
+    played and recorded again), the wrench that is held, and the run as it is now.
     """
     wrench = simulation.wrench
-    return {'tick': tick, 'vector': simulation.vector.tolist(), 'energy': simulation.energy,
+    return {'tick': tick, 'stamp': stamp, 'vector': simulation.vector.tolist(),
+            'energy': simulation.energy,
             'angular_momentum_squared': simulation.angular_momentum_squared,
             'wrench': {'force': wrench.force, 'torque': wrench.torque, 'frame': wrench.frame},
             'scene': simulation.scene.text, 'simulation': run_of(simulation)}

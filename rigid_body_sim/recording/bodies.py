@@ -4,6 +4,7 @@
 Several bodies may have been recorded together, each in a namespace of its own.
 """
 
+import json
 import typing
 
 import numpy as np
@@ -67,8 +68,18 @@ def namespace_of(recording, namespace=None):
 
 def _topic(recording, namespace, last):
     """Return the complete name of a body's topic, or None if it was not recorded as its type."""
-    topic = recording.topics.get(f'{namespace}/{last}')
+    topic = recording.topics.get(f'{namespace}/{last}') or recording.topics.get(
+        _remapped(recording, last))
     return topic.name if topic and topic.type == TYPES[last] and topic.count else None
+
+
+def _remapped(recording, last):
+    """Return the complete name that a topic of the only body was remapped to, or None."""
+    try:
+        name = json.loads(recording.about.get('topics', '{}')).get(last)
+    except (ValueError, AttributeError):
+        return None
+    return name if isinstance(name, str) else None
 
 
 def _entries(recording, namespace):

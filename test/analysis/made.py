@@ -35,8 +35,8 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
     parameters = {'rate': rate, 'real_time_factor': 1.0}
     journal = journal_topic(namespace)
     with Writer(path, ticking, others, journal, about.about('sim_node', simulation, parameters)) as writer:
-        def note(kind, stamp, **values):
-            writer.message(journal.name, stamp, stamp, journal_message(kind, **values))
+        def note(kind, when, **values):
+            writer.message(journal.name, when, when, journal_message(kind, **values))
 
         for space in spaces:
             writer.message(f'{space}/scene', START, START, about.scene_message(simulation.scene))
@@ -58,7 +58,7 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
             writer.ticks(tick, [stamp], [stamp + (int(late[tick]) if late is not None else 0)], rows * len(spaces))
             if writer.state_wanted:
                 writer.state_wanted = False
-                note('state', stamp, **about.state_entry(tick, simulation))
+                note('state', stamp, **about.state_entry(tick, stamp, simulation))
     return simulation
 
 
