@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages: their numbers are those of check_scenes, and pictures, links and commands exist."""
 
+import ast
 import pathlib
 import re
 import sys
@@ -76,3 +77,21 @@ def test_commands_of_the_page_exist_and_their_overrides_hold(path):
         overrides = re.findall(r'--set (?:"([^"]+)"|(\S+))', line)
         if scene and scene[1] in scene_names():
             load_scene(scene[1], [quoted or plain for quoted, plain in overrides])
+
+
+def test_a_picture_of_other_numbers_than_the_scene_s_says_so():
+    """Before a figure that changes keys of its scene stands what differs."""
+    checked = []
+    for path in sorted((DOCS / 'figures').glob('*.py')):
+        calls = [node for node in ast.walk(ast.parse(path.read_text()))
+                 if isinstance(node, ast.Call) and getattr(node.func, 'id', '') == 'run']
+        if not any(len(call.args) > 1 for call in calls):
+            continue
+        pages = [text for page in (DOCS / 'systems').glob('*.md')
+                 if f'](../images/{path.stem}.png)' in (text := page.read_text())]
+        assert pages
+        for text in pages:
+            last = text.split('![')[0].rstrip().split('\n\n')[-1]
+            assert last.startswith('Where the picture departs from the scene'), path.stem
+        checked.append(path.stem)
+    assert 'heavy_top' in checked
