@@ -116,7 +116,7 @@ def _verdict(found):
     worst = max(kept.values(), default=0.0)
     accuracy = max((found['run'] or {}).get('accuracy') or 0.0, FLOOR)
     lost = found['timing']['missing'] - found['left_out_by_recorder']
-    good = worst <= 10.0 * accuracy and not lost
+    good = worst <= 10.0 * accuracy and not lost and not found['accuracy_missed']
     if kept:
         what = ' and '.join(f'{name} to {size:.1e}' for name, size in kept.items())
         floor = ', which is round-off' if worst <= FLOOR else ''
@@ -128,6 +128,7 @@ def _verdict(found):
             text += ' ' + _between(found)
     else:
         text = 'Neither energy nor L² is constant in this scene; the ledger has their balance.'
+    text += ''.join(f' <b>Note:</b> {html.escape(line)}.' for line in found['accuracy_missed'])
     ticks = found['timing']['ticks']
     text += f' {ticks} ticks, {lost if lost else "none"} lost.'
     seen = [one for one in found['lines'] if one['measured'] is not None]

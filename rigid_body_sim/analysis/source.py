@@ -63,6 +63,8 @@ class Source:
     stamps : (int, int) or None
         Stamps of the first and the last tick in a recording of one that was played, where they
         are not the log times.
+    accuracy_missed : list of str
+        See :func:`missed`.
     """
 
     namespace: str
@@ -75,7 +77,8 @@ class Source:
     start: int
     end: int
     ticks: int
-    stamps: tuple | None = None
+    stamps: tuple | None
+    accuracy_missed: list
 
     @property
     def scene(self):
@@ -120,6 +123,8 @@ def _source(recording, namespace, topics, journal):
     end = _last_time(recording, ticking[0].name)
     with journal_of(recording.path):
         run, begin, happened = _run(recording, topics, entries, start, end)
+        not_met = missed([run, *(entry['simulation'] for entry in entries
+                                 if entry['kind'] == 'parameters')])
     return Source(
         namespace,
         topics,
@@ -132,6 +137,7 @@ def _source(recording, namespace, topics, journal):
         end,
         max(topic.count for topic in ticking),
         stamps_of(recording, topics, end) if entries else None,
+        not_met,
     )
 
 
@@ -167,6 +173,28 @@ def journal_of(where):
             f'the journal makes no sense ({type(error).__name__}: {" ".join(str(error).split())[:200]})',
             'an undamaged recording',
         ) from error
+
+
+def missed(runs):
+    """Return lines on the accuracy that was asked and is missed, where `auto` expected as much.
+
+    Parameters
+    ----------
+    runs : sequence of dict
+        What each simulation was asked for and chose, see recording.about.run_of.
+    """
+    found = []
+    for run in runs:
+        expected = run.get('expected_error')
+        if expected is None or expected <= run['accuracy']:
+            continue
+        until = run.get('met_until')
+        met = ''
+        if until is not None:
+            met = f'; it is met until {until:.3g} s' if until > 0.0 else '; it is met at no time'
+        found.append(f'the accuracy asked, {run["accuracy"]:g} rad, is missed: the error expected '
+                     f'within {run["horizon"]:g} s is {expected:.1e} rad{met}')
+    return list(dict.fromkeys(found))
 
 
 def _first_time(recording, topic):

@@ -21,6 +21,7 @@ def summary(measured, spectrum=None, balance=None):
         'made_by': source.made_by,
         'version': source.version,
         'run': source.run,
+        'accuracy_missed': source.accuracy_missed,
         'rate': segment.rate,
         'energy': measured.energy.summary(),
         'angular_momentum_squared': measured.momentum.summary(),
@@ -79,6 +80,7 @@ def lines(found):
     """Return the short report, a list of lines."""
     timing = found['timing']
     text = [f'{title(found)}; {timing["ticks"]} ticks']
+    text += [f'  accuracy {line}' for line in found['accuracy_missed']]
     for name, label, unit in (
         ('energy', 'energy', 'J'),
         ('angular_momentum_squared', 'L^2', '(kg m^2/s)^2'),

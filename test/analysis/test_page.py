@@ -58,10 +58,20 @@ def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
     text = written.read_text(encoding='utf-8')
     assert text.index('class="verdict') < text.index('<canvas') < text.index('id="time0"') < text.index('<details>')
     assert '<b>Kept within each of 2 stretches:</b> energy' in text and 'none lost' in text
-    found = {'energy': {'largest_residual': 0.1, 'stretches': 1}, 'strikes': 0,
+    found = {'energy': {'largest_residual': 0.1, 'stretches': 1}, 'strikes': 0, 'accuracy_missed': [],
              'angular_momentum_squared': {'largest_residual': None, 'stretches': 0}, 'run': {}, 'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {}, 'commands': 0}
     said = page._verdict(found)
     assert 'verdict bad' in said and 'Not kept' in said and '2 lost' in said
+
+
+def test_no_button_of_a_figure_uploads_it(written):
+    """Every figure names its buttons; what Plotly would add by itself sends the figure away."""
+    own = re.sub(r'<script type="application/gzip".*?</script>', '',
+                 written.read_text(encoding='utf-8'), flags=re.DOTALL)
+    drawn = own.count('Plotly.newPlot(')
+    assert drawn == own.count('modeBarButtons: [') == own.count("plotlyServerURL: ''") > 0
+    assert set(re.findall(r"'(\w+)'", ''.join(re.findall(r'modeBarButtons: \[.*?\]\}', own, re.DOTALL)))) <= {
+        'toImage', 'orbitRotation', 'pan3d', 'resetCameraDefault3d', 'zoom2d', 'pan2d', 'resetScale2d'}
 
 
 def test_a_thinned_curve_keeps_its_extremes_and_its_holes():

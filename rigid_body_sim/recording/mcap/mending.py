@@ -32,7 +32,7 @@ from rigid_body_sim.recording.mcap.scan import (
     Unindexed,
     Whole,
 )
-from rigid_body_sim.recording.mcap.summary import read_metadata
+from rigid_body_sim.recording.mcap.summary import read_metadata, read_told
 from rigid_body_sim.recording.mcap.walk import HEADS, MESSAGE, heads, walk
 from rigid_body_sim.recording.mcap.writing import HEADER
 
@@ -120,19 +120,26 @@ def mend(stream, texts, beside, expected=None):
         end.metadata('rosbag2', texts(target, contents))
     end.append(contents.tail(end.position))
     os.fsync(target.fileno())
-    _verify(target, scan)
+    _verify(target, contents, scan)
     return Mended(contents, found)
 
 
-def _verify(stream, scan):
-    """Raise Damaged where a mended file does not hold what was found in the old one."""
+def _verify(stream, contents, scan):
+    """Raise Damaged where a mended file does not hold what was found in the old one.
+
+    Where only the tail was written, it alone is read back.
+    """
     try:
-        stream.seek(0)
-        again = Scan(stream)
-        good = again.whole and again.contents.counts == scan.contents.counts
+        if scan.in_place:
+            told = read_told(stream)
+            good = told is None or told.contents.counts == contents.counts
+        else:
+            stream.seek(0)
+            again = Scan(stream)
+            good = again.whole and again.contents.counts == scan.contents.counts
     except InvalidMagic:
         good = False
-    if not good:
+    if not good or contents.counts != scan.contents.counts:
         raise Damaged('damaged in a way that cannot be mended here')
 
 
