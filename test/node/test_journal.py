@@ -9,6 +9,7 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Trigger
 
+from rigid_body_sim.analysis.resimulate import resimulate
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -122,3 +123,19 @@ def act(simulation, entry):
             else:
                 {'cmd_impulse': simulation.impulse, 'cmd_wrench': simulation.hold}[one['topic']](one['force'], one['torque'], one['frame'])
     return simulation
+
+
+def test_topics_that_the_node_remapped_are_run_again_as_well(tmp_path, run_node_in):
+    with run_node_in(tmp_path, '-p', f'rate:={RATE}', '-r', 'angular_velocity:=lab/omega',
+                     '-r', 'angular_momentum_squared:=L2') as node:
+        poses = node.client.collect(PoseStamped, 'pose')
+        node.client.until(lambda: len(poses) > 20, what='ticks')
+        node.process.terminate()
+        assert node.process.wait(5.0) == 0
+    [path] = (tmp_path / 'recordings').iterdir()
+    [(_, _, comparison)] = resimulate(path)
+    assert comparison.topics['angular_velocity'] == '/lab/omega'
+    assert len(comparison.topics) == 4
+    assert comparison.parting is None
+    with Recording(path) as opened:
+        assert comparison.messages == 4 * len(opened.states())
