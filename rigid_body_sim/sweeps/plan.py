@@ -87,6 +87,8 @@ class Plan:
     template : Scene
         A run of the sweep that is valid; it has all its keys.
     template_run : int
+    choice : Choice
+        Of a method for the template.
     direct : dict of str to slice
         Keys that set places of the start and change nothing else of a scene that
         `starts_alone_differ`.
@@ -97,7 +99,8 @@ class Plan:
     Raises
     ------
     BadInput
-        All of TRIES runs, spread over the sweep, are refused, or an event does not exist.
+        All of TRIES runs, spread over the sweep, are refused, an event does not exist, or the
+        integrator cannot run the scene.
     """
 
     def __init__(self, spec, outputs=None):
@@ -107,18 +110,13 @@ class Plan:
             self.dims[RUN] = spec.runs
         self.horizon = float(spec.times[-1]) or HORIZON
         self.template, self.template_run = self._template()
+        self.choice = choose(self.template, spec.integrator, spec.accuracy, horizon=self.horizon)
         self.direct = _direct_places([*spec.vary, *spec.sample])
         self.slow = [key for key in (*spec.vary, *spec.sample) if key not in self.direct]
         self.wants = {one.kind for one in spec.keep}
         _check_events(spec.keep)
         self.outputs = outputs or {}
         self.variables = _variables(self)
-
-    @functools.cached_property
-    def choice(self):
-        """The Choice of a method for the template; the scenes of a group may differ from it."""
-        return choose(self.template, self.spec.integrator, self.spec.accuracy,
-                      horizon=self.horizon)
 
     @functools.cached_property
     def starts_alone_differ(self):
