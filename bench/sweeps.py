@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sweeps: what they cost over `ensemble`, on workers of Dask, in memory, and beside heyoka.
+
+    .venv/bin/python bench/sweeps.py [--only overhead dask heyoka] [--runs 1e8 --store FOLDER]
+
+`overhead` compares CPU seconds of all threads, which other work on the machine disturbs less than
+the clock; both sides make their starts. `--runs` sweeps so many runs of a racket in closed form
+into a store and tells the time and the largest memory of this process.
+"""
+
+import argparse
+import os
+import pathlib
+import resource
+import shutil
+import statistics
+import tempfile
+import time
+
+import numpy as np
+
+from rigid_body_sim import ensemble, load_scene, parse_scene, sweep
+
+REPEATS = 9
+KEYS = ('initial.angular_velocity.0', 'initial.angular_velocity.2')
+CASE = 'top 1'
+PARTS = ('overhead', 'dask', 'heyoka')
+
+
+def closed(scene, count, times, keep):
+    """Return the spec of a square grid of starts, and the same by ensemble."""
+    wide = round(count ** 0.5)
+    values = np.linspace(0.01, 1.0, wide)
+    spec = {'scene': scene, 'vary': dict.fromkeys(KEYS, {'linspace': [0.01, 1.0, wide]}), 'times': times, 'keep': keep}
+
+    def by_ensemble():
+        starts = np.tile(scene.initial.vector, (wide * wide, 1))
+        first, third = np.meshgrid(values, values, indexing='ij')
+        starts[:, 5], starts[:, 7] = first.ravel(), third.ravel()
+        return ensemble(scene, starts, times)
+    return lambda: sweep(spec), by_ensemble
+
+
+def overhead():
+    """Print CPU seconds of sweep over those of ensemble."""
+    scene = load_scene('tennis_racket')
+    print('in closed form, CPU seconds: sweep, ensemble, ratio of medians (least)')
+    for count, times, keep in ((100_000, [10.0], ['final']), (100_000, np.linspace(0.0, 20.0, 50).tolist(), ['states']),
+                               (1_000_000, [10.0], ['final'])):
+        both = closed(scene, count, times, keep)
+        spent = [[], []]
+        for act in both:
+            act()
+        for _ in range(REPEATS):
+            for values, act in zip(spent, both, strict=True):
+                begin = time.process_time()
+                act()
+                values.append(time.process_time() - begin)
+        middle = [statistics.median(values) for values in spent]
+        print(f'  {count:9} runs, {len(times):2} times: {middle[0]:.3f} {middle[1]:.3f} s, {middle[0] / middle[1]:.3f} '
+              f'({min(spent[0]) / min(spent[1]):.3f})')
+
+
+def dask():
+    """Print the rate of two workers of Dask over that of one, and what a block costs."""
+    import distributed
+    scene = load_scene('tennis_racket')
+    wide = 3000
+    spec = {'scene': scene, 'vary': dict.fromkeys(KEYS, {'linspace': [0.01, 1.0, wide]}), 'times': [10.0], 'keep': [{'minimum': 'cos_tilt'}]}
+    took = {}
+    for workers in (1, 2):
+        with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, \
+                distributed.Client(cluster) as client, tempfile.TemporaryDirectory() as folder:
+            sweep(spec | {'vary': {KEYS[0]: [0.1, 0.2]}}, client)
+            begin = time.perf_counter()
+            sweep(spec, client, pathlib.Path(folder) / 'maps.zarr')
+            took[workers] = time.perf_counter() - begin
+            if workers == 1:
+                executor = client.get_executor(pure=False)
+                begin = time.perf_counter()
+                for future in [executor.submit(int, k) for k in range(200)]:
+                    future.result()
+                a_task = (time.perf_counter() - begin) / 200
+    print(f'{wide * wide} runs into a Zarr store: one worker {took[1]:.1f} s, two {took[2]:.1f} s, {took[1] / took[2]:.2f} times; '
+          f'an empty task {1e3 * a_task:.2f} ms')
+
+
+def beside_heyoka():
+    """Print CPU seconds of a scene without a closed form: a sweep by taylor, and heyoka's ensemble_propagate."""
+    import heyoka
+    from smooth_scenes import CASES, heyoka_system, in_frame
+    count, duration = 512, 20.0
+    scene = parse_scene(f'scene: bench\n{CASES[CASE]}')
+    rate = float(scene.initial.angular_velocity[2])
+    spec = {'scene': scene, 'vary': {KEYS[1]: {'linspace': [0.9 * rate, 1.1 * rate, count]}}, 'times': [duration], 'keep': ['final'],
+            'integrator': 'taylor', 'accuracy': 1e-9}
+    starts = np.tile(scene.initial.vector, (count, 1))
+    starts[:, 7] = np.linspace(0.9 * rate, 1.1 * rate, count)
+    in_frames = [in_frame(scene, start) for start in starts]
+    solver = heyoka.taylor_adaptive(heyoka_system(scene), np.zeros(7), tol=1e-13)
+
+    def theirs():
+        def start(copy, k):
+            copy.time = 0.0
+            copy.state[:] = in_frames[k]
+            return copy
+        return heyoka.ensemble_propagate_until(solver, duration, count, start)
+
+    spent = {'sweep': [], 'heyoka': []}
+    for name, act in (('sweep', lambda: sweep(spec)), ('heyoka', theirs)) * (1 + REPEATS):
+        begin, clock = time.process_time(), time.perf_counter()
+        act()
+        spent[name].append((time.process_time() - begin, time.perf_counter() - clock))
+    for name, values in spent.items():
+        cpu, clock = (statistics.median(column) for column in zip(*values[1:], strict=True))
+        print(f'  {name:8} {count} runs of {CASE} for {duration:g} s: {cpu:.3f} CPU s, {clock:.3f} s by the clock')
+
+
+def many(runs, folder):
+    """Sweep a grid of so many runs into a store; print time, memory, size."""
+    wide = round(runs ** 0.5)
+    store = pathlib.Path(folder) / 'many.zarr'
+    shutil.rmtree(store, ignore_errors=True)
+    spec = {'scene': 'tennis_racket', 'vary': dict.fromkeys(KEYS, {'linspace': [0.001, 1.0, wide]}), 'times': 20.0, 'keep': [{'minimum': 'cos_tilt'}]}
+    begin, cpu = time.perf_counter(), time.process_time()
+    sweep(spec, store=store, progress=True)
+    size = sum(path.stat().st_size for path in store.rglob('*') if path.is_file())
+    print(f'{wide * wide} runs in closed form: {time.perf_counter() - begin:.0f} s ({time.process_time() - cpu:.0f} CPU s, '
+          f'{os.cpu_count()} cores), at most {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.2f} GB of memory, '
+          f'{size / 1e9:.2f} GB on disk')
+
+
+def main():
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--only', nargs='+', choices=PARTS, default=list(PARTS))
+    parser.add_argument('--runs', type=float, default=0.0, help='of one large sweep')
+    parser.add_argument('--store', default=tempfile.gettempdir(), help='folder for its store')
+    options = parser.parse_args()
+    if options.runs:
+        many(options.runs, options.store)
+        return
+    for name in options.only:
+        {'overhead': overhead, 'dask': dask, 'heyoka': beside_heyoka}[name]()
+
+
+if __name__ == '__main__':
+    main()
