@@ -20,7 +20,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run view test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
+.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -30,6 +30,11 @@ run: .venv/run.stamp ## the node on SCENE (tennis_racket) at RATE (1000) Hz for 
 
 view: .venv/run.stamp ## a page in which SCENE (tennis_racket) moves and is pushed with the mouse
 	@.venv/bin/python -m rigid_body_sim view $(SCENE)
+
+sweep-demo: .venv/run.stamp ## a stability map on a Dask cluster of two worker processes: the sleeping top, to .cache/sleeping_top.zarr
+	@mkdir -p .cache
+	@rm -rf .cache/sleeping_top.zarr
+	@.venv/bin/python examples/sweep_on_dask.py config/sweeps/sleeping_top.yaml .cache/sleeping_top.zarr
 
 test: lint ## everything: ruff, colcon build and test of the package, pytest
 	@$(MAKE) --no-print-directory --jobs 2 --output-sync=none package unit
@@ -71,13 +76,14 @@ test-kilted: .venv-kilted/stamp ## the tests of the node on ROS 2 Kilted
 figures: .venv/run.stamp ## figures and tables of README and docs anew
 	.venv/bin/python docs/make_figures.py
 
-bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading
+bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading; sweeps
 	.venv/bin/python bench/closed_forms.py
 	.venv/bin/python bench/energy.py
 	.venv/bin/python bench/instructions.py
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
 	.venv/bin/python bench/ensembles.py
+	.venv/bin/python bench/sweeps.py --only overhead dask
 
 bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; cost of commands; parts of a tick at each accuracy
 	.venv/bin/python bench/node.py

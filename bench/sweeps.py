@@ -31,7 +31,7 @@ def closed(scene, count, times, keep):
     """Return the spec of a square grid of starts, and the same by ensemble."""
     wide = round(count ** 0.5)
     values = np.linspace(0.01, 1.0, wide)
-    spec = {'scene': scene, 'vary': dict.fromkeys(KEYS, {'linspace': [0.01, 1.0, wide]}), 'times': times, 'keep': keep}
+    spec = {'scene': scene, 'vary': {key: {'linspace': [0.01, 1.0, wide]} for key in KEYS}, 'times': times, 'keep': keep}
 
     def by_ensemble():
         starts = np.tile(scene.initial.vector, (wide * wide, 1))
@@ -66,7 +66,7 @@ def dask():
     import distributed
     scene = load_scene('tennis_racket')
     wide = 3000
-    spec = {'scene': scene, 'vary': dict.fromkeys(KEYS, {'linspace': [0.01, 1.0, wide]}), 'times': [10.0], 'keep': [{'minimum': 'cos_tilt'}]}
+    spec = {'scene': scene, 'vary': {key: {'linspace': [0.01, 1.0, wide]} for key in KEYS}, 'times': [10.0], 'keep': [{'minimum': 'cos_tilt'}]}
     took = {}
     for workers in (1, 2):
         with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, \
@@ -121,7 +121,7 @@ def many(runs, folder):
     wide = round(runs ** 0.5)
     store = pathlib.Path(folder) / 'many.zarr'
     shutil.rmtree(store, ignore_errors=True)
-    spec = {'scene': 'tennis_racket', 'vary': dict.fromkeys(KEYS, {'linspace': [0.001, 1.0, wide]}), 'times': 20.0, 'keep': [{'minimum': 'cos_tilt'}]}
+    spec = {'scene': 'tennis_racket', 'vary': {key: {'linspace': [0.001, 1.0, wide]} for key in KEYS}, 'times': 20.0, 'keep': [{'minimum': 'cos_tilt'}]}
     begin, cpu = time.perf_counter(), time.process_time()
     sweep(spec, store=store, progress=True)
     size = sum(path.stat().st_size for path in store.rglob('*') if path.is_file())

@@ -151,8 +151,8 @@ class Watcher:
         Parameters
         ----------
         until, tick : float
-            s; there are at most LOOKS_A_TICK looks in a tick, and MOST_LOOKS in all. Of a body that
-            turns over half a turn between two looks, events are passed over.
+            s; there are at most LOOKS_A_TICK looks in a tick, and MOST_LOOKS in all. Of a body
+            that turns over half a turn between two looks, events are passed over.
         """
         found = []
         least = max(tick / LOOKS_A_TICK, (until - self._time) / MOST_LOOKS, 4.0 * math.ulp(until))

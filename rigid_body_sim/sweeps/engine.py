@@ -15,9 +15,12 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.sweeps.runs import compute
 
 BLOCK_BYTES = 2**25
-"""Largest size of the states of a block, and of its results."""
+"""Largest size of the results of a block, where it has more than one run."""
 SECONDS = 1.0
-"""Of work in a block that goes to another process or into a store, at most."""
+"""Of work in a block that goes to another process or into a store."""
+SECONDS_TO_LEAD = 0.005
+"""What a block costs the process that leads the sweep, and the scheduler: blocks are longer where
+so many workers ask that it would be the limit."""
 PIECES = 8
 """Blocks for each worker, where there is enough work: the last one to finish is short then."""
 FIRST_PIECE = 8192
@@ -168,7 +171,7 @@ def seconds_a_run(plan, patience=LOOK):
     first = max(0, min(plan.template_run, size - 1))
     compute(plan, first, first + 1)
     spent, count = 0.0, 1
-    most = max(1, min(size, BLOCK_BYTES // plan.working_bytes))
+    most = max(1, min(size, BLOCK_BYTES // plan.bytes))
     while True:
         first = max(0, min((size - count) // 2, size - count))
         begin = time.perf_counter()
@@ -183,8 +186,8 @@ def seconds_a_run(plan, patience=LOOK):
 def block_runs(plan, seconds, workers):
     """Return how many runs a block of a store has, where a run takes `seconds`."""
     whole = seconds * plan.spec.size
-    target = min(SECONDS, max(0.05, whole / (PIECES * workers)))
-    return max(1, min(int(target / seconds), BLOCK_BYTES // plan.working_bytes))
+    target = min(max(SECONDS, SECONDS_TO_LEAD * workers), max(0.05, whole / (PIECES * workers)))
+    return max(1, min(int(target / seconds), BLOCK_BYTES // plan.bytes))
 
 
 def pieces_in_memory(plan, workers, rate):
@@ -198,7 +201,7 @@ def pieces_in_memory(plan, workers, rate):
         () -> runs per second of a worker, None while unknown.
     """
     size, first = plan.spec.size, 0
-    most = max(1, BLOCK_BYTES // plan.working_bytes)
+    most = max(1, BLOCK_BYTES // plan.bytes)
     for number in itertools.count():
         if first >= size:
             return

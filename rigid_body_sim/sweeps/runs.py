@@ -37,6 +37,8 @@ from rigid_body_sim.sweeps.quantities import QUANTITIES, diagnosis
 
 RATE = 1000.0
 """Ticks per second of the runs that need a Simulation: of scenes with strikes."""
+PIECE_BYTES = 2**23
+"""Size of the states that are computed before something is taken from them."""
 ALONE = 4
 """Where a method gives up, runs are taken in halves down to so many, then one by one."""
 TOLERATED = 2.0 * np.finfo(float).eps
@@ -85,7 +87,7 @@ class Block:
     arrays : dict of str to array (n, ...)
         By the names of the plan's variables.
     values : dict of str to array (n, ...) or list
-        Of the keys.
+        Of the keys; empty where nobody asked for them.
     texts : dict of int to str
         Number of a run that failed -> why.
     """
@@ -118,7 +120,7 @@ def room(plan, count):
     return arrays, states
 
 
-def compute(plan, first, stop, into=None):
+def compute(plan, first, stop, into=None, values=False):
     """Return the Block of the runs from `first` up to `stop`.
 
     Parameters
@@ -127,12 +129,19 @@ def compute(plan, first, stop, into=None):
     first, stop : int
     into : tuple, optional
         Where the results go: what :func:`room` returns.
+    values : bool
+        Whether the Block is to have the values of the keys too.
     """
     arrays, states = into or room(plan, stop - first)
-    block = Block(first, stop, arrays, plan.values(first, stop), {})
-    with one_core():
-        _Work(plan, block, states).run()
-    return block
+    texts, step = {}, max(1, PIECE_BYTES // plan.working_bytes)
+    for begin in range(first, stop, step):
+        end = min(begin + step, stop)
+        at = slice(begin - first, end - first)
+        block = Block(begin, end, {name: array[at] for name, array in arrays.items()},
+                      plan.values(begin, end), texts)
+        with one_core():
+            _Work(plan, block, None if states is None else states[at]).run()
+    return Block(first, stop, arrays, plan.values(first, stop) if values else {}, texts)
 
 
 _OWN = threading.local()

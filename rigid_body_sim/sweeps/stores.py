@@ -66,6 +66,13 @@ class Store:
     Parameters
     ----------
     path : pathlib.Path
+
+    Attributes
+    ----------
+    LOCK : str
+        Place of the lock in the store.
+    ROWS : bool
+        Whether the values of the keys stand beside the results of each run.
     """
 
     def __init__(self, path):
@@ -137,7 +144,7 @@ class Store:
 class ZarrStore(Store):
     """A Zarr 3 folder. xarray.open_zarr(path, consolidated=False) opens it."""
 
-    LOCK = 'progress/sweep.lock'
+    LOCK, ROWS = 'progress/sweep.lock', False
 
     def __init__(self, path):
         need('xarray', 'zarr')
@@ -227,7 +234,7 @@ class ZarrStore(Store):
 class ParquetStore(Store):
     """A folder of Parquet files, one for each block, with a row for each run."""
 
-    ABOUT, LOCK = '_sweep.json', '_sweep.lock'
+    ABOUT, LOCK, ROWS = '_sweep.json', '_sweep.lock', True
 
     def __init__(self, path):
         need('xarray', 'pyarrow')

@@ -103,10 +103,9 @@ def work(task, first, stop, number):
 def do(plan, first, stop, number, store=None, layout=None, into=None):
     """Compute the runs from `first` up to `stop` here, and write them where there is a store."""
     begin = time.perf_counter()
-    block = compute(plan, first, stop, into)
+    block = compute(plan, first, stop, into, store is not None and store.ROWS)
     if store is not None:
         store.write(layout, block, number)
     failed = int((block.arrays['status'] != DONE).sum())
-    block.values = {}
     return Outcome(first, stop, number, time.perf_counter() - begin, failed,
                    None if store is not None else block)
