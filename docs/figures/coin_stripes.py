@@ -19,10 +19,10 @@ def draw():
     predicted = np.cos(2.0 * np.outer(speed, spin) / G)
     figure, axes = panels(2)
     axes[0].pcolormesh(speed, spin, np.sign(side).T, shading='nearest', cmap='cividis', rasterized=True)
-    for k in range(12):
-        axes[0].plot(speed, (k + 0.5) * np.pi * G / (2.0 * speed), color='#D55E00', linewidth=0.8, label='2 ω u/g = (n + ½) π' if k == 0 else None)
+    for k in range(8):
+        axes[0].plot(speed, (k + 0.5) * np.pi * G / (2.0 * speed), color='#D55E00', linewidth=0.8)
     axes[0].set_ylim(spin[0], spin[-1])
-    label(axes[0], 'speed of the toss u (m/s)', 'spin ω (rad/s)', labelcolor='white', loc='upper right')
+    label(axes[0], 'speed of the toss u (m/s)', 'spin ω (rad/s)', legend=False)
     axes[1].pcolormesh(speed, spin, np.log10(np.maximum(np.abs(side - predicted), 1e-17)).T, shading='nearest', cmap='viridis', rasterized=True)
     figure.colorbar(axes[1].collections[0], ax=axes[1], label='log$_{10}$ of |cos tilt − cos(2 ω u/g)|')
     label(axes[1], 'speed of the toss u (m/s)', 'spin ω (rad/s)', legend=False)

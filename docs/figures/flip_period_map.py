@@ -24,10 +24,13 @@ def draw():
     axes[0].set_yscale('log')
     label(axes[0], 'middle moment I$_2$ (kg m²); I$_1$ = 2, I$_3$ = 3', 'ω$_1$ at the start (rad/s)', legend=False)
     error = np.abs(measured / predicted - 1.0)
+    # L^2 - 2 E I2 decides the period; where it is round-off of its terms no digit of the period is left
+    terms = 3.0 * (3.0 - middle) * 0.01**2, 2.0 * np.outer(seed**2, middle - 2.0)
+    known = (np.abs(terms[0] - terms[1]) > 1e-12 * terms[0]).T
     shown = axes[1].pcolormesh(middle, seed, np.log10(np.maximum(error, 1e-17)).T, shading='nearest', cmap='cividis', rasterized=True)
     figure.colorbar(shown, ax=axes[1], label='log$_{10}$ of the relative distance\nfrom 2 K(k)/λ')
     axes[1].set_yscale('log')
     label(axes[1], 'middle moment I$_2$ (kg m²)', 'ω$_1$ at the start (rad/s)', legend=False)
     print(f'{SPEC}: {measured.size} runs, {np.isfinite(error).sum()} with two flips, largest relative distance from the formula '
-          f'{np.nanmax(error):.1e}, median {np.nanmedian(error):.1e}')
+          f'{np.nanmax(error[known]):.1e}, median {np.nanmedian(error):.1e}; {(~known).sum()} on the separatrix to round-off')
     return figure
