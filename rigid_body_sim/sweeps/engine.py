@@ -23,8 +23,9 @@ SECONDS_TO_LEAD = 0.005
 so many workers ask that it would be the limit."""
 PIECES = 8
 """Blocks for each worker, where there is enough work: the last one to finish is short then."""
-FIRST_PIECE = 8192
-"""Runs of the first pieces, from which is learned how long they take."""
+FIRST_PIECE, FIRST_QUICK = 16, 2**15
+"""Runs of the first pieces, from which is learned how long they take: any, and those that are
+states in closed form and no more."""
 PATIENCE = 5.0
 """Between two looks at the workers, s."""
 LOOK = 0.2    # s, within which a forecast is measured
@@ -201,12 +202,13 @@ def pieces_in_memory(plan, workers, rate):
         () -> runs per second of a worker, None while unknown.
     """
     size, first = plan.spec.size, 0
+    unknown = FIRST_QUICK if plan.is_quick else FIRST_PIECE
     most = max(1, BLOCK_BYTES // plan.bytes)
     for number in itertools.count():
         if first >= size:
             return
         known = rate()
-        count = FIRST_PIECE if known is None else int(known * SECONDS)
+        count = unknown if known is None else int(known * SECONDS)
         fair = -(-2 * size // (PIECES * workers.count))
         stop = min(size, first + max(1, min(count, fair, most)))
         yield first, stop, number

@@ -124,6 +124,12 @@ class Plan:
         return starts_alone_differ(self.template, self.spec.integrator)
 
     @property
+    def is_quick(self):
+        """Whether all runs are states in closed form of one scene, and no more is asked."""
+        return (self.choice.method == 'exact' and not self.slow and self.starts_alone_differ
+                and self.wants <= {'final', 'states', 'minimum', 'maximum'})
+
+    @property
     def bytes(self):
         """Bytes of the result of one run."""
         return sum(one.bytes for one in self.variables)
@@ -189,13 +195,17 @@ def starts_alone_differ(scene, integrator):
     """Return whether runs of a scene that differ in direct keys differ in their starts alone.
 
     Not so where the constraint makes the start of other numbers, an axis without moment refuses a
-    spin, or `auto` asks the start which method is best.
+    spin, or the choice of a method looks at the start.
     """
     constraint = scene.constraint
     if constraint.kind not in ('free', 'pivot') or \
             min(constraint.inertia(scene.body).moments) <= 0.0:
         return False
-    return integrator != 'auto' or absorbing_motion(scene) is not None
+    if integrator in ('auto', 'exact'):
+        motion = absorbing_motion(scene)
+        return motion is not None and motion.takes is None
+    # whether internal dissipation is stiff, the start decides
+    return scene.effect('internal_dissipation') is None
 
 
 def _plain(value):
