@@ -8,6 +8,7 @@ from rigid_body_sim import sweep
 
 SPEC = 'config/sweeps/coin.yaml'
 G = 9.81
+SHOWN = 40.0  # rad/s
 
 
 def draw():
@@ -18,15 +19,37 @@ def draw():
     side = found['side'].values
     predicted = np.cos(2.0 * np.outer(speed, spin) / G)
     figure, axes = panels(2)
-    axes[0].pcolormesh(speed, spin, np.sign(side).T, shading='nearest', cmap='cividis', rasterized=True)
+    axes[0].pcolormesh(
+        speed, spin, np.sign(side).T, shading='nearest', cmap='cividis', rasterized=True
+    )
     for k in range(8):
         axes[0].plot(speed, (k + 0.5) * np.pi * G / (2.0 * speed), color='#D55E00', linewidth=0.8)
     axes[0].set_ylim(spin[0], spin[-1])
     label(axes[0], 'speed of the toss u (m/s)', 'spin ω (rad/s)', legend=False)
-    axes[1].pcolormesh(speed, spin, np.log10(np.maximum(np.abs(side - predicted), 1e-17)).T, shading='nearest', cmap='viridis', rasterized=True)
-    figure.colorbar(axes[1].collections[0], ax=axes[1], label='log$_{10}$ of |cos tilt − cos(2 ω u/g)|')
-    label(axes[1], 'speed of the toss u (m/s)', 'spin ω (rad/s)', legend=False)
+    row = int(np.argmin(np.abs(spin - SHOWN)))
+    axes[1].plot(speed, predicted[:, row], color='#777777', linewidth=1.0, label='cos(2 ω u/g)')
+    axes[1].plot(
+        speed,
+        side[:, row],
+        color='#0072B2',
+        marker='o',
+        markersize=2.5,
+        linestyle='',
+        label='runs',
+    )
+    label(
+        axes[1],
+        f'speed of the toss u (m/s), ω = {spin[row]:.3g} rad/s',
+        'cosine of the tilt when caught',
+        ncols=2,
+        loc='lower center',
+        bbox_to_anchor=(0.5, 1.0),
+    )
     clear = np.abs(predicted) > 1e-12
-    print(f'{SPEC}: {side.size} runs; heads in {np.mean(side > 0.0):.4f} of them; the side differs from the formula in '
-          f'{int((np.sign(side) != np.sign(predicted))[clear].sum())}; largest difference of the cosine {np.abs(side - predicted).max():.1e}')
+    other = int((np.sign(side) != np.sign(predicted))[clear].sum())
+    print(
+        f'{SPEC}: {side.size} runs; heads in {np.mean(side > 0.0):.4f} of them; the side differs '
+        f'from the formula in {other}; largest difference of the cosine '
+        f'{np.abs(side - predicted).max():.1e}'
+    )
     return figure

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sweeps: each run has its own bits, whoever computes it; what fails is told; what is wrong is refused."""
+"""Each run has its own bits, whoever computes it; what fails is told; what is wrong is refused."""
 
 import concurrent.futures
 import json
@@ -156,8 +156,9 @@ def side(run):
     if run.values['initial.angular_velocity.0'] > 0.5:
         raise ZeroDivisionError('too fast')
     [state] = run.at([2.0])
+    [alone] = run.simulation.states([2.0])
     return {'height': state.position[2], 'turn': state.orientation,
-            'same': float(state.vector.tobytes() == run.simulation.states([2.0])[0].vector.tobytes())}
+            'same': float(state.vector.tobytes() == alone.vector.tobytes())}
 
 
 def test_function_of_the_users_own(tmp_path):
@@ -168,7 +169,8 @@ def test_function_of_the_users_own(tmp_path):
     assert found['status'].values.tolist() == [0, 0, 3]
     assert 'ZeroDivisionError: too fast' in str(found['status_text'].values[2])
     assert np.isnan(found['turn'].values[2]).all()
-    (tmp_path / 'mine.py').write_text('def speed(run):\n    return run.states.angular_velocity[0]\n')
+    (tmp_path / 'mine.py').write_text(
+        'def speed(run):\n    return run.states.angular_velocity[0]\n')
     (tmp_path / 'spec.yaml').write_text(json.dumps(
         spec | {'keep': [{'function': 'mine.py:speed'}]}))
     assert sweep(tmp_path / 'spec.yaml')['speed'].values[1].tolist() == [0.4, 5.0, 0.01]
@@ -176,8 +178,8 @@ def test_function_of_the_users_own(tmp_path):
 
 def test_strikes_are_simulated():
     heights = [-0.01, 0.02]
-    found = sweep({'scene': 'billiard_low', 'vary': {'strike.height': heights}, 'times': [0.1, 1.0],
-                   'keep': ['states', {'first': 'rolling began'}, 'residuals']})
+    found = sweep({'scene': 'billiard_low', 'vary': {'strike.height': heights},
+                   'times': [0.1, 1.0], 'keep': ['states', {'first': 'rolling began'}, 'residuals']})
     for k, height in enumerate(heights):
         alone = Simulation('billiard_low', overrides={'strike.height': height}, horizon=1.0)
         assert found['velocity'].values[k].tobytes() == alone.states([0.1, 1.0]).velocity.tobytes()
@@ -224,7 +226,8 @@ def test_samples_depend_on_seed_key_and_run_alone():
     ({'vary': {}}, 'neither vary nor sample'),
 ])
 def test_wrong_specs_are_refused(change, line):
-    spec = {'scene': 'tennis_racket', 'vary': {'body.mass': [1.0, 2.0]}, 'keep': ['final'], **change}
+    spec = {'scene': 'tennis_racket', 'vary': {'body.mass': [1.0, 2.0]}, 'keep': ['final']}
+    spec |= change
     with pytest.raises(BadInput) as told:
         sweep(spec)
     assert line in str(told.value) and '\n' not in str(told.value)
@@ -288,7 +291,8 @@ def test_full_disk_is_one_line_and_the_sweep_goes_on(tmp_path):
     import resource
     spec, store = tmp_path / 'spec.yaml', tmp_path / 'maps.zarr'
     spec.write_text(json.dumps({
-        'scene': 'tennis_racket', 'vary': {'initial.angular_velocity.0': {'linspace': [0, 1, 4000]}},
+        'scene': 'tennis_racket',
+        'vary': {'initial.angular_velocity.0': {'linspace': [0, 1, 4000]}},
         'times': 1.0, 'keep': ['final']}))
     full = command(spec, '--output', store, preexec_fn=lambda: resource.setrlimit(
         resource.RLIMIT_FSIZE, (20_000, 20_000)))
