@@ -73,8 +73,8 @@ def overhead():
                 values.append(time.process_time() - begin)
         middle = [statistics.median(values) for values in spent]
         print(
-            f'  {count:9} runs, {len(times):2} times: {middle[0]:.3f} {middle[1]:.3f} s, {middle[0] / middle[1]:.3f} '
-            f'({min(spent[0]) / min(spent[1]):.3f})'
+            f'  {count:9} runs, {len(times):2} times: {middle[0]:.3f} {middle[1]:.3f} s, '
+            f'{middle[0] / middle[1]:.3f} ({min(spent[0]) / min(spent[1]):.3f})'
         )
 
 

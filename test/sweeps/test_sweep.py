@@ -178,8 +178,9 @@ def test_function_of_the_users_own(tmp_path):
 
 def test_strikes_are_simulated():
     heights = [-0.01, 0.02]
+    keep = ['states', {'first': 'rolling began'}, 'residuals']
     found = sweep({'scene': 'billiard_low', 'vary': {'strike.height': heights},
-                   'times': [0.1, 1.0], 'keep': ['states', {'first': 'rolling began'}, 'residuals']})
+                   'times': [0.1, 1.0], 'keep': keep})
     for k, height in enumerate(heights):
         alone = Simulation('billiard_low', overrides={'strike.height': height}, horizon=1.0)
         assert found['velocity'].values[k].tobytes() == alone.states([0.1, 1.0]).velocity.tobytes()
