@@ -8,7 +8,7 @@ adds an effect step by step.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol, Self
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -149,7 +149,7 @@ class Effect(Protocol):
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
-                   where: str) -> Self:
+                   where: str) -> 'Effect':
         """Return the effect of its settings in a scene file.
 
         Parameters

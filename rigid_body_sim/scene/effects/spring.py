@@ -43,8 +43,8 @@ class Spring(Effect):
                    where: str) -> Self:
         """Return the effect of its settings in a scene file."""
         k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
-        at = tuple(map(float, settings['at']))
-        body_at = vectors.constant(at)
+        x, y, z = map(float, settings['at'])
+        body_at = vectors.constant((x, y, z))
         d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(body_at)),
                                vectors.constant(settings['anchor']))
         carried = vectors.to_world(vectors.cross(vectors.named(RATES), body_at))
@@ -56,7 +56,7 @@ class Spring(Effect):
             along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
             v = tuple(tree.times(along, part) for part in d)
         damper = tuple(tree.times(tree.number(-c), part) for part in v) if c else ()
-        return cls(tree.times(tree.number(0.5 * k), square), damper, at)
+        return cls(tree.times(tree.number(0.5 * k), square), damper, (x, y, z))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the pull and the damping."""

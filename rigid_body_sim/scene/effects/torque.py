@@ -7,7 +7,7 @@ These are Euler's equations with a torque Gamma.
 import bisect
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
@@ -43,7 +43,7 @@ class Torque(Effect):
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
-                   where: str) -> Self | ExpressedTorque:
+                   where: str) -> Effect:
         """Return the effect of its settings in a scene file."""
         frame = settings.get('frame', 'body')
         if (('value' in settings) == ('values' in settings)
