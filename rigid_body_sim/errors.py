@@ -40,11 +40,18 @@ def printable(text):
 
 
 def nearest(word, known):
-    """Return the one of some known words that `word` misspells, or None if it is another word."""
-    word = str(word)
+    """Return the one of some known words that `word` misspells or shortens, or None.
+
+    `gravty` is a misspelling of `gravity`, and `racket` is short for `tennis_racket`;
+    `gravity_gradient` is another word.
+    """
+    word, known = str(word), list(known)
     allowed = min(MOST_SLIPS, max(1, len(word) // LETTERS_TO_A_SLIP))
     slips, best = min(((_slips(word, one), one) for one in known), default=(len(word), None))
-    return best if slips <= allowed else None
+    if slips <= allowed:
+        return best
+    longer = [one for one in known if f'_{word}_' in f'_{one}_']
+    return longer[0] if len(longer) == 1 else None
 
 
 def _slips(one, other):

@@ -112,7 +112,8 @@ def test_an_effect_that_does_not_exist_is_not_taken_for_a_misspelling(effect):
     [
         ('gravty', 'gravity'),
         ('tourqe', 'torque'),
-        ('darg', 'drag'),
+        ('darg', 'drag'), ('dissipation', 'internal_dissipation'),
+
         ('Gravity', 'gravity'),
         ('sliding-friction', 'sliding_friction'),
     ],
