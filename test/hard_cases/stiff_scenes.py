@@ -5,6 +5,7 @@
 """
 
 import json
+import pathlib
 import sys
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from rigid_body_sim import Simulation
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 
+DEPARTURES = pathlib.Path(__file__).resolve().parents[1] / 'data' / 'departures.json'
 SLIM = {
     'body': {'mass': 5.911208944562758, 'center_of_mass': [0, 0, 0.2],
              'inertia': [0.02721572901998965, 0.027215731741562554, 4.009956990958362e-07]},
@@ -76,6 +78,23 @@ def needle():
     return followed(scene('free', body={'mass': 1.0, 'inertia': [0.02, 0.02, 1e-100]},
                           effects=[{'drag': {'angular': 0.001}}],
                           initial={'angular_velocity': [1, 2, 3]}), 1.0)
+
+
+def departures():
+    """Run the bodies of departures.json at two accuracies."""
+    found = {}
+    for name, case in json.loads(DEPARTURES.read_text()).items():
+        body = scene('free', body={'mass': 1.0, 'inertia': case['moments']},
+                     effects=[{'internal_dissipation': {'coefficient': case['coefficient']}}],
+                     initial={'angular_velocity': case['angular_velocity']})
+        for accuracy in (1e-6, 1e-12):
+            simulation = Simulation(body, accuracy=accuracy, horizon=case['time'])
+            state = simulation.states([case['time']]).vector[0]
+            found[f'{name} {accuracy}'] = {
+                'expected': simulation.choice.expected_error,
+                'error': 2.0 * np.linalg.norm(state[1:5] - case['orientation_after']),
+                'rate': np.abs(state[5:8] - case['angular_velocity_after']).max()}
+    return found
 
 
 if __name__ == '__main__':
