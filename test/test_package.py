@@ -30,8 +30,8 @@ KEYS = {
         'rcl_interfaces', 'rclpy', 'rosgraph_msgs',
         'sensor_msgs', 'std_msgs', 'std_srvs', 'tf2_msgs', 'visualization_msgs')},
 }
-OPTIONAL = {'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly', 'pyarrow', 'rosbags', 'viser',
-            'websockets', 'xarray', 'zstandard'}
+OPTIONAL = {'distributed', 'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly', 'pyarrow',
+            'rosbags', 'viser', 'websockets', 'xarray', 'zarr', 'zstandard'}
 COMES_WITH = {'llvmlite': 'numba', 'websockets': 'viser'}
 # import names of what work_precision --peers and hard_cases --peers measure; requirements/peers.in
 # lists them
