@@ -5,8 +5,10 @@ import concurrent.futures
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ import pytest
 pytest.importorskip('xarray')
 
 from rigid_body_sim import BadInput, Simulation, sweep
+from rigid_body_sim.compilation.threads import on_all_cores, one_core
 from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps import stores, work
 from rigid_body_sim.sweeps.draws import Sampled
@@ -329,3 +332,26 @@ def test_plan_finds_a_run_that_is_valid():
     plan = Plan(specs.read({'scene': 'tennis_racket', 'keep': ['final'], 'vary': {
         'body.inertia.1': {'linspace': [0.1, 3.0, 30]}}}))
     assert plan.template.body.about_center.moments[1] >= 2.0
+
+
+@pytest.mark.parametrize('path', sorted((ROOT / 'config' / 'sweeps').glob('*.yaml')),
+                         ids=lambda path: path.stem)
+def test_shipped_specs_are_good(path):
+    plan = prepared(path)
+    first = plan.template_run
+    assert compute(plan, first, first + 1).arrays['status'] == 0
+    assert f'{path.stem}.yaml' in ''.join(figure.read_text() for figure in
+                                          (ROOT / 'docs' / 'figures').glob('*.py'))
+
+
+def test_links_of_the_page_lead_somewhere():
+    page = ROOT / 'docs' / 'sweeps.md'
+    for target in re.findall(r'\]\(([^)#:]+)\)', page.read_text()):
+        assert (page.parent / target).exists(), target
+
+
+def test_work_on_one_core_starts_no_thread():
+    seen = []
+    with one_core():
+        on_all_cores(lambda part: seen.append((threading.get_ident(), part)), 1000)
+    assert seen == [(threading.get_ident(), slice(0, 1000))]
