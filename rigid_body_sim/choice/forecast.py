@@ -150,9 +150,21 @@ def conditioning(scene, prototype, times, states):
         found = np.where(small & (found == math.inf), change / many, found)
         if small.all():
             break
-    found = np.where(found == math.inf, change, found)
-    # each strike starts the motion anew, with roundings of its own
+    return np.where(found == math.inf, change, found)
+
+
+def lost(scene, prototype, times, states):
+    """Return what rounding does to the attitude of a run, rad, shape (n,).
+
+    Each strike starts the motion anew, with roundings of its own: squares add up.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run from the scene's own start.
+    """
     begun = 1 + np.searchsorted([strike.time for strike in strikes(scene)], times)
+    found = np.maximum(rounding(states, times), conditioning(scene, prototype, times, states))
     return found * np.sqrt(begun.astype(float))
 
 
@@ -202,5 +214,5 @@ def of_exact(scene, prototype, own, accuracy, horizon):
     """
     times = looks(horizon)
     states = run(scene, prototype, scene.initial.vector, times)
-    errors = np.maximum(rounding(states, times), conditioning(scene, prototype, times, states))
+    errors = lost(scene, prototype, times, states)
     return forecast(errors + own * (times / horizon), times, accuracy, horizon)

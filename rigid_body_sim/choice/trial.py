@@ -127,11 +127,9 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
     if errors is None or not float(errors[0]) < math.inf:
         return Settled(method, tolerance, promised, horizon if promised <= accuracy else 0.0)
     best = states(finest)
-    lost = forecast.rounding(best, times)
-    if float(errors[-1]) < MAGNIFIED:
-        lost = np.maximum(
-            lost, forecast.conditioning(scene, prototype(finest), times, best))
-    found = forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon)
+    if float(errors.max()) < MAGNIFIED:
+        errors = np.maximum(errors, forecast.lost(scene, prototype(finest), times, best))
+    found = forecast.forecast(errors, times, accuracy, horizon)
     return Settled(method, tolerance, *found)
 
 
