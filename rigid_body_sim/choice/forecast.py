@@ -19,6 +19,7 @@ from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.mechanics import impulse
+from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.numerics.functions import hypot3
@@ -124,10 +125,16 @@ def apart(states, others):
     return np.array([math.inf if math.isnan(angle) else angle for angle in angles])
 
 
-def rounding(states, times):
-    """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,)."""
+def rounding(scene, states, times):
+    """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,).
+
+    What a torque adds to the rate counts twice: the moment that it meets is rounded, too.
+    """
     rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
     fastest = np.maximum.accumulate(rates)
+    if drive(scene, None) > 0.0:
+        first = hypot3(*scene.initial.vector[ANGULAR_VELOCITY].tolist())
+        fastest = fastest + np.maximum(0.0, fastest - first)
     return HALF_ULP * (4.0 + fastest * times)
 
 
@@ -164,7 +171,8 @@ def lost(scene, prototype, times, states):
         The run from the scene's own start.
     """
     begun = 1 + np.searchsorted([strike.time for strike in strikes(scene)], times)
-    found = np.maximum(rounding(states, times), conditioning(scene, prototype, times, states))
+    found = np.maximum(rounding(scene, states, times),
+                       conditioning(scene, prototype, times, states))
     return found * np.sqrt(begun.astype(float))
 
 
