@@ -33,6 +33,7 @@ LOOKS = 8
 LONGEST = 120            # s of the processor, a scene with its compilation
 TURNS = 60.0             # rad/s times s, at most: the truth takes a second for each hundred
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
+LINEAR = 0.1             # rad
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 CONSTRAINTS = 'free', 'pivot', 'hinge', 'table'
 WIDE = np.longdouble
@@ -56,7 +57,7 @@ def drawn(number, seed):
         return _ball(chance, between, mass, 0.1 * size)
     shape = chance.choice(('any', 'any', 'slim', 'flat', 'near', 'symmetric'))
     a, b, c = {'any': [chance.uniform(0.1, 1.0) for _ in range(3)],
-               'slim': [1.0, 1.0 + between(1e-9, 0.1), between(1e-6, 1e-2)],
+               'slim': (lambda c: [1.0, 1.0 + 0.9 * c * chance.random(), c])(between(1e-6, 0.1)),
                'flat': [1.0, chance.uniform(0.3, 1.0), between(1e-6, 1e-2)],
                'near': [0.7, 0.7 * (1.0 + between(1e-15, 1e-3)), 0.4],
                'symmetric': [0.5, 0.5, chance.uniform(0.1, 0.9)]}[shape]
@@ -292,8 +293,10 @@ class Truth:
     def floor(self):
         """Return what half an ulp on the numbers of the start does, rad."""
         best = self.y[0, :4]
-        apart = [_angle(best, other[:4]) / MOVED for other in self.y[1:]]
-        return math.sqrt(math.fsum(x * x for x in apart))
+        apart = [_angle(best, other[:4]) for other in self.y[1:]]
+        if max(apart) > LINEAR:    # no longer in proportion to the change
+            return math.inf
+        return math.sqrt(math.fsum(x * x for x in apart)) / MOVED
 
 
 def _angle(a, b):
