@@ -45,7 +45,7 @@ _ATTACHMENT_START = 2**16       # bytes of an attachment that are read: its data
 _LONGEST_DESCRIPTION = 2**20    # bytes of a damaged schema, channel, header or metadata record
 _BLOCK = 2**22
 _FAR = 10**12                   # ns of log time to a message that is not believed
-_UNKNOWN = Schema(data=b'', encoding='', id=0, name='unknown/msg/Unknown')
+_UNKNOWN = Schema(data=b'', encoding='', id=0, name='unknown')
 
 
 def check_magic(stream):
