@@ -11,21 +11,25 @@ from rigid_body_sim.analysis.align import aligned
 def made_up(counts, seed):
     """Return a recording whose blocks are cut at random, and what each topic holds."""
     random = np.random.default_rng(seed)
-    times = {topic: np.sort(random.choice(5000, count, replace=False)) for topic, count in counts.items()}
+    times = {topic: np.sort(random.choice(5000, count, replace=False))
+             for topic, count in counts.items()}
     blocks = []
     for topic, stamps in times.items():
         cuts = np.sort(random.choice(len(stamps) + 1, 12))
         for begin, end in zip([0, *cuts], [*cuts, len(stamps)], strict=True):
             if end > begin:
-                blocks.append((stamps[begin], topic, {'log_time': stamps[begin:end], 'data': -stamps[begin:end]}))
+                blocks.append((stamps[begin], topic,
+                               {'log_time': stamps[begin:end], 'data': -stamps[begin:end]}))
     blocks.sort(key=lambda block: block[0])
-    recording = types.SimpleNamespace(topics={topic: types.SimpleNamespace(count=count) for topic, count in counts.items()},
-                                      blocks=lambda topics, progress: ((topic, columns) for _, topic, columns in blocks))
+    recording = types.SimpleNamespace(
+        topics={topic: types.SimpleNamespace(count=count) for topic, count in counts.items()},
+        blocks=lambda topics, progress: ((topic, columns) for _, topic, columns in blocks))
     return recording, times
 
 
 @pytest.mark.parametrize('seed', range(20))
-@pytest.mark.parametrize('counts', [{'a': 3000, 'b': 3000}, {'a': 3000, 'b': 1, 'c': 40}, {'a': 5000}])
+@pytest.mark.parametrize(
+    'counts', [{'a': 3000, 'b': 3000}, {'a': 3000, 'b': 1, 'c': 40}, {'a': 5000}])
 def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
     recording, times = made_up(counts, seed)
     found, latest = {topic: [] for topic in counts}, -1
@@ -41,8 +45,10 @@ def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
 def test_columns_that_not_all_messages_have_are_left_out():
     """As where a frame got another name, of another length."""
     from rigid_body_sim.analysis import align
-    waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2))}, {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2))},
+    waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2))},
+                      {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2))},
                       {'log_time': np.arange(5, 7), 'x': np.ones((2, 2))}]}
     taken = align._take(waiting, '/a', 5)
-    assert set(taken) == {'log_time', 'x'} and taken['log_time'].tolist() == [0, 1, 2, 3, 4, 5] and taken['x'].sum() == 6.0
+    assert (set(taken) == {'log_time', 'x'} and taken['log_time'].tolist() == [0, 1, 2, 3, 4, 5]
+            and taken['x'].sum() == 6.0)
     assert waiting['/a'][0]['log_time'].tolist() == [6]

@@ -38,12 +38,15 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
     text = (tmp_path / 'report.txt').read_text().splitlines()
     assert printed[:len(text)] == text
     files = ['report.txt', 'report.json', *(f'{name}.png' for name in FIGURES), *PAGE]
-    assert [line.strip() for line in printed[len(text):]] == [str(tmp_path / name) for name in files]
+    assert [line.strip() for line in printed[len(text):]] == [str(tmp_path / name)
+                                                              for name in files]
     assert all((tmp_path / name).stat().st_size > 10_000 for name in files[2:])
     assert all((tmp_path / f'{name}.svg').read_text().startswith('<?xml') for name in FIGURES)
     [found] = json.loads((tmp_path / 'report.json').read_text())['bodies']
-    assert (found['scene'], found['made_by'], found['rate'], found['run']['method']) == ('tennis_racket', 'sim_node', 1000.0, 'exact')
-    assert (found['commands'], found['resets'], found['left_out_by_recorder'], found['events']['reset']) == (3, 1, 40, 1)
+    assert (found['scene'], found['made_by'], found['rate'], found['run']['method']) == (
+        'tennis_racket', 'sim_node', 1000.0, 'exact')
+    assert (found['commands'], found['resets'], found['left_out_by_recorder'],
+            found['events']['reset']) == (3, 1, 40, 1)
     energy, momentum = found['energy'], found['angular_momentum_squared']
     # the impulse and the wrench change them by far more than this, but not the residuals; kept in 2461 ticks of 2961
     assert energy['greatest'] > energy['least'] + 1.0
@@ -68,7 +71,8 @@ def test_the_figure_shows_what_was_recorded(eventful):
         assert np.flatnonzero(np.isnan(values)).tolist() == [2000]      # at the gap
         assert np.delete(values, 2000).tolist() == recorded['vector'][:, k].tolist()
         assert np.delete(times, 2000) == pytest.approx((recorded['log_time'] - made.START) * 1e-9)
-    assert len({line.get_linestyle() for line in omega.lines[:3]}) == 3     # told apart without colour
+    # told apart without colour
+    assert len({line.get_linestyle() for line in omega.lines[:3]}) == 3
     marks = {tuple(line.get_xdata()) for line in omega.lines[3:]}
     assert {(0.5, 1.0, 1.5), (2.5,), (1.999,)} <= {tuple(np.round(times, 9)) for times in marks}
     for axes, quantity in ((energy, one.energy), (momentum, one.momentum)):
@@ -92,30 +96,37 @@ def test_drift_that_is_there_is_found(tmp_path):
     states = made.record_foreign(tmp_path / 'run', simulation, 2000, 0.01)
     energies, momenta = simulation.diagnose(states)
     [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
-    assert found['energy']['largest_residual'] == pytest.approx(np.abs(energies / energies[0] - 1.0).max(), rel=1e-12)
-    assert found['angular_momentum_squared']['last_residual'] == pytest.approx(momenta[-1] / momenta[0] - 1.0, rel=1e-9)
+    assert found['energy']['largest_residual'] == pytest.approx(
+        np.abs(energies / energies[0] - 1.0).max(), rel=1e-12)
+    assert found['angular_momentum_squared']['last_residual'] == pytest.approx(
+        momenta[-1] / momenta[0] - 1.0, rel=1e-9)
     assert found['energy']['largest_residual'] > 1e-9
 
 
 def test_a_recording_of_ros2_bag_record_is_analysed_too(tmp_path):
-    states = made.record_foreign(tmp_path / 'run', Simulation('tennis_racket', rate=200.0), 2001, 0.005)
+    states = made.record_foreign(
+        tmp_path / 'run', Simulation('tennis_racket', rate=200.0), 2001, 0.005)
     [found], files = analyze(tmp_path / 'run', tmp_path / 'report')
     assert found['ledger'] is None      # the commands are not known
-    assert (found['namespace'], found['scene'], found['made_by'], found['run']) == ('/lab', 'tennis_racket', '', {})
+    assert (found['namespace'], found['scene'], found['made_by'], found['run']) == (
+        '/lab', 'tennis_racket', '', {})
     assert found['rate'] == pytest.approx(200.0, rel=1e-9)
     assert found['flips'] == np.count_nonzero(np.diff(states.angular_velocity[:, 1] > 0.0)) == 2
     assert found['energy']['largest_residual'] < 1e-14
     assert (found['timing']['ticks'], found['timing']['missing']) == (2001, 0)
     # written at once at its time of arrival, 20 to 90 us after the stamp
     assert found['timing']['lateness']['max'] == pytest.approx(70e-6, abs=3e-6)
-    assert [path.name for path in files[2:]] == [*(f'{name}_lab.png' for name in FIGURES if name != 'ledger'), *PAGE]
+    assert [path.name for path in files[2:]] == [
+        *(f'{name}_lab.png' for name in FIGURES if name != 'ledger'), *PAGE]
 
 
 def test_without_a_scene_nothing_is_judged_by_it(tmp_path):
-    made.record_foreign(tmp_path / 'run', Simulation('tennis_racket'), 500, 0.001, with_scene=False)
+    made.record_foreign(
+        tmp_path / 'run', Simulation('tennis_racket'), 500, 0.001, with_scene=False)
     [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert found['scene'] is None and found['flips'] is None
-    assert found['energy']['largest_residual'] is None and found['energy']['first'] == pytest.approx(25.0002)
+    assert (found['energy']['largest_residual'] is None
+            and found['energy']['first'] == pytest.approx(25.0002))
 
 
 def test_two_bodies_in_one_recording(tmp_path):
@@ -123,7 +134,8 @@ def test_two_bodies_in_one_recording(tmp_path):
     found, files = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert [one['namespace'] for one in found] == ['/left', '/right']
     assert found[0]['energy'] == found[1]['energy'] and found[0]['energy']['judged_ticks'] == 301
-    assert {path.name for path in files} == {'report.txt', 'report.json', 'overview_left.png', 'overview_right.png'}
+    assert {path.name for path in files} == {
+        'report.txt', 'report.json', 'overview_left.png', 'overview_right.png'}
 
 
 def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
@@ -135,9 +147,11 @@ def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
     assert report_folder('.') == tmp_path / 'one.a_report'
     assert main(['.', str(file), '--output', str(tmp_path / 'all'), '--json']) == 0
     results = json.loads(capsys.readouterr().out)
-    assert [len(result['bodies']) for result in results] == [1, 1] and results[0]['bodies'] == results[1]['bodies']
+    assert ([len(result['bodies']) for result in results] == [1, 1]
+            and results[0]['bodies'] == results[1]['bodies'])
     # one page on both, and a folder each
-    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == ['one.a_0_report', 'one.a_report', *PAGE, 'report.json']
+    assert sorted(path.name for path in (tmp_path / 'all').iterdir()) == [
+        'one.a_0_report', 'one.a_report', *PAGE, 'report.json']
     assert json.loads((tmp_path / 'all' / 'report.json').read_text()) == results
     for name in PAGE:
         text = (tmp_path / 'all' / name).read_text(encoding='utf-8')
@@ -154,9 +168,10 @@ def test_bad_input_is_one_line(tmp_path, capsys):
     (tmp_path / 'cut' / 'metadata.yaml').unlink()
     (tmp_path / 'text.mcap').write_text('hello')
     (tmp_path / 'blocked').write_text('')
-    for arguments, said in [
-            ([tmp_path / 'missing'], 'missing'), ([tmp_path / 'cut'], 'recover'), ([file], 'recover'), ([tmp_path / 'text.mcap'], 'MCAP'),
-            ([tmp_path / 'run', '--output', tmp_path / 'blocked' / 'here'], 'the report cannot be written (Not a directory)')]:
+    for arguments, said in [([tmp_path / 'missing'], 'missing'), ([tmp_path / 'cut'], 'recover'),
+                            ([file], 'recover'), ([tmp_path / 'text.mcap'], 'MCAP'),
+                            ([tmp_path / 'run', '--output', tmp_path / 'blocked' / 'here'],
+                             'the report cannot be written (Not a directory)')]:
         assert main([str(argument) for argument in arguments]) == 2
         error = capsys.readouterr().err
         assert said in error and error.count('\n') == 1

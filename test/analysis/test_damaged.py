@@ -23,7 +23,9 @@ DAMAGED = 3000 if SOAK else 40
 def content(tmp_path_factory):
     """Return the bytes of a recording with commands, neither compressed nor with checksums."""
     path = tmp_path_factory.mktemp('damaged') / 'run'
-    made.record(path, 'tennis_racket', 120, acts={50: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')], 80: [('reset',)]})
+    made.record(
+        path, 'tennis_racket', 120,
+        acts={50: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')], 80: [('reset',)]})
     without_checksums(path / 'run_0.mcap')
     return (path / 'run_0.mcap').read_bytes()
 
@@ -41,7 +43,8 @@ def tried(function, path):
         function(path)
     except (BadInput, NotConverged) as error:
         objection = str(error)
-    assert objection is None or (objection and '\n' not in objection and len(objection) < 2000), objection
+    assert objection is None or (objection and '\n' not in objection
+                                 and len(objection) < 2000), objection
     return objection is None
 
 
@@ -55,11 +58,14 @@ def test_nothing_worse_than_a_line(content, tmp_path):
     assert good > 0
 
 
-@pytest.mark.parametrize(('old', 'new', 'said'), [
-    (b'"kind": "commands", "tick": 50', b'"kind": "commands", "tock": 50', 'the journal makes no sense'),
-    (b'"kind": "reset", "tick": 80', b'"kind": "reset", "tick": []', 'the journal makes no sense'),
-    (rb'inertia:\n  - 1.0', rb'inertia:\n  - -.0', 'scene'),
-    (np.float64(25.0002).tobytes(), np.float64(np.nan).tobytes(), '/energy: holds a number that is not finite')])
+@pytest.mark.parametrize(('old', 'new', 'said'),
+                         [(b'"kind": "commands", "tick": 50', b'"kind": "commands", "tock": 50',
+                           'the journal makes no sense'),
+                          (b'"kind": "reset", "tick": 80', b'"kind": "reset", "tick": []',
+                           'the journal makes no sense'),
+                          (rb'inertia:\n  - 1.0', rb'inertia:\n  - -.0', 'scene'),
+                          (np.float64(25.0002).tobytes(), np.float64(np.nan).tobytes(),
+                           '/energy: holds a number that is not finite')])
 def test_what_makes_no_sense_is_named(content, tmp_path, old, new, said):
     assert len(old) >= len(new) and old in content
     path = tmp_path / 'damaged.mcap'

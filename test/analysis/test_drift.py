@@ -30,9 +30,11 @@ def test_each_segment_has_its_own_reference_and_what_is_not_kept_is_not_judged(b
     values[700:] = 20.0
     values[950] += 1e-10
     values[999] -= 4e-11
-    found = residual(values, (segment(0), segment(100), segment(400, held=True), segment(700)), lambda segment: not segment.held, block=block)
+    found = residual(values, (segment(0), segment(100), segment(400, held=True), segment(700)),
+                     lambda segment: not segment.held, block=block)
     summary = found.summary()
-    assert (summary['first'], summary['last'], summary['least'], summary['greatest']) == (4.0, 20.0 - 4e-11, 4.0, 20.0 + 1e-10)
+    assert (summary['first'], summary['last'], summary['least'], summary['greatest']) == (
+        4.0, 20.0 - 4e-11, 4.0, 20.0 + 1e-10)
     assert summary['largest_residual'] == pytest.approx(5e-12, rel=1e-3)
     assert summary['last_residual'] == pytest.approx(-2e-12, rel=1e-3)
     assert summary['judged_ticks'] == 700
@@ -44,26 +46,32 @@ def test_each_segment_has_its_own_reference_and_what_is_not_kept_is_not_judged(b
 def test_a_change_inside_a_segment_is_drift():
     values = np.full(1000, 4.0)
     values[100:] = 6.0
-    assert residual(values, (segment(0),), lambda segment: True).summary()['largest_residual'] == 0.5
+    assert residual(
+        values, (segment(0),), lambda segment: True).summary()['largest_residual'] == 0.5
 
 
 def test_the_scale_holds_where_the_value_is_small():
     values = np.zeros(1000)
     values[10:] = 1e-9
-    assert residual(values, (segment(0),), lambda segment: True, scale=2.0).largest == pytest.approx(5e-10)
-    assert residual(values, (segment(0),), lambda segment: True).largest == 0.0     # nothing to compare with
+    assert residual(
+        values, (segment(0),), lambda segment: True, scale=2.0).largest == pytest.approx(5e-10)
+    # nothing to compare with
+    assert residual(values, (segment(0),), lambda segment: True).largest == 0.0
 
 
 def test_nothing_kept_nothing_said():
     summary = residual(np.arange(1000.0), (segment(0),), lambda segment: False).summary()
-    assert summary['largest_residual'] is None and summary['judged_ticks'] == 0 and summary['last'] == 999.0
+    assert (summary['largest_residual'] is None and summary['judged_ticks'] == 0
+            and summary['last'] == 999.0)
 
 
 def test_energies_are_compared_with_the_larger_of_kinetic_and_potential():
     energy, momentum = scales(load_scene('tennis_racket'))
     assert energy == pytest.approx(0.5 * (1e-4 + 50.0 + 3e-4)) and momentum == 0.0
-    top = load_scene('tennis_racket', ['constraint=pivot', 'effects=[{gravity: {g: 10.0}}]', 'body.center_of_mass=[0, 0, -10.0]',
-                                       'initial.angular_velocity=[0, 0, 0.01]'])
+    top = load_scene(
+        'tennis_racket',
+        ['constraint=pivot', 'effects=[{gravity: {g: 10.0}}]', 'body.center_of_mass=[0, 0, -10.0]',
+         'initial.angular_velocity=[0, 0, 0.01]'])
     assert scales(top)[0] == 100.0
     assert scales(None) == (0.0, 0.0)
 

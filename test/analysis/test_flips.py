@@ -35,10 +35,12 @@ def counted_plainly(omega, inertia, middle):
 
 @pytest.mark.parametrize('inertia', [(1.0, 2.0, 3.0), (2.0, 3.0, 1.0), (3.0, 1.0, 2.0)])
 def test_any_blocks_count_what_a_plain_loop_counts(inertia):
-    scene = parse_scene(f'{{scene: s, body: {{mass: 1, inertia: {list(inertia)}}}, constraint: free, effects: [], '
+    scene = parse_scene(f'{{scene: s, body: {{mass: 1, inertia: {list(inertia)}}}, constraint: '
+                        'free, effects: [], '
                         'initial: {angular_velocity: [0, 0, 1]}}')
     steps = np.random.default_rng(3).normal(size=(4000, 3))
-    omega = np.cumsum(steps, axis=0) % 30.0 - 15.0      # a walk that crosses zero often, strong and weak
+    # a walk that crosses zero often, strong and weak
+    omega = np.cumsum(steps, axis=0) % 30.0 - 15.0
     middle = inertia.index(2.0)
     expected = counted_plainly(omega, np.array(inertia), middle)
     assert 100 < expected < np.count_nonzero(np.diff(omega[:, middle] > 0.0))

@@ -15,12 +15,14 @@ from rigid_body_sim.theory import billiard
 
 def taken(scene, ticks, rate=1000.0, block=230):
     """Return (Motion, States) of a scene over some ticks, taken in blocks."""
-    source = types.SimpleNamespace(scene=scene, ticks=ticks, start=0, history=History((), (Segment(0, scene, rate, 0.0),)))
+    source = types.SimpleNamespace(
+        scene=scene, ticks=ticks, start=0, history=History((), (Segment(0, scene, rate, 0.0),)))
     states = Simulation(scene, rate=rate).states(np.arange(ticks) / rate)
     motion, stamps = Motion(source), np.rint(states.time * 1e9).astype(np.int64)
     for begin in range(0, ticks, block):
         part = slice(begin, begin + block)
-        motion.add(stamps[part], states.time[part], states.orientation[part], states.angular_velocity[part], states.position[part])
+        motion.add(stamps[part], states.time[part], states.orientation[part],
+                   states.angular_velocity[part], states.position[part])
     return motion, states
 
 
@@ -45,13 +47,16 @@ def test_the_momentum_that_the_scene_conserves_is_constant_to_round_off(name, ov
 
 def test_a_wrong_attitude_shows_in_the_momentum_though_energy_and_l2_do_not_know_it():
     scene = load_scene('tennis_racket')
-    source = types.SimpleNamespace(scene=scene, ticks=100, start=0, history=History((), (Segment(0, scene, 1000.0, 0.0),)))
+    source = types.SimpleNamespace(
+        scene=scene, ticks=100, start=0, history=History((), (Segment(0, scene, 1000.0, 0.0),)))
     states = Simulation(scene).states(np.arange(100) / 1000.0)
     q = states.orientation.copy()
-    q[50:] = [rotations.multiply(0.0, 0.0, np.sin(5e-10), np.cos(5e-10), *one) for one in q[50:].tolist()]
+    q[50:] = [rotations.multiply(0.0, 0.0, np.sin(5e-10), np.cos(5e-10), *one)
+              for one in q[50:].tolist()]
     motion = Motion(source)
     motion.add(np.arange(100) * 10**6, states.time, q, states.angular_velocity, states.position)
-    assert motion.momentum.largest == pytest.approx(1e-9, rel=1e-3)     # turned by 1e-9 rad about z, L along y
+    # turned by 1e-9 rad about z, L along y
+    assert motion.momentum.largest == pytest.approx(1e-9, rel=1e-3)
 
 
 def test_no_momentum_is_claimed_where_none_is_conserved():
@@ -68,10 +73,13 @@ def test_slip_falls_as_the_notes_say_and_ends_when_rolling_begins():
     v0, h = 0.255 / 0.17, -0.01
     onset = billiard.onset_of_rolling(v0, h, a, mu, g)
     sliding = times < onset - 2e-3
-    expected = billiard.sliding_speed(times, v0, h, a, mu, g) - a * billiard.sliding_spin(times, v0, h, a, mu, g)
-    assert slip[sliding] == pytest.approx(np.abs(expected[sliding]), abs=1e-11)    # 2e-13: differences of positions
+    expected = (billiard.sliding_speed(times, v0, h, a, mu, g)
+                - a * billiard.sliding_spin(times, v0, h, a, mu, g))
+    # 2e-13: differences of positions
+    assert slip[sliding] == pytest.approx(np.abs(expected[sliding]), abs=1e-11)
     assert slip[times > onset + 2e-3].max() < 1e-11
     assert 300 < np.count_nonzero(sliding) < 500
     [(first, begin), (second, rolls)] = motion.phases
     assert (first, begin, second, motion.until) == ('slip', 0.0, 'roll', 0.999)
-    assert rolls == pytest.approx(onset, abs=2.1e-3)    # to a tick, and the differences reach one further
+    # to a tick, and the differences reach one further
+    assert rolls == pytest.approx(onset, abs=2.1e-3)

@@ -29,16 +29,20 @@ def written(tmp_path_factory):
     """Return the path of a page on two bodies, one with commands."""
     folder = tmp_path_factory.mktemp('page')
     acts = {100: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')]}
-    made.record(folder / 'run', 'tennis_racket', 600, rate=100.0, namespace='/left', bodies=['/right'], acts=acts)
+    made.record(folder / 'run', 'tennis_racket', 600, rate=100.0, namespace='/left',
+                bodies=['/right'], acts=acts)
     with Recording(folder / 'run') as recording:
         bodies = measure(recording, sources(recording))
-    page.write_page(folder / 'report.html', [('run', one, summary(one, Spectrum(one)), Spectrum(one), None) for one in bodies])
+    page.write_page(
+        folder / 'report.html',
+        [('run', one, summary(one, Spectrum(one)), Spectrum(one), None) for one in bodies])
     return folder / 'report.html'
 
 
 def carried(text, name):
     """Return a text that the page carries compressed."""
-    packed = re.search(f'<script type="application/gzip" id="{name}">([^<]*)</script>', text).group(1)
+    packed = re.search(
+        f'<script type="application/gzip" id="{name}">([^<]*)</script>', text).group(1)
     return gzip.decompress(base64.b64decode(packed)).decode()
 
 
@@ -56,10 +60,14 @@ def test_the_page_is_complete_in_itself_and_small(written):
 
 def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
     text = written.read_text(encoding='utf-8')
-    assert text.index('class="verdict') < text.index('<canvas') < text.index('id="time0"') < text.index('<details>')
+    assert text.index('class="verdict') < text.index('<canvas') < text.index(
+        'id="time0"') < text.index('<details>')
     assert '<b>Kept within each of 2 stretches:</b> energy' in text and 'none lost' in text
-    found = {'energy': {'largest_residual': 0.1, 'stretches': 1}, 'strikes': 0, 'accuracy_missed': [],
-             'angular_momentum_squared': {'largest_residual': None, 'stretches': 0}, 'run': {}, 'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {}, 'commands': 0}
+    found = {
+        'energy': {'largest_residual': 0.1, 'stretches': 1}, 'strikes': 0, 'accuracy_missed': [],
+        'angular_momentum_squared': {'largest_residual': None, 'stretches': 0}, 'run': {},
+        'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {},
+        'commands': 0}
     said = page._verdict(found)
     assert 'verdict bad' in said and 'Not kept' in said and '2 lost' in said
 
@@ -70,8 +78,10 @@ def test_no_button_of_a_figure_uploads_it(written):
                  written.read_text(encoding='utf-8'), flags=re.DOTALL)
     drawn = own.count('Plotly.newPlot(')
     assert drawn == own.count('modeBarButtons: [') == own.count("plotlyServerURL: ''") > 0
-    assert set(re.findall(r"'(\w+)'", ''.join(re.findall(r'modeBarButtons: \[.*?\]\}', own, re.DOTALL)))) <= {
-        'toImage', 'orbitRotation', 'pan3d', 'resetCameraDefault3d', 'zoom2d', 'pan2d', 'resetScale2d'}
+    assert (set(re.findall(
+                r"'(\w+)'", ''.join(re.findall(r'modeBarButtons: \[.*?\]\}', own, re.DOTALL))))
+            <= {'toImage', 'orbitRotation', 'pan3d', 'resetCameraDefault3d', 'zoom2d', 'pan2d',
+                'resetScale2d'})
 
 
 def test_a_thinned_curve_keeps_its_extremes_and_its_holes():
@@ -85,17 +95,21 @@ def test_a_thinned_curve_keeps_its_extremes_and_its_holes():
 @pytest.mark.skipif(not CHROMIUM, reason='needs chromium (Debian, Ubuntu: apt install chromium)')
 def test_a_browser_draws_it_without_an_error(written, tmp_path):
     def console(path):
-        options = ['headless=new', 'no-sandbox', 'disable-dev-shm-usage', 'use-angle=swiftshader', 'enable-unsafe-swiftshader',
-                   'enable-logging=stderr', 'v=0', f'user-data-dir={tmp_path}', 'virtual-time-budget=5000', 'dump-dom']
+        options = ['headless=new', 'no-sandbox', 'disable-dev-shm-usage', 'use-angle=swiftshader',
+                   'enable-unsafe-swiftshader', 'enable-logging=stderr', 'v=0',
+                   f'user-data-dir={tmp_path}', 'virtual-time-budget=5000', 'dump-dom']
         command = [CHROMIUM, *(f'--{option}' for option in options), f'file://{path}']
         done = subprocess.run(command, capture_output=True, text=True, timeout=110)
-        errors = [line for line in done.stderr.splitlines() if 'CONSOLE' in line and ('Uncaught' in line or 'rror' in line)]
+        errors = [line
+                  for line in done.stderr.splitlines()
+                  if 'CONSOLE' in line and ('Uncaught' in line or 'rror' in line)]
         return done.stdout, errors
 
     drawn, errors = console(written)
     assert not errors
     assert drawn.count('class="main-svg"') >= 2 and drawn.count('<canvas') >= 2
-    assert len(re.findall(r'<output>t = \d', drawn)) == 2      # each body has shown its first frame
+    # each body has shown its first frame
+    assert len(re.findall(r'<output>t = \d', drawn)) == 2
 
     # an error would have been seen
     broken = written.with_name('broken.html')
@@ -108,5 +122,6 @@ def test_without_plotly_the_rest_is_made_and_it_is_said(tmp_path, monkeypatch, c
     monkeypatch.setattr(page, 'available', lambda: False)
     assert main([str(tmp_path / 'run')]) == 0
     captured = capsys.readouterr()
-    assert 'report.html was not made: it needs plotly' in captured.err and 'report.html' not in captured.out
+    assert ('report.html was not made: it needs plotly' in captured.err
+            and 'report.html' not in captured.out)
     assert (tmp_path / 'run_report' / 'polhode.png').exists()

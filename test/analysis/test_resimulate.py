@@ -21,7 +21,8 @@ from rigid_body_sim.simulation.simulation import Simulation
 DATA = pathlib.Path(__file__).resolve().parents[1] / 'data'
 ZERO = (0.0, 0.0, 0.0)
 ACTS = {0: [('cmd_impulse', ZERO, (0.1, 0.0, 0.2), 'body')],
-        500: [('cmd_impulse', (1.0, 2.0, 3.0), (0.5, 0.1, 0.0), 'world'), ('cmd_impulse', ZERO, (-0.5, -0.1, 0.0), 'world')],
+        500: [('cmd_impulse', (1.0, 2.0, 3.0), (0.5, 0.1, 0.0), 'world'),
+              ('cmd_impulse', ZERO, (-0.5, -0.1, 0.0), 'world')],
         900: [('cmd_wrench', (0.1, 0.2, 0.3), (0.3, 2.0, 0.1), 'body')],
         901: [('cmd_impulse', ZERO, (0.0, 0.0, 1.0), 'body')],
         1300: [('cmd_wrench', ZERO, (0.0, 0.0, -1.0), 'world')],
@@ -49,7 +50,8 @@ def test_commands_resets_and_gaps_are_reproduced_to_the_bit(commanded, capsys):
 
 
 def test_what_simulate_wrote_is_reproduced_to_the_bit(tmp_path, capsys):
-    assert simulate(['--duration', '12.3', '--rate', '789', '--output', str(tmp_path / 'run')]) == 0
+    assert simulate([
+        '--duration', '12.3', '--rate', '789', '--output', str(tmp_path / 'run')]) == 0
     capsys.readouterr()
     status, found = outcome(capsys, tmp_path / 'run')
     assert (status, found['identical'], found['states']) == (0, True, 9706)
@@ -59,12 +61,14 @@ def test_one_bit_in_one_message_is_found(commanded, tmp_path, capsys):
     """The last bit of omega_y at tick 1234 is turned over on the disk, in a copy without compression."""
     recording = Recording(commanded)
     value = recording.read('/angular_velocity')['vector'][1234 - 40, 1]
-    damaged = rewritten(commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
+    damaged = rewritten(
+        commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
     status, found = outcome(capsys, damaged, '--output', tmp_path)
     assert status == 1 and not found['identical']
     parting = found['parting']
     assert (parting['tick'], parting['quantity']) == (1234, 'angular_velocity')
-    assert parting['recorded'][1] == np.nextafter(value, np.inf) and parting['resimulated'][1] == value
+    assert (parting['recorded'][1] == np.nextafter(value, np.inf)
+            and parting['resimulated'][1] == value)
     assert main([str(damaged), '--output', str(tmp_path)]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == 'differs from tick 1234 on (t = 1.234 s), angular velocity:'
@@ -79,7 +83,8 @@ def rewritten(source, folder, old, new):
     from rigid_body_sim.recording.topics import Topic
     from rigid_body_sim.recording.writer import Writer
     recording = Recording(source)
-    topics = [Topic(name, topic.type) for name, topic in recording.topics.items() if name != '/journal']
+    topics = [Topic(name, topic.type)
+              for name, topic in recording.topics.items() if name != '/journal']
     journal = Topic('/journal', recording.topics['/journal'].type)
     changed = 0
     with Writer(folder, [], topics, journal, {}, 'none') as writer:
@@ -94,7 +99,9 @@ def rewritten(source, folder, old, new):
 
 def test_a_converted_recording_without_our_metadata_is_reproduced(commanded, tmp_path, capsys):
     """Like after `ros2 bag convert`: other chunks, no metadata record, no custom_data, sequence numbers lost; the journal tells all."""
-    copy = rewritten(commanded, tmp_path / 'copy', np.float64(Recording(commanded).read('/angular_velocity')['vector'][7, 0]), np.float64(0.0))
+    copy = rewritten(commanded, tmp_path / 'copy',
+                     np.float64(Recording(commanded).read('/angular_velocity')['vector'][7, 0]),
+                     np.float64(0.0))
     path = copy / metadata.FILE_NAME
     bag = metadata.load(path.read_text())
     bag[metadata.ROOT]['custom_data'] = None
@@ -124,8 +131,10 @@ def test_a_recording_written_again_by_others_is_reproduced(commanded, tmp_path, 
         without_checksums(path)
     else:
         path, store = tmp_path / 'again', get_typestore(Stores.ROS2_JAZZY)
-        with Reader(commanded) as reader, ForeignWriter(path, version=9, storage_plugin=StoragePlugin.MCAP) as copy:
-            numbers = {one.topic: copy.add_connection(one.topic, one.msgtype, typestore=store) for one in reader.connections}
+        with Reader(commanded) as reader, ForeignWriter(
+                path, version=9, storage_plugin=StoragePlugin.MCAP) as copy:
+            numbers = {one.topic: copy.add_connection(one.topic, one.msgtype, typestore=store)
+                       for one in reader.connections}
             for connection, stamp, data in reader.messages():
                 copy.write(numbers[connection.topic], stamp, data)
     assert main([str(path)]) == 0
@@ -133,29 +142,35 @@ def test_a_recording_written_again_by_others_is_reproduced(commanded, tmp_path, 
 
 
 def test_another_method_shows_what_it_would_have_changed(commanded, tmp_path, capsys):
-    status, found = outcome(capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-6', '--output', tmp_path)
+    status, found = outcome(
+        capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-6', '--output', tmp_path)
     assert status == 0 and not found['identical']
     assert found['resimulated']['method'] == 'dop8' and found['recorded']['method'] == 'exact'
     coarse = found['largest']['orientation']['difference']
     assert 1e-11 < coarse < 1e-5
-    _, found = outcome(capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-12', '--output', tmp_path)
+    _, found = outcome(
+        capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-12', '--output', tmp_path)
     assert found['largest']['orientation']['difference'] < 1e-3 * coarse
     assert (tmp_path / 'difference.png').exists()
 
 
-def test_bits_are_promised_on_every_machine_by_the_same_arithmetic(commanded, tmp_path, monkeypatch, capsys):
+def test_bits_are_promised_on_every_machine_by_the_same_arithmetic(
+        commanded, tmp_path, monkeypatch, capsys):
     """Another processor, C library or Python is no excuse."""
     monkeypatch.setattr(about, 'machine', lambda: {'processor': 'another'})
     value = Recording(commanded).read('/angular_velocity')['vector'][1234 - 40, 1]
-    damaged = rewritten(commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
+    damaged = rewritten(
+        commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
     status, found = outcome(capsys, damaged, '--output', tmp_path)
     assert status == 1 and not found['identical'] and found['unpromised'] == []
 
 
-def test_by_another_arithmetic_the_bits_may_differ_within_a_tolerance(commanded, tmp_path, monkeypatch, capsys):
+def test_by_another_arithmetic_the_bits_may_differ_within_a_tolerance(
+        commanded, tmp_path, monkeypatch, capsys):
     here = arithmetic.version()
     value = Recording(commanded).read('/angular_velocity')['vector'][1234 - 40, 1]
-    damaged = rewritten(commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
+    damaged = rewritten(
+        commanded, tmp_path / 'damaged', np.float64(value), np.nextafter(value, np.inf))
     monkeypatch.setattr(arithmetic, 'version', lambda: 'another')
     status, found = outcome(capsys, damaged, '--output', tmp_path)
     assert status == 0 and not found['identical']
@@ -171,28 +186,35 @@ def test_by_another_arithmetic_the_bits_may_differ_within_a_tolerance(commanded,
 
 def test_scipys_methods_promise_their_bits_on_the_same_machine_only(tmp_path, monkeypatch, capsys):
     path = tmp_path / 'run'
-    assert simulate(['--duration', '0.05', '--integrator', 'lsoda', '--accuracy', '1e-6', '--output', str(path)]) == 0
+    assert simulate(['--duration', '0.05', '--integrator', 'lsoda', '--accuracy', '1e-6',
+                     '--output', str(path)]) == 0
     capsys.readouterr()
     status, found = outcome(capsys, path)
     assert (status, found['identical'], found['unpromised']) == (0, True, [])
-    monkeypatch.setattr(about, 'machine', lambda: json.loads(Recording(path).about['machine']) | {'numpy': 'another'})
-    assert outcome(capsys, path)[1]['unpromised'] == ['lsoda is compiled for each machine; these differ: numpy']
+    monkeypatch.setattr(
+        about, 'machine',
+        lambda: json.loads(Recording(path).about['machine']) | {'numpy': 'another'})
+    assert outcome(capsys, path)[1]['unpromised'] == ['lsoda is compiled for each machine; these '
+                                                      'differ: numpy']
 
 
 @pytest.mark.parametrize('scene', ['skew_top', 'heavy_top'])
-def test_recordings_of_version_0_1_0_are_reproduced_within_the_tolerance_they_state(scene, tmp_path, capsys):
+def test_recordings_of_version_0_1_0_are_reproduced_within_the_tolerance_they_state(
+        scene, tmp_path, capsys):
     """Made before the bits were the same on every machine: one by taylor, one in closed form, with commands."""
     path = DATA / 'recordings_0.1.0' / scene
     status, found = outcome(capsys, path, '--output', tmp_path)
     assert status == 0 and found['states'] == 301
-    assert found['unpromised'] == [f'it was made by arithmetic none, this is {arithmetic.version()}']
+    assert found['unpromised'] == ['it was made by arithmetic none, this is '
+                                   f'{arithmetic.version()}']
     assert found['tolerance'] < 2e-11
 
 
 @pytest.mark.parametrize('case', ['foreign', 'missing', 'method'])
 def test_bad_input_is_one_line(case, tmp_path, commanded, capsys):
     path, more = tmp_path / 'run', []
-    said = {'foreign': 'a recording by sim_node or simulate', 'missing': 'holds no metadata.yaml', 'method': "did you mean 'dop8'?"}[case]
+    said = {'foreign': 'a recording by sim_node or simulate', 'missing': 'holds no metadata.yaml',
+            'method': "did you mean 'dop8'?"}[case]
     if case == 'foreign':
         made.record_foreign(path, Simulation('tennis_racket'), 100, 0.001)
     elif case == 'method':

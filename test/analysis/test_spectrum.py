@@ -15,8 +15,9 @@ from rigid_body_sim.simulation.simulation import Simulation
 def spectrum_of(times, orientation, omega, scene=None, changes=()):
     segments = [Segment(stamp, scene, 0.0, 0.0) for stamp in (0, *changes)]
     head = types.SimpleNamespace(columns=lambda: (times, orientation, omega, None))
-    return Spectrum(types.SimpleNamespace(motion=types.SimpleNamespace(head=head),
-                                          source=types.SimpleNamespace(scene=scene, start=0, history=History((), tuple(segments)))))
+    return Spectrum(types.SimpleNamespace(
+        motion=types.SimpleNamespace(head=head),
+        source=types.SimpleNamespace(scene=scene, start=0, history=History((), tuple(segments)))))
 
 
 def of_scene(scene, ticks, rate):
@@ -26,7 +27,9 @@ def of_scene(scene, ticks, rate):
 
 def test_a_sine_has_its_amplitude_at_its_frequency():
     times = np.arange(5000) / 500.0
-    omega = np.stack([3.0 * np.sin(2.0 * np.pi * 12.34 * times), 0.0 * times + 7.0, 0.5 * np.cos(2.0 * np.pi * 40.0 * times)], axis=1)
+    omega = np.stack([3.0 * np.sin(2.0 * np.pi * 12.34 * times), 0.0 * times + 7.0,
+                      0.5 * np.cos(2.0 * np.pi * 40.0 * times)],
+                     axis=1)
     spectrum = spectrum_of(times, np.tile([0.0, 0.0, 0.0, 1.0], (5000, 1)), omega)
     body = spectrum.amplitudes['body']
     assert spectrum.frequencies[body[:, 0].argmax()] == pytest.approx(12.34, abs=0.02)
@@ -54,31 +57,38 @@ def test_what_comes_after_a_command_or_a_hole_is_left_out():
 ])
 def test_predicted_lines_are_found(name, ticks, rate, expected, tolerance):
     spectrum = of_scene(load_scene(name), ticks, rate)
-    found = {line.name: measured / line.frequency - 1.0 for line, measured in spectrum.lines if measured is not None}
+    found = {line.name: measured / line.frequency - 1.0
+             for line, measured in spectrum.lines if measured is not None}
     assert expected <= set(found)
     for line in expected:
         assert abs(found[line]) < tolerance
 
 
 def test_a_line_that_is_not_there_is_not_found_in_the_side_lobes_of_others():
-    found = {line.name: measured for line, measured in of_scene(load_scene('steady_precession'), 20_000, 100.0).lines}
+    found = {line.name: measured
+             for line, measured in of_scene(load_scene('steady_precession'), 20_000, 100.0).lines}
     assert found['nutation'] is None and found['precession'] is not None
 
 
 def test_the_racket_s_odd_harmonics():
-    spectrum = of_scene(load_scene('tennis_racket', ['initial.angular_velocity=[0.5, 5.0, 0.1]']), 40_000, 200.0)
+    spectrum = of_scene(
+        load_scene('tennis_racket', ['initial.angular_velocity=[0.5, 5.0, 0.1]']), 40_000, 200.0)
     found = {line.name: (measured, line.frequency) for line, measured in spectrum.lines}
     assert found['1/T'][0] == pytest.approx(found['1/T'][1], rel=1e-4)
     assert found['3/T'][0] == pytest.approx(found['3/T'][1], rel=1e-4)
 
 
-@pytest.mark.parametrize('name', ['sphere', 'thin_rod', 'billiard_low', 'major_axis_relaxation', 'driven_body', 'sleeping_top'])
+@pytest.mark.parametrize(
+    'name',
+    ['sphere', 'thin_rod', 'billiard_low', 'major_axis_relaxation', 'driven_body', 'sleeping_top'])
 def test_nothing_is_predicted_where_there_is_no_such_line(name):
     lines = predicted_lines(load_scene(name))
     assert all(np.isfinite(line.frequency) for line in lines)
-    assert {line.name for line in lines} <= ({'L/I₁', 'Ω = ω₃(I₃-I₁)/I₁'} if name == 'thin_rod' else set())
+    assert {line.name for line in lines} <= ({'L/I₁', 'Ω = ω₃(I₃-I₁)/I₁'} if name == 'thin_rod'
+                                             else set())
 
 
 def test_steady_rotation_and_rest_have_no_period():
     for omega in ([0, 0, 5.0], [0, 5.0, 0], [0, 0, 0]):
-        assert predicted_lines(load_scene('tennis_racket', [f'initial.angular_velocity={omega}'])) == ()
+        assert predicted_lines(load_scene(
+            'tennis_racket', [f'initial.angular_velocity={omega}'])) == ()

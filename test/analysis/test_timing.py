@@ -56,7 +56,8 @@ def test_being_late_for_long_is_lateness():
     times = stamps + late
     times[5000:15000] += 40 * MS
     summary, punctuality = measured(stamps, times)
-    assert 0.035 < summary['lateness']['p99'] < 0.0401    # less what a slewed clock may have moved in 10 s
+    # less what a slewed clock may have moved in 10 s
+    assert 0.035 < summary['lateness']['p99'] < 0.0401
     assert summary['standstills'] == 0
     curve = punctuality.curve()
     assert (curve[:, 0] - START).tolist() == [k * 1000.0 * MS for k in range(20)]
@@ -79,7 +80,8 @@ def test_another_pace_is_followed_and_no_pace_has_no_lateness():
     # twice as fast from tick 5000 on, as fast as it goes from tick 10,000 on
     times[5000:] = START + 5000 * MS + (places[5000:] - 5000) * MS // 2 + late[5000:]
     times[10_000:] = times[9999] + (places[10_000:] - 9999) * 3000
-    segments = [Segment(START + begin * MS, None, 1000.0, pace) for begin, pace in ((0, 1.0), (5000, 2.0), (10_000, 0.0))]
+    segments = [Segment(START + begin * MS, None, 1000.0, pace)
+                for begin, pace in ((0, 1.0), (5000, 2.0), (10_000, 0.0))]
     summary, punctuality = measured(stamps, times, segments)
     assert summary['lateness']['max'] == pytest.approx(5e-3, abs=40e-6)
     assert summary['achieved_rate'] == pytest.approx(10_000 / 7.5, rel=1e-3)
@@ -98,4 +100,5 @@ def test_missing_ticks_are_counted_at_the_rate_of_their_time():
     slow = np.concatenate([stamps[:3000], stamps[3000] + np.arange(100) * 10 * MS])
     segments = [Segment(START, None, 1000.0, 1.0), Segment(int(stamps[3000]), None, 100.0, 1.0)]
     assert measured(slow, slow, segments)[0]['missing'] == 0
-    assert measured(np.delete(slow, [20, 3050]), np.delete(slow, [20, 3050]), segments)[0]['missing'] == 2
+    assert measured(
+        np.delete(slow, [20, 3050]), np.delete(slow, [20, 3050]), segments)[0]['missing'] == 2

@@ -34,14 +34,17 @@ class Allowed:
     def __init__(self, simulation):
         scene = simulation.scene
         body, kind, gravity = scene.body, scene.constraint.kind, scene.effect('gravity')
-        self._moments = np.array((body.about_origin if kind == 'pivot' else body.about_center).moments)
+        self._moments = np.array((body.about_origin if kind == 'pivot'
+                                  else body.about_center).moments)
         if kind == 'hinge':
             self._moments = np.full(3, moment_about_hinge(body, scene.constraint))
         self._mass = body.mass if kind in ('free', 'table') else 0.0
-        self._weight = body.mass * gravity.g * float(np.linalg.norm(body.center_of_mass)) if gravity else 0.0
+        self._weight = (body.mass * gravity.g * float(np.linalg.norm(body.center_of_mass))
+                        if gravity else 0.0)
         self._swing = swing_rate(scene)
         choice = simulation.choice
-        self._loss = 0.0 if choice.method == 'exact' else choice.accuracy / choice.horizon      # 1/s
+        # 1/s
+        self._loss = 0.0 if choice.method == 'exact' else choice.accuracy / choice.horizon
         self._quadrature = 1.0 if choice.method == 'exact' else WEIGHTS
         self.restart(simulation)
 
@@ -60,11 +63,12 @@ class Allowed:
         passed = simulation.time - self._time
         size = float(np.linalg.norm(omega)) + self._swing
         ulp = FEW * (EPSILON + self._loss * passed)
-        self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v) + self._weight
-                              + self._quadrature * abs(simulation.ledger()['work']))
+        self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v)
+                              + self._weight + self._quadrature * abs(simulation.ledger()['work']))
         # the ledger's quadrature of the weight's torque has so many panels at most: beyond, it no longer follows the turning
         resolved = size * passed <= RADIANS * MOST
-        self.momentum += ulp * float(np.linalg.norm(self._moments)) * size + (ulp if resolved else 1.0) * self._weight * passed
+        self.momentum += (ulp * float(np.linalg.norm(self._moments)) * size
+                          + (ulp if resolved else 1.0) * self._weight * passed)
         self._time = simulation.time
 
     def check(self, simulation):
@@ -76,7 +80,8 @@ class Allowed:
         assert abs(q @ q - 1.0) <= 5.0 * EPSILON        # measured 3
         scale = max(self._least, ledger['kinetic'], abs(ledger['potential']), abs(ledger['work']))
         assert abs(ledger['energy_residual']) * scale <= self.energy
-        assert ledger['momentum_residual'] * max(self._start, ledger['angular_momentum_squared'] ** 0.5) <= self.momentum
+        assert (ledger['momentum_residual'] * max(
+            self._start, ledger['angular_momentum_squared'] ** 0.5) <= self.momentum)
 
 
 NONLINEAR = 0.05
@@ -115,7 +120,8 @@ def anchored_anew(simulation, vector, first, last):
     solver.state(first, middle)
     again = list(attitudes(middle.copy()))
     error = angle_between(*again[0], *whole[ORIENTATION])
-    fastest = max(float(np.linalg.norm(state[ANGULAR_VELOCITY])) for state in (vector, middle, whole))
+    fastest = max(float(np.linalg.norm(state[ANGULAR_VELOCITY]))
+                  for state in (vector, middle, whole))
     moved, floor = 2e-15, 4.0 * EPSILON * fastest * last
     for part in (ORIENTATION, ANGULAR_VELOCITY, VELOCITY):
         length = float(np.linalg.norm(middle[part]))

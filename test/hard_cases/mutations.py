@@ -65,13 +65,16 @@ def killed(name, folder):
     path = copy / 'rigid_body_sim' / file
     text = path.read_text()
     if text.count(found) < 1:
-        raise LookupError(f'{file} no longer holds {found!r}: the mutant {name!r} needs another line')
+        raise LookupError(f'{file} no longer holds {found!r}: the mutant {name!r} needs another '
+                          'line')
     environment = {key: value for key, value in os.environ.items() if not key.startswith('PYTEST')}
-    environment |= {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(copy), 'PYTHONDONTWRITEBYTECODE': '1'}
+    environment |= {
+        'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(copy), 'PYTHONDONTWRITEBYTECODE': '1'}
     path.write_text(text.replace(found, put))
     try:
-        done = subprocess.run([sys.executable, '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', test], cwd=copy, env=environment,
-                              capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            [sys.executable, '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', test], cwd=copy,
+            env=environment, capture_output=True, text=True, timeout=300)
     except subprocess.TimeoutExpired:
         return True     # it went on for ever: no test would let that pass
     if done.returncode not in (0, 1):

@@ -18,6 +18,7 @@ def test_case(case):
 def test_energy_alone_is_no_test():
     """The example of the issue: energy to 1e-14 and better, attitude wrong by more than 1e-6 rad."""
     outcome = next(case for case in of_group(1) if case.name == 'energy is no proof').run()
-    held, wrong = (float(word) for word in outcome.reason.replace(',', '').split() if word[0].isdigit())
+    held, wrong = (float(word)
+                   for word in outcome.reason.replace(',', '').split() if word[0].isdigit())
     assert held < 1e-14     # measured 1e-15
     assert wrong > 1e-6     # measured 4e-6 rad, RK4 of 1 ms after 60 s

@@ -11,11 +11,16 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases.table import of_group
 
-FREE = 'scene: fast\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\ninitial: {angular_velocity: [%s, %s, %s]}\n'
-TOP = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}\n'
-       'constraint: pivot\neffects: [gravity: {g: 9.81}]\ninitial: {angular_velocity: [%s, %s, %s]}\n')
-HINGE = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}\n'
-         'constraint: {hinge: {axis: [0, 1, 0]}}\neffects: [gravity: {g: 9.81}]\ninitial: {angle: 1.0, rate: %s}\n')
+FREE = ('scene: fast\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\n'
+        'initial: {angular_velocity: [%s, %s, %s]}\n')
+TOP = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, '
+       'center_of_mass: [0, 0, 0.1]}\n'
+       'constraint: pivot\neffects: [gravity: {g: 9.81}]\n'
+       'initial: {angular_velocity: [%s, %s, %s]}\n')
+HINGE = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, '
+         'center_of_mass: [0, 0, 0.1]}\n'
+         'constraint: {hinge: {axis: [0, 1, 0]}}\neffects: [gravity: {g: 9.81}]\n'
+         'initial: {angle: 1.0, rate: %s}\n')
 
 
 @pytest.mark.parametrize('speed', [1e6, 1e20, 1e100])
@@ -44,7 +49,8 @@ def test_events_that_crowd_are_the_same_one_tick_at_a_time():
 
 @pytest.mark.parametrize('kind', [FREE, TOP, HINGE], ids=['free', 'top', 'hinge'])
 def test_an_energy_beyond_doubles_is_refused(kind):
-    with pytest.raises(BadInput, match='fast: initial: energy or momentum is beyond what a double holds'):
+    with pytest.raises(
+            BadInput, match='fast: initial: energy or momentum is beyond what a double holds'):
         Simulation(parse_scene(kind % ((1e200,) * kind.count('%s'))))
 
 

@@ -22,7 +22,8 @@ def test_a_kick_of_an_upright_top_that_falls_grows_as_the_linear_equations_say(k
     _, reference = anchored(HEAVY, UPRIGHT, (1e-8, 0.0, spin))
     _, anchor = anchored(HEAVY, UPRIGHT, (kick, 0.0, spin))
     for time in (0.1, 0.5, 1.0):
-        scaled, expected = at(anchor, time)[[1, 2, 5, 6]] / kick, at(reference, time)[[1, 2, 5, 6]] / 1e-8
+        scaled, expected = (
+            at(anchor, time)[[1, 2, 5, 6]] / kick, at(reference, time)[[1, 2, 5, 6]] / 1e-8)
         # measured 3e-13: second order of the kick of 1e-8, grown to 1e-6 and squared
         np.testing.assert_allclose(scaled, expected, rtol=0.0, atol=4e-12 * np.abs(expected).max())
 
@@ -33,12 +34,14 @@ def test_a_kick_in_a_plane_stays_in_it_and_follows_the_hyperbolic_sine():
     for kick in (1e-9, 1e-70, 1e-250):
         _, anchor = anchored(HEAVY, UPRIGHT, (kick, 0.0, 0.0))
         x, y = at(anchor, 1.0)[1:3] / kick
-        assert x == pytest.approx(math.sinh(growth) / (2.0 * growth), rel=1e-13)      # measured 2e-15
+        # measured 2e-15
+        assert x == pytest.approx(math.sinh(growth) / (2.0 * growth), rel=1e-13)
         assert abs(y) < 1e-14 * x
 
 
 @pytest.mark.parametrize('spin', [0.0, 5e-324, 1e-200, 1e-8, 5.0, 34.3, 1e6])
-@pytest.mark.parametrize('orientation', [UPRIGHT, [1.0, 0.0, 0.0, 0.0]], ids=['upright', 'hanging'])
+@pytest.mark.parametrize(
+    'orientation', [UPRIGHT, [1.0, 0.0, 0.0, 0.0]], ids=['upright', 'hanging'])
 def test_exactly_upright_and_exactly_hanging_for_ever(spin, orientation):
     """At rest and upright the quaternion once came out as zero: a function without a zero was taken to stand on one."""
     _, anchor = anchored(HEAVY, orientation, (0.0, 0.0, spin))

@@ -28,7 +28,8 @@ def outcomes():
     """
     root = str(pathlib.Path(__file__).resolve().parents[2])
     settings = os.environ | {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': root}
-    done = subprocess.run([sys.executable, '-W', 'ignore', '-c', CODE], capture_output=True, text=True, timeout=100, env=settings, check=True)
+    done = subprocess.run([sys.executable, '-W', 'ignore', '-c', CODE], capture_output=True,
+                          text=True, timeout=100, env=settings, check=True)
     return {name: Outcome(**found) for name, found in json.loads(done.stdout).items()}
 
 

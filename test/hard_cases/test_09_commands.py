@@ -17,10 +17,12 @@ NONE = (0.0, 0.0, 0.0)
 
 @pytest.fixture(scope='module')
 def scenes():
-    return {name: Simulation(name).scene for name in ('tennis_racket', 'heavy_top', 'kater_pendulum', 'billiard_center')}
+    return {name: Simulation(name).scene
+            for name in ('tennis_racket', 'heavy_top', 'kater_pendulum', 'billiard_center')}
 
 
-@pytest.mark.parametrize('name', ['tennis_racket', 'heavy_top', 'kater_pendulum', 'billiard_center'])
+@pytest.mark.parametrize(
+    'name', ['tennis_racket', 'heavy_top', 'kater_pendulum', 'billiard_center'])
 @pytest.mark.parametrize('size', [1e300, 1e155, 1.7e308])
 def test_an_impulse_beyond_the_energies_is_refused_in_one_line(scenes, name, size):
     """Its energy, 1e600 J, would be inf and every residual NaN."""
@@ -45,7 +47,8 @@ def test_denormal_impulses_and_wrenches_do_nothing_visible(scenes, size):
     simulation.impulse((size, 0.0, 0.0), (size, -size, size))
     for each in (simulation, quiet):
         each.advance(90)
-    assert simulation.vector[1:8] == pytest.approx(quiet.vector[1:8], rel=0.0, abs=4e-15)     # measured 1e-15
+    # measured 1e-15
+    assert simulation.vector[1:8] == pytest.approx(quiet.vector[1:8], rel=0.0, abs=4e-15)
     assert abs(simulation.ledger()['energy_residual']) < 2e-15
 
 
@@ -65,7 +68,8 @@ def test_bursts_at_10_khz_balance(scenes):
     """2000 impulses from both frames, ten a tick: work and momentum add up to round-off, which walks at random."""
     simulation, random = Simulation(scenes['tennis_racket']), np.random.default_rng(9)
     for _ in range(200):
-        assert simulation.command(np.array([(IMPULSE, k % 2, *random.normal(size=6)) for k in range(10)])) == []
+        assert simulation.command(np.array([(IMPULSE, k % 2, *random.normal(size=6))
+                                            for k in range(10)])) == []
         simulation.advance()
         simulation.forget_past()
     ledger = simulation.ledger()

@@ -27,5 +27,6 @@ def test_stepped_motion_comes_back_by_symmetric_compositions():
     there[0], there[5:8] = 0.0, -there[5:8]
     simulation.choice.solver(there, Wrench()).state(2.0, there)
     start = simulation.scene.initial
-    assert angle_between(*there[1:5], *start.orientation) < 1e-12     # measured 1e-14: 200 steps, 60 rad/s
+    # measured 1e-14: 200 steps, 60 rad/s
+    assert angle_between(*there[1:5], *start.orientation) < 1e-12
     assert np.abs(there[5:8] + start.angular_velocity).max() < 1e-10

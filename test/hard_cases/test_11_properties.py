@@ -56,12 +56,16 @@ def test_any_scene_that_is_stepped_under_any_commands(tmp_path):
     """A few in a process that does not compile; held wrenches, drag and strong dissipation too with `make soak`."""
     if HAVE_NUMBA and not SOAK:
         this = f'{__file__}::{test_any_scene_that_is_stepped_under_any_commands.__name__}'
-        done = subprocess.run([sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', this], capture_output=True, text=True,
-                              timeout=200, env=os.environ | {'NUMBA_DISABLE_JIT': '1'})
+        done = subprocess.run(
+            [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', this],
+            capture_output=True, text=True, timeout=200,
+            env=os.environ | {'NUMBA_DISABLE_JIT': '1'})
         assert done.returncode == 0, done.stdout
         return
-    acts = commands(('impulse', 'advance', 'reset', *(['hold'] if SOAK else [])), st.sampled_from([1e-12, 1e-3, 1.0, 10.0]))
-    hold_for_all(tmp_path / 'failing.yaml', stepped_scenes(every_effect=SOAK), acts, 2000 if SOAK else 20)
+    acts = commands(('impulse', 'advance', 'reset', *(['hold'] if SOAK else [])),
+                    st.sampled_from([1e-12, 1e-3, 1.0, 10.0]))
+    hold_for_all(
+        tmp_path / 'failing.yaml', stepped_scenes(every_effect=SOAK), acts, 2000 if SOAK else 20)
 
 
 def back_at_its_unstable_place(constraint, body, initial, effects=()):
@@ -100,5 +104,6 @@ def test_a_failure_leaves_a_scene_file_that_the_command_runs(tmp_path, capsys):
         hold_for_all(place, scenes(), commands(), 20, not_free)
     assert load_scene(place).constraint.kind == 'free'
     capsys.readouterr()
-    assert simulate.main(['--scene', str(place), '--duration', '0.1', '--json', '--output', str(tmp_path / 'run')]) == 0
+    assert simulate.main(['--scene', str(place), '--duration', '0.1', '--json', '--output',
+                          str(tmp_path / 'run')]) == 0
     assert json.loads(capsys.readouterr().out)['state']['time'] == 0.1

@@ -20,12 +20,15 @@ from rigid_body_sim.simulation.simulation import Simulation
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 FILES = 100_000 if SOAK else 1500
 RUN_EVERY = 10
-NUMBERS = ['0', '-1', '1e308', '-1e308', '1e309', '.inf', '-.inf', '.nan', '5e-324', '1e-300', '9' * 400, '0x10', '1_000', '1:30', '07', '+.5e',
-           'true', 'null', '~', '""', '[]', '{}', '[1, 2]', '[1, 2, 3]', '*a',
-           '&a 1', '!!python/object:os.system 1', '"\\u0000"', 'é', '1e', '1e-3']
-LINES = ['\t', ' ' * 50, 'body: {mass: 1.0}', 'effects: []', '---', '...', '? a', '- a', '%YAML 9.9', '&a [*a]', '<<: *a', 'scene: x', '\x00',
-         '\x85', '\ufeff', '{' * 40, '[' * 3000, 'a: ' * 200, '#' * 1000, '\u2028', 'commands: maybe', 'constraint: {hinge: {axis: [0, 0, 0]}}',
-         '"' * 3, "it's: 'x", 'about: |', 'about: >', '!!binary aGk=', 'x: !!float 1', '1: 2', 'null: 1', 'initial: {tilt: 0.5, spin: 1e200}']
+NUMBERS = [
+    '0', '-1', '1e308', '-1e308', '1e309', '.inf', '-.inf', '.nan', '5e-324', '1e-300', '9' * 400,
+    '0x10', '1_000', '1:30', '07', '+.5e', 'true', 'null', '~', '""', '[]', '{}', '[1, 2]',
+    '[1, 2, 3]', '*a', '&a 1', '!!python/object:os.system 1', '"\\u0000"', 'é', '1e', '1e-3']
+LINES = ['\t', ' ' * 50, 'body: {mass: 1.0}', 'effects: []', '---', '...', '? a', '- a',
+         '%YAML 9.9', '&a [*a]', '<<: *a', 'scene: x', '\x00', '\x85', '\ufeff', '{' * 40,
+         '[' * 3000, 'a: ' * 200, '#' * 1000, '\u2028', 'commands: maybe',
+         'constraint: {hinge: {axis: [0, 0, 0]}}', '"' * 3, "it's: 'x", 'about: |', 'about: >',
+         '!!binary aGk=', 'x: !!float 1', '1: 2', 'null: 1', 'initial: {tilt: 0.5, spin: 1e200}']
 
 
 def mutated(text, source):
@@ -46,7 +49,8 @@ def mutated(text, source):
             text = '\n'.join([*lines[:place], lines[place], *lines[place:]])
         elif kind == 4 and text:
             at = source.randrange(len(text))
-            text = text[:at] + chr(source.choice([*range(128), 0x85, 0xa0, 0x2028, 0xfeff, 0xfffd, 0x1f600])) + text[at + 1:]
+            text = (text[:at] + chr(source.choice([
+                *range(128), 0x85, 0xa0, 0x2028, 0xfeff, 0xfffd, 0x1f600])) + text[at + 1:])
         elif kind == 5 and text:
             at = source.randrange(len(text))
             text = text[:at] + text[at + source.randint(1, 20):]
@@ -100,14 +104,20 @@ def test_mutated_files_run_or_get_one_line(shipped):
 
 
 @pytest.mark.parametrize('text', [
-    'a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\n', '[' * 100_000, '{a: ' * 5000, 'x' * 300_000, 'a: 1\na: 2\n', 'scene: \x00', '\ufeff',
+    'a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\n', '[' * 100_000, '{a: ' * 5000, 'x' * 300_000,
+    'a: 1\na: 2\n', 'scene: \x00', '\ufeff',
     '', '- 1', '7', 'null', '\t', 'a: ' + '9' * 5000, 'body: {mass: ' + '9' * 5000 + '}',
     '!!python/object/apply:os.system [ls]', '--- a\n--- b',
-    'scene: x\nbody: {mass: 1.0, inertia: [1e308, 1e308, 1e308]}\nconstraint: free\neffects: []\ninitial: {angular_velocity: [1e10, 0, 0]}',
-    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: []\ninitial: {position: [0, 0, ' + '9' * 309 + ']}',
-    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1], center_of_mass: [0.5, 0, -1e308]}\nconstraint: {hinge: {axis: [0, 0, 1]}}\n'
+    'scene: x\nbody: {mass: 1.0, inertia: [1e308, 1e308, 1e308]}\nconstraint: free\neffects: []\n'
+    'initial: {angular_velocity: [1e10, 0, 0]}',
+    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: []\n'
+    'initial: {position: [0, 0, '
+    + '9' * 309 + ']}',
+    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1], center_of_mass: [0.5, 0, -1e308]}\n'
+    'constraint: {hinge: {axis: [0, 0, 1]}}\n'
     'effects: []\ninitial: {}',
-    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: {hinge: {axis: [0, 1, 0], distance: 1e160}}\n'
+    'scene: x\nbody: {mass: 1.0, inertia: [1, 1, 1]}\n'
+    'constraint: {hinge: {axis: [0, 1, 0], distance: 1e160}}\n'
     'effects: []\ninitial: {}',
     'scene: x\nbody: {mass: 1e-320, parts: []}\nconstraint: free\neffects: []\ninitial: {}'],
     ids=lambda text: repr(text[:20]))

@@ -25,7 +25,8 @@ def test_json_has_every_case(few, capsys):
 
 @pytest.mark.parametrize('error', [2.0, float('nan'), float('inf')])
 def test_a_case_that_fails_is_said_and_is_the_exit_status(few, capsys, error):
-    few.append(Case(9, 'made to fail', 'it must be seen', lambda: Outcome(error, 1.0, 'rad', 'none')))
+    few.append(Case(
+        9, 'made to fail', 'it must be seen', lambda: Outcome(error, 1.0, 'rad', 'none')))
     assert hard_cases.main([]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[-2].startswith('FAILS  commands     made to fail: ')

@@ -38,12 +38,14 @@ def weight(tree, A):
     result = [Fraction(1)] * len(A)
     for subtree in tree:
         inner = weight(subtree, A)
-        result = [left * sum((a * inner[j] for j, a in row.items()), Fraction(0)) for left, row in zip(result, A, strict=True)]
+        result = [left * sum((a * inner[j] for j, a in row.items()), Fraction(0))
+                  for left, row in zip(result, A, strict=True)]
     return result
 
 
 def largest_defect(order, A, B):
     """Return the largest |sum b Phi(t) - 1/gamma(t)| over the trees of an order, in exact arithmetic on the doubles given."""
     A = [{j: Fraction(a) for j, a in row.items()} for row in A]
-    sums = {tree: sum(Fraction(b) * weight(tree, A)[j] for j, b in B.items()) for tree in trees(order)}
+    sums = {tree: sum(Fraction(b) * weight(tree, A)[j] for j, b in B.items())
+            for tree in trees(order)}
     return max(abs(float(total - Fraction(1, density(tree)))) for tree, total in sums.items())

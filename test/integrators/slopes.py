@@ -14,15 +14,19 @@ from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import parse_scene
 
 # method, case, time (s), numbers of steps
-CASES = (('semi_implicit_euler', 'driven_body', 4.0, (200, 400)), ('rk4', 'asymmetric_heavy_top', 0.4, (40, 80)),
-         ('split2', 'asymmetric_heavy_top', 0.4, (40, 80)), ('split4', 'asymmetric_heavy_top', 0.4, (40, 80)),
-         ('split6', 'driven_body', 4.0, (8, 16)), ('split8', 'asymmetric_heavy_top', 0.4, (20, 40)),
-         ('gauss16', 'asymmetric_heavy_top', 0.4, (8, 12)))
+CASES = (
+    ('semi_implicit_euler', 'driven_body', 4.0, (200, 400)),
+    ('rk4', 'asymmetric_heavy_top', 0.4, (40, 80)),
+    ('split2', 'asymmetric_heavy_top', 0.4, (40, 80)),
+    ('split4', 'asymmetric_heavy_top', 0.4, (40, 80)), ('split6', 'driven_body', 4.0, (8, 16)),
+    ('split8', 'asymmetric_heavy_top', 0.4, (20, 40)),
+    ('gauss16', 'asymmetric_heavy_top', 0.4, (8, 12)))
 
 
 def error(found, exact):
     """Return the error of the attitude (rad) and, relative to its size, of omega."""
-    return angle_between(*found[1:5], *exact[1:5]) + np.abs(found[5:8] - exact[5:8]).max() / np.abs(exact[5:8]).max()
+    return (angle_between(*found[1:5], *exact[1:5])
+            + np.abs(found[5:8] - exact[5:8]).max() / np.abs(exact[5:8]).max())
 
 
 def slope(method, case, time, steps):

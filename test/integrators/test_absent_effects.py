@@ -16,8 +16,10 @@ KERNELS = {'gravity': 'moment_of_weight', 'torque': 'constant_elementary', 'drag
            'internal_dissipation': 'turning_internal_dissipation'}
 
 
-@pytest.mark.parametrize(('case', 'listed'), [('asymmetric_heavy_top', {'gravity'}), ('damped_top', {'gravity', 'drag'}),
-                                              ('driven_body', {'torque'}), ('major_axis_relaxation', {'internal_dissipation'})])
+@pytest.mark.parametrize(
+    ('case', 'listed'),
+    [('asymmetric_heavy_top', {'gravity'}), ('damped_top', {'gravity', 'drag'}),
+     ('driven_body', {'torque'}), ('major_axis_relaxation', {'internal_dissipation'})])
 def test_source_made_for_a_scene_names_its_effects_and_no_other(case, listed):
     source = inspect.getsource(Equations(parse_scene(smooth_cases.text(case))).kernels)
     assert {name for name, kernel in KERNELS.items() if kernel in source} == listed
@@ -27,7 +29,8 @@ def entered(*arguments):
     raise AssertionError('an effect that the scene does not list was entered')
 
 
-@pytest.mark.parametrize(('scene', 'listed'), [('asymmetric_heavy_top', 'gravity'), ('tennis_racket', None)])
+@pytest.mark.parametrize(
+    ('scene', 'listed'), [('asymmetric_heavy_top', 'gravity'), ('tennis_racket', None)])
 def test_absent_effects_are_never_entered(monkeypatch, scene, listed):
     for name, effect in EFFECTS.items():
         if name != listed:
@@ -38,7 +41,8 @@ def test_absent_effects_are_never_entered(monkeypatch, scene, listed):
         made = parse_scene(smooth_cases.text(scene))
         solver = Stepped(made, 'dop8', accuracy=1e-9).start(made.initial.vector)
         solver.state(0.1, np.empty(14))
-    simulation = Simulation(made if listed else scene, accuracy=1e-9, integrator='dop8' if listed else 'auto')
+    simulation = Simulation(
+        made if listed else scene, accuracy=1e-9, integrator='dop8' if listed else 'auto')
     simulation.advance(10)
     assert abs(simulation.ledger()['energy_residual']) < 1e-9
 

@@ -18,9 +18,11 @@ from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.rotations import angle_between, rotate
 from rigid_body_sim.scene.scene import parse_scene
 
-pytestmark = pytest.mark.skipif(not HAVE_NUMBA, reason='thousands of bodies take minutes without numba')
+pytestmark = pytest.mark.skipif(
+    not HAVE_NUMBA, reason='thousands of bodies take minutes without numba')
 
-REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data' / 'smooth.json').read_text())
+REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data'
+                        / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
 
 
@@ -31,7 +33,9 @@ def starts_of(scene, factors):
     return starts
 
 
-@pytest.mark.parametrize('name', ['asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest', 'driven_in_pieces'])
+@pytest.mark.parametrize('name',
+                         ['asymmetric_heavy_top', 'skew_heavy_top', 'driven_body',
+                          'driven_from_rest', 'driven_in_pieces'])
 def test_one_of_many_bodies_is_where_the_reference_says(name):
     """At the round-off floor: an ulp on omega turns the body by an ulp of its whole angle, and 4 ulp are for input and output.
 
@@ -39,7 +43,8 @@ def test_one_of_many_bodies_is_where_the_reference_says(name):
     """
     scene, reference = parse_scene(smooth_cases.text(name)), REFERENCE[name]
     times = [float(time) for time in reference]
-    bodies = ensemble(scene, starts_of(scene, [0.0, 3.0, 0.1, *[2.0] * 7, 1.0]), times[::-1], 'taylor', 1e-14)
+    bodies = ensemble(
+        scene, starts_of(scene, [0.0, 3.0, 0.1, *[2.0] * 7, 1.0]), times[::-1], 'taylor', 1e-14)
     speed = np.linalg.norm(scene.initial.angular_velocity)
     for state, (time, expected) in zip(bodies[10].vector[::-1], reference.items(), strict=True):
         exact = np.array([float(x) for x in expected['state']])
@@ -47,8 +52,10 @@ def test_one_of_many_bodies_is_where_the_reference_says(name):
         floor = ULP * (4.0 + speed * float(time))
         assert state[0] == float(time)
         assert state[1:5] @ exact[:4] > 0.0, 'the sign of q is continuous'
-        assert angle_between(*state[1:5], *exact[:4]) < floor    # measured: at most 0.51 (driven_in_pieces)
-        assert np.linalg.norm(state[5:8] - exact[4:7]) <= 0.2 * floor * speed    # 0.09 (driven_from_rest)
+        # measured: at most 0.51 (driven_in_pieces)
+        assert angle_between(*state[1:5], *exact[:4]) < floor
+        # 0.09 (driven_from_rest)
+        assert np.linalg.norm(state[5:8] - exact[4:7]) <= 0.2 * floor * speed
         assert np.abs(state[8:] - exact[7:]).max() <= 4 * ULP    # 1.5 (driven_in_pieces)
 
 
@@ -63,21 +70,26 @@ def test_slow_and_fast_bodies_share_the_lanes():
         one.start(start).states(times, states)
     for accuracy in (1e-12, 1e-6):
         together = ensemble(scene, starts, times, 'taylor', accuracy).vector
-        errors = [angle_between(*a[1:5], *b[1:5]) for a, b in zip(together.reshape(-1, 14), alone.reshape(-1, 14), strict=True)]
+        errors = [angle_between(*a[1:5], *b[1:5])
+                  for a, b in zip(together.reshape(-1, 14), alone.reshape(-1, 14), strict=True)]
         assert max(errors) < 0.1 * accuracy    # 1.5e-14, 2.5e-9
-        assert (np.einsum('kni,kni->kn', together[:, :, 1:5], alone[:, :, 1:5]) > 0.0).all(), 'the sign of q is continuous'
-    other = ensemble(scene, starts[4:], times[[1, 3, 0]], 'taylor', 1e-6)    # other lanes, other times
+        assert (np.einsum('kni,kni->kn', together[:, :, 1:5], alone[:, :, 1:5])
+                > 0.0).all(), 'the sign of q is continuous'
+    # other lanes, other times
+    other = ensemble(scene, starts[4:], times[[1, 3, 0]], 'taylor', 1e-6)
     assert (other.vector == together[4:, [1, 3, 0]]).all()
 
 
 def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
     """Spun about a principal axis the angle is 5 t + 0.005 t^2; to 0.1 rad in 100 s a step takes 4 rad."""
-    spun = parse_scene('scene: spun\nbody: {mass: 1.0, inertia: [1.0, 1.5, 2.0]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0.02]}]\n'
+    spun = parse_scene('scene: spun\nbody: {mass: 1.0, inertia: [1.0, 1.5, 2.0]}\n'
+                       'constraint: free\neffects: [torque: {value: [0, 0, 0.02]}]\n'
                        'initial: {angular_velocity: [0, 0, 5]}\n')
     times = np.linspace(0.0, 40.0, 400)
     half = 0.5 * (5.0 * times + 0.005 * times ** 2)
     for body in ensemble(spun, starts_of(spun, [1.0, 1.0]), times, 'taylor', 0.1):
-        assert np.abs(body.orientation[:, 2:] - np.transpose([np.sin(half), np.cos(half)])).max() < 1e-3    # 1.9e-4
+        # 1.9e-4
+        assert np.abs(body.orientation[:, 2:] - np.transpose([np.sin(half), np.cos(half)])).max() < 1e-3
 
 
 def test_force_and_couple_change_the_angular_momentum():
@@ -85,13 +97,16 @@ def test_force_and_couple_change_the_angular_momentum():
     body, constraint, _, initial, _, _ = smooth_cases.CASES['skew_heavy_top']
     couple = np.array([0.2, -0.3, 0.4])
     scene = parse_scene(f'scene: pulled\nbody: {body}\nconstraint: {constraint}\n'
-                        f'effects: [gravity: {{g: 9.81}}, torque: {{value: {couple.tolist()}, frame: world}}]\ninitial: {initial}\n')
+                        f'effects: [gravity: {{g: 9.81}}, torque: {{value: {couple.tolist()}, '
+                        f'frame: world}}]\ninitial: {initial}\n')
     nodes, weights = np.polynomial.legendre.leggauss(16)
-    nodes, weights = np.add.outer(np.arange(20.0), 0.5 + 0.5 * nodes).ravel() / 10.0, np.tile(weights, 20) / 20.0
+    nodes, weights = (np.add.outer(np.arange(20.0), 0.5 + 0.5 * nodes).ravel() / 10.0,
+                      np.tile(weights, 20) / 20.0)
     states = ensemble(scene, starts_of(scene, [1.0]), [*nodes, 0.0, 2.0], 'taylor', 1e-12)[0]
     turn = Rotation.from_quat(states.orientation)
     L = turn.apply(states.angular_velocity @ scene.body.about_origin.matrix.T)
-    torques = np.cross(turn.apply(scene.body.center_of_mass), [0.0, 0.0, -9.81 * scene.body.mass]) + couple
+    torques = (np.cross(turn.apply(scene.body.center_of_mass), [0.0, 0.0, -9.81 * scene.body.mass])
+               + couple)
     assert L[-1] - L[-2] == near(weights @ torques[:-2], 1e-13)    # 1e-14
 
 
@@ -108,32 +123,39 @@ def test_thrown_bodies_fall():
     drop = states('gravity: {g: 10.0}, ') - states('')
     expected = np.zeros((2, 2, 14))
     expected[:, :, 10], expected[:, :, 13] = [-1.25, -125.0], [-5.0, -50.0]
-    assert np.abs(drop - expected).max() < 1e-11    # 2.4e-13 of the attitude: the directions that are followed are others
+    # 2.4e-13 of the attitude: the directions that are followed are others
+    assert np.abs(drop - expected).max() < 1e-11
 
 
 def test_hinged_bodies_keep_their_hinge_and_their_energy():
     scene = parse_scene(smooth_cases.text('held_hinge_body'))
     axis, through = np.array(scene.constraint.axis), np.array(scene.constraint.through)
     I, M = moment_about_hinge(scene.body, scene.constraint), scene.body.mass
-    for body in ensemble(scene, starts_of(scene, [0.0, 0.5, 1.0]), [0.0, 0.4, 3.0], 'taylor', 1e-13):
+    for body in ensemble(
+            scene, starts_of(scene, [0.0, 0.5, 1.0]), [0.0, 0.4, 3.0], 'taylor', 1e-13):
         turn = Rotation.from_quat(body.orientation)
         height = (body.position + turn.apply(scene.body.center_of_mass))[:, 2]
         E = 0.5 * I * np.sum(body.angular_velocity ** 2, axis=1) + M * 9.81 * height
-        for kept, bound in ((turn.apply(axis), 8 * ULP), (body.position + turn.apply(through), 8 * ULP), (E, 1e-13 * np.abs(E).max())):
+        for kept, bound in (
+                (turn.apply(axis), 8 * ULP), (body.position + turn.apply(through), 8 * ULP),
+                (E, 1e-13 * np.abs(E).max())):
             assert np.abs(kept - kept[0]).max() <= bound    # 0.2, 0.03, 0.12 of it
 
 
 def test_bodies_that_do_not_move_stay():
-    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
+    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\n'
+                        'constraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
                         'initial: {}\n')
     starts = starts_of(still, [1.0] * 3)
-    assert (ensemble(still, starts, [0.0, 1000.0], 'taylor', 1e-9).vector[:, :, 1:] == starts[:, np.newaxis, 1:]).all()
+    assert (ensemble(still, starts, [0.0, 1000.0], 'taylor', 1e-9).vector[:, :, 1:]
+            == starts[:, np.newaxis, 1:]).all()
     assert ensemble(still, starts, [], 'taylor', 1e-9).vector.shape == (3, 0, 14)
 
 
 def test_who_fails_is_named():
     scene = parse_scene(smooth_cases.text('driven_body'))
-    starts = starts_of(scene, [*[1.0] * 70, 1e18, 2.0])    # powers of omega leave the range of doubles
+    # powers of omega leave the range of doubles
+    starts = starts_of(scene, [*[1.0] * 70, 1e18, 2.0])
     with pytest.raises(NotConverged, match=r'body 70: taylor on driven_body: at t = 0\.0 s'):
         ensemble(scene, starts, [1e-10], 'taylor', 1e-9)
     with pytest.raises(NotConverged, match=r'body 70: .*more radians than'):
@@ -154,7 +176,8 @@ def test_a_step_is_the_same_in_plain_python():
         q = draw.normal(size=4)
         q /= np.linalg.norm(q)
         table[series.QUATERNION:series.SERIES, lane] = q
-        table[series.SERIES:series.OMEGA, lane] = *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)
+        table[series.SERIES:series.OMEGA, lane] = (
+            *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0))
         table[series.OMEGA:series.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
     table[series.END] = 1e3
 
@@ -165,11 +188,15 @@ def test_a_step_is_the_same_in_plain_python():
     series._advance(Plain(), plain, 1e-20)
     advance(written)
     plain, written = plain.reshape(table.shape), written.reshape(table.shape)
-    orders, end = slice(series.SERIES, series.FOLLOWING), slice(series.FOLLOWING, series.FOLLOWING + series.POINT_SIZE)
-    assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()    # 1
+    orders, end = (slice(series.SERIES, series.FOLLOWING),
+                   slice(series.FOLLOWING, series.FOLLOWING + series.POINT_SIZE))
+    # 1
+    assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()
     assert written[end][series.STEP] == near(plain[end][series.STEP], 1e-14)    # the same
     for rows in (slice(series.QUATERNION, series.SERIES), slice(series.SERIES, series.POINT_SIZE)):
         assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
     # the quaternion turns with the directions
-    for q, e in zip(written[end][series.QUATERNION:series.SERIES].T, written[end][series.SERIES:series.OMEGA].T, strict=True):
-        assert np.abs(np.append(rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)) - e).max() < 8 * ULP    # 3.5
+    for q, e in zip(written[end][series.QUATERNION:series.SERIES].T,
+                    written[end][series.SERIES:series.OMEGA].T, strict=True):
+        # 3.5
+        assert np.abs(np.append(rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)) - e).max() < 8 * ULP

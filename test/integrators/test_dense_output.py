@@ -39,10 +39,12 @@ def test_states_do_not_depend_on_what_else_was_asked(top, method, control):
         assert np.array_equal(alone, together[k])
 
 
-@pytest.mark.parametrize(('method', 'control'), [('gauss16', {'step': 0.03}), ('taylor', {'accuracy': 1e-12})])
+@pytest.mark.parametrize(
+    ('method', 'control'), [('gauss16', {'step': 0.03}), ('taylor', {'accuracy': 1e-12})])
 def test_states_between_nodes_are_as_good_as_nodes(top, method, control):
     times = np.linspace(0.0, 0.4, 101)
-    pairs = zip(states(top, method, times, **control), states(top, 'dop8', times, accuracy=1e-15), strict=True)
+    pairs = zip(states(top, method, times, **control), states(top, 'dop8', times, accuracy=1e-15),
+                strict=True)
     assert max(angle_between(*a[1:5], *b[1:5]) for a, b in pairs) < 1e-13
 
 

@@ -28,7 +28,8 @@ def state(scene, time, **control):
 
 @pytest.mark.parametrize('order', range(1, 9))
 def test_order_conditions(order):
-    assert largest_defect(order, dop8.A, dop8.B) < 1e-15    # 7.1e-16: the rounding of the coefficients to doubles
+    # 7.1e-16: the rounding of the coefficients to doubles
+    assert largest_defect(order, dop8.A, dop8.B) < 1e-15
 
 
 def test_order_is_not_nine():
@@ -37,14 +38,16 @@ def test_order_is_not_nine():
 
 @pytest.mark.parametrize(('estimate', 'order'), [(dop8.E5, 5), (dop8.E3, 3)])
 def test_error_estimates_compare_with_methods_of_lower_order(estimate, order):
-    lower = {stage: dop8.B.get(stage, 0.0) - estimate.get(stage, 0.0) for stage in {*dop8.B, *estimate}}
+    lower = {stage: dop8.B.get(stage, 0.0) - estimate.get(stage, 0.0)
+             for stage in {*dop8.B, *estimate}}
     assert max(largest_defect(k, dop8.A, lower) for k in range(1, order + 1)) < 2e-15    # 1.1e-15
     assert largest_defect(order + 1, dop8.A, lower) > 1e-4
 
 
 def test_slope_of_the_error_is_the_order(top):
     exact = state(top, 0.4, accuracy=1e-14)
-    errors = [angle_between(*state(top, 0.4, step=0.4 / steps)[1:5], *exact[1:5]) for steps in (20, 40)]
+    errors = [angle_between(*state(top, 0.4, step=0.4 / steps)[1:5], *exact[1:5])
+              for steps in (20, 40)]
     assert math.log2(errors[0] / errors[1]) == pytest.approx(8.0, abs=0.6)    # 8.2
 
 
@@ -102,14 +105,15 @@ def test_a_start_between_breakpoints_keeps_the_time():
 
 
 def test_what_does_nothing_is_not_computed():
-    scene = parse_scene(smooth_cases.text('driven_body').replace('[torque: {value: [0.3, -0.2, 0.5]}]', '[]'))
+    scene = parse_scene(smooth_cases.text('driven_body').replace(
+        '[torque: {value: [0.3, -0.2, 0.5]}]', '[]'))
     idle = Stepped(scene, 'dop8', accuracy=1e-9, wrench=Wrench())
     assert not idle.start(scene.initial.vector).exchanged(5.0).any()
 
 
-@pytest.mark.parametrize(('control', 'where'), [
-    ({}, 'method'),
-    ({'step': 0.0}, 'step'), ({'step': math.nan}, 'step'), ({'accuracy': 1e-17}, 'accuracy'), ({'accuracy': math.nan}, 'accuracy')])
+@pytest.mark.parametrize(('control', 'where'),
+                         [({}, 'method'), ({'step': 0.0}, 'step'), ({'step': math.nan}, 'step'),
+                          ({'accuracy': 1e-17}, 'accuracy'), ({'accuracy': math.nan}, 'accuracy')])
 def test_control_that_cannot_be_is_refused(top, control, where):
     with pytest.raises(BadInput) as refused:
         Stepped(top, 'dop8', **control)

@@ -7,7 +7,8 @@ from rigid_body_sim import Simulation, load_scene, parse_scene
 
 @pytest.mark.parametrize('name', ['tennis_racket', 'free_body', 'asymmetric_top'])
 def test_flips_are_those_of_the_closed_form(name):
-    exact, stepped = (Simulation(name, integrator=integrator, accuracy=1e-13) for integrator in ('exact', 'dop8'))
+    exact, stepped = (Simulation(name, integrator=integrator, accuracy=1e-13)
+                      for integrator in ('exact', 'dop8'))
     for simulation in (exact, stepped):
         simulation.advance(20_000)
     times = [event.time for event in exact.events]
@@ -36,31 +37,38 @@ def test_event_is_a_zero_of_what_is_watched():
 
 
 def test_nodding_top_turns_at_the_same_times_in_both():
-    exact, stepped = (Simulation(load_scene('heavy_top'), integrator=integrator, accuracy=1e-13) for integrator in ('exact', 'dop8'))
+    exact, stepped = (Simulation(load_scene('heavy_top'), integrator=integrator, accuracy=1e-13)
+                      for integrator in ('exact', 'dop8'))
     for simulation in (exact, stepped):
         simulation.advance(5000)
     assert len(exact.events) > 10
     assert {event.name for event in exact.events} == {'turning point'}
-    assert [event.time for event in stepped.events] == pytest.approx([event.time for event in exact.events], abs=1e-10)
+    assert [event.time for event in stepped.events] == pytest.approx(
+        [event.time for event in exact.events], abs=1e-10)
 
 
 def test_pendulum_let_go_from_rest_turns_in_one_long_jump():
-    exact, stepped = (Simulation('kater_pendulum', integrator=integrator, accuracy=1e-13) for integrator in ('exact', 'dop8'))
+    exact, stepped = (Simulation('kater_pendulum', integrator=integrator, accuracy=1e-13)
+                      for integrator in ('exact', 'dop8'))
     for simulation in (exact, stepped):
         simulation.advance(10_000)
     assert len(exact.events) == 9
-    assert [event.time for event in stepped.events] == pytest.approx([event.time for event in exact.events], abs=1e-10)
+    assert [event.time for event in stepped.events] == pytest.approx(
+        [event.time for event in exact.events], abs=1e-10)
 
 
 def test_body_that_a_torque_sets_spinning_loses_no_flip_in_a_long_jump():
     """From rest, pushed about the middle axis for a second, then left to itself: it flips like the racket."""
     text = ('scene: pushed\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\n'
-            'effects: [torque: {times: [0, 1], values: [[0.02, 10.0, 0.02], [0, 0, 0]]}]\ninitial: {}\n')
-    jumping, ticking = (Simulation(parse_scene(text), integrator='dop8', accuracy=1e-12, rate=50) for _ in range(2))
+            'effects: [torque: {times: [0, 1], values: [[0.02, 10.0, 0.02], [0, 0, 0]]}]\n'
+            'initial: {}\n')
+    jumping, ticking = (Simulation(parse_scene(text), integrator='dop8', accuracy=1e-12, rate=50)
+                        for _ in range(2))
     jumping.advance(1000)
     for _ in range(1000):
         ticking.advance()
     assert len(ticking.events) >= 3
     assert [event.tick for event in jumping.events] == [event.tick for event in ticking.events]
     # found in other brackets, to the rounding of the zero
-    assert [event.time for event in jumping.events] == pytest.approx([event.time for event in ticking.events], abs=1e-13)
+    assert [event.time for event in jumping.events] == pytest.approx(
+        [event.time for event in ticking.events], abs=1e-13)

@@ -12,10 +12,12 @@ EPS = 2.0 ** -53
 def exactly(z):
     """Return e^(-z), phi1(z), phi2(z): Kummer's function, phi_k(z) = 1F1(1, k + 1, -z)/k!."""
     with mpmath.workdps(40):
-        return mpmath.exp(-mpmath.mpf(z)), mpmath.hyp1f1(1, 2, -mpmath.mpf(z)), mpmath.hyp1f1(1, 3, -mpmath.mpf(z)) / 2
+        return (mpmath.exp(-mpmath.mpf(z)), mpmath.hyp1f1(1, 2, -mpmath.mpf(z)),
+                mpmath.hyp1f1(1, 3, -mpmath.mpf(z)) / 2)
 
 
-@pytest.mark.parametrize('z', [0.0, 1e-300, 1e-16, 1e-8, 0.01, 0.5, SMALL, SMALL * (1.0 + 2.0 * EPS), 3.0, 40.0, 700.0])
+@pytest.mark.parametrize(
+    'z', [0.0, 1e-300, 1e-16, 1e-8, 0.01, 0.5, SMALL, SMALL * (1.0 + 2.0 * EPS), 3.0, 40.0, 700.0])
 def test_functions_of_the_decay_are_right_to_rounding(z):
     # measured over 4000 values from 1e-12 to 300: 1.9, 1.7, 2.9
     for found, true in zip(phi(z), exactly(z), strict=True):

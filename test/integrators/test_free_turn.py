@@ -13,9 +13,11 @@ from rigid_body_sim.integrators.equations.euler import EULER, FIXED, MOMENTS
 from rigid_body_sim.integrators.equations.free_turn import LEAST, turned_freely
 from rigid_body_sim.numerics.rotations import angle_between
 
-RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
+RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
+                      / 'free_body.json').read_text())
 NOTHING = (0.0,) * 7
-LONGEST = 20.0    # rad; a racket that has tumbled beyond forgets its start, for the state was rounded on the way
+# rad; a racket that has tumbled beyond forgets its start, for the state was rounded on the way
+LONGEST = 20.0
 EPSILON = np.finfo(float).eps
 
 
@@ -23,19 +25,24 @@ def parameters_of(moments):
     """Return the parameters that the kernel takes; a thin rod has no moment about one axis."""
     p = np.zeros(FIXED)
     p[MOMENTS:MOMENTS + 3] = moments
-    p[EULER:EULER + 3] = [(moments[(k + 1) % 3] - moments[(k + 2) % 3]) / moments[k] if moments[k] else 0.0 for k in range(3)]
+    p[EULER:EULER + 3] = [(moments[(k + 1) % 3] - moments[(k + 2) % 3]) / moments[k] if moments[k]
+                          else 0.0
+                          for k in range(3)]
     return p
 
 
 def twice_energy(moments, y, c):
     """Return sum I omega^2 exactly, omega with what its sums have lost."""
-    return sum(Fraction(i) * (Fraction(w) + Fraction(lost)) ** 2 for i, w, lost in zip(moments, y[4:], c[4:], strict=True))
+    return sum(Fraction(i) * (Fraction(w) + Fraction(lost)) ** 2
+               for i, w, lost in zip(moments, y[4:], c[4:], strict=True))
 
 
 def cases():
     found = []
     for record in RECORDS:
-        times = [state for state in record['states'] if 0.0 < math.hypot(*record['angular_velocity']) * state['time'] < LONGEST]
+        times = [state
+                 for state in record['states']
+                 if 0.0 < math.hypot(*record['angular_velocity']) * state['time'] < LONGEST]
         if times and 'axes' not in record and 'center_of_mass' not in record:
             found.append(pytest.param(record, times, id=record['name']))
     return found
@@ -50,11 +57,13 @@ def test_against_digits(record, states):
         floor = EPSILON * (1.0 + size * state['time'])
         turned = angle_between(*y[:4], *(float(x) for x in state['orientation']))
         assert turned < 3.0 * max(floor, state['one_ulp']), state['time']    # 1.6
-        change = max(abs(float(mp.mpf(x) - w)) for x, w in zip(state['angular_velocity'], y[4:], strict=True))
+        change = max(abs(float(mp.mpf(x) - w))
+                     for x, w in zip(state['angular_velocity'], y[4:], strict=True))
         assert change <= max(floor, state['one_ulp_omega']) * size, state['time']    # 0.52
         before = twice_energy(moments, start, NOTHING)
         if before > LEAST:
-            assert abs(float(twice_energy(moments, y, c) / before - 1)) < 1e-30, state['time']    # 1.1e-31: one span or many
+            # 1.1e-31: one span or many
+            assert abs(float(twice_energy(moments, y, c) / before - 1)) < 1e-30, state['time']
 
 
 @pytest.mark.parametrize(('h', 'bound'), [(1e-3, 2e-19), (1e-6, 2e-22)])    # 5.4e-20; 5.5e-23
@@ -63,10 +72,12 @@ def test_increments_err_by_a_rounding_of_themselves(h, bound):
     p, start = parameters_of((2.0, 3.0, 4.0)), (0.1, 0.2, -0.3, math.sqrt(0.86), 0.7, -0.4, 1.1)
     once = turned_freely(p, start, NOTHING, h)
     twice = turned_freely(p, *turned_freely(p, start, NOTHING, 0.5 * h), 0.5 * h)
-    apart = [float(Fraction(a) + Fraction(b) - Fraction(d) - Fraction(e)) for a, b, d, e in zip(*once, *twice, strict=True)]
+    apart = [float(Fraction(a) + Fraction(b) - Fraction(d) - Fraction(e))
+             for a, b, d, e in zip(*once, *twice, strict=True)]
     assert 0.0 < max(map(abs, apart)) < bound
 
 
 def test_drift_of_more_turns_than_mean_anything_is_not_a_number():
-    y, _ = turned_freely(parameters_of((2.0, 3.0, 4.0)), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1e6), NOTHING, 1.0)
+    y, _ = turned_freely(
+        parameters_of((2.0, 3.0, 4.0)), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1e6), NOTHING, 1.0)
     assert all(math.isnan(value) for value in y)

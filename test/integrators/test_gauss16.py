@@ -26,7 +26,8 @@ def top():
 
 
 def started(scene, start=None, **control):
-    return Stepped(scene, 'gauss16', **control).start(scene.initial.vector if start is None else start)
+    return Stepped(scene, 'gauss16', **control).start(scene.initial.vector if start is None
+                                                      else start)
 
 
 def state(scene, time, start=None, **control):
@@ -39,7 +40,8 @@ def state(scene, time, start=None, **control):
 def exact(top):
     """Return the heavy top at 0.4 s and 20 s, by another method."""
     out = np.empty((2, 14))
-    Stepped(top, 'dop8', accuracy=1e-15).start(top.initial.vector).states(np.array([0.4, 20.0]), out)
+    Stepped(top, 'dop8', accuracy=1e-15).start(top.initial.vector).states(
+        np.array([0.4, 20.0]), out)
     return out
 
 
@@ -50,13 +52,16 @@ def exactly(values):
 @pytest.mark.parametrize('k', range(1, 17))
 def test_quadrature_has_order_16(k):
     """Simplifying assumption B(16): sum b c^(k - 1) = 1/k."""
-    total = sum(b * c ** (k - 1) for b, c in zip(exactly(gauss_nodes.B), exactly(gauss_nodes.C), strict=True))
+    total = sum(b * c ** (k - 1)
+                for b, c in zip(exactly(gauss_nodes.B), exactly(gauss_nodes.C), strict=True))
     assert abs(float(total - Fraction(1, k))) < ULP    # 1.2e-16: c and b are rounded
 
 
 def test_quadrature_has_no_order_17():
-    total = sum(b * c ** 16 for b, c in zip(exactly(gauss_nodes.B), exactly(gauss_nodes.C), strict=True))
-    assert float(Fraction(1, 17) - total) == pytest.approx(math.factorial(8) ** 4 / (17 * math.factorial(16) ** 2), rel=1e-4)
+    total = sum(b * c ** 16
+                for b, c in zip(exactly(gauss_nodes.B), exactly(gauss_nodes.C), strict=True))
+    assert float(Fraction(1, 17) - total) == pytest.approx(
+        math.factorial(8) ** 4 / (17 * math.factorial(16) ** 2), rel=1e-4)
 
 
 @pytest.mark.parametrize('k', range(1, 9))
@@ -80,11 +85,13 @@ def test_predictor_continues_polynomials(ratio):
         values = gauss_nodes.C ** degree
         terms = values[:, np.newaxis] * gauss_nodes.AHEAD * ratio ** np.arange(1.0, 9.0)
         exact = ((1.0 + ratio) ** (degree + 1) - 1.0) / (degree + 1)
-        assert abs(terms.sum() - exact) < ULP * np.abs(terms).sum()    # 0.1 of it: the terms cancel
+        # 0.1 of it: the terms cancel
+        assert abs(terms.sum() - exact) < ULP * np.abs(terms).sum()
 
 
 def test_tails_are_legendre_coefficients():
-    for degree, expected in ((7, [1, 0, 0, 0]), (6, [0, 1, 0, 0]), (4, [0, 0, 0, 1]), (3, [0, 0, 0, 0])):
+    for degree, expected in (
+            (7, [1, 0, 0, 0]), (6, [0, 1, 0, 0]), (4, [0, 0, 0, 1]), (3, [0, 0, 0, 0])):
         values = np.polynomial.legendre.legval(2.0 * gauss_nodes.C - 1.0, [0.0] * degree + [1.0])
         assert np.abs(gauss_nodes.TAILS @ values - expected).max() < 8 * ULP    # 5
 
@@ -134,11 +141,13 @@ def fast_top():
 def test_accuracy_asked_is_met_by_a_fast_top(fast_top, accuracy):
     """Its torque turns in body axes twice as fast as q, and omega changes little: omega's error is seen by its own group alone."""
     scene, exact = fast_top
-    assert angle_between(*state(scene, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact) < 2.0 * accuracy    # 0.84 at most
+    # 0.84 at most
+    assert angle_between(*state(scene, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact) < 2.0 * accuracy
 
 
 @pytest.mark.parametrize('half_angle', [1.0, 1.7, 1.9])
 def test_norm_of_q_does_not_grow_where_a_step_turns_it_far(fast_top, half_angle):
     """A stretch added after the next step would make errors of the norm grow by 1 - cos(half angle): beyond a quarter turn, without end."""
     scene, exact = fast_top
-    assert angle_between(*state(scene, 20.0, step=2.0 * half_angle / 180.0)[1:5], *exact) < 1e-8    # 2.5e-13, 9.2e-10, 5.2e-9
+    # 2.5e-13, 9.2e-10, 5.2e-9
+    assert angle_between(*state(scene, 20.0, step=2.0 * half_angle / 180.0)[1:5], *exact) < 1e-8

@@ -36,7 +36,8 @@ def scene_of(name):
 
 def state(scene, method, time, start=None, **control):
     out = np.empty(14)
-    Stepped(scene, method, **control).start(scene.initial.vector if start is None else start).state(time, out)
+    Stepped(scene, method, **control).start(scene.initial.vector if start is None
+                                            else start).state(time, out)
     return out
 
 
@@ -48,9 +49,11 @@ def energy(scene, vector):
 
 @pytest.fixture(scope='module')
 def measured_slopes():
-    settings = os.environ | {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
+    settings = (os.environ | {
+        'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))})
     command = [sys.executable, str(TEST / 'integrators' / 'slopes.py')]
-    return json.loads(subprocess.run(command, capture_output=True, text=True, timeout=200, env=settings, check=True).stdout)
+    return json.loads(subprocess.run(
+        command, capture_output=True, text=True, timeout=200, env=settings, check=True).stdout)
 
 
 @pytest.mark.parametrize('name', METHODS)
@@ -96,8 +99,10 @@ def test_what_chooses_its_steps_takes_none(name):
 @pytest.mark.parametrize('case', ['thrown_with_drag', 'damped_top', 'major_axis_relaxation'])
 def test_heat_leaves_split2_alone_of_the_compositions(case):
     scene = scene_of(case)
-    assert set(runnable(scene)) - {'taylor'} == set(METHODS) - {'split4', 'split6', 'split8', 'taylor'}
-    assert ('taylor' in runnable(scene)) == (case != 'major_axis_relaxation'), 'series have drag, but no dissipation'
+    assert (set(runnable(scene)) - {'taylor'}
+            == set(METHODS) - {'split4', 'split6', 'split8', 'taylor'})
+    assert ('taylor' in runnable(scene)) == (
+        case != 'major_axis_relaxation'), 'series have drag, but no dissipation'
     with pytest.raises(BadInput) as caught:
         choose(scene, 'split6', step=0.01)
     for name in methods_for(scene):
@@ -138,23 +143,28 @@ def test_runge_kutta_does_not_come_back():
 def test_energy_does_not_walk():
     scene = scene_of('asymmetric_heavy_top')
     out = np.empty((201, 14))
-    Stepped(scene, 'split4', step=5e-4).start(scene.initial.vector).states(np.linspace(0.0, 50.0, 201), out)    # 1e5 steps
+    # 1e5 steps
+    Stepped(scene, 'split4', step=5e-4).start(scene.initial.vector).states(np.linspace(0.0, 50.0, 201), out)
     start = energy(scene, out[0])
     residual = np.array([energy(scene, row) / start - 1.0 for row in out])
-    assert np.abs(residual).max() < 5e-15    # 1.8e-15, of which 1e-15 is truncation and does not grow; plain sums: 3e-14
+    # 1.8e-15, of which 1e-15 is truncation and does not grow; plain sums: 3e-14
+    assert np.abs(residual).max() < 5e-15
 
 
 @pytest.mark.parametrize('name', ['dop8', 'lsoda', 'radau'])
 def test_too_many_turns_to_count_end_with_one_error(name):
-    scene = parse_scene(smooth_cases.text('driven_body').replace('[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+200]'))
+    scene = parse_scene(smooth_cases.text('driven_body').replace(
+        '[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+200]'))
     with pytest.raises(NotConverged, match=r'at t = 0\.0 s the body turns with 1e\+200 rad/s'):
         state(scene, name, 1.0, accuracy=1e-6)
 
 
-@pytest.mark.parametrize(('name', 'accuracy', 'bound'), [('lsoda', 1e-10, 5e-9), ('radau', 1e-7, 5e-7)])    # 4.9e-10; 5.4e-8
+# 4.9e-10; 5.4e-8
+@pytest.mark.parametrize(('name', 'accuracy', 'bound'), [('lsoda', 1e-10, 5e-9), ('radau', 1e-7, 5e-7)])
 def test_solvers_of_scipy_are_as_good_as_asked(name, accuracy, bound):
     scene = scene_of('driven_body')
-    found, coarse = state(scene, name, 1.0, accuracy=accuracy), state(scene, name, 1.0, accuracy=1e3 * accuracy)
+    found, coarse = (state(scene, name, 1.0, accuracy=accuracy),
+                     state(scene, name, 1.0, accuracy=1e3 * accuracy))
     exact = np.array([float(x) for x in REFERENCE['driven_body']['1.0']['state']])
     assert slopes.error(found, [0.0, *exact]) < bound
     assert slopes.error(coarse, [0.0, *exact]) > 10.0 * slopes.error(found, [0.0, *exact])

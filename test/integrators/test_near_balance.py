@@ -26,7 +26,8 @@ def hanging():
 
 def let_go(effects, orientation, body=SKEW, constraint='pivot'):
     return parse_scene(f'scene: let_go\nbody: {body}\nconstraint: {constraint}\n'
-                       f'effects: [{{{effects}}}]\ninitial: {{orientation: {list(map(float, orientation))}}}')
+                       f'effects: [{{{effects}}}]\n'
+                       f'initial: {{orientation: {list(map(float, orientation))}}}')
 
 
 @pytest.mark.without_numba

@@ -9,7 +9,8 @@ from rigid_body_sim.integrators import GENERAL, METHODS, protocols
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions.solver import Exact
 
-FAMILIES = sorted({method.FAMILY for method in METHODS.values()}, key=lambda family: family.__name__)
+FAMILIES = sorted(
+    {method.FAMILY for method in METHODS.values()}, key=lambda family: family.__name__)
 
 
 @pytest.mark.parametrize('method', METHODS.values(), ids=METHODS)
@@ -35,5 +36,6 @@ def test_solvers_have_the_methods_of_the_contract(solver):
 
 
 def test_the_general_method_takes_wrenches():
-    assert GENERAL.FAMILY.TAKES_WRENCH and GENERAL.HEAT and GENERAL.TABLE and 'dissipation' in GENERAL.STIFF
+    assert (GENERAL.FAMILY.TAKES_WRENCH and GENERAL.HEAT and GENERAL.TABLE
+            and 'dissipation' in GENERAL.STIFF)
     assert {'accuracy', 'step'} == set(GENERAL.TAKES)

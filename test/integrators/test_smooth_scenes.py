@@ -19,15 +19,20 @@ REFERENCE = json.loads((TEST / 'data' / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
 
 
-BY_SERIES = ('asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest', 'driven_in_pieces', 'damped_top', 'thrown_with_drag')
+BY_SERIES = ('asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_from_rest',
+             'driven_in_pieces', 'damped_top', 'thrown_with_drag')
 
 
 @pytest.fixture(scope='module', params=['dop8', 'gauss16', 'taylor'])
 def solved(request):
-    names = BY_SERIES if request.param == 'taylor' else smooth_cases.CASES    # under a held wrench it is dop8
-    command = [sys.executable, str(TEST / 'integrators' / 'plain_python.py'), request.param, 'accuracy', '1e-14', *names]
-    settings = os.environ | {'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
-    return json.loads(subprocess.run(command, capture_output=True, text=True, timeout=300, env=settings, check=True).stdout)
+    # under a held wrench it is dop8
+    names = BY_SERIES if request.param == 'taylor' else smooth_cases.CASES
+    command = [sys.executable, str(TEST / 'integrators' / 'plain_python.py'), request.param,
+               'accuracy', '1e-14', *names]
+    settings = (os.environ | {
+        'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))})
+    return json.loads(subprocess.run(
+        command, capture_output=True, text=True, timeout=300, env=settings, check=True).stdout)
 
 
 def check(name, states):
@@ -37,17 +42,21 @@ def check(name, states):
     what it turns the body, 4 ulp are for input and output. Measured: at most 0.79 of it for the attitude (held_hinge), 0.58 for omega
     (held_hinge), 0.67 for the books (driven_from_rest), 0.29 for the rest.
     """
-    speed = np.linalg.norm(plain_python.parse_scene(smooth_cases.text(name)).initial.angular_velocity)
+    speed = np.linalg.norm(plain_python.parse_scene(smooth_cases.text(
+        name)).initial.angular_velocity)
     for time, expected in REFERENCE[name].items():
-        state, exact = np.array(states[time]['state']), np.array([float(x) for x in expected['state']])
-        exchanged, books = np.array(states[time]['exchanged']), np.array([float(x) for x in expected['exchanged']])
+        state, exact = (
+            np.array(states[time]['state']), np.array([float(x) for x in expected['state']]))
+        exchanged, books = (np.array(states[time]['exchanged']),
+                            np.array([float(x) for x in expected['exchanged']]))
         speed = max(speed, np.linalg.norm(exact[4:7]))
         floor = ULP * (4.0 + speed * float(time) + 0.5 * pushed(name) * float(time) ** 2)
         assert state[:4] @ exact[:4] > 0.0, 'the sign of q is continuous'
         assert angle_between(*state[:4], *exact[:4]) < floor
         assert np.linalg.norm(state[4:7] - exact[4:7]) <= floor * speed
         for part in (slice(7, 10), slice(10, 13)):
-            assert np.abs(state[part] - exact[part]).max() <= floor * (1.0 + np.abs(exact[part]).max())
+            assert (np.abs(state[part] - exact[part]).max()
+                    <= floor * (1.0 + np.abs(exact[part]).max()))
         assert np.abs(exchanged - books).max() <= floor * max(np.abs(books).max(), ULP)
 
 
@@ -58,7 +67,8 @@ def pushed(name):
         return 0.0
     force, couple, _ = wrench
     arm = np.linalg.norm(np.subtract(scene.body.center_of_mass, scene.constraint.through))
-    return (arm * np.linalg.norm(force) + np.linalg.norm(couple)) / moment_about_hinge(scene.body, scene.constraint)
+    return ((arm * np.linalg.norm(force) + np.linalg.norm(couple))
+            / moment_about_hinge(scene.body, scene.constraint))
 
 
 @pytest.mark.parametrize('name', smooth_cases.CASES)
@@ -69,4 +79,5 @@ def test_state_and_ledger_are_at_the_floor(name, solved):
 
 @pytest.mark.parametrize('method', ['dop8', 'gauss16', 'taylor'])
 def test_compiled_is_as_good_as_plain_python(method):
-    check('asymmetric_heavy_top', plain_python.solve('asymmetric_heavy_top', method, accuracy=1e-14))
+    check(
+        'asymmetric_heavy_top', plain_python.solve('asymmetric_heavy_top', method, accuracy=1e-14))

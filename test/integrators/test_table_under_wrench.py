@@ -17,12 +17,14 @@ I = k * M * a * a
 
 
 def ball(initial, effects='[sliding_friction: {mu: 0.2, g: 9.81}]'):
-    return parse_scene(f'scene: ball\nbody: {{mass: {M}, shape: {{solid_sphere: {{radius: {a}}}}}}}\nconstraint: table\neffects: {effects}\n'
+    return parse_scene(f'scene: ball\nbody: {{mass: {M}, shape: {{solid_sphere: {{radius: '
+                       f'{a}}}}}}}\nconstraint: table\neffects: {effects}\n'
                        f'initial: {initial}\n')
 
 
 def held(scene, *wrench, accuracy=1e-14):
-    return Stepped(scene, 'dop8', accuracy=accuracy, wrench=Wrench(*wrench)).start(scene.initial.vector)
+    return Stepped(scene, 'dop8', accuracy=accuracy, wrench=Wrench(*wrench)).start(
+        scene.initial.vector)
 
 
 def states(solver, times):
@@ -40,14 +42,16 @@ def test_no_wrench_is_the_closed_form():
     times = [0.0, 0.05, 0.2, 0.3, 1.0]
     closed = np.empty((5, 14))
     Exact(scene, sliding_sphere).start(scene.initial.vector).states(np.array(times), closed)
-    assert np.abs(states(held(scene), times) - closed).max() < 1e-13    # 4e-14, of omega (40 rad/s)
+    # 4e-14, of omega (40 rad/s)
+    assert np.abs(states(held(scene), times) - closed).max() < 1e-13
 
 
 def test_pushed_from_rest_it_rolls_without_slipping():
     """Rolling under F: v' = F/(M (1 + k)); friction F k/(1 + k) is below mu M g = 0.33 N."""
     state = states(held(ball('{}'), (0.5, 0.0, 0.0)), [2.0])[0]
     acceleration = 0.5 / (M * (1.0 + k))
-    assert state[8:14] == pytest.approx([2.0 * acceleration, 0.0, a, 2.0 * acceleration, 0.0, 0.0], rel=1e-14)
+    assert state[8:14] == pytest.approx(
+        [2.0 * acceleration, 0.0, a, 2.0 * acceleration, 0.0, 0.0], rel=1e-14)
     assert np.linalg.norm(state[5:8]) == pytest.approx(2.0 * acceleration / a, rel=1e-14)
 
 
@@ -69,7 +73,8 @@ def test_onset_of_rolling_under_a_push_along_the_slide():
     (time, name, _), = solver.events(0.0, 3.0)
     assert (name, time) == ('rolling began', pytest.approx(onset, rel=1e-14))
     at_onset = v0 + onset * (F / M - mu * g)
-    assert states(solver, [3.0])[0, 11] == pytest.approx(at_onset + (3.0 - onset) * F / (M * (1.0 + k)), rel=1e-14)
+    assert states(solver, [3.0])[0, 11] == pytest.approx(
+        at_onset + (3.0 - onset) * F / (M * (1.0 + k)), rel=1e-14)
 
 
 def test_strong_push_against_the_slide_turns_it_round():
@@ -78,7 +83,8 @@ def test_strong_push_against_the_slide_turns_it_round():
     solver = held(ball('{velocity: [1.0, 0, 0]}'), (F, 0.0, 0.0))
     turn = v0 / ((1.0 + 1.0 / k) * mu * g - F / M)
     state = states(solver, [1.0])[0]
-    assert state[11] == pytest.approx(v0 + turn * (F / M - mu * g) + (1.0 - turn) * (F / M + mu * g), rel=2e-14)
+    assert state[11] == pytest.approx(
+        v0 + turn * (F / M - mu * g) + (1.0 - turn) * (F / M + mu * g), rel=2e-14)
 
 
 @pytest.mark.parametrize('F', [(0.1, 0.25, 0.0), (0.0, 1.2, 0.0)])
@@ -95,16 +101,20 @@ def test_curved_slide_keeps_its_invariant(F):
     assert np.ptp(found) < 2e-13 * max(found)    # 4e-14: theta is small at the end of the first
 
 
-@pytest.mark.parametrize('wrench', [
-    ((0.1, 0.9, 0.2), (0.001, 0.002, 0.003), 'world'), ((0.1, 0.2, 0.2), (0.001, 0.002, 0.003), 'body'),
-    ((0.1, 1.6, 0.2), (0.001, 0.002, 0.003), 'body'), ((0.0, 0.0, 1.2), (0.006, 0.0, 0.0), 'body')])
+@pytest.mark.parametrize('wrench',
+                         [((0.1, 0.9, 0.2), (0.001, 0.002, 0.003), 'world'),
+                          ((0.1, 0.2, 0.2), (0.001, 0.002, 0.003), 'body'),
+                          ((0.1, 1.6, 0.2), (0.001, 0.002, 0.003), 'body'),
+                          ((0.0, 0.0, 1.2), (0.006, 0.0, 0.0), 'body')])
 def test_energy_and_angular_momentum_balance(wrench):
     scene = ball('{velocity: [1.0, 0.5, 0], angular_velocity: [3, -10, 20]}')
     solver = held(scene, *wrench)
     start, state, exchanged = scene.initial.vector, states(solver, [2.0])[0], solver.exchanged(2.0)
     scale = max(energy(start), energy(state), exchanged[0])
-    assert abs(energy(state) - energy(start) - exchanged[0] + exchanged[1]) < 2e-14 * scale    # 4e-15
-    gained = I * (np.array(sliding_sphere.rotate(*state[1:5], *state[5:8])) - sliding_sphere.rotate(*start[1:5], *start[5:8]))
+    # 4e-15
+    assert abs(energy(state) - energy(start) - exchanged[0] + exchanged[1]) < 2e-14 * scale
+    gained = (I * (np.array(sliding_sphere.rotate(*state[1:5], *state[5:8]))
+                   - sliding_sphere.rotate(*start[1:5], *start[5:8])))
     assert np.abs(gained - exchanged[2:]).max() < 2e-14 * I * np.linalg.norm(state[5:8])
 
 
@@ -113,8 +123,10 @@ def test_a_push_that_turns_with_the_ball_makes_it_roll_and_slip_by_turns():
     wrench = (0.0, 0.0, 1.2), (0.006, 0.0, 0.0), 'body'
     solver = held(ball('{}'), *wrench)
     names = [name for _, name, _ in solver.events(0.0, 0.65)]
-    assert names == ['rolling began', 'sliding began', 'rolling began', 'sliding began', 'rolling began']
-    found, coarse = states(solver, [0.65])[0], states(held(ball('{}'), *wrench, accuracy=1e-11), [0.65])[0]
+    assert names == [
+        'rolling began', 'sliding began', 'rolling began', 'sliding began', 'rolling began']
+    found, coarse = (
+        states(solver, [0.65])[0], states(held(ball('{}'), *wrench, accuracy=1e-11), [0.65])[0])
     assert np.abs(found - coarse).max() < 2e-11    # 4e-12
 
 
@@ -126,7 +138,8 @@ def test_without_friction_it_glides():
 
 def test_states_do_not_depend_on_what_else_was_asked():
     scene = ball('{velocity: [1.0, 0.5, 0], angular_velocity: [3, -10, 20]}')
-    wrench, times = ((0.1, 0.2, 0.0), (0.001, 0.0, 0.002), 'body'), np.random.default_rng(3).uniform(0.0, 1.0, 50)
+    wrench, times = (((0.1, 0.2, 0.0), (0.001, 0.0, 0.002), 'body'),
+                     np.random.default_rng(3).uniform(0.0, 1.0, 50))
     together = states(held(scene, *wrench), times)
     for n in (0, 20, 49):
         assert np.array_equal(states(held(scene, *wrench), [times[n]])[0], together[n])

@@ -62,22 +62,28 @@ def test_a_step_errs_by_the_next_order():
     errors = []
     for time in (0.6, 0.7):
         fine = np.empty(14)
-        Stepped(scene, 'dop8', accuracy=1e-15, horizon=1.0).start(scene.initial.vector).state(time, fine)
+        Stepped(scene, 'dop8', accuracy=1e-15, horizon=1.0).start(scene.initial.vector).state(
+            time, fine)
         errors.append(np.linalg.norm(state(scene, time, step=time)[1:8] - fine[1:8]))
-    assert math.log(errors[1] / errors[0]) / math.log(0.7 / 0.6) == pytest.approx(taylor_series.ORDER + 1, abs=0.5)    # 17.20
+    # 17.20
+    assert math.log(errors[1] / errors[0]) / math.log(0.7 / 0.6) == pytest.approx(taylor_series.ORDER + 1, abs=0.5)
 
 
 @pytest.mark.parametrize('accuracy', [1e-3, 1e-6, 1e-9, 1e-12])
 def test_accuracy_asked_is_met(top, exact, accuracy):
-    assert angle_between(*state(top, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact[1:5]) < 0.2 * accuracy    # at most 0.09 of it (1e-3)
+    # at most 0.09 of it (1e-3)
+    assert angle_between(*state(top, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact[1:5]) < 0.2 * accuracy
 
 
 def test_steps_follow_a_motion_that_begins_gently():
     """A body that falls over from 1e-6 rad off its upper rest: what is planned at one node is far too long at the next."""
-    body = '{mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}'
-    gentle = parse_scene(f'scene: gentle\nbody: {body}\nconstraint: pivot\neffects: [gravity: {{g: 9.81}}]\ninitial: {{tilt: 1.0e-6}}\n')
+    body = ('{mass: 1.0, inertia: [0.03, 0.02, 0.01], inertia_about: origin, center_of_mass: [0, '
+            '0, 0.1]}')
+    gentle = parse_scene(f'scene: gentle\nbody: {body}\nconstraint: pivot\n'
+                         f'effects: [gravity: {{g: 9.81}}]\ninitial: {{tilt: 1.0e-6}}\n')
     fine = np.empty(14)
-    Stepped(gentle, 'dop8', accuracy=1e-14, horizon=5.0).start(gentle.initial.vector).state(2.5, fine)
+    Stepped(gentle, 'dop8', accuracy=1e-14, horizon=5.0).start(gentle.initial.vector).state(
+        2.5, fine)
     # 5.5e-11; 1.2 rad with the plans as they are
     assert angle_between(*state(gentle, 2.5, accuracy=1e-9, horizon=5.0)[1:5], *fine[1:5]) < 1e-9
 
@@ -90,13 +96,15 @@ def test_what_is_no_product_is_refused():
 
 
 def test_a_body_that_does_not_move_stays():
-    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
+    still = parse_scene('scene: still\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\n'
+                        'constraint: free\neffects: [torque: {value: [0, 0, 0]}]\n'
                         'initial: {}\n')
     assert np.array_equal(state(still, 1000.0, accuracy=1e-9)[1:], still.initial.vector[1:])
 
 
 def test_a_body_that_hardly_turns_is_set_turning():
-    barely = parse_scene('scene: barely\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\nconstraint: free\neffects: [torque: {value: [0, 0, 1]}]\n'
+    barely = parse_scene('scene: barely\nbody: {mass: 1.0, inertia: [1.0, 2.0, 2.5]}\n'
+                         'constraint: free\neffects: [torque: {value: [0, 0, 1]}]\n'
                          'initial: {angular_velocity: [0, 0, 1.0e-160]}\n')
     found = state(barely, 1.0, accuracy=1e-12)
     # omega' = 1/2.5; measured 6e-17 rad
@@ -107,15 +115,19 @@ def test_a_body_that_hardly_turns_is_set_turning():
 def test_a_thrown_body_turns_as_if_it_did_not_fall_and_falls_in_a_parabola():
     """Centre of mass off the body's origin; torque in the body."""
     def scene(effects):
-        return parse_scene('scene: thrown\nbody: {mass: 2.0, inertia: [0.8, 0.9, 1.3], center_of_mass: [0.1, -0.2, 0.3]}\nconstraint: free\n'
+        return parse_scene('scene: thrown\nbody: {mass: 2.0, inertia: [0.8, 0.9, 1.3], '
+                           'center_of_mass: [0.1, -0.2, 0.3]}\nconstraint: free\n'
                            f'effects: [{effects}torque: {{value: [0.1, 0, 0.5], frame: body}}]\n'
-                           'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, 8.0], position: [1.0, 2.0, 3.0]}\n')
+                           'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, '
+                           '8.0], position: [1.0, 2.0, 3.0]}\n')
     thrown = scene('gravity: {g: 9.81}, ')
     assert 'taylor' in runnable(thrown)
     still, fallen = (state(one, 5.0, accuracy=1e-9) for one in (scene(''), thrown))
     assert np.array_equal(still[:8], fallen[:8])
-    assert fallen[8:11] == near(np.add(still[8:11], (0.0, 0.0, -4.905 * 25.0)), 4.0 * ULP)    # 1 ulp
-    assert fallen[11:] == near(np.add(still[11:], (0.0, 0.0, -9.81 * 5.0)), 4.0 * ULP)        # 1 ulp
+    # 1 ulp
+    assert fallen[8:11] == near(np.add(still[8:11], (0.0, 0.0, -4.905 * 25.0)), 4.0 * ULP)
+    # 1 ulp
+    assert fallen[11:] == near(np.add(still[11:], (0.0, 0.0, -9.81 * 5.0)), 4.0 * ULP)
 
 
 def test_a_hinge_of_any_axis_is_a_body_that_takes_no_torque_across_it():
@@ -124,7 +136,8 @@ def test_a_hinge_of_any_axis_is_a_body_that_takes_no_torque_across_it():
     exact = np.empty(14)
     choose(scene, 'exact').solver(scene.initial.vector, Wrench()).state(3.0, exact)
     found = state(scene, 3.0, accuracy=1e-14)
-    assert np.abs(found - exact).max() < 40 * ULP * np.abs(exact).max()    # an ulp of the angle, 40 rad; measured 4.4
+    # an ulp of the angle, 40 rad; measured 4.4
+    assert np.abs(found - exact).max() < 40 * ULP * np.abs(exact).max()
 
 
 @pytest.mark.parametrize('name', ['driven_pendulum', 'damped_pendulum'])

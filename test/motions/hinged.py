@@ -20,7 +20,8 @@ HANGING, UPRIGHT = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)
 
 def scene_of(body, axis, through=(0.0, 0.0, 0.0), g=9.81, initial=None):
     effects = (Gravity(g),) if g else ()
-    return Scene('pendulum', '', body, Hinge(tuple(axis), tuple(through)), effects, initial or State.of(), True, '')
+    return Scene('pendulum', '', body, Hinge(tuple(axis), tuple(through)), effects,
+                 initial or State.of(), True, '')
 
 
 def unit_scene(g=13.5, axis=(1.0, 0.0, 0.0)):
@@ -52,8 +53,8 @@ def recorded(name):
     """Return the scene, start and anchor of a recorded case."""
     record = RECORDS[name]
     inertia = Inertia(tuple(record['moments']), tuple(record.get('axes', HANGING)))
-    scene = scene_of(Body(record['mass'], tuple(record['center_of_mass']), inertia, inertia), record['axis'],
-                     record.get('through', (0.0, 0.0, 0.0)), record['g'])
+    scene = scene_of(Body(record['mass'], tuple(record['center_of_mass']), inertia, inertia),
+                     record['axis'], record.get('through', (0.0, 0.0, 0.0)), record['g'])
     start = start_of(record['orientation'], record['angular_velocity'])
     return scene, start, anchored(scene, start)
 
@@ -62,10 +63,13 @@ def random_scene(rng):
     """Return a scene with everything at random, hinge tilted and off the origin, and a start that swings or turns over."""
     turn = Rotation.random(random_state=rng).as_matrix()
     tensor = turn @ np.diag(rng.uniform(0.5, 1.0, 3)) @ turn.T
-    body = make_body(rng.uniform(0.3, 3.0), ((tensor + tensor.T) / 2.0).tolist(), rng.normal(size=3).tolist())
+    body = make_body(
+        rng.uniform(0.3, 3.0), ((tensor + tensor.T) / 2.0).tolist(), rng.normal(size=3).tolist())
     axis = rng.normal(size=3)
-    scene = scene_of(body, (axis / np.linalg.norm(axis)).tolist(), rng.normal(size=3).tolist(), rng.uniform(1.0, 20.0))
-    start = start_of(Rotation.random(random_state=rng).as_quat(), rng.normal() * 5.0 * np.array(scene.constraint.axis))
+    scene = scene_of(body, (axis / np.linalg.norm(axis)).tolist(), rng.normal(size=3).tolist(),
+                     rng.uniform(1.0, 20.0))
+    start = start_of(Rotation.random(random_state=rng).as_quat(),
+                     rng.normal() * 5.0 * np.array(scene.constraint.axis))
     start[8:11] = rng.normal(size=3)
     return scene, start
 

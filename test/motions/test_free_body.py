@@ -17,7 +17,8 @@ from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.scene import Scene, parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
-RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data' / 'free_body.json').read_text())
+RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
+                      / 'free_body.json').read_text())
 EPSILON = np.finfo(float).eps
 
 
@@ -39,7 +40,8 @@ def of_record(record):
     parameters = parameters_of(record['moments'], *(record.get(key, default) for key, default in (
         ('axes', IDENTITY), ('center_of_mass', (0.0, 0.0, 0.0)), ('g', 0.0))))
     nothing = (0.0, 0.0, 0.0)
-    start = State.of(0.0, record['orientation'], record['angular_velocity'], record.get('position', nothing), record.get('velocity', nothing))
+    start = State.of(0.0, record['orientation'], record['angular_velocity'],
+                     record.get('position', nothing), record.get('velocity', nothing))
     return anchored(parameters, start.vector), start.vector
 
 
@@ -62,7 +64,8 @@ def angle(found, expected):
 def difference(found, expected):
     """Return the largest difference between numbers and numbers given in digits."""
     with mp.workdps(50):
-        return float(max(abs(mp.mpf(float(a)) - mp.mpf(b)) for a, b in zip(found, expected, strict=True)))
+        return float(max(abs(mp.mpf(float(a)) - mp.mpf(b))
+                         for a, b in zip(found, expected, strict=True)))
 
 
 @pytest.mark.parametrize('record', RECORDS, ids=lambda record: record['name'])
@@ -73,13 +76,17 @@ def test_reference(record):
     for state in record['states']:
         found, turned = at(anchor, state['time']), size * abs(state['time'])
         # measured: 1.1e-15 up to 100 rad; at most 0.25 eps |omega| t (racket, 1e-40 off the middle axis) beyond
-        assert angle(found[1:5], state['orientation']) < 2e-15 + 0.5 * EPSILON * turned, state['time']
+        assert angle(
+            found[1:5], state['orientation']) < 2e-15 + 0.5 * EPSILON * turned, state['time']
         # measured: 1e-15; 0.035 eps |omega| t for the turned principal axes, which round omega at the start
-        assert difference(found[5:8], state['angular_velocity']) <= (2e-15 + 0.05 * EPSILON * turned) * size, state['time']
+        assert difference(found[5:8], state['angular_velocity']) <= (
+            2e-15 + 0.05 * EPSILON * turned) * size, state['time']
         if 'position' in state:
             fall = 4.0 + 0.5 * 9.81 * state['time'] ** 2 + 6.0 * state['time']
-            assert difference(found[8:11], state['position']) < 4.0 * EPSILON * fall           # measured 1.1 ulp
-            assert difference(found[11:14], state['velocity']) < 4.0 * EPSILON * (10.0 + 9.81 * state['time'])
+            # measured 1.1 ulp
+            assert difference(found[8:11], state['position']) < 4.0 * EPSILON * fall
+            assert (difference(found[11:14], state['velocity'])
+                    < 4.0 * EPSILON * (10.0 + 9.81 * state['time']))
 
 
 @pytest.mark.parametrize('record', RECORDS, ids=lambda record: record['name'])
@@ -91,7 +98,8 @@ def test_anchor_time_gives_the_start_back(record):
     assert np.abs(found[8:] - start[8:]).max() <= 4.0 * EPSILON * 10.0
 
 
-@pytest.mark.parametrize('record', [record for record in RECORDS if record['flips']], ids=lambda record: record['name'])
+@pytest.mark.parametrize(
+    'record', [record for record in RECORDS if record['flips']], ids=lambda record: record['name'])
 def test_flips_are_at_their_times(record):
     anchor, _ = of_record(record)
     time, count = 0.0, 0
@@ -116,11 +124,14 @@ def test_no_flip_is_lost_in_a_long_jump_or_counted_twice():
     while (time := motion.next_event(anchor, time)[0]) <= times[-1]:
         found.append(time)
     assert len(found) == len(changes) > 30
-    assert all(times[change] <= flip <= times[change + 1] for change, flip in zip(changes, found, strict=True))
-    assert motion.next_event(anchor, 1e6)[0] == near(1e6 + math.fmod(found[0] - 1e6, found[1] - found[0]) + found[1] - found[0], 1e-9)
+    assert all(times[change] <= flip <= times[change + 1]
+               for change, flip in zip(changes, found, strict=True))
+    assert motion.next_event(anchor, 1e6)[0] == near(
+        1e6 + math.fmod(found[0] - 1e6, found[1] - found[0]) + found[1] - found[0], 1e-9)
     for beside, expected in ((-1e-9, found[3]), (1e-9, found[4])):
         again = anchored(parameters, at(anchor, found[3] + beside))
-        assert motion.next_event(again, found[3] + beside)[0] == near(expected, 1e-8)    # 1e-16 on omega_1 there, magnified
+        # 1e-16 on omega_1 there, magnified
+        assert motion.next_event(again, found[3] + beside)[0] == near(expected, 1e-8)
 
 
 def test_a_wobble_is_no_flip():
@@ -133,12 +144,14 @@ def test_a_wobble_is_no_flip():
 def test_on_the_separatrix_the_body_turns_over_once_and_never_returns():
     """I = (3, 4, 6), omega = (2, c, 1): K is infinite; one bit lost would let it come back after 70 s."""
     for c in (-5.0, 0.0, 0.7):
-        anchor = anchored(parameters_of((3.0, 4.0, 6.0)), State.of(0.0, angular_velocity=(2.0, c, 1.0)).vector)
+        anchor = anchored(
+            parameters_of((3.0, 4.0, 6.0)), State.of(0.0, angular_velocity=(2.0, c, 1.0)).vector)
         flip = motion.next_event(anchor, 0.0)[0]
         assert (flip < 10.0) == (c < 0.0)
         assert motion.next_event(anchor, 10.0)[0] > 1e30
         for time in (1e3, 1e9):
-            assert at(anchor, time)[5:8] == pytest.approx([0.0, math.sqrt(4.5 + c * c), 0.0], rel=1e-15, abs=1e-15)
+            assert at(anchor, time)[5:8] == pytest.approx(
+                [0.0, math.sqrt(4.5 + c * c), 0.0], rel=1e-15, abs=1e-15)
 
 
 def test_scene_file_is_absorbed():
@@ -159,7 +172,8 @@ initial: {angular_velocity: [0.3, 2.0, -0.4]}
     later = State(at(anchor, 7.0))
     L = momentum_in_world(later, tensor)
     assert pytest.approx(momentum_in_world(scene.initial, tensor), rel=2e-15) == L
-    assert later.position[2] + rotated(later, (0.1, 0.0, -0.2))[2] == near(-0.2 - 0.5 * 9.81 * 49.0 - 7.0 * 0.2, 1e-15)
+    assert (later.position[2] + rotated(later, (0.1, 0.0, -0.2))[2]
+            == near(-0.2 - 0.5 * 9.81 * 49.0 - 7.0 * 0.2, 1e-15))
 
 
 def rotated(state, vector):

@@ -26,18 +26,23 @@ from rigid_body_sim.scene.state import STATE_SIZE, State
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EPSILON = np.finfo(float).eps
 # one for every form of the series, with and without the centre of mass at the origin
-MOTIONS = {'circular': ((2.0, 3.0, 4.0), (0.7, -0.4, 1.1)), 'hyperbolic': ((1.0, 2.0, 3.0), (0.01, 5.0, 0.01)),
-           'separatrix': ((3.0, 4.0, 6.0), (2.0, -0.7, 1.0)), 'symmetric': ((1.0, 1.0, 0.3), (1.0, 0.3, -2.0)),
-           'steady': ((0.4, 0.4, 0.4), (0.7, -0.4, 1.1)), 'long axis': ((2.0, 3.0, 4.0), (-1.5, 0.2, 0.1))}
+MOTIONS = {'circular': ((2.0, 3.0, 4.0), (0.7, -0.4, 1.1)),
+           'hyperbolic': ((1.0, 2.0, 3.0), (0.01, 5.0, 0.01)),
+           'separatrix': ((3.0, 4.0, 6.0), (2.0, -0.7, 1.0)),
+           'symmetric': ((1.0, 1.0, 0.3), (1.0, 0.3, -2.0)),
+           'steady': ((0.4, 0.4, 0.4), (0.7, -0.4, 1.1)),
+           'long axis': ((2.0, 3.0, 4.0), (-1.5, 0.2, 0.1))}
 
 
 def parameters_of(moments, center_of_mass=(0.0, 0.0, 0.0)):
     inertia = Inertia(tuple(float(moment) for moment in moments))
-    return motion.parameters(Scene('test', '', Body(1.0, center_of_mass, inertia, inertia), Free(), (), State.of(), True, ''))
+    return motion.parameters(Scene(
+        'test', '', Body(1.0, center_of_mass, inertia, inertia), Free(), (), State.of(), True, ''))
 
 
 def start_of(omega, time=0.0):
-    return State.of(time, (0.1, 0.2, -0.3, 0.9273618495495704), omega, (1.0, 2.0, 3.0), (0.1, -0.2, 0.3)).vector
+    return State.of(time, (0.1, 0.2, -0.3, 0.9273618495495704), omega, (1.0, 2.0, 3.0),
+                    (0.1, -0.2, 0.3)).vector
 
 
 def anchored(parameters, start):
@@ -128,7 +133,8 @@ def digest():
         if n % 5 == 0:
             moments[1] = moments[0]
         omega = rng.normal(size=3) * (1.0 if n % 3 else 10.0 ** rng.uniform(-300.0, 0.0, 3))
-        bits.update(at(anchored(parameters_of(moments, (0.1, 0.0, 0.2)), start_of(omega.tolist())), 10.0 ** rng.uniform(-3.0, 5.0)).tobytes())
+        bits.update(at(anchored(parameters_of(moments, (0.1, 0.0, 0.2)), start_of(omega.tolist())),
+                       10.0 ** rng.uniform(-3.0, 5.0)).tobytes())
     return bits.hexdigest()
 
 
@@ -136,9 +142,11 @@ def test_same_bits_in_another_process_with_and_without_numba():
     """No function of the C library but sqrt, frexp and ldexp, which are exact, takes part."""
     here = digest()
     for setting in ('0', '1'):
-        environment = {**os.environ, 'NUMBA_DISABLE_JIT': setting, 'PYTHONPATH': f'{ROOT}{os.pathsep}{ROOT / "test"}'}
-        done = subprocess.run([sys.executable, '-c', BITS, str(pathlib.Path(__file__).parent)], env=environment, capture_output=True, text=True,
-                              check=True, timeout=120)
+        environment = {**os.environ, 'NUMBA_DISABLE_JIT': setting,
+                       'PYTHONPATH': f'{ROOT}{os.pathsep}{ROOT / "test"}'}
+        done = subprocess.run(
+            [sys.executable, '-c', BITS, str(pathlib.Path(__file__).parent)], env=environment,
+            capture_output=True, text=True, check=True, timeout=120)
         assert done.stdout.strip() == here
 
 
@@ -153,8 +161,10 @@ def reanchored(parameters, start, tick, ticks, every, moments, out):
             w1, w2, w3 = state[5], state[6], state[7]
             row = (k + 1) // every - 1
             out[row, 0] = moments[0] * w1 * w1 + moments[1] * w2 * w2 + moments[2] * w3 * w3
-            out[row, 1] = moments[0] * moments[0] * w1 * w1 + moments[1] * moments[1] * w2 * w2 + moments[2] * moments[2] * w3 * w3
-            out[row, 2] = state[1] * state[1] + state[2] * state[2] + state[3] * state[3] + state[4] * state[4] - 1.0
+            out[row, 1] = (moments[0] * moments[0] * w1 * w1 + moments[1] * moments[1] * w2 * w2
+                           + moments[2] * moments[2] * w3 * w3)
+            out[row, 2] = (state[1] * state[1] + state[2] * state[2] + state[3] * state[3]
+                           + state[4] * state[4] - 1.0)
 
 
 @pytest.mark.skipif(not HAVE_NUMBA, reason='100,000 anchors take minutes without numba')
@@ -179,7 +189,8 @@ def test_jumps_there_and_back_compose(name):
     """Jumps of random lengths, each from a new anchor, end where one jump ends: a walk of ulps, magnified by the shear of the motion."""
     moments, omega = MOTIONS[name]
     parameters, rng = parameters_of(moments), np.random.default_rng(3)
-    times = np.append(np.cumsum(rng.choice([-1.0, 1.0], 200) * 10.0 ** rng.uniform(-9.0, 1.0, 200)), 0.0)
+    times = np.append(
+        np.cumsum(rng.choice([-1.0, 1.0], 200) * 10.0 ** rng.uniform(-9.0, 1.0, 200)), 0.0)
     state = start_of(omega)
     for time in times:
         state = at(anchored(parameters, state), time)
@@ -212,9 +223,11 @@ component = st.one_of(st.just(0.0), st.floats(-1.0, 1.0), st.floats(-1e-9, 1e-9)
 
 
 @settings(max_examples=300, deadline=None, derandomize=True)
-@given(a=moment, b=moment, share=st.one_of(st.just(0.0), st.floats(1e-100, 1.0)), exponent=st.integers(-30, 30),
-       omega=st.tuples(component, component, component), speed=st.integers(-12, 6), turned=st.floats(-1e6, 1e6))
-def test_any_body_keeps_energy_momentum_and_unit_quaternion(a, b, share, exponent, omega, speed, turned):
+@given(a=moment, b=moment, share=st.one_of(st.just(0.0), st.floats(1e-100, 1.0)),
+       exponent=st.integers(-30, 30), omega=st.tuples(component, component, component),
+       speed=st.integers(-12, 6), turned=st.floats(-1e6, 1e6))
+def test_any_body_keeps_energy_momentum_and_unit_quaternion(
+        a, b, share, exponent, omega, speed, turned):
     """|a - b| <= c <= a + b: every inertia a body can have, rods without their spin; L is constant in the world as a vector."""
     moments = np.array((a, b, abs(a - b) + share * (a + b - abs(a - b)))) * 10.0 ** exponent
     omega = np.where(moments > 0.0, omega, 0.0) * 10.0 ** speed
@@ -227,4 +240,5 @@ def test_any_body_keeps_energy_momentum_and_unit_quaternion(a, b, share, exponen
     scale = (moments * before * before).sum()
     assert abs((moments * after * after).sum() - scale) <= 2e-14 * max(scale, 1e-300)
     L = np.array(rotate(*start[1:5], *(moments * before)))
-    assert np.abs(np.array(rotate(*state[1:5], *(moments * after))) - L).max() <= 2e-14 * math.hypot(*L)
+    assert (np.abs(np.array(rotate(*state[1:5], *(moments * after))) - L).max()
+            <= 2e-14 * math.hypot(*L))

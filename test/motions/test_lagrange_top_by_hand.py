@@ -18,8 +18,10 @@ from rigid_body_sim.scene.state import STATE_SIZE
 def test_rod_in_a_plane_moves_as_the_hinged_one():
     rod = {'moments': [1.0, 1.0, 0.0], 'mass': 3.0, 'center': [0.0, 0.0, 0.5], 'g': 9.81}
     hinge = parse_scene(json.dumps({
-        'scene': 'rod', 'constraint': {'hinge': {'axis': [0.0, 1.0, 0.0]}}, 'effects': [{'gravity': {'g': 9.81}}],
-        'body': {'mass': 3.0, 'inertia': [1.0, 1.0, 0.0], 'inertia_about': 'origin', 'center_of_mass': [0.0, 0.0, 0.5]},
+        'scene': 'rod', 'constraint': {'hinge': {'axis': [0.0, 1.0, 0.0]}},
+        'effects': [{'gravity': {'g': 9.81}}],
+        'body': {'mass': 3.0, 'inertia': [1.0, 1.0, 0.0], 'inertia_about': 'origin',
+                 'center_of_mass': [0.0, 0.0, 0.5]},
         'initial': {'angle': 2.0, 'rate': 1.0}}))
     other = np.empty(pendulum.ANCHOR_SIZE)
     for rate in (0.0, 3.0, 6.0, 12.0):
@@ -29,11 +31,13 @@ def test_rod_in_a_plane_moves_as_the_hinged_one():
         _, anchor = anchored(rod, start[1:5], start[5:8])
         for time in (0.3, 5.0, 77.0):
             pendulum.state(other, time, start)
-            np.testing.assert_allclose(at(anchor, time)[1:8], start[1:8], rtol=0.0, atol=3e-14)     # 6e-15: I_n and I1 round differently
+            # 6e-15: I_n and I1 round differently
+            np.testing.assert_allclose(at(anchor, time)[1:8], start[1:8], rtol=0.0, atol=3e-14)
 
 
 def test_sleeping_top_sleeps():
-    _, anchor = anchored(HEAVY, UPRIGHT, (0.0, 0.0, 5.0))      # far below the threshold, but exactly upright
+    # far below the threshold, but exactly upright
+    _, anchor = anchored(HEAVY, UPRIGHT, (0.0, 0.0, 5.0))
     states = many(anchor, [0.0, 1.0, 1e3, 1e6])
     assert not states[:, 1:3].any()
     assert not states[:, 5:7].any()
@@ -52,7 +56,8 @@ def test_falling_top_nods_to_the_angle_of_the_notes():
 def test_threshold_decides_by_one_ulp():
     # P_gamma^2 = 4 I1 M g l at omega_3 = 2. One ulp below it a tilt of 1e-20 grows e-fold in 6.7e7 s, and up to the 3e-8 rad of the notes'
     # beta_max; at it in proportion to time; above it, it stays of its size
-    for omega_3, least, most in ((2.0 - 2.0 ** -52, 2e-8, 4e-8), (2.0, 1e-10, 1.4e-10), (2.0 + 2.0 ** -51, 1e-20, 1e-12)):
+    for omega_3, least, most in ((2.0 - 2.0 ** -52, 2e-8, 4e-8), (2.0, 1e-10, 1.4e-10),
+                                 (2.0 + 2.0 ** -51, 1e-20, 1e-12)):
         _, anchor = anchored(ROUND, [1e-20, 0.0, 0.0, 1.0], (0.0, 0.0, omega_3))
         states = many(anchor, np.linspace(0.0, 6e9, 6001))
         assert least <= 2.0 * np.hypot(states[:, 1], states[:, 2]).max() <= most
@@ -61,12 +66,15 @@ def test_threshold_decides_by_one_ulp():
 def test_steady_precession_keeps_its_angle():
     n, beta, k = 20.0, 0.6, 0.981 / 0.03
     rate = 2.0 * k / (n + math.sqrt(n * n - 4.0 * k * math.cos(beta)))
-    _, anchor = anchored(HEAVY, from_euler_zyz(0.0, beta, 0.0), (-rate * math.sin(beta), 0.0, 60.0))
+    _, anchor = anchored(
+        HEAVY, from_euler_zyz(0.0, beta, 0.0), (-rate * math.sin(beta), 0.0, 60.0))
     for time in (1.0, 100.0):
         alpha, now, _ = to_euler_zyz(*at(anchor, time)[1:5])
         assert now == pytest.approx(beta, abs=3e-15)
-        assert math.remainder(alpha - rate * time, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-15 * 60.0 * time)
-    assert motion.next_event(anchor, 0.0)[0] == math.inf           # the rounding of its start makes no nutation
+        assert math.remainder(alpha - rate * time, 2.0 * math.pi) == pytest.approx(
+            0.0, abs=1e-15 * 60.0 * time)
+    # the rounding of its start makes no nutation
+    assert motion.next_event(anchor, 0.0)[0] == math.inf
 
 
 def test_without_weight_the_momentum_stays():
@@ -76,8 +84,10 @@ def test_without_weight_the_momentum_stays():
     parameters, anchor = anchored(weightless, from_euler_zyz(0.1, 0.5, 0.0), (1.0, 2.0, 3.0))
     np.testing.assert_array_equal(motion.parameters(scene), parameters)
     states = many(anchor, np.linspace(0.0, 1e5, 1001))
-    L = np.array([rotate(*state[1:5], *(np.array(HEAVY['moments']) * state[5:8])) for state in states])
-    np.testing.assert_allclose(L, L[:1].repeat(1001, axis=0), rtol=0.0, atol=2e-15 * np.linalg.norm(L[0]))       # 9e-16
+    L = np.array([rotate(*state[1:5], *(np.array(HEAVY['moments']) * state[5:8]))
+                  for state in states])
+    # 9e-16
+    np.testing.assert_allclose(L, L[:1].repeat(1001, axis=0), rtol=0.0, atol=2e-15 * np.linalg.norm(L[0]))
 
 
 def reaction(parameters, state):
@@ -88,39 +98,54 @@ def reaction(parameters, state):
 
 def test_reactions_by_hand():
     parameters, anchor = anchored(HEAVY, UPRIGHT, (0.0, 0.0, 60.0))
-    np.testing.assert_allclose(reaction(parameters, at(anchor, 3.0)), [0.0, 0.0, 9.81], rtol=1e-15, atol=0.0)
+    np.testing.assert_allclose(
+        reaction(parameters, at(anchor, 3.0)), [0.0, 0.0, 9.81], rtol=1e-15, atol=0.0)
     # let go with the axis horizontal: the end of a rod of I1 = M h^2 + I presses with M g (1 - M h^2/I1)
     parameters, anchor = anchored(HEAVY, from_euler_zyz(0.7, math.pi / 2.0, 0.3), (0.0, 0.0, 0.0))
-    np.testing.assert_allclose(reaction(parameters, at(anchor, 0.0)), [0.0, 0.0, 9.81 * (1.0 - 0.01 / 0.03)], rtol=0.0, atol=2e-15)
+    np.testing.assert_allclose(reaction(parameters, at(anchor, 0.0)),
+                               [0.0, 0.0, 9.81 * (1.0 - 0.01 / 0.03)], rtol=0.0, atol=2e-15)
     # a conical pendulum: the weight, and the centripetal force towards the axis at alpha = 0
     n, beta, k = 20.0, 0.6, 0.981 / 0.03
     rate = 2.0 * k / (n + math.sqrt(n * n - 4.0 * k * math.cos(beta)))
-    parameters, anchor = anchored(HEAVY, from_euler_zyz(0.0, beta, 0.0), (-rate * math.sin(beta), 0.0, 60.0))
+    parameters, anchor = anchored(
+        HEAVY, from_euler_zyz(0.0, beta, 0.0), (-rate * math.sin(beta), 0.0, 60.0))
     by_hand = [-0.1 * math.sin(beta) * rate * rate, 0.0, 9.81]
-    np.testing.assert_allclose(reaction(parameters, at(anchor, 0.0)), by_hand, rtol=0.0, atol=2e-14)
+    np.testing.assert_allclose(
+        reaction(parameters, at(anchor, 0.0)), by_hand, rtol=0.0, atol=2e-14)
 
 
-@pytest.mark.parametrize('case', [HEAVY, {**HEAVY, 'moments': [0.01, 0.03, 0.03], 'center': [-0.1, 0.0, 0.0]}])
+@pytest.mark.parametrize(
+    'case', [HEAVY, {**HEAVY, 'moments': [0.01, 0.03, 0.03], 'center': [-0.1, 0.0, 0.0]}])
 def test_reaction_is_mass_times_acceleration(case):
     parameters, anchor = anchored(case, [0.1, 0.5, -0.3, 0.8], (3.0, -7.0, 5.0))
     time, h = 0.9, 2.0 ** -9
-    r = np.array([rotate(*state[1:5], *case['center']) for state in many(anchor, time + h * np.arange(-4, 5))])
-    weights = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
+    r = np.array([rotate(*state[1:5], *case['center'])
+                  for state in many(anchor, time + h * np.arange(-4, 5))])
+    weights = np.array([
+        -1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
     by_differences = case['mass'] * (weights @ r / h ** 2 + [0.0, 0.0, case['g']])
-    np.testing.assert_allclose(reaction(parameters, at(anchor, time)), by_differences, rtol=0.0, atol=2e-9)      # 2e-10
+    # 2e-10
+    np.testing.assert_allclose(reaction(parameters, at(anchor, time)), by_differences, rtol=0.0, atol=2e-9)
 
 
 def test_what_is_absorbed():
     assert motion.absorbs(scene_of(HEAVY))
     assert motion.absorbs(scene_of({**HEAVY, 'center': [0.0, 0.0, -0.1]}))
     assert motion.absorbs(scene_of({**HEAVY, 'moments': [0.03, 0.03, 0.0]}))
-    assert motion.absorbs(scene_of({**HEAVY, 'moments': [0.03, 0.01, 0.03], 'center': [0.0, -0.1, 0.0]}))
-    assert motion.absorbs(scene_of({**HEAVY, 'moments': [0.4, 0.4, 0.4], 'center': [0.1, -0.2, 0.3]}))
+    assert motion.absorbs(scene_of({
+        **HEAVY, 'moments': [0.03, 0.01, 0.03], 'center': [0.0, -0.1, 0.0]}))
+    assert motion.absorbs(scene_of({
+        **HEAVY, 'moments': [0.4, 0.4, 0.4], 'center': [0.1, -0.2, 0.3]}))
     assert motion.absorbs(scene_of({**HEAVY, 'center': [0.0, 0.0, 0.0]}))
-    assert not motion.absorbs(scene_of({**HEAVY, 'moments': [0.03, math.nextafter(0.03, 1.0), 0.01]}))
+    assert not motion.absorbs(scene_of({
+        **HEAVY, 'moments': [0.03, math.nextafter(0.03, 1.0), 0.01]}))
     assert not motion.absorbs(scene_of({**HEAVY, 'center': [1e-18, 0.0, 0.1]}))
-    assert not motion.absorbs(scene_of({**HEAVY, 'moments': [0.03, 0.01, 0.03], 'center': [0.0, 0.0, 0.05]}))
-    assert not motion.absorbs(scene_of(HEAVY, effects=[{'gravity': {'g': 9.81}}, {'torque': {'frame': 'body', 'value': [0.0, 0.0, 1e-9]}}]))
+    assert not motion.absorbs(scene_of({
+        **HEAVY, 'moments': [0.03, 0.01, 0.03], 'center': [0.0, 0.0, 0.05]}))
+    assert not motion.absorbs(scene_of(
+        HEAVY,
+        effects=[
+            {'gravity': {'g': 9.81}}, {'torque': {'frame': 'body', 'value': [0.0, 0.0, 1e-9]}}]))
 
 
 def test_a_composite_with_turned_axes_is_absorbed():
@@ -128,7 +153,8 @@ def test_a_composite_with_turned_axes_is_absorbed():
     scene = parse_scene(json.dumps({
         'scene': 'dumbbell', 'constraint': 'pivot', 'effects': [{'gravity': {'g': 9.81}}],
         'body': {'parts': [{'mass': 2.0, 'shape': {'cylinder': {'radius': 0.1, 'length': 0.4}},
-                            'orientation': [half, 0.0, 0.0, math.cos(0.35)], 'at': [0.0, -0.3 * math.sin(0.7), 0.3 * math.cos(0.7)]}]},
+                            'orientation': [half, 0.0, 0.0, math.cos(0.35)],
+                            'at': [0.0, -0.3 * math.sin(0.7), 0.3 * math.cos(0.7)]}]},
         'initial': {'angular_velocity': [1.0, 2.0, 3.0]}}))
     assert scene.body.about_origin.axes != (0.0, 0.0, 0.0, 1.0)
     assert motion.absorbs(scene)
@@ -136,12 +162,15 @@ def test_a_composite_with_turned_axes_is_absorbed():
     states = np.empty((1001, STATE_SIZE))
     solver.states(np.linspace(0.0, 20.0, 1001), states)
     tensor = scene.body.about_origin.matrix
-    energy = [0.5 * s[5:8] @ tensor @ s[5:8] + 2.0 * 9.81 * rotate(*s[1:5], *scene.body.center_of_mass)[2] for s in states]
+    energy = [0.5 * s[5:8] @ tensor @ s[5:8]
+              + 2.0 * 9.81 * rotate(*s[1:5], *scene.body.center_of_mass)[2]
+              for s in states]
     assert np.ptp(energy) <= 4e-14      # 1.4e-14 of terms of 6 J
 
 
-@pytest.mark.parametrize(('overrides', 'tilt'), [
-    ({}, 0.0), ({}, math.pi), ({'g': 0.0}, 0.0), ({'g': 0.0}, 0.7), ({'center': [0.0, 0.0, 0.0]}, 2.0)])
+@pytest.mark.parametrize(('overrides', 'tilt'),
+                         [({}, 0.0), ({}, math.pi), ({'g': 0.0}, 0.0), ({'g': 0.0}, 0.7),
+                          ({'center': [0.0, 0.0, 0.0]}, 2.0)])
 def test_top_at_rest_where_nothing_turns_it_stays(overrides, tilt):
     start = (1.0, 0.0, 0.0, 0.0) if tilt == math.pi else from_euler_zyz(0.3, tilt, 0.7)
     _, anchor = anchored(HEAVY | overrides, start, (0.0, 0.0, 0.0))

@@ -46,7 +46,8 @@ def test_reference(name):
     record = RECORDS[name]
     _, start, anchor = recorded(name)
     # what is tiny all the time (1e-300) is held to its own size
-    angle = max(np.abs(start[1:4]).max(), *(abs(float(value)) for entry in record['states'] for value in entry['state'][:3]))
+    angle = max(np.abs(start[1:4]).max(),
+                *(abs(float(value)) for entry in record['states'] for value in entry['state'][:3]))
     for entry in record['states']:
         time = float.fromhex(entry['time'])
         expected = np.array([float(value) for value in entry['state']])
@@ -62,7 +63,9 @@ def test_reference(name):
         assert np.abs(state[10:] - expected[10:]).max() <= 1e-14 * reach * fastest, entry['time']
 
 
-@pytest.mark.parametrize('name', ['rests an ulp from upright', 'rests 1e-300 from upright', 'leaves upright, back', 'tiny swing'])
+@pytest.mark.parametrize('name',
+                         ['rests an ulp from upright', 'rests 1e-300 from upright',
+                          'leaves upright, back', 'tiny swing'])
 def test_tiny_distances_grow_to_scale(name):
     """What is 1e-300 from upright keeps its digits while it grows."""
     anchor = recorded(name)[2]
@@ -74,13 +77,15 @@ def test_tiny_distances_grow_to_scale(name):
             assert state[k] == near(expected[k], 1e-13), (k, entry['time'])
 
 
-@pytest.mark.parametrize('name', [name for name, record in RECORDS.items() if record['swings'] and record['period']])
+@pytest.mark.parametrize(
+    'name', [name for name, record in RECORDS.items() if record['swings'] and record['period']])
 def test_turning_points(name):
     """Half a period apart, at rest there, and each later one found from the one before; none when it turns over."""
     _, start, anchor = recorded(name)
     period = float(RECORDS[name]['period'])
     fastest = max(np.linalg.norm(at(anchor, time)[5:8]) for time in np.linspace(0.0, period, 50))
-    times = list(itertools.accumulate(range(6), lambda time, _: motion.next_event(anchor, time)[0], initial=0.0))[1:]
+    times = list(itertools.accumulate(
+        range(6), lambda time, _: motion.next_event(anchor, time)[0], initial=0.0))[1:]
     assert motion.next_event(anchor, 0.0)[1] == 0
     assert np.diff(times) == near(0.5 * period, 1e-14)
     for time in times:
@@ -92,7 +97,8 @@ def test_turning_points(name):
         assert times[0] == near(0.5 * period, 1e-15)
 
 
-@pytest.mark.parametrize('name', [name for name, record in RECORDS.items() if not record['swings']])
+@pytest.mark.parametrize(
+    'name', [name for name, record in RECORDS.items() if not record['swings']])
 def test_no_turning_points(name):
     anchor = recorded(name)[2]
     assert motion.next_event(anchor, 0.0)[0] == math.inf
@@ -113,11 +119,13 @@ def test_no_turning_point_is_lost_in_a_long_jump():
 
 
 def test_turning_points_agree_with_a_stepped_method():
-    exact, stepped = (Simulation('kater_pendulum_from_p', integrator=name) for name in ('exact', 'dop8'))
+    exact, stepped = (Simulation('kater_pendulum_from_p', integrator=name)
+                      for name in ('exact', 'dop8'))
     for simulation in (exact, stepped):
         for _ in range(80):
             simulation.advance(100)
-    assert [(event.tick, event.name) for event in stepped.events] == [(event.tick, event.name) for event in exact.events]
+    assert [(event.tick, event.name) for event in stepped.events] == [(event.tick, event.name)
+                                                                      for event in exact.events]
     assert len(exact.events) == 7
 
 
@@ -151,17 +159,21 @@ def test_energy_and_hinge_stay():
             turn = Rotation.from_quat(state[1:5])
             diagnose(numbers, state, diagnosis)
             energies.append(diagnosis[0] + diagnosis[1])
-            sizes.append(diagnosis[0] + weight * (np.linalg.norm(state[8:11]) + np.linalg.norm(scene.body.center_of_mass)))
+            sizes.append(diagnosis[0] + weight * (np.linalg.norm(state[8:11])
+                                                  + np.linalg.norm(scene.body.center_of_mass)))
             arm = turn.apply(scene.constraint.through)
-            assert np.abs(state[8:11] + arm - hinge).max() <= 8.0 * EPSILON * (np.linalg.norm(hinge) + np.linalg.norm(arm))
+            assert (np.abs(state[8:11] + arm - hinge).max()
+                    <= 8.0 * EPSILON * (np.linalg.norm(hinge) + np.linalg.norm(arm)))
             assert np.abs(turn.apply(scene.constraint.axis) - axis).max() <= 8.0 * EPSILON
-            assert state[11:14] == pytest.approx(-np.cross(turn.apply(state[5:8]), arm), abs=2e-14 * np.linalg.norm(state[5:8]))
+            assert state[11:14] == pytest.approx(
+                -np.cross(turn.apply(state[5:8]), arm), abs=2e-14 * np.linalg.norm(state[5:8]))
         assert np.ptp(energies) <= 8.0 * EPSILON * max(sizes)
 
 
 def test_one_or_many_the_same_bits():
     rng = np.random.default_rng(5)
-    scenes = [random_scene(rng) for _ in range(8)] + [recorded(name)[:2] for name in ('separatrix', 'an ulp above the separatrix')]
+    scenes = ([random_scene(rng) for _ in range(8)]
+              + [recorded(name)[:2] for name in ('separatrix', 'an ulp above the separatrix')])
     scenes.append((unit_scene(g=0.0), start_of(HANGING, (2.0, 0.0, 0.0))))
     for scene, start in scenes:
         solver = Exact(scene, motion).start(start)
@@ -173,16 +185,19 @@ def test_one_or_many_the_same_bits():
             assert np.array_equal(one, row)
 
 
-@pytest.mark.parametrize('name', ['skew swing', 'skew turning back over', 'an ulp below the separatrix', 'an ulp above the separatrix',
-                                  'separatrix'])
+@pytest.mark.parametrize('name',
+                         ['skew swing', 'skew turning back over', 'an ulp below the separatrix',
+                          'an ulp above the separatrix', 'separatrix'])
 def test_attitude_is_continuous(name):
     """No jump of the quaternion, its sign included, over many turns and before the start."""
     _, _, anchor = recorded(name)
     times = np.linspace(-30.0, 50.0, 80001)
     states = np.empty((len(times), STATE_SIZE))
     loops(motion).states(anchor, times, states)
-    rates, jumps = np.linalg.norm(states[:, 5:8], axis=1), np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1)
-    assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (1.0 + 1e-5) + 1e-15).all()
+    rates, jumps = (np.linalg.norm(states[:, 5:8], axis=1),
+                    np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1))
+    assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (
+        1.0 + 1e-5) + 1e-15).all()
     assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 2.0 * EPSILON
 
 
@@ -195,10 +210,12 @@ def test_equilibrium_is_for_ever(orientation):
     assert motion.next_event(anchor, 0.0)[0] == math.inf
 
 
-@pytest.mark.parametrize('case', ['vertical axis', 'vertical to rounding', 'centre of mass on the axis', 'no gravity'])
+@pytest.mark.parametrize(
+    'case', ['vertical axis', 'vertical to rounding', 'centre of mass on the axis', 'no gravity'])
 def test_nothing_turns_it(case):
     """Uniform rotation, its phase exact after 1e6 s."""
-    body, axis, orientation, g = make_body(1.3, (0.5, 0.6, 0.7), (0.1, 0.2, 0.3)), (1.0, 0.0, 0.0), HANGING, 9.81
+    body, axis, orientation, g = (
+        make_body(1.3, (0.5, 0.6, 0.7), (0.1, 0.2, 0.3)), (1.0, 0.0, 0.0), HANGING, 9.81)
     if case == 'vertical axis':
         axis = (0.0, 0.0, 1.0)
     elif case == 'vertical to rounding':
@@ -272,12 +289,15 @@ print(json.dumps(answers))
 def test_the_same_without_numba():
     times = np.linspace(-20.0, 1e3, 12)
     cases = [(*recorded(name)[:2], recorded(name)[2])
-             for name in ('skew swing', 'skew turning over', 'an ulp below the separatrix', 'separatrix', 'tiny swing')]
-    questions = json.dumps([(motion.parameters(scene).tolist(), start.tolist(), times.tolist()) for scene, start, _ in cases])
+             for name in ('skew swing', 'skew turning over', 'an ulp below the separatrix',
+                          'separatrix', 'tiny swing')]
+    questions = json.dumps([(motion.parameters(scene).tolist(), start.tolist(), times.tolist())
+                            for scene, start, _ in cases])
     environment = {**os.environ, 'NUMBA_DISABLE_JIT': '1'}
-    answer = subprocess.run([sys.executable, '-c', PLAIN, questions], text=True, check=True, capture_output=True, cwd=ROOT, env=environment,
-                            timeout=120)
-    for (scene, _, anchor), (states, force, event) in zip(cases, json.loads(answer.stdout), strict=True):
+    answer = subprocess.run([sys.executable, '-c', PLAIN, questions], text=True, check=True,
+                            capture_output=True, cwd=ROOT, env=environment, timeout=120)
+    for (scene, _, anchor), (states, force, event) in zip(
+            cases, json.loads(answer.stdout), strict=True):
         out = np.empty((len(times), STATE_SIZE))
         loops(motion).states(anchor, times, out)
         assert np.array_equal(out, states)

@@ -19,11 +19,14 @@ EPSILON = np.finfo(float).eps
 def test_reaction_by_hand():
     """Rod of length l about its end: M g at rest; M g/4 when let go level; M g (1 + 3) at the bottom after falling from upright."""
     M, g, length = 2.0, 9.81, 1.2
-    rod = make_body(M, (M * length ** 2 / 12.0, 0.0, M * length ** 2 / 12.0), (0.0, 0.0, -0.5 * length))
+    rod = make_body(
+        M, (M * length ** 2 / 12.0, 0.0, M * length ** 2 / 12.0), (0.0, 0.0, -0.5 * length))
     scene = scene_of(rod, (1.0, 0.0, 0.0), g=g)
-    assert bearing(scene, start_of()) == pytest.approx([0.0, 0.0, M * g, 0.0, 0.0, 0.0], rel=1e-15, abs=1e-15)
+    assert bearing(scene, start_of()) == pytest.approx(
+        [0.0, 0.0, M * g, 0.0, 0.0, 0.0], rel=1e-15, abs=1e-15)
     level = start_of((math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)))
-    assert bearing(scene, level) == pytest.approx([0.0, 0.0, 0.25 * M * g, 0.0, 0.0, 0.0], rel=1e-14, abs=1e-14)
+    assert bearing(scene, level) == pytest.approx(
+        [0.0, 0.0, 0.25 * M * g, 0.0, 0.0, 0.0], rel=1e-14, abs=1e-14)
     fastest = math.sqrt(2.0 * M * g * length / (M * length ** 2 / 3.0))
     assert bearing(scene, start_of(HANGING, (fastest, 0.0, 0.0)))[2] == near(4.0 * M * g, 1e-14)
 
@@ -35,7 +38,8 @@ def test_unbalanced_wheel_shakes_its_bearing():
     scene = scene_of(make_body(1.0, (I1, I1, I3)), axis, g=0.0)
     out = bearing(scene, start_of(HANGING, w * np.array(axis)))
     assert out[:3].tolist() == [0.0, 0.0, 0.0]
-    assert out[3:] == pytest.approx([0.0, -w * w * (I3 - I1) * math.sin(cant) * math.cos(cant), 0.0], rel=1e-14, abs=1e-14)
+    assert out[3:] == pytest.approx(
+        [0.0, -w * w * (I3 - I1) * math.sin(cant) * math.cos(cant), 0.0], rel=1e-14, abs=1e-14)
 
 
 def test_reaction_is_what_momentum_asks_for():
@@ -51,7 +55,8 @@ def test_reaction_is_what_momentum_asks_for():
             state = at(anchor, time)
             turn = Rotation.from_quat(state[1:5])
             velocity = state[11:14] + turn.apply(np.cross(state[5:8], body.center_of_mass))
-            return np.concatenate([body.mass * velocity, turn.apply(body.about_center.matrix @ state[5:8])
+            return np.concatenate([body.mass * velocity,
+                                   turn.apply(body.about_center.matrix @ state[5:8])
                                    + body.mass * np.cross(turn.apply(arm), velocity)])
 
         time, h = rng.uniform(-3.0, 3.0), 2e-3
@@ -64,7 +69,8 @@ def test_reaction_is_what_momentum_asks_for():
         size = np.abs(out).max() + body.mass * g
         # rounding of the momenta over h, and the ninth derivative
         assert slope[:3] == pytest.approx(out[:3] + weight, abs=1e-10 * size)
-        assert slope[3:] == pytest.approx(out[3:] + np.cross(lever, weight), abs=1e-10 * size * (1.0 + np.linalg.norm(arm)))
+        assert slope[3:] == pytest.approx(
+            out[3:] + np.cross(lever, weight), abs=1e-10 * size * (1.0 + np.linalg.norm(arm)))
         axis = Rotation.from_quat(state[1:5]).apply(scene.constraint.axis)
         assert abs(axis @ out[3:]) <= 1e-14 * np.abs(out[3:]).max()
 

@@ -22,7 +22,8 @@ EPSILON = np.finfo(float).eps
 BALL = (0.028575, 0.4, 0.17, 0.2, 9.81)    # radius, k, mass, mu, g
 
 
-def start_of(velocity=(0.0, 0.0), spin=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0, 1.0), radius=BALL[0], time=0.0):
+def start_of(velocity=(0.0, 0.0), spin=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0, 1.0),
+             radius=BALL[0], time=0.0):
     return np.array([time, *orientation, *spin, 0.0, 0.0, radius, *velocity, 0.0])
 
 
@@ -54,27 +55,31 @@ def world_spin(state):
 
 
 # parts of a state and the size against which their errors are counted
-PARTS = {'orientation': slice(1, 5), 'angular_velocity': slice(5, 8), 'position': slice(8, 10), 'velocity': slice(11, 13)}
+PARTS = {'orientation': slice(1, 5), 'angular_velocity': slice(5, 8), 'position': slice(8, 10),
+         'velocity': slice(11, 13)}
 
 
 def conditioning(parameters, start, time, part):
     """Return what one ulp on every input does to a part of the state, summed over the inputs."""
     plain = at(anchored(start, parameters), time)[part]
     total = 0.0
-    for vector, places in ((start, (1, 2, 3, 4, 5, 6, 7, 11, 12)), (np.array(parameters), (0, 1, 3, 4))):
+    for vector, places in (
+            (start, (1, 2, 3, 4, 5, 6, 7, 11, 12)), (np.array(parameters), (0, 1, 3, 4))):
         for place in places:
             nudged = vector.copy()
             nudged[place] = np.nextafter(nudged[place], math.inf)
             case = (nudged, parameters) if vector is start else (start, nudged)
             total += np.linalg.norm(at(anchored(*case), time)[part] - plain)
-    return total + np.linalg.norm(at(anchored(start, parameters), np.nextafter(time, math.inf))[part] - plain)
+    return (total + np.linalg.norm(at(
+        anchored(start, parameters), np.nextafter(time, math.inf))[part] - plain))
 
 
 @pytest.mark.parametrize('name', RECORDS)
 def test_reference(name):
     record = RECORDS[name]
     parameters = np.array([record['radius'], record['ratio'], 0.17, record['mu'], record['g']])
-    start = start_of(record['velocity'], record['angular_velocity'], record['orientation'], record['radius'])
+    start = start_of(
+        record['velocity'], record['angular_velocity'], record['orientation'], record['radius'])
     anchor = anchored(start, parameters)
     # worst measured 2 epsilon (fast spin)
     assert motion.rolling_onset(anchor) == near(float(record['onset']), 3.0 * EPSILON)
@@ -84,7 +89,8 @@ def test_reference(name):
         expected = np.array([time, *values[:9], record['radius'], *values[9:], 0.0])
         state = at(anchor, time)
         for part, where in PARTS.items():
-            floor = 2.0 * EPSILON * max(np.linalg.norm(expected[where]), np.linalg.norm(start[where]))
+            floor = (2.0 * EPSILON
+                     * max(np.linalg.norm(expected[where]), np.linalg.norm(start[where])))
             # worst measured: 0.68 of this (attitude 2.2e-14 after 500 rad, fast spin); the others below 0.35
             bound = floor + conditioning(parameters, start, time, where)
             assert np.linalg.norm(state[where] - expected[where]) <= bound, (part, entry['time'])
@@ -113,18 +119,22 @@ def test_struck_off_the_centre(h):
     onset = motion.rolling_onset(anchor)
     assert onset == near(2.0 * v0 * abs(1.0 - 2.5 * h) / (7.0 * mu * g), 1e-14)
     assert at(anchor, onset)[11] == near(5.0 / 7.0 * v0 * (1.0 + h), 1e-14)
-    assert motion.reaction(anchor, 0.5 * onset) == near((math.copysign(mu * M * g, h - 0.4), 0.0, M * g), 1e-14)
+    assert motion.reaction(anchor, 0.5 * onset) == near(
+        (math.copysign(mu * M * g, h - 0.4), 0.0, M * g), 1e-14)
     assert motion.reaction(anchor, onset) == (0.0, 0.0, M * g)
 
 
 def test_struck_at_two_fifths_rolls_at_once():
     rng = np.random.default_rng(2)
     for _ in range(500):
-        a, v0, direction = rng.uniform(0.01, 1.0), 10.0 ** rng.uniform(-3, 3), rng.uniform(0.0, 2.0 * math.pi)
+        a, v0, direction = (
+            rng.uniform(0.01, 1.0), 10.0 ** rng.uniform(-3, 3), rng.uniform(0.0, 2.0 * math.pi))
         velocity = v0 * np.array([math.cos(direction), math.sin(direction)])
         h = 2.0 * a / 5.0
         rate = 2.5 * h / (a * a)
-        anchor = anchored(start_of(velocity, (-rate * velocity[1], rate * velocity[0], 0.0), radius=a), (a, *BALL[1:]))
+        anchor = anchored(
+            start_of(velocity, (-rate * velocity[1], rate * velocity[0], 0.0), radius=a),
+            (a, *BALL[1:]))
         assert motion.rolling_onset(anchor) == 0.0
         assert motion.next_event(anchor, -1.0)[0] == math.inf
         assert motion.slip(anchor, 0.0) == (0.0, 0.0)
@@ -135,7 +145,8 @@ def test_a_hair_off_two_fifths_slides():
     """The snap is no wider than rounding: 1e-14 off the height still slides, for as long as the formula says."""
     for off in (1e-14, -1e-14):
         anchor = anchored(start_of((2.0, 0.0), (0.0, 2.0 / BALL[0] * (1.0 + off), 0.0)))
-        assert motion.rolling_onset(anchor) == near(4.0 / (7.0 * BALL[3] * BALL[4]) * abs(off), 0.05)
+        assert motion.rolling_onset(anchor) == near(
+            4.0 / (7.0 * BALL[3] * BALL[4]) * abs(off), 0.05)
 
 
 def test_draw_shot_comes_back():
@@ -157,11 +168,15 @@ def test_masse_runs_on_a_parabola():
         time = share * onset
         state = at(anchor, time)
         assert motion.slip(anchor, time) == near(tuple((1.0 - share) * u), 1e-13)
-        assert state[8:10] == near(np.array([1.5, 0.0]) * time - 0.5 * BALL[3] * BALL[4] * time * time * u / np.linalg.norm(u), 1e-14)
+        assert state[8:10] == near(np.array([1.5, 0.0]) * time
+                                   - 0.5 * BALL[3] * BALL[4] * time * time * u / np.linalg.norm(u),
+                                   1e-14)
         spin = world_spin(state)
         assert spin[2] == near(40.0, 1e-14)
-        assert (state[11] - BALL[0] * spin[1], state[12] + BALL[0] * spin[0]) == near(motion.slip(anchor, time), 1e-12)
-    assert at(anchor, onset)[11:13] == near(((1.5 + 0.4 * BALL[0] * 20.0) / 1.4, -0.4 * BALL[0] * 70.0 / 1.4), 1e-14)
+        assert (state[11] - BALL[0] * spin[1], state[12] + BALL[0] * spin[0]) == near(
+            motion.slip(anchor, time), 1e-12)
+    assert at(anchor, onset)[11:13] == near(
+        ((1.5 + 0.4 * BALL[0] * 20.0) / 1.4, -0.4 * BALL[0] * 70.0 / 1.4), 1e-14)
 
 
 def test_without_friction_it_glides():
@@ -199,9 +214,11 @@ def test_energy_lost_is_heat():
             # worst measured 2.3 epsilon
             assert abs(balance) <= 6.0 * EPSILON * max(kinetic(start), kinetic(state))
             gained = BALL[1] * BALL[2] * BALL[0] ** 2 * (world_spin(state) - world_spin(start))
-            size = BALL[1] * BALL[2] * BALL[0] ** 2 * max(np.linalg.norm(start[5:8]), np.linalg.norm(state[5:8]))
+            size = (BALL[1] * BALL[2] * BALL[0] ** 2
+                    * max(np.linalg.norm(start[5:8]), np.linalg.norm(state[5:8])))
             # worst measured 5.8 epsilon
-            assert np.linalg.norm(gained - exchanged(anchor, time)[ANGULAR_IMPULSE]) <= 12.0 * EPSILON * size
+            assert (np.linalg.norm(gained - exchanged(anchor, time)[ANGULAR_IMPULSE])
+                    <= 12.0 * EPSILON * size)
 
 
 def test_rolling_does_not_chatter():
@@ -218,7 +235,8 @@ def test_rolling_does_not_chatter():
         assert np.array_equal(state[11:13], velocity)
     # the vertical spin goes 10000 times into body axes and back, half an ulp of omega each way at random; measured 42 epsilon of omega,
     # and 540 when rotations.normalised rounds to one side
-    assert world_spin(state)[2] == near(spin, 100.0 * EPSILON * np.linalg.norm(state[5:8]) / abs(spin))
+    assert world_spin(state)[2] == near(
+        spin, 100.0 * EPSILON * np.linalg.norm(state[5:8]) / abs(spin))
 
 
 @pytest.mark.parametrize('spin', [(30.0, -40.0, 0.0), (30.0, -40.0, 90.0)])
@@ -252,9 +270,12 @@ def test_attitude_is_continuous():
     onset = motion.rolling_onset(anchor)
     times = np.linspace(-0.5 * onset, 1.5 * onset, 20001)
     states = np.array([at(anchor, time) for time in times])
-    rates, jumps = np.linalg.norm(states[:, 5:8], axis=1), np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1)
-    assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (1.0 + 1e-6) + 1e-14).all()
-    assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 2.0 * EPSILON    # measured 1
+    rates, jumps = (np.linalg.norm(states[:, 5:8], axis=1),
+                    np.linalg.norm(np.diff(states[:, 1:5], axis=0), axis=1))
+    assert (jumps <= 0.5 * np.maximum(rates[1:], rates[:-1]) * np.diff(times) * (
+        1.0 + 1e-6) + 1e-14).all()
+    # measured 1
+    assert np.abs(np.linalg.norm(states[:, 1:5], axis=1) - 1.0).max() <= 2.0 * EPSILON
 
 
 def test_long_before_and_long_after():
@@ -293,8 +314,10 @@ def test_the_same_without_numba():
     start = start_of((1.5, 0.4), (30.0, -40.0, 90.0))
     times = [-0.1, 0.05, 0.2, 3.0]
     anchor = anchored(start)
-    command = [sys.executable, '-c', PLAIN, *(json.dumps(list(part)) for part in (BALL, start, times))]
+    command = [
+        sys.executable, '-c', PLAIN, *(json.dumps(list(part)) for part in (BALL, start, times))]
     environment = {**os.environ, 'NUMBA_DISABLE_JIT': '1'}
-    answer = subprocess.run(command, text=True, check=True, capture_output=True, cwd=ROOT, env=environment, timeout=120)
+    answer = subprocess.run(command, text=True, check=True, capture_output=True, cwd=ROOT,
+                            env=environment, timeout=120)
     for time, state in zip(times, json.loads(answer.stdout), strict=True):
         assert at(anchor, time) == pytest.approx(np.array(state), rel=1e-13, abs=1e-14)

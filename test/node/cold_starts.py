@@ -57,7 +57,8 @@ class Watch:
         self._on = False
 
     def _audit(self, event, arguments):
-        if self._on and event in (TICK_THREAD if threading.get_ident() == self.thread else ALL_THREADS):
+        if self._on and event in (TICK_THREAD if threading.get_ident() == self.thread
+                                  else ALL_THREADS):
             self.note(event, arguments[0])
 
     def note(self, event, what):
@@ -97,7 +98,8 @@ def run(arguments):
     Session.begin = watched_begin
     rclpy.init(args=[])
     sender = rclpy.create_node('sender')
-    publishers = [sender.create_publisher(WrenchStamped, topic, 10) for topic in ('cmd_impulse', 'cmd_wrench')]
+    publishers = [sender.create_publisher(WrenchStamped, topic, 10)
+                  for topic in ('cmd_impulse', 'cmd_wrench')]
     stop = Stop()
     words = [word for argument in arguments for word in ('-p', argument)]
     node = SimulationNode(stop, cli_args=['--ros-args', *words], use_global_arguments=False)
@@ -109,7 +111,8 @@ def run(arguments):
     def spin(condition):
         while not condition():
             if time.monotonic() > deadline or node.engine.ticker.failure:
-                raise TimeoutError(f'{arguments}: tick {session.next_tick}, {node.engine.ticker.failure}')
+                raise TimeoutError(f'{arguments}: tick {session.next_tick}, '
+                                   f'{node.engine.ticker.failure}')
             executor.spin_once(timeout_sec=0.01)
 
     def ticks():

@@ -22,7 +22,8 @@ def compiled_kernels():
     from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
     from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
-    with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}', 'w') as lock:
+    with open(pathlib.Path(tempfile.gettempdir()) / f'rigid_body_sim-compiling-{os.getuid()}',
+              'w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for scene in ('tennis_racket', 'sphere'):
             simulation = Simulation(scene)
@@ -71,7 +72,9 @@ class Client:
         """Destroy all subscriptions and publishers."""
         for subscription in list(self.node.subscriptions):
             self.node.destroy_subscription(subscription)
-        for publisher in [publisher for publisher in self.node.publishers if publisher.topic_name not in ('/rosout', '/parameter_events')]:
+        for publisher in [publisher
+                          for publisher in self.node.publishers
+                          if publisher.topic_name not in ('/rosout', '/parameter_events')]:
             self.node.destroy_publisher(publisher)
 
     def publisher(self, message_type, topic, qos=10):
@@ -114,10 +117,12 @@ class Running:
 
 @contextlib.contextmanager
 def _running(folder, *arguments):
-    with ros.held_domain(folder / 'log') as domain, \
-            domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'recording.directory:={folder / "recordings"}',
-                           *arguments) as process, _client(domain) as client:
-        client.until(lambda: process.poll() is not None or client.node.count_publishers('energy'), timeout=START, what='the node')
+    with ros.held_domain(folder / 'log') as domain, domain.process(
+            '-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p',
+            f'recording.directory:={folder / "recordings"}',
+            *arguments) as process, _client(domain) as client:
+        client.until(lambda: process.poll() is not None or client.node.count_publishers('energy'),
+                     timeout=START, what='the node')
         assert process.poll() is None, process.communicate()[1]
         yield Running(domain, process, client, folder)
 

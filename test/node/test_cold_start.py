@@ -32,25 +32,33 @@ COMPILED_IN = 0.05
 
 def cold_starts(domain, folder, cases, timeout, **environment):
     """Start the nodes in fresh processes; return what cold_starts.py tells of each."""
-    words = [json.dumps([word.replace('{folder}', str(folder)) for word in case]) for case in cases]
-    environment = {**domain.environment, 'PYTHONPATH': os.pathsep.join([os.getcwd(), os.environ.get('PYTHONPATH', '')]), **environment}
+    words = [json.dumps([word.replace('{folder}', str(folder)) for word in case])
+             for case in cases]
+    environment = {**domain.environment,
+                   'PYTHONPATH': os.pathsep.join([os.getcwd(), os.environ.get('PYTHONPATH', '')]),
+                   **environment}
     done = domain.run(DRIVER, *words, timeout=timeout, env=environment)
     assert done.returncode == 0, done.stderr
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{')]
 
 
-def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(ros_domain, tmp_path, compiled_kernels):
+def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
+        ros_domain, tmp_path, compiled_kernels):
     found = cold_starts(ros_domain, tmp_path, CASES, 280)
     assert len(found) == len(CASES)
-    assert {start['arguments'][0]: start['first_times'] for start in found if start['first_times']} == {}
-    assert {start['arguments'][0]: start['dearest_tick'] for start in found if start['dearest_tick'] > COMPILED_IN} == {}
+    assert {start['arguments'][0]: start['first_times']
+            for start in found if start['first_times']} == {}
+    assert {start['arguments'][0]: start['dearest_tick']
+            for start in found if start['dearest_tick'] > COMPILED_IN} == {}
     assert min(start['ticks'] for start in found) > 100
 
 
-@pytest.mark.skipif(not os.environ.get('RIGID_BODY_SIM_SOAK'), reason='takes ten minutes: make soak')
+@pytest.mark.skipif(
+    not os.environ.get('RIGID_BODY_SIM_SOAK'), reason='takes ten minutes: make soak')
 @pytest.mark.parametrize('case', CASES, ids=lambda case: ' '.join(case)[:60])
 def test_cold_start_with_an_empty_cache(ros_domain, tmp_path, case):
-    [found] = cold_starts(ros_domain, tmp_path, [case], 280, XDG_CACHE_HOME=str(tmp_path / 'cache'))
+    [found] = cold_starts(
+        ros_domain, tmp_path, [case], 280, XDG_CACHE_HOME=str(tmp_path / 'cache'))
     assert any((tmp_path / 'cache').rglob('*.nbc'))
     assert found['first_times'] == []
     assert found['dearest_tick'] < COMPILED_IN

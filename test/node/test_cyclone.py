@@ -72,8 +72,10 @@ def test_cyclone_client_hears_the_node_and_commands_it(run_node):
     with run_node('-p', 'scene:=sphere', '-p', 'rate:=200', '-p', 'record:=false') as node:
         _domain = Domain(node.domain.id, CONFIGURATION)
         participant = DomainParticipant(node.domain.id)
-        reader = DataReader(participant, Topic(participant, 'rt/angular_velocity', Vector3Stamped), RELIABLE)
-        writer = DataWriter(participant, Topic(participant, 'rt/cmd_impulse', WrenchStamped), RELIABLE)
+        reader = DataReader(
+            participant, Topic(participant, 'rt/angular_velocity', Vector3Stamped), RELIABLE)
+        writer = DataWriter(
+            participant, Topic(participant, 'rt/cmd_impulse', WrenchStamped), RELIABLE)
         heard = []
 
         def more():
@@ -83,11 +85,13 @@ def test_cyclone_client_hears_the_node_and_commands_it(run_node):
         assert {sample.header.frame_id for sample in heard} == {'body'}
         until(writer.get_matched_subscriptions, 'the subscription of the node')
         zero = Vector3(0.0, 0.0, 0.0)
-        writer.write(WrenchStamped(Header(Time(0, 0), 'body'), Wrench(zero, Vector3(0.0, 0.0, 0.25))))
+        writer.write(WrenchStamped(
+            Header(Time(0, 0), 'body'), Wrench(zero, Vector3(0.0, 0.0, 0.25))))
         before = len(heard)
         until(lambda: more() > before + 100, 'the impulse')
         omega = np.array([(sample.vector.x, sample.vector.y, sample.vector.z) for sample in heard])
-        stamps = np.array([sample.header.stamp.sec * 10**9 + sample.header.stamp.nanosec for sample in heard])
+        stamps = np.array([sample.header.stamp.sec * 10**9 + sample.header.stamp.nanosec
+                           for sample in heard])
         assert set(np.diff(stamps)) == {5_000_000}
         steps = np.diff(omega, axis=0)
         [k] = np.flatnonzero(np.abs(steps).max(axis=1) > 1e-9)

@@ -17,7 +17,8 @@ class House:
     def __init__(self, context):
         self.node = rclpy.create_node('house', context=context)
         group = TakenElsewhere()
-        self.subscriptions = [self.node.create_subscription(Float64, name, lambda _: None, 10, callback_group=group, raw=True)
+        self.subscriptions = [self.node.create_subscription(Float64, name, lambda _: None, 10,
+                                                            callback_group=group, raw=True)
                               for name in ('nobody', 'knocks')]
         self.publisher = self.node.create_publisher(Float64, 'knocks', 10)
         self.bell = Doorbell(self.node, self.subscriptions)

@@ -48,8 +48,10 @@ sim_node.main(sys.argv[1:])
 
 def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
     """A reliable subscriber is stopped by a signal: its queue fills, the other one goes on hearing every tick, and no tick is skipped."""
-    with run_node('-p', 'rate:=200', '-p', 'record:=false') as node, node.domain.process('-c', READER) as reader:
-        energies, arrays = node.client.collect(Float64, 'energy', 1000), node.client.collect(DiagnosticArray, '/diagnostics')
+    with run_node('-p', 'rate:=200', '-p', 'record:=false') as node, node.domain.process(
+            '-c', READER) as reader:
+        energies, arrays = (node.client.collect(Float64, 'energy', 1000),
+                            node.client.collect(DiagnosticArray, '/diagnostics'))
         assert reader.stdout.readline() == '100\n'
         reader.send_signal(signal.SIGSTOP)
         before = len(energies)
@@ -61,15 +63,18 @@ def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
         assert reader.stdout.readline() == '200\n'
 
 
-def test_callback_that_fails_ends_it_with_a_whole_recording(ros_domain, tmp_path, compiled_kernels):
-    node = ros_domain.run('-c', FAILING, '--ros-args', '-p', 'rate:=200', '-p', f'recording.directory:={tmp_path / "recordings"}',
-                          timeout=90)
-    assert (node.returncode, node.stderr) == (1, 'sim_node: a callback failed: RuntimeError: on purpose\n')
+def test_callback_that_fails_ends_it_with_a_whole_recording(
+        ros_domain, tmp_path, compiled_kernels):
+    node = ros_domain.run('-c', FAILING, '--ros-args', '-p', 'rate:=200', '-p',
+                          f'recording.directory:={tmp_path / "recordings"}', timeout=90)
+    assert (node.returncode, node.stderr) == (
+        1, 'sim_node: a callback failed: RuntimeError: on purpose\n')
     [folder] = (tmp_path / 'recordings').iterdir()
     assert messages_in(folder)['/energy'] > 10
 
 
-def test_wall_clock_set_back_by_an_hour_loses_and_doubles_no_tick(ros_domain, tmp_path, compiled_kernels):
+def test_wall_clock_set_back_by_an_hour_loses_and_doubles_no_tick(
+        ros_domain, tmp_path, compiled_kernels):
     """Stamps count ticks from the instant of the first one; only the times of publication tell of the wall clock."""
     node = ros_domain.run('-c', BACK, '--ros-args', '-p', 'rate:=200', '-p', 'duration:=1.0', '-p',
                           f'recording.directory:={tmp_path / "recordings"}', timeout=90)
@@ -89,11 +94,15 @@ def test_nothing_of_its_own_is_left_in_shared_memory(run_node):
         node.client.until(lambda: len(energies) > 10, what='ticks')
         maps = pathlib.Path(f'/proc/{node.process.pid}/maps').read_text().splitlines()
         own = {line.split()[-1] for line in maps if '/dev/shm/' in line}
-        opened = {os.readlink(link) for link in pathlib.Path(f'/proc/{node.process.pid}/fd').iterdir() if link.exists()}
+        opened = {os.readlink(link)
+                  for link in pathlib.Path(f'/proc/{node.process.pid}/fd').iterdir()
+                  if link.exists()}
         own |= {path for path in opened if path.startswith('/dev/shm/')}
         node.process.terminate()
         assert node.process.wait(5.0) == 0
         recording_of(node)
-        clients = {line.split()[-1] for line in pathlib.Path('/proc/self/maps').read_text().splitlines() if '/dev/shm/' in line}
+        clients = {line.split()[-1]
+                   for line in pathlib.Path('/proc/self/maps').read_text().splitlines()
+                   if '/dev/shm/' in line}
     assert own
     assert not {path for path in own - clients if pathlib.Path(path).exists()}

@@ -33,7 +33,8 @@ def test_who_comes_later_has_lost_nothing_and_who_goes_neither():
     gaps.look([700, 4, 701, 5])
     assert gaps.lost == 0
     publishers.remove('a')
-    gaps.look([702, 703, 710, 711, 720])    # at 710 it is found that one is gone: the gap may be no gap
+    # at 710 it is found that one is gone: the gap may be no gap
+    gaps.look([702, 703, 710, 711, 720])
     assert gaps.lost == 8
     publishers.clear()
     gaps.look([721, 730, 731])
@@ -45,5 +46,6 @@ def test_publishers_are_looked_up_only_for_numbers_that_nobody_expects():
     gaps = Gaps(lambda: looked.append(1) or {'a', 'silent'})
     gaps.look(range(1, 1000))
     assert len(looked) == 1
-    gaps.look([2000, 1, 2001, 2, 3, 2002])      # the silent one begins: it takes the place of what was expected of the other one
+    # the silent one begins: it takes the place of what was expected of the other one
+    gaps.look([2000, 1, 2001, 2, 3, 2002])
     assert len(looked) == 3

@@ -26,11 +26,13 @@ def command(frame, **torque):
 def recording(tmp_path_factory, run_node_in):
     """Return the recording of a node that was commanded, reset and changed."""
     folder = tmp_path_factory.mktemp('journal')
-    with run_node_in(folder, '-p', f'rate:={RATE}', '-p', 'stamp_origin:=zero', '-p', 'command_timeout:=0.1',
-                     '-p', 'recording.split_seconds:=0.4', '-p', 'recording.compression:=lz4') as node:
+    with run_node_in(folder, '-p', f'rate:={RATE}', '-p', 'stamp_origin:=zero', '-p',
+                     'command_timeout:=0.1', '-p', 'recording.split_seconds:=0.4', '-p',
+                     'recording.compression:=lz4') as node:
         client = node.client
         poses = client.collect(PoseStamped, 'pose')
-        impulses, wrenches = client.publisher(WrenchStamped, 'cmd_impulse'), client.publisher(WrenchStamped, 'cmd_wrench')
+        impulses, wrenches = (client.publisher(WrenchStamped, 'cmd_impulse'),
+                              client.publisher(WrenchStamped, 'cmd_wrench'))
         client.until(lambda: len(poses) > 20, what='ticks')
         for k in range(50):
             impulses.publish(command('body' if k % 2 else 'world', x=0.001 * k, y=0.1))
@@ -41,7 +43,8 @@ def recording(tmp_path_factory, run_node_in):
         impulses.publish(command('', z=0.7))
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value='dop8')
         # the node answers when the method is compiled, which it may not be yet
-        client.call(SetParameters, '/sim_node/set_parameters', timeout=START, parameters=[Parameter(name='integrator', value=value)])
+        client.call(SetParameters, '/sim_node/set_parameters', timeout=START,
+                    parameters=[Parameter(name='integrator', value=value)])
         client.spin(0.2)
         node.process.terminate()
         assert node.process.wait(5.0) == 0
@@ -56,7 +59,8 @@ def test_files_are_split_and_compressed_as_asked(recording):
         with open(path, 'rb') as stream:
             summary = make_reader(stream).get_summary()
         assert {index.compression for index in summary.chunk_indexes} == {'lz4'}
-        assert summary.statistics.message_end_time - summary.statistics.message_start_time < 1.4e9      # and what came in a last chunk
+        # and what came in a last chunk
+        assert summary.statistics.message_end_time - summary.statistics.message_start_time < 1.4e9
     # each tells all about the run, and a moment later the full state: the last one may have ended before
     assert len(entries(recording, 'begin')) == len(files)
     assert len(entries(recording, 'state')) in (len(files) - 1, len(files))
@@ -67,7 +71,8 @@ def entries(recording, kind):
 
 
 def test_every_command_stands_there_with_its_tick_in_order(recording):
-    given = [(entry['tick'], one) for entry in entries(recording, 'commands') for one in entry['commands']]
+    given = [(entry['tick'], one) for entry in entries(recording, 'commands')
+             for one in entry['commands']]
     impulses = [one for _, one in given if one['topic'] == 'cmd_impulse']
     assert [one['torque'][0] for one in impulses] == [*(0.001 * k for k in range(50)), 0.0]
     assert {one['frame'] for one in impulses} == {'body', 'world'}
@@ -121,7 +126,8 @@ def act(simulation, entry):
             if one['topic'] == 'release':
                 simulation.release()
             else:
-                {'cmd_impulse': simulation.impulse, 'cmd_wrench': simulation.hold}[one['topic']](one['force'], one['torque'], one['frame'])
+                {'cmd_impulse': simulation.impulse, 'cmd_wrench': simulation.hold}[one['topic']](
+                    one['force'], one['torque'], one['frame'])
     return simulation
 
 

@@ -46,13 +46,16 @@ def diagnosis(arrays, name):
     for array in reversed(arrays):
         for status in array.status:
             if status.name == f'sim_node: {name}':
-                return {pair.key: pair.value for pair in status.values} | {'level': status.level, 'message': status.message}
+                return ({pair.key: pair.value for pair in status.values}
+                        | {'level': status.level, 'message': status.message})
     return {}
 
 
 def set_parameter(client, name, value):
-    parameter = Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value))
-    assert client.call(SetParameters, '/sim_node/set_parameters', parameters=[parameter]).results[0].successful
+    parameter = Parameter(
+        name=name, value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value))
+    assert client.call(
+        SetParameters, '/sim_node/set_parameters', parameters=[parameter]).results[0].successful
 
 
 def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
@@ -60,15 +63,19 @@ def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
     count = 2500
     with run_node('-p', 'rate:=500') as node:
         arrays = node.client.collect(DiagnosticArray, '/diagnostics')
-        senders = [subprocess.Popen([sys.executable, '-c', FLOOD, str(sender), str(count), '2500'], env=node.domain.environment)
+        senders = [subprocess.Popen([sys.executable, '-c', FLOOD, str(sender), str(count), '2500'],
+                                    env=node.domain.environment)
                    for sender in (1, 2)]
         for sender in senders:
             assert sender.wait(60) == 0
-        node.client.until(lambda: int(diagnosis(arrays, 'commands').get('applied', 0)) >= 2 * count, what='all commands')
+        node.client.until(
+            lambda: int(diagnosis(arrays, 'commands').get('applied', 0)) >= 2 * count,
+            what='all commands')
         found = diagnosis(arrays, 'commands')
         node.process.terminate()
         assert node.process.wait(5.0) == 0
-    assert [found[name] for name in ('received', 'accepted', 'applied', 'refused', 'waiting')] == [str(2 * count)] * 3 + ['0', '0']
+    assert ([found[name] for name in ('received', 'accepted', 'applied', 'refused', 'waiting')]
+            == [str(2 * count)] * 3 + ['0', '0'])
     [path] = (node.folder / 'recordings').iterdir()
     with Recording(path) as recording:
         entries = [entry for entry in recording.journal() if entry['kind'] == 'commands']
@@ -76,17 +83,20 @@ def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
     commands = [command for entry in entries for command in entry['commands']]
     assert [entry['tick'] for entry in entries] == sorted({entry['tick'] for entry in entries})
     for sender in (1.0, 2.0):
-        assert [command['torque'][2] for command in commands if command['force'][0] == sender] == [1e-9 * k for k in range(count)]
+        assert [command['torque'][2] for command in commands if command['force'][0] == sender] == [
+            1e-9 * k for k in range(count)]
 
 
 def test_commands_that_a_full_queue_drives_out_are_counted(run_node):
     """Room for five, and a look every 10 ms: of 2000 at once most are lost, and none is lost unseen."""
     count = 2000
-    with run_node('-p', 'rate:=1', '-p', 'record:=false', '-p', 'qos_overrides./cmd_impulse.subscription.depth:=5') as node:
+    with run_node('-p', 'rate:=1', '-p', 'record:=false', '-p',
+                  'qos_overrides./cmd_impulse.subscription.depth:=5') as node:
         arrays = node.client.collect(DiagnosticArray, '/diagnostics')
         publisher = node.client.publisher(WrenchStamped, 'cmd_impulse', QoSProfile(depth=count))
         publisher.publish(WrenchStamped())
-        node.client.until(lambda: diagnosis(arrays, 'commands').get('received') == '1', what='the first command')
+        node.client.until(
+            lambda: diagnosis(arrays, 'commands').get('received') == '1', what='the first command')
         for _ in range(count):
             publisher.publish(WrenchStamped())
 
@@ -105,7 +115,8 @@ def test_rate_that_cannot_be_held_is_told_and_recovers(run_node):
         client = node.client
         arrays = client.collect(DiagnosticArray, '/diagnostics')
         set_parameter(client, 'rate', 1e5)
-        client.until(lambda: diagnosis(arrays, 'timing').get('level') == DiagnosticStatus.ERROR, what='an error')
+        client.until(lambda: diagnosis(arrays, 'timing').get('level') == DiagnosticStatus.ERROR,
+                     what='an error')
         found = diagnosis(arrays, 'timing')
         assert found['message'].startswith('it does not keep up: ')
         assert 0.0 < float(found['achieved_rate']) < 1e5
@@ -124,8 +135,11 @@ def test_rate_that_cannot_be_held_is_told_and_recovers(run_node):
 def test_external_clock_is_followed_through_pauses_and_jumps(run_node):
     with run_node('-p', 'use_sim_time:=true', '-p', 'rate:=100', '-p', 'record:=false') as node:
         client = node.client
-        poses, arrays = client.collect(PoseStamped, 'pose', 1000), client.collect(DiagnosticArray, '/diagnostics')
-        client.until(lambda: diagnosis(arrays, 'timing').get('message') == 'waiting for the first message on /clock', what='diagnostics')
+        poses, arrays = (client.collect(PoseStamped, 'pose', 1000),
+                         client.collect(DiagnosticArray, '/diagnostics'))
+        client.until(lambda: diagnosis(arrays, 'timing').get('message')
+                     == 'waiting for the first message on /clock',
+                     what='diagnostics')
         assert poses == []
         clock = client.publisher(Clock, '/clock', QoSProfile(depth=1))
 
@@ -148,24 +162,34 @@ def test_external_clock_is_followed_through_pauses_and_jumps(run_node):
         client.until(lambda: len(poses) >= 112, what='ticks after the jump')
         stamps = np.array([stamp(pose) for pose in poses])
         assert set(np.diff(stamps)) == {10**7}
-        client.until(lambda: diagnosis(arrays, 'timing').get('clock_jumps') == '1', what='the jump')
+        client.until(
+            lambda: diagnosis(arrays, 'timing').get('clock_jumps') == '1', what='the jump')
 
 
 def test_as_fast_as_possible_with_its_own_clock(run_node):
-    with run_node('-p', 'real_time_factor:=0', '-p', 'publish:=[clock]', '-p', 'rate:=100', '-p', 'record:=false') as node:
+    with run_node('-p', 'real_time_factor:=0', '-p', 'publish:=[clock]', '-p', 'rate:=100', '-p',
+                  'record:=false') as node:
         clocks = node.client.collect(Clock, '/clock', 1000)
         arrays = node.client.collect(DiagnosticArray, '/diagnostics')
-        node.client.until(lambda: len(clocks) > 100 and float(diagnosis(arrays, 'timing').get('achieved_rate', 0)) > 1000.0, what='fast ticks')
-        instants = np.array([message.clock.sec * 10**9 + message.clock.nanosec for message in clocks])
+        node.client.until(lambda: len(clocks) > 100
+                          and float(diagnosis(arrays, 'timing').get('achieved_rate', 0)) > 1000.0,
+                          what='fast ticks')
+        instants = np.array([message.clock.sec * 10**9 + message.clock.nanosec
+                             for message in clocks])
         assert (np.diff(instants) % 10**7 == 0).all()
         set_parameter(node.client, 'real_time_factor', 1.0)
-        node.client.until(lambda: float(diagnosis(arrays, 'timing').get('achieved_rate', 0)) < 110.0, what='real time')
+        node.client.until(
+            lambda: float(diagnosis(arrays, 'timing').get('achieved_rate', 0)) < 110.0,
+            what='real time')
 
 
 def test_own_clock_cannot_be_followed(run_node, ros_domain):
-    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'publish:=[clock]', '-p', 'use_sim_time:=true')
+    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p',
+                          'publish:=[clock]', '-p', 'use_sim_time:=true')
     assert (node.returncode, node.stderr) == (
-        2, 'parameter publish: got clock together with use_sim_time; a node cannot follow the /clock that it publishes\n')
+        2,
+        'parameter publish: got clock together with use_sim_time; a node cannot follow the /clock '
+        'that it publishes\n')
 
 
 def test_clients_that_ask_too_much_are_told_of_once(run_node):
@@ -178,16 +202,22 @@ def test_clients_that_ask_too_much_are_told_of_once(run_node):
         client.spin(4.0)
         assert heard == [[], []]
         node.process.terminate()
-        lines = [line.split(': ', 1)[1] for line in node.process.communicate(timeout=5.0)[1].splitlines()]
+        lines = [line.split(': ', 1)[1]
+                 for line in node.process.communicate(timeout=5.0)[1].splitlines()]
     assert sorted(lines) == [
-        '/cmd_wrench: a publisher offers less reliability than this node asks for and its messages do not arrive; offer reliable there, '
-        'or start this node with -p qos_overrides./cmd_wrench.subscription.reliability:=best_effort',
-        '/energy: a subscriber asks for more durability than this node offers and gets no messages; ask for volatile there, '
+        '/cmd_wrench: a publisher offers less reliability than this node asks for and its '
+        'messages do not arrive; offer reliable there, '
+        'or start this node with -p '
+        'qos_overrides./cmd_wrench.subscription.reliability:=best_effort',
+        '/energy: a subscriber asks for more durability than this node offers and gets no '
+        'messages; ask for volatile there, '
         'or start this node with -p qos_overrides./energy.publisher.durability:=transient_local']
 
 
 def test_qos_override_serves_them(run_node):
-    with run_node('-p', 'qos_overrides./energy.publisher.durability:=transient_local', '-p', 'record:=false', '-p', 'rate:=100') as node:
-        heard = node.client.collect(Float64, 'energy', QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    with run_node('-p', 'qos_overrides./energy.publisher.durability:=transient_local', '-p',
+                  'record:=false', '-p', 'rate:=100') as node:
+        heard = node.client.collect(
+            Float64, 'energy', QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
         node.client.until(lambda: len(heard) > 10, what='messages')
         assert heard[0].data > 0.0

@@ -29,7 +29,8 @@ ROUNDS = 10_000 if SOAK else 40
 
 VALUES = {
     'scene': ['tennis_racket', 'sphere', 'no_such_scene', '../etc/passwd', ''],
-    'scene_overrides': [[], ['initial.angular_velocity=[0.2, 4.0, 0.1]'], ['body.mass=-1'], ['nonsense'], ['a=b=c']],
+    'scene_overrides': [[], ['initial.angular_velocity=[0.2, 4.0, 0.1]'], ['body.mass=-1'],
+                        ['nonsense'], ['a=b=c']],
     'integrator': ['auto', 'exact', 'best', ''],
     'accuracy': [1e-12, 1e-6, 0.0, -1.0, 1e300],
     'rate': [100.0, 200.0, 250.0, -5.0, 0.0, 1e9],
@@ -55,7 +56,8 @@ while len(heard) < 10:
 
 
 def parameter(name, value):
-    kinds = {str: (ParameterType.PARAMETER_STRING, 'string_value'), float: (ParameterType.PARAMETER_DOUBLE, 'double_value'),
+    kinds = {str: (ParameterType.PARAMETER_STRING, 'string_value'),
+             float: (ParameterType.PARAMETER_DOUBLE, 'double_value'),
              list: (ParameterType.PARAMETER_STRING_ARRAY, 'string_array_value')}
     kind, field = kinds[type(value)]
     return Parameter(name=name, value=ParameterValue(type=kind, **{field: value}))
@@ -64,7 +66,8 @@ def parameter(name, value):
 def random_wrench(chance):
     message = WrenchStamped()
     message.header.frame_id = chance.choice(['body', 'world', '', 'nobody'])
-    message.wrench.torque.x, message.wrench.torque.y, message.wrench.force.z = (chance.uniform(-1e-3, 1e-3) for _ in range(3))
+    message.wrench.torque.x, message.wrench.torque.y, message.wrench.force.z = (
+        chance.uniform(-1e-3, 1e-3) for _ in range(3))
     return message
 
 
@@ -76,8 +79,9 @@ def disturb(client, publishers, chance):
             publisher.publish(random_wrench(chance))
     elif act < 0.8:
         names = chance.sample(sorted(VALUES), chance.randint(1, 2))
-        results = client.call(SetParameters, '/sim_node/set_parameters',
-                              parameters=[parameter(name, chance.choice(VALUES[name])) for name in names]).results
+        results = client.call(
+            SetParameters, '/sim_node/set_parameters',
+            parameters=[parameter(name, chance.choice(VALUES[name])) for name in names]).results
         assert all(result.successful or result.reason for result in results)
     elif act < 0.9:
         client.call(Trigger, f'/sim_node/{chance.choice(["reset", "step"])}')
@@ -90,15 +94,18 @@ def test_storm_of_parameters_and_services_leaves_it_consistent(run_node):
     chance = random.Random(2026)
     with run_node('-p', f'rate:={RATE}') as node:
         client = node.client
-        energies, arrays = client.collect(Float64, 'energy'), client.collect(DiagnosticArray, '/diagnostics')
-        publishers = [client.publisher(WrenchStamped, topic) for topic in ('cmd_impulse', 'cmd_wrench')]
+        energies, arrays = (
+            client.collect(Float64, 'energy'), client.collect(DiagnosticArray, '/diagnostics'))
+        publishers = [client.publisher(WrenchStamped, topic)
+                      for topic in ('cmd_impulse', 'cmd_wrench')]
         for _ in range(ROUNDS):
             disturb(client, publishers, chance)
         assert client.call(SetBool, '/sim_node/pause', data=False).message == 'running'
         energies.clear()
         arrays.clear()
         client.until(lambda: len(energies) > 20, what='ticks after the storm')
-        client.until(lambda: diagnosis(arrays, 'timing').get('paused') == 'False', what='diagnostics after the storm')
+        client.until(lambda: diagnosis(arrays, 'timing').get('paused') == 'False',
+                     what='diagnostics after the storm')
         node.process.terminate()
         assert node.process.wait(5.0) == 0
         assert node.process.stderr.read() == ''
@@ -111,7 +118,8 @@ def test_run_with_all_that_can_befall_it_is_resimulated_to_the_last_bit(run_node
     with run_node('-p', f'rate:={RATE}') as node:
         client = node.client
         arrays = client.collect(DiagnosticArray, '/diagnostics')
-        publishers = [client.publisher(WrenchStamped, topic) for topic in ('cmd_impulse', 'cmd_wrench')]
+        publishers = [client.publisher(WrenchStamped, topic)
+                      for topic in ('cmd_impulse', 'cmd_wrench')]
 
         def go_on(seconds):
             """Send random commands, while another subscriber comes, listens and goes."""
@@ -133,13 +141,16 @@ def test_run_with_all_that_can_befall_it_is_resimulated_to_the_last_bit(run_node
         size = max(path.stat().st_size for path in folder.iterdir())
         _, most = resource.prlimit(pid, resource.RLIMIT_FSIZE)
         resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, most))
-        client.until(lambda: int(diagnosis(arrays, 'recording').get('level', b'\0')[0]) == 2, timeout=60.0, what='the error in /diagnostics')
+        client.until(lambda: int(diagnosis(arrays, 'recording').get('level', b'\0')[0]) == 2,
+                     timeout=60.0, what='the error in /diagnostics')
         go_on(DISK_FULL)
         resource.prlimit(pid, resource.RLIMIT_FSIZE, (most, most))
-        client.until(lambda: diagnosis(arrays, 'recording').get('error') == '', timeout=60.0, what='the end of the error')
+        client.until(lambda: diagnosis(arrays, 'recording').get('error') == '', timeout=60.0,
+                     what='the end of the error')
         go_on(SECONDS / 3)
         os.kill(recorder(), signal.SIGKILL)
-        client.until(lambda: int(diagnosis(arrays, 'recording').get('restarts', '0')) > 0, what='another recorder')
+        client.until(lambda: int(diagnosis(arrays, 'recording').get('restarts', '0')) > 0,
+                     what='another recorder')
         go_on(SECONDS / 3)
         node.process.terminate()
         assert node.process.wait(5.0) == 0
@@ -147,7 +158,8 @@ def test_run_with_all_that_can_befall_it_is_resimulated_to_the_last_bit(run_node
 
 
 def children(pid):
-    return [int(child) for task in pathlib.Path(f'/proc/{pid}/task').iterdir() for child in (task / 'children').read_text().split()]
+    return [int(child) for task in pathlib.Path(f'/proc/{pid}/task').iterdir()
+            for child in (task / 'children').read_text().split()]
 
 
 def assert_resimulation_is_identical(node):

@@ -23,7 +23,8 @@ class Managed:
 
     def go(self, transition):
         """Ask for a transition; return whether it came about."""
-        return self.client.call(ChangeState, f'{NODE}/change_state', transition=Transition(id=transition)).success
+        return self.client.call(
+            ChangeState, f'{NODE}/change_state', transition=Transition(id=transition)).success
 
     @property
     def state(self):
@@ -32,16 +33,19 @@ class Managed:
     def set(self, name, text):
         """Set a text parameter; return the result."""
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
-        return self.client.call(SetParameters, f'{NODE}/set_parameters', parameters=[Parameter(name=name, value=value)]).results[0]
+        return self.client.call(SetParameters, f'{NODE}/set_parameters',
+                                parameters=[Parameter(name=name, value=value)]).results[0]
 
     def topics(self):
-        return {name for name, _ in self.client.node.get_publisher_names_and_types_by_node('lifecycle_sim_node', '/')}
+        return {name
+                for name, _ in self.client.node.get_publisher_names_and_types_by_node(
+                    'lifecycle_sim_node', '/')}
 
 
 def test_life_of_a_managed_node(ros_domain, new_client, tmp_path):
     arguments = ['-p', 'rate:=100', '-p', f'recording.directory:={tmp_path / "recordings"}']
-    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args', *arguments) as process, \
-            new_client(ros_domain) as client:
+    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args',
+                            *arguments) as process, new_client(ros_domain) as client:
         node = Managed(client)
         client.until(lambda: NODE[1:] in client.node.get_node_names(), 60.0, 'the node')
         assert node.state == 'unconfigured'
@@ -91,14 +95,17 @@ def test_life_of_a_managed_node(ros_domain, new_client, tmp_path):
         assert node.go(Transition.TRANSITION_ACTIVE_SHUTDOWN)
         assert process.wait(5.0) == 0
         assert process.communicate()[1].count('\n') <= 1
-    assert len([path for path in (tmp_path / 'recordings').iterdir() if (path / 'metadata.yaml').exists()]) == 2
+    assert len([path
+                for path in (tmp_path / 'recordings').iterdir()
+                if (path / 'metadata.yaml').exists()]) == 2
 
 
-@pytest.mark.parametrize('transitions', [[], [Transition.TRANSITION_CONFIGURE]], ids=['unconfigured', 'inactive'])
+@pytest.mark.parametrize(
+    'transitions', [[], [Transition.TRANSITION_CONFIGURE]], ids=['unconfigured', 'inactive'])
 def test_signal_ends_it_in_every_state(ros_domain, new_client, tmp_path, transitions):
     arguments = ['-p', f'recording.directory:={tmp_path / "recordings"}']
-    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args', *arguments) as process, \
-            new_client(ros_domain) as client:
+    with ros_domain.process('-m', 'rigid_body_sim.node.lifecycle_sim_node', '--ros-args',
+                            *arguments) as process, new_client(ros_domain) as client:
         client.until(lambda: NODE[1:] in client.node.get_node_names(), 60.0, 'the node')
         for transition in transitions:
             assert Managed(client).go(transition)

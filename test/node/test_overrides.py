@@ -74,7 +74,8 @@ def test_the_last_value_wins(start, sources, rate):
     ([file(rate=1000.0), file(rate='abc')], "parameter rate: got 'abc'; needs a number"),
     ([file(scene='sphere'), 'scene:=3'], 'parameter scene: got 3; needs a text'),
     ([file(record=True), 'record:=5.5'], 'parameter record: got 5.5; needs true or false'),
-    ([file(publish=['odom']), 'publish:=[1, 2]'], r'parameter publish: got \[1, 2\]; needs a list'),
+    ([file(publish=['odom']), 'publish:=[1, 2]'],
+     r'parameter publish: got \[1, 2\]; needs a list'),
 ])
 def test_a_last_value_of_a_wrong_type_is_refused(start, sources, line):
     with pytest.raises(BadInput, match=line):

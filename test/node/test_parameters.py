@@ -27,7 +27,8 @@ def make(context):
 
     def make(*overrides):
         arguments = ['--ros-args', *(word for override in overrides for word in ('-p', override))]
-        nodes.append(rclpy.create_node('node', context=context, cli_args=arguments, start_parameter_services=False, enable_rosout=False))
+        nodes.append(rclpy.create_node('node', context=context, cli_args=arguments,
+                                       start_parameter_services=False, enable_rosout=False))
         return nodes[-1], Settings(nodes[-1])
     yield make
     for node in nodes:
@@ -62,7 +63,9 @@ def test_empty_list_arrives_as_one(make):
 
 @pytest.mark.parametrize(('override', 'line'), [
     ('ratee:=5', 'parameter ratee: there is none of that name; did you mean rate?'),
-    ('recording.directoy:=x', 'parameter recording.directoy: there is none of that name; did you mean recording.directory?'),
+    ('recording.directoy:=x',
+     'parameter recording.directoy: there is none of that name; did you mean '
+     'recording.directory?'),
     ('rate:=-5', 'parameter rate: got -5; needs a number from 0.001 to 100000'),
     ('rate:=0', 'parameter rate: got 0; needs a number from 0.001 to 100000'),
     ('rate:=abc', "parameter rate: got 'abc'; needs a number from 0.001 to 100000"),
@@ -89,7 +92,8 @@ def test_wrong_override_is_refused_by_name_and_value(make, override, line):
     ('rate', math.nan, 'Parameter rate out of range'),
     ('rate', None, 'Static parameter cannot be undeclared'),
     ('overrun', 'slipp', "parameter overrun: got 'slipp'; needs one of slip, skip_publish"),
-    ('publish', ['odom'], 'parameter publish: it cannot change while the node runs; give it at the start'),
+    ('publish', ['odom'],
+     'parameter publish: it cannot change while the node runs; give it at the start'),
     ('record', False, 'Trying to set a read-only parameter: record.'),
 ])
 def test_wrong_change_is_refused_with_the_reason(make, name, value, reason):
@@ -104,9 +108,11 @@ def test_wrong_change_is_refused_with_the_reason(make, name, value, reason):
 def test_one_word_alone_is_a_list_of_one(make):
     node, settings = make('scene_overrides:=strike.height=0.02', 'publish:=odom')
     assert (settings.scene_overrides, settings.publish) == (('strike.height=0.02',), ('odom',))
-    assert all(result.successful for result in node.set_parameters([Parameter('scene_overrides', value='strike.height=0.01')]))
+    assert all(result.successful for result in node.set_parameters([Parameter(
+        'scene_overrides', value='strike.height=0.01')]))
     assert settings.scene_overrides == ('strike.height=0.01',)
-    assert all(result.successful for result in node.set_parameters([Parameter('scene_overrides', value='')]))
+    assert all(result.successful
+               for result in node.set_parameters([Parameter('scene_overrides', value='')]))
     assert settings.scene_overrides == ()
 
 
@@ -125,10 +131,12 @@ def test_change_holds_only_if_nobody_objects(make):
             raise BadInput('scene', 'too heavy', 'a lighter one')
     settings.on_change(object_to_heavy, heard.append)
     [refused] = node.set_parameters([Parameter('scene', value='heavy_top')])
-    assert (refused.successful, refused.reason, settings.scene, heard) == (False, 'scene: too heavy; a lighter one', 'tennis_racket', [])
+    assert (refused.successful, refused.reason, settings.scene, heard) == (
+        False, 'scene: too heavy; a lighter one', 'tennis_racket', [])
     [result] = node.set_parameters([Parameter('rate', value=20)])
     assert (result.successful, settings.rate, heard) == (True, 20.0, [{'rate': 20.0}])
-    assert node.set_parameters_atomically([Parameter('scene', value='sphere'), Parameter('scene_overrides', value=[])]).successful
+    assert node.set_parameters_atomically([
+        Parameter('scene', value='sphere'), Parameter('scene_overrides', value=[])]).successful
     assert heard[-1] == {'scene': 'sphere', 'scene_overrides': ()}
 
 
@@ -141,4 +149,5 @@ def test_unknown_qos_override_is_refused_once_topics_are_there(make):
 
 def test_readme_has_this_table():
     import ros
-    assert table() in (ros.ROOT / 'README.md').read_text(), 'run: python -m rigid_body_sim.node.parameters'
+    assert table() in (ros.ROOT
+                       / 'README.md').read_text(), 'run: python -m rigid_body_sim.node.parameters'

@@ -53,24 +53,32 @@ def matched(client, recording):
 
 
 def test_a_subscriber_gets_every_message_bit_by_bit_in_order(recording, ros_domain, new_client):
-    with ros_domain.process('-m', 'rigid_body_sim', 'replay', recording, '--paused', '--json', '--rate', '2') as process, \
-            new_client(ros_domain) as client, Recording(recording) as recorded:
-        expected = {name: [padded(message.data) for message in recorded.messages([name])] for name in recorded.topics}
+    with ros_domain.process(
+            '-m', 'rigid_body_sim', 'replay', recording, '--paused', '--json', '--rate',
+            '2') as process, new_client(ros_domain) as client, Recording(recording) as recorded:
+        expected = {name: [padded(message.data) for message in recorded.messages([name])]
+                    for name in recorded.topics}
         taken = {name: subscribe(client, topic) for name, topic in recorded.topics.items()}
         clocks = []
         client.node.create_subscription(Clock, '/clock', lambda message: clocks.append(
             message.clock.sec * SECOND + message.clock.nanosec), QoSProfile(depth=10_000))
-        client.until(lambda: process.poll() is not None or (matched(client, recorded) and clocks), timeout=60.0, what='the publishers')
+        client.until(lambda: process.poll() is not None or (matched(client, recorded) and clocks),
+                     timeout=60.0, what='the publishers')
         client.spin(0.5)        # both sides have found each other then
-        assert not taken['/pose'] and set(clocks) == {recorded.start_time}      # paused before the first message
+        # paused before the first message
+        assert not taken['/pose'] and set(clocks) == {recorded.start_time}
         assert client.call(SetBool, '/replay/pause', data=False).success
-        client.until(lambda: all(len(taken[name]) >= len(expected[name]) for name in expected), what='all messages')
+        client.until(lambda: all(len(taken[name]) >= len(expected[name]) for name in expected),
+                     what='all messages')
         output, error = process.communicate(timeout=20)
         assert (process.returncode, error) == (0, '')
-    assert {name: [bytes(data) for data in messages] for name, messages in taken.items()} == expected
+    assert {name: [bytes(data) for data in messages]
+            for name, messages in taken.items()} == expected
     report = json.loads(output)
-    assert report['messages'] == sum(map(len, expected.values())) and report['ended'] and report['loops'] == 1
-    assert set(report['topics']) == set(expected) and set(report['timing_error']) == {'p50', 'p99', 'max'}
+    assert (report['messages'] == sum(map(len, expected.values())) and report['ended']
+            and report['loops'] == 1)
+    assert (set(report['topics']) == set(expected)
+            and set(report['timing_error']) == {'p50', 'p99', 'max'})
     assert clocks == sorted(clocks) and clocks[-1] <= recorded.end_time and len(set(clocks)) > 10
 
 
@@ -78,13 +86,17 @@ def test_in_a_loop_from_the_middle_with_a_pause_until_ctrl_c(recording, ros_doma
     arguments = ('--loop', '--start', '1.7', '--topics', '/pose', '/scene', '--json')
     with ros_domain.process('-m', 'rigid_body_sim', 'replay', recording, *arguments) as process, \
             new_client(ros_domain) as client, Recording(recording) as recorded:
-        expected = [message.data for message in recorded.messages(['/pose'], recorded.start_time + 17 * SECOND // 10)]
+        expected = [message.data
+                    for message in recorded.messages(
+                        ['/pose'], recorded.start_time + 17 * SECOND // 10)]
         poses = subscribe(client, recorded.topics['/pose'])
-        client.until(lambda: process.poll() is not None or len(poses) > 3 * len(expected), timeout=60.0, what='three loops')
+        client.until(lambda: process.poll() is not None or len(poses) > 3 * len(expected),
+                     timeout=60.0, what='three loops')
         # one that comes late gets the scene, which was recorded before the start
         scenes = subscribe(client, recorded.topics['/scene'])
         client.until(lambda: scenes, what='the latched scene')
-        assert [bytes(data) for data in scenes] == [padded(message.data) for message in recorded.messages(['/scene'])]
+        assert [bytes(data) for data in scenes] == [padded(message.data)
+                                                    for message in recorded.messages(['/scene'])]
         assert client.node.count_publishers('/energy') == 0
         assert client.call(SetBool, '/replay/pause', data=True).success
         client.spin(0.3)        # what was on its way has come
@@ -92,12 +104,14 @@ def test_in_a_loop_from_the_middle_with_a_pause_until_ctrl_c(recording, ros_doma
         client.spin(0.5)
         assert len(poses) == standing
         assert client.call(SetBool, '/replay/pause', data=False).success
-        client.until(lambda: len(poses) > standing + len(expected), what='messages after the pause')
+        client.until(
+            lambda: len(poses) > standing + len(expected), what='messages after the pause')
         process.send_signal(signal.SIGINT)
         output, error = process.communicate(timeout=20)
         assert (process.returncode, error) == (0, '')
     begin = expected.index(bytes(poses[0]))
-    assert [bytes(data) for data in poses] == list(itertools.islice(itertools.cycle(expected), begin, begin + len(poses)))
+    assert [bytes(data) for data in poses] == list(itertools.islice(
+        itertools.cycle(expected), begin, begin + len(poses)))
     report = json.loads(output)
     assert not report['ended'] and report['loops'] >= 4 and report['messages'] >= len(poses)
 
@@ -110,7 +124,8 @@ def test_loops_do_not_drift(recording):
         messages = list(itertools.islice(reading, 3 * 201))
     times = [start + tick * SECOND // 200 for tick in range(201)]
     assert [message.log_time for _, message in messages] == 3 * times
-    assert [position for position, _ in messages] == [time - start + loop * (end - start) for loop in range(3) for time in times]
+    assert [position for position, _ in messages] == [time - start + loop * (end - start)
+                                                      for loop in range(3) for time in times]
 
 
 def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
@@ -125,19 +140,24 @@ def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
         elif player._paused and clock.now > player.now_paused + SECOND:
             player.resume()
 
-    monkeypatch.setattr('rigid_body_sim.realtime.playing.time', types.SimpleNamespace(monotonic_ns=lambda: clock.now, sleep=sleep))
+    monkeypatch.setattr('rigid_body_sim.realtime.playing.time',
+                        types.SimpleNamespace(monotonic_ns=lambda: clock.now, sleep=sleep))
     monkeypatch.setattr('rigid_body_sim.realtime.playing.ask_for_priority', lambda _: None)
     with Recording(recording) as recorded:
-        reading = Reading(recorded, ['/energy'], recorded.start_time, recorded.end_time, loop=False)
+        reading = Reading(
+            recorded, ['/energy'], recorded.start_time, recorded.end_time, loop=False)
         told = []
-        player = Player(reading, {'/energy': lambda _: published['at'].append(clock.now)}, told.append, 0.3, False, lambda: None)
+        player = Player(reading, {'/energy': lambda _: published['at'].append(clock.now)},
+                        told.append, 0.3, False, lambda: None)
         player.now_paused = 0
         player.run()
     assert player.failure is None and player.published == 401
     instants = [5 * SECOND + (tick * SECOND // 200) * 10 // 3 for tick in range(401)]
     shift = published['at'][20] - instants[20]
-    late = [at - instant - (shift if tick >= 20 else 0) for tick, (at, instant) in enumerate(zip(published['at'], instants))]
-    assert max(map(abs, late)) <= 2 and shift >= SECOND     # ns: the pause counts what passed, in steps of the sleeps
+    late = [at - instant - (shift if tick >= 20 else 0)
+            for tick, (at, instant) in enumerate(zip(published['at'], instants))]
+    # ns: the pause counts what passed, in steps of the sleeps
+    assert max(map(abs, late)) <= 2 and shift >= SECOND
     assert told == sorted(told) and told[-1] == reading.end_time
 
 
@@ -154,7 +174,8 @@ def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
 def test_recorded_qos(text, reliability, durability, depth):
     profile = offered_qos(text)
     durability = DurabilityPolicy[durability] if text and text[0] == '-' else profile.durability
-    assert (profile.reliability, profile.durability, profile.depth) == (ReliabilityPolicy[reliability], durability, depth)
+    assert (profile.reliability, profile.durability, profile.depth) == (
+        ReliabilityPolicy[reliability], durability, depth)
     assert profile.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.SYSTEM_DEFAULT)
 
 
@@ -164,11 +185,14 @@ def test_bad_input_is_one_line(recording, tmp_path, monkeypatch, capfd):
     shutil.copy(recording / f'{recording.name}_0.mcap', cut)
     cut.write_bytes(cut.read_bytes()[:-500])
     strange = tmp_path / 'strange.mcap'
-    strange.write_bytes(recording.joinpath(f'{recording.name}_0.mcap').read_bytes()[:1] + MCAP0_MAGIC[1:])
-    for arguments, said in [
-            ([tmp_path / 'missing'], 'recover'), ([cut], 'recover'), ([strange], 'recover'), ([recording, '--rate', '0'], '--rate: got 0'),
-            ([recording, '--rate', 'nan'], '--rate: got nan'), ([recording, '--start', '3'], 'from 0 to 2,'),
-            ([recording, '--start', '2', '--loop'], 'only one instant'), ([recording, '--topics', '/poses'], "no topic '/poses'")]:
+    strange.write_bytes(recording.joinpath(f'{recording.name}_0.mcap').read_bytes()[:1]
+                        + MCAP0_MAGIC[1:])
+    for arguments, said in [([tmp_path / 'missing'], 'recover'), ([cut], 'recover'),
+                            ([strange], 'recover'), ([recording, '--rate', '0'], '--rate: got 0'),
+                            ([recording, '--rate', 'nan'], '--rate: got nan'),
+                            ([recording, '--start', '3'], 'from 0 to 2,'),
+                            ([recording, '--start', '2', '--loop'], 'only one instant'),
+                            ([recording, '--topics', '/poses'], "no topic '/poses'")]:
         with pytest.raises(SystemExit) as ended:
             replay.main([str(argument) for argument in arguments])
         error = capfd.readouterr().err

@@ -21,7 +21,8 @@ PERIOD = 10**9 // RATE
 # a second of messages may wait on both sides: a client that is kept from running loses none
 DEPTHS = [word for topic in ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared')
           for word in ('-p', f'qos_overrides./{topic}.publisher.depth:=1000')]
-ARGUMENTS = ('-p', f'rate:={RATE}', '-p', 'scene:=free_body', '-p', 'publish:=[odom, imu, marker]', *DEPTHS)
+ARGUMENTS = (
+    '-p', f'rate:={RATE}', '-p', 'scene:=free_body', '-p', 'publish:=[odom, imu, marker]', *DEPTHS)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 # two momenta of size 10 (kg m^2/s), each turned to the world by a rounded quaternion: 8 roundings of each; measured up to 1.2e-14
 TURNED = 16 * np.finfo(float).eps * 10.0
@@ -32,7 +33,8 @@ def nanoseconds(message):
 
 
 def wrench(frame, torque=(0.0, 0.0, 0.0), force=(0.0, 0.0, 0.0)):
-    message = WrenchStamped(wrench=Wrench(force=Vector3(**dict(zip('xyz', force))), torque=Vector3(**dict(zip('xyz', torque)))))
+    message = WrenchStamped(wrench=Wrench(
+        force=Vector3(**dict(zip('xyz', force))), torque=Vector3(**dict(zip('xyz', torque)))))
     message.header.frame_id = frame
     return message
 
@@ -73,20 +75,24 @@ INERTIA = np.array([1.0, 2.0, 2.5])
 
 
 def test_every_tick_reaches_a_plain_subscriber_with_exact_stamps(client):
-    poses, spins = client.collect(PoseStamped, 'pose', 1000), client.collect(Vector3Stamped, 'angular_velocity', 1000)
-    energies, squares = client.collect(Float64, 'energy'), client.collect(Float64, 'angular_momentum_squared')
+    poses, spins = (client.collect(PoseStamped, 'pose', 1000),
+                    client.collect(Vector3Stamped, 'angular_velocity', 1000))
+    energies, squares = (
+        client.collect(Float64, 'energy'), client.collect(Float64, 'angular_momentum_squared'))
     client.until(lambda: min(map(len, (poses, spins, energies, squares))) >= 100, what='100 ticks')
     stamps = [nanoseconds(pose) for pose in poses]
     assert len({stamp % PERIOD for stamp in stamps + [nanoseconds(spin) for spin in spins]}) == 1
     assert {after - before for before, after in itertools.pairwise(stamps)} == {PERIOD}
     assert {pose.header.frame_id for pose in poses} == {'world'}
     assert {spin.header.frame_id for spin in spins} == {'body'}
-    assert all(math.isclose(np.linalg.norm([q.x, q.y, q.z, q.w]), 1.0, rel_tol=1e-15) for q in (pose.pose.orientation for pose in poses))
+    assert all(math.isclose(np.linalg.norm([q.x, q.y, q.z, q.w]), 1.0, rel_tol=1e-15)
+               for q in (pose.pose.orientation for pose in poses))
 
 
 def test_topics_are_reliable_and_only_those_asked_for(client):
     topics = dict(client.node.get_topic_names_and_types())
-    for name in ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared', 'odom', 'imu', 'marker', 'events', 'scene'):
+    for name in ('pose', 'angular_velocity', 'energy', 'angular_momentum_squared', 'odom', 'imu',
+                 'marker', 'events', 'scene'):
         [publisher] = client.node.get_publishers_info_by_topic(f'/{name}')
         assert publisher.qos_profile.reliability.name == 'RELIABLE', name
     assert not {'/joint_states', '/tf', '/clock', '/reaction'} & set(topics)
@@ -106,7 +112,8 @@ def test_impulse_changes_the_momentum_by_exactly_its_value_at_one_tick(client, f
     assert stamps[k + 1] - stamps[k] == PERIOD
     expected = given
     if frame == 'body':
-        q = next(pose.pose.orientation for pose in states.poses if nanoseconds(pose) == stamps[k + 1])
+        q = next(pose.pose.orientation
+                 for pose in states.poses if nanoseconds(pose) == stamps[k + 1])
         expected = rotate(q.x, q.y, q.z, q.w, *given)
     # measured 9e-16: round-off of momenta of size 3
     np.testing.assert_allclose(steps[k], expected, rtol=0.0, atol=TURNED)
@@ -128,7 +135,8 @@ def test_held_wrench_is_the_same_whatever_its_rate_of_messages(client):
     held = np.abs(growing).max(axis=1) > 1e-9
     assert 20 < held.sum() < len(held)
     # measured 2e-13, the accuracy asked for is 1e-12
-    np.testing.assert_allclose(growing[held], np.tile(torque / RATE, (held.sum(), 1)), rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(
+        growing[held], np.tile(torque / RATE, (held.sum(), 1)), rtol=0.0, atol=1e-11)
     assert np.all(np.diff(np.flatnonzero(held)) == 1)
 
 
@@ -147,11 +155,13 @@ def test_what_cannot_be_right_is_refused_with_the_line_that_would_be(client, mes
     def refused():
         publisher.publish(message)
         client.spin(0.1)
-        return [event for event in events if event.name == 'command refused' and reason in event.message]
+        return [event
+                for event in events if event.name == 'command refused' and reason in event.message]
     event = client.until(refused, what='the event')[0]
     values = {pair.key: pair.value for pair in event.values}
     assert event.level == DiagnosticStatus.ERROR
-    assert values['right'].startswith('ros2 topic pub --once /cmd_impulse geometry_msgs/msg/WrenchStamped "{header: {frame_id: body}')
+    assert values['right'].startswith('ros2 topic pub --once /cmd_impulse '
+                                      'geometry_msgs/msg/WrenchStamped "{header: {frame_id: body}')
     assert int(values['tick']) > 0
     _, momenta = states.momenta(INERTIA)
     # nothing of it is applied: measured 1e-15
@@ -159,11 +169,13 @@ def test_what_cannot_be_right_is_refused_with_the_line_that_would_be(client, mes
 
 
 def test_late_joiner_gets_the_scene_and_past_events(client):
-    scenes, events = client.collect(String, 'scene', LATCHED), client.collect(DiagnosticStatus, 'events', LATCHED)
+    scenes, events = (client.collect(String, 'scene', LATCHED),
+                      client.collect(DiagnosticStatus, 'events', LATCHED))
     client.until(lambda: scenes, what='the latched scene')
     assert scenes[0].data.startswith('scene: free_body\n')
     # latched messages come one by one
-    client.until(lambda: [event for event in events if event.name == 'reset'], what='the event of the reset')
+    client.until(lambda: [event for event in events if event.name == 'reset'],
+                 what='the event of the reset')
 
 
 def test_reset_puts_the_state_back_and_stamps_go_on(client):
@@ -187,14 +199,16 @@ def test_paused_node_queues_commands_and_steps_tick_by_tick(client):
     assert client.call(SetBool, '/sim_node/pause', data=True).success
     client.spin(0.2)
     # the two topics may have been heard from different ticks on
-    before, spins_before, (_, momenta) = len(states.poses), len(states.spins), states.momenta(INERTIA)
+    before, spins_before, (_, momenta) = (
+        len(states.poses), len(states.spins), states.momenta(INERTIA))
     publisher.publish(wrench('world', torque=(1.0, 0.0, 0.0)))
     publisher.publish(wrench('world', torque=(0.0, 1.0, 0.0)))
     client.spin(0.2)
     assert len(states.poses) == before
     for _ in range(2):
         assert client.call(Trigger, '/sim_node/step').message.startswith('tick ')
-    client.until(lambda: len(states.poses) == before + 2 and len(states.spins) == spins_before + 2, what='two steps')
+    client.until(lambda: len(states.poses) == before + 2 and len(states.spins) == spins_before + 2,
+                 what='two steps')
     stamps, stepped = states.momenta(INERTIA)
     assert (stamps[-1] - stamps[-2], stamps[-2] - stamps[-3]) == (PERIOD, PERIOD)
     np.testing.assert_allclose(stepped[-2] - momenta[-1], [1.0, 1.0, 0.0], rtol=0.0, atol=TURNED)
@@ -209,7 +223,8 @@ def test_diagnostics_tell_with_17_digits(client):
     arrays = client.collect(DiagnosticArray, '/diagnostics')
     client.until(lambda: arrays, what='/diagnostics')
     statuses = {status.name: status for status in arrays[0].status}
-    assert set(statuses) >= {f'sim_node: {name}' for name in ('ledger', 'timing', 'commands', 'recording')}
+    assert set(statuses) >= {f'sim_node: {name}'
+                             for name in ('ledger', 'timing', 'commands', 'recording')}
     assert statuses['sim_node: ledger'].level == DiagnosticStatus.OK
     ledger = {pair.key: pair.value for pair in statuses['sim_node: ledger'].values}
     assert f'{float(ledger["kinetic"]):.17g}' == ledger['kinetic']
@@ -218,15 +233,18 @@ def test_diagnostics_tell_with_17_digits(client):
     assert statuses['sim_node: recording'].message == 'recording'
     prediction = {pair.key: pair.value for pair in statuses['sim_node: prediction'].values}
     expected = asymmetric_top.time_between_flips((1.0, 2.0, 2.5), (1.0, 0.8, -1.5))
-    assert (prediction['event'], float(prediction['predicted_interval'])) == ('flip', pytest.approx(expected, rel=1e-12))
+    assert (prediction['event'], float(prediction['predicted_interval'])) == (
+        'flip', pytest.approx(expected, rel=1e-12))
 
 
 def set_parameter(client, name, **value):
-    types = {'double_value': ParameterType.PARAMETER_DOUBLE, 'integer_value': ParameterType.PARAMETER_INTEGER,
+    types = {'double_value': ParameterType.PARAMETER_DOUBLE,
+             'integer_value': ParameterType.PARAMETER_INTEGER,
              'string_value': ParameterType.PARAMETER_STRING}
     [field] = value
     parameter = Parameter(name=name, value=ParameterValue(type=types[field], **value))
-    [result] = client.call(SetParameters, '/sim_node/set_parameters', parameters=[parameter]).results
+    [result] = client.call(
+        SetParameters, '/sim_node/set_parameters', parameters=[parameter]).results
     return result
 
 
@@ -254,12 +272,14 @@ def test_rate_changes_at_a_tick_and_an_integer_will_do(client):
     steps = np.diff([nanoseconds(pose) for pose in poses])
     changes = np.flatnonzero(np.diff(steps))
     assert [steps[0], *steps[changes + 1]] == [PERIOD, 10**7, PERIOD]
-    [descriptor] = client.call(DescribeParameters, '/sim_node/describe_parameters', names=['rate']).descriptors
+    [descriptor] = client.call(
+        DescribeParameters, '/sim_node/describe_parameters', names=['rate']).descriptors
     assert descriptor.floating_point_range[0].from_value == 1e-3
 
 
 def test_scene_changes_at_a_tick(client):
-    poses, scenes, events = client.collect(PoseStamped, 'pose', 1000), client.collect(String, 'scene'), client.collect(DiagnosticStatus, 'events')
+    poses, scenes, events = client.collect(PoseStamped, 'pose', 1000), client.collect(
+        String, 'scene'), client.collect(DiagnosticStatus, 'events')
     client.until(lambda: len(poses) > 10, what='ticks before')
     assert set_parameter(client, 'scene', string_value='sphere').successful
     client.until(lambda: scenes and events, what='the new scene')

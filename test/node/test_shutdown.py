@@ -31,7 +31,8 @@ def messages_in(folder):
     """Return how many messages metadata.yaml tells of, by topic, after rosbags has read as many."""
     from rosbags.highlevel import AnyReader
     told = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
-    counts = {entry['topic_metadata']['name']: entry['message_count'] for entry in told['topics_with_message_count']}
+    counts = {entry['topic_metadata']['name']: entry['message_count']
+              for entry in told['topics_with_message_count']}
     with AnyReader([folder]) as reader:
         assert sum(1 for _ in reader.messages()) == sum(counts.values())
     return counts
@@ -47,9 +48,10 @@ def interrupt_twice(process, _):
     os.killpg(process.pid, signal.SIGINT)
 
 
-@pytest.mark.parametrize(('send', 'number'), [
-    (one, signal.SIGINT), (interrupt_twice, signal.SIGINT), (one, signal.SIGTERM), (one, signal.SIGHUP)],
-    ids=['SIGINT', 'SIGINT twice to the group', 'SIGTERM', 'SIGHUP'])
+@pytest.mark.parametrize(('send', 'number'),
+                         [(one, signal.SIGINT), (interrupt_twice, signal.SIGINT),
+                          (one, signal.SIGTERM), (one, signal.SIGHUP)],
+                         ids=['SIGINT', 'SIGINT twice to the group', 'SIGTERM', 'SIGHUP'])
 def test_signal_ends_it_with_a_whole_recording(run_node, send, number):
     with run_node() as node:
         energies = node.client.collect(Float64, 'energy', 1000)
@@ -76,8 +78,8 @@ def test_killed_node_leaves_a_complete_recording(run_node):
 
 
 def test_duration_ends_it_with_a_report(ros_domain, tmp_path):
-    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.5', '-p', 'rate:=200', '-p',
-                          f'recording.directory:={tmp_path}', timeout=90)
+    node = ros_domain.run('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.5',
+                          '-p', 'rate:=200', '-p', f'recording.directory:={tmp_path}', timeout=90)
     assert (node.returncode, node.stderr) == (0, '')
     # ticks 0 to 100
     assert node.stdout.startswith('/sim_node: tennis_racket, 101 ticks in 0.5')
@@ -89,18 +91,23 @@ def test_duration_ends_it_with_a_report(ros_domain, tmp_path):
 def test_a_closed_terminal_does_not_turn_the_end_into_a_failure(ros_domain, tmp_path):
     reading, writing = os.pipe()
     os.close(reading)
-    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.1', '-p', 'record:=false', cwd=None,
-                            stdout=writing, stderr=writing, text=False) as node:
+    with ros_domain.process(
+            '-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', 'duration:=0.1', '-p',
+            'record:=false', cwd=None, stdout=writing, stderr=writing, text=False) as node:
         os.close(writing)
         assert node.wait(90) == 0
 
 
 def test_early_signal_ends_it_too(ros_domain, tmp_path):
-    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'recording.directory:={tmp_path}') as node:
+    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p',
+                            f'recording.directory:={tmp_path}') as node:
         # handlers are set before rclpy and numba are loaded; the table of signals in /proc says when
         status = pathlib.Path(f'/proc/{node.pid}/status')
         deadline = time.monotonic() + 20.0
-        while not (int(next(line for line in status.read_text().splitlines() if line.startswith('SigCgt')).split()[1], 16)
+        while not (int(next(line
+                            for line in status.read_text().splitlines()
+                            if line.startswith('SigCgt')).split()[1],
+                       16)
                    & (1 << (signal.SIGTERM - 1))):
             assert time.monotonic() < deadline
             time.sleep(0.005)
@@ -123,6 +130,7 @@ def test_what_cannot_begin_says_why_in_one_line(ros_domain, arguments, line):
 
 
 def test_help_does_not_start_ros(ros_domain):
-    shown = subprocess.run([sys.executable, '-S', '-m', 'rigid_body_sim', 'sim_node', '--help'], capture_output=True, text=True, timeout=20,
-                           cwd=pathlib.Path(__file__).resolve().parents[2], check=True).stdout
+    shown = subprocess.run(
+        [sys.executable, '-S', '-m', 'rigid_body_sim', 'sim_node', '--help'], capture_output=True,
+        text=True, timeout=20, cwd=pathlib.Path(__file__).resolve().parents[2], check=True).stdout
     assert 'example' in shown

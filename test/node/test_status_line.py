@@ -28,7 +28,8 @@ def terminal():
 
 
 def resize(slave, columns):
-    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 24 if columns else 0, columns, 0, 0))
+    fcntl.ioctl(
+        slave, termios.TIOCSWINSZ, struct.pack('HHHH', 24 if columns else 0, columns, 0, 0))
 
 
 def asked(slave, controlling):

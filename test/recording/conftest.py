@@ -17,7 +17,8 @@ LATE = 41_234
 """By how many ns, times the number of the tick modulo 7, the wall clock is behind the stamp."""
 PACKERS = {
     '/pose': Packed('geometry_msgs/msg/PoseStamped', {'header': {'frame_id': 'world'}}),
-    '/angular_velocity': Packed('geometry_msgs/msg/Vector3Stamped', {'header': {'frame_id': 'body'}}),
+    '/angular_velocity': Packed(
+        'geometry_msgs/msg/Vector3Stamped', {'header': {'frame_id': 'body'}}),
     '/energy': Packed('std_msgs/msg/Float64', {}),
     '/angular_momentum_squared': Packed('std_msgs/msg/Float64', {}),
 }

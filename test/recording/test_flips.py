@@ -102,7 +102,8 @@ RECORDINGS = {
     'racket zstd': lambda path: write(path / 'bag', count=250, block=50) / 'bag_0.mcap',
     'racket lz4': lambda path: write(path / 'bag', count=250, block=50, compression_name='lz4')
     / 'bag_0.mcap',
-    'racket uncompressed': lambda path: write(path / 'bag', count=250, block=50, compression_name='none')
+    'racket uncompressed': lambda path: write(
+        path / 'bag', count=250, block=50, compression_name='none')
     / 'bag_0.mcap',
     'heavy top zstd': lambda path: simulated(path, 'heavy_top', 'zstd'),
     'billiard lz4': lambda path: simulated(path, 'billiard_low', 'lz4'),

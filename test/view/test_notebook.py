@@ -11,7 +11,8 @@ import pytest
 from rigid_body_sim import BadInput, Recording, Simulation
 from rigid_body_sim.cli.simulate import main as simulate
 
-NOTEBOOKS = sorted((pathlib.Path(__file__).resolve().parents[2] / 'docs/notebooks').glob('*.ipynb'))
+NOTEBOOKS = sorted((pathlib.Path(__file__).resolve().parents[2] / 'docs/notebooks').glob(
+    '*.ipynb'))
 
 
 def shown(page):
