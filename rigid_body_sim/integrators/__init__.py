@@ -38,7 +38,7 @@ def runnable(scene):
     the time and place of their stages where an effect asks for them. No method sees an effect that
     is an impulse and nothing else. On the table only methods that declare TABLE run.
     """
-    if scene.constraint.mechanism is Mechanism.TABLE:
+    if scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE):
         return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects
                if effect.acting is not None or effect.as_impulse is None]

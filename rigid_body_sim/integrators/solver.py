@@ -69,7 +69,7 @@ class Stepped:
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         _check_control(self.method, accuracy, step)
         self.accuracy, self.step, self.horizon, self.most = accuracy, step, horizon, most
-        on_table = scene.constraint.mechanism is Mechanism.TABLE
+        on_table = scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE)
         if on_table and not self.method.TABLE:
             able = ', '.join(runnable(scene))
             raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table '
@@ -187,7 +187,7 @@ class Stepped:
         return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
     def exchanged(self, time):
-        """Return the ledger's entries from the start to a time, shape (5,).
+        """Return the ledger's entries from the start to a time, shape (5,), longer on a plane.
 
         mechanics/ledger.py has their layout. Raises what `states` raises.
         """

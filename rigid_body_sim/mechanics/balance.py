@@ -12,6 +12,7 @@ P (body axes), n unit vector along a hinge.
                                                     I omega' + omega x I omega - Gamma about P
     table     normal force M g - F_z; friction mu times that against the slip, or what keeps the
               lowest point at rest
+    plane     that of a free body under the force of the contact (contact/standing.py)
 """
 
 import functools
@@ -20,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.mechanics.contact.standing import Standing
 from rigid_body_sim.mechanics.parameters import scene_parameters
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import matrix, multiply, rotate, rotate_back
@@ -132,12 +134,15 @@ class Dynamics:
         # effects are asked as if the body were free: only then do they name their forces
         self._frame = Free().frame(body)
         balances = {Mechanism.FREE: self._free, Mechanism.POINT: self._pivot,
-                    Mechanism.AXIS: self._hinge, Mechanism.TABLE: self._table}
+                    Mechanism.AXIS: self._hinge, Mechanism.TABLE: self._table,
+                    Mechanism.PLANE: self._plane}
         self._of = balances[constraint.mechanism]
         if constraint.mechanism is Mechanism.TABLE:
             contacts = [effect.contact for effect in scene.effects if effect.contact]
-            self._mu, self._g = contacts[0] if contacts else (0.0, 0.0)
+            self._mu, self._g = contacts[0][:2] if contacts else (0.0, 0.0)
             self._radius = body.radius
+        if constraint.mechanism is Mechanism.PLANE:
+            self._standing = Standing(scene)
 
     def balance(self, vector, wrench=Wrench()):    # noqa: B008 (immutable)
         """Return the Balance at a state (14 doubles) under a held wrench, just after its time."""
@@ -231,6 +236,18 @@ class Dynamics:
         growth = scaled(1.0 / moment, plus(torque, cross(down, friction)))
         return (scaled(1.0 / mass, plus(flat, friction)), apply(transposed(motion.R), growth),
                 plus(friction, (0.0, 0.0, normal)), NOTHING, plus(motion.position, down))
+
+    def _plane(self, motion, acting):
+        R, omega, center = motion.R, motion.omega, self._scene.center
+        of_center = plus(motion.velocity, apply(R, cross(omega, center)))
+        place = plus(motion.position, apply(R, center))
+        force, couple, arm = self._standing.force(R, omega, place, of_center, acting.force,
+                                                  acting.couple)
+        torque = plus(acting.couple, plus(couple, cross(arm, apply(transposed(R), force))))
+        growth = self._growth(omega, torque)
+        of_origin = minus(scaled(1.0 / self._scene.mass, plus(acting.force, force)),
+                          apply(R, _carried(omega, growth, center)))
+        return of_origin, growth, force, apply(R, couple), plus(place, apply(R, arm))
 
     def _grip(self, flat, torque, normal, down):
         """Return the friction that keeps the lowest point at rest, or the strongest one."""

@@ -11,6 +11,7 @@ from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import minus
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 
 class Entries(NamedTuple):
@@ -36,6 +37,15 @@ ENTRIES_SIZE = ENTRIES.size
 WORK, DISSIPATED = ENTRIES.part('work').first, ENTRIES.part('dissipated').first
 ANGULAR_IMPULSE = ENTRIES.part('angular_impulse').places
 
+HEATS = ('dissipated_sliding', 'dissipated_rolling', 'dissipated_air_film', 'dissipated_impacts')
+"""Causes of heat at a plane (J): they stand behind the entries of a body on it."""
+
+
+def entries_size(scene):
+    """Return the number of entries of the ledger of a scene, its causes of heat included."""
+    on_plane = scene.constraint.mechanism is Mechanism.PLANE
+    return ENTRIES_SIZE + (len(HEATS) if on_plane else 0)
+
 
 def balance(start, now, entries):
     """Return the balance of energy (J) and angular momentum (kg m^2/s), as a dict of floats.
@@ -48,9 +58,10 @@ def balance(start, now, entries):
     ----------
     start, now : array (6,)
         Diagnosis.
-    entries : array (5,)
-        The Entries from start to now.
+    entries : array (5,) or longer
+        The Entries from start to now, and behind them the HEATS of a body on a plane.
     """
+    causes = dict(zip(HEATS, entries[ENTRIES_SIZE:].tolist(), strict=False))
     start, now = DIAGNOSIS.load(start.tolist()), DIAGNOSIS.load(now.tolist())
     work, dissipated, impulse = ENTRIES.load(entries.tolist())
     left = math.fsum((now.kinetic, now.potential, dissipated,
@@ -61,4 +72,4 @@ def balance(start, now, entries):
     return {'kinetic': now.kinetic, 'potential': now.potential, 'dissipated': dissipated,
             'work': work, 'energy_residual': left / scale if scale > 0.0 else 0.0,
             'angular_momentum_squared': now.momentum_squared,
-            'momentum_residual': missing / size if size > 0.0 else 0.0}
+            'momentum_residual': missing / size if size > 0.0 else 0.0, **causes}

@@ -14,6 +14,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
+KINDS = {Mechanism.PLANE: FREE}    # between impacts a body over a plane is a free one
 NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
 
@@ -62,7 +63,7 @@ def scene_parameters(scene):
     body, constraint = scene.body, scene.constraint
     inertia, axis = constraint.inertia(body), constraint.axis
     return SceneParameters(
-        kind=constraint.mechanism, mass=body.mass, center=body.center_of_mass,
+        kind=KINDS.get(constraint.mechanism, constraint.mechanism), mass=body.mass, center=body.center_of_mass,
         moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,

@@ -19,6 +19,7 @@ from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import from_matrix, rotate
 from rigid_body_sim.numerics.rotations import matrix as rotation_matrix
 from rigid_body_sim.numerics.vectors import cross, dot
+from rigid_body_sim.scene.surfaces import Surface
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 LARGEST_MOMENT = 1e150    # kg m^2: squares of it are doubles
@@ -152,6 +153,8 @@ class Body:
         About the centre of mass and about the body's origin; the one that was given is kept to the last bit.
     radius : float or None
         Of a sphere, m; None for every other body.
+    surface : Surface or None
+        What touches a plane (surfaces.py).
     """
 
     mass: float
@@ -159,6 +162,7 @@ class Body:
     about_center: Inertia
     about_origin: Inertia
     radius: float | None = None
+    surface: Surface | None = None
 
 
 def moved(inertia, M, shift, sign):

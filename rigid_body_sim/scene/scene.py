@@ -6,6 +6,7 @@ A scene names a body, what holds it (constraint), what else acts (effects) and h
 path, the value and what would be right.
 """
 
+import dataclasses
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ import yaml
 from rigid_body_sim.errors import BadInput, nearest, printable
 from rigid_body_sim.scene import bodies, yaml_text
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints import CONSTRAINTS
+from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
 from rigid_body_sim.scene.constraints.protocol import Constraint
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
 from rigid_body_sim.scene.effects.protocol import Effect
@@ -28,6 +29,7 @@ from rigid_body_sim.scene.expressions.expression import (
 from rigid_body_sim.scene.initial import Start, unit_quaternion
 from rigid_body_sim.scene.schema import MATRIX, POSITIVE, QUATERNION, VECTOR, check, mapping_of
 from rigid_body_sim.scene.state import State
+from rigid_body_sim.scene.surfaces import SURFACE, surface_of, surface_of_shape
 
 Overrides = Mapping[str, Any] | Sequence[str]
 
@@ -50,12 +52,13 @@ PART = mapping_of(mass=NOT_ZERO, density=NOT_ZERO, shape=SHAPE, inertia={'type':
 BODY = mapping_of(
     mass=POSITIVE, density=POSITIVE, inertia={'type': 'array'},
     inertia_about={'enum': ['center_of_mass', 'origin']}, center_of_mass=VECTOR, shape=SHAPE,
-    radius=POSITIVE, parts={'type': 'array', 'items': PART, 'minItems': 1, 'maxItems': 1000})
+    radius=POSITIVE, surface=SURFACE,
+    parts={'type': 'array', 'items': PART, 'minItems': 1, 'maxItems': 1000})
 
 
 def scene_schema():
     """Return the schema of a scene; `initial` may have the keys of every constraint."""
-    initial = {key: schema for constraint in CONSTRAINTS.values()
+    initial = {key: schema for constraint in (*CONSTRAINTS.values(), Plane)
                for key, schema in constraint.INITIAL.items()}
     return mapping_of(
         ['scene', 'body', 'constraint', 'effects', 'initial'],
@@ -213,9 +216,22 @@ def _scene(mapping, where):
 
 
 def _body(mapping, where):
+    body = _inert_body(mapping, where)
+    if 'surface' in mapping:
+        return dataclasses.replace(body, surface=surface_of(mapping['surface'],
+                                                            f'{where}.surface'))
+    if 'shape' in mapping and body.radius is None:
+        (name, dimensions), = mapping['shape'].items()
+        surface = surface_of_shape(name, dimensions, body.center_of_mass, f'{where}.shape')
+        return dataclasses.replace(body, surface=surface)
+    return body
+
+
+def _inert_body(mapping, where):
+    """Return the body without its surface."""
     way = _one_of(mapping, ('inertia', 'shape', 'parts'), where)
     if way == 'parts':
-        surplus = [key for key in mapping if key != 'parts']
+        surplus = [key for key in mapping if key not in ('parts', 'surface')]
         if surplus:
             raise BadInput(f'{where}.{surplus[0]}', 'stands beside parts',
                            'a composite takes mass and centre of mass from its parts')
@@ -300,13 +316,13 @@ def _constraint(value, body, where):
         *others, last = (one.usage for one in every)
         raise BadInput(where, f'got {yaml_text.brief(value)}',
                        f'one of {", ".join(others)}, or {last}')
-    constraint = CONSTRAINTS[kind]
+    constraint = CONSTRAINTS[kind].variant(body, settings)
     if constraint.SCHEMA is None:
         if settings:
             raise BadInput(where, f'{kind} takes no settings, got {yaml_text.brief(settings)}',
                            f'write constraint: {constraint.usage}')
         return constraint.from_scene({}, body, where)
-    if isinstance(value, str):
+    if settings is None:
         settings = {}
     if not isinstance(settings, dict):
         raise BadInput(where, f'got {yaml_text.brief(settings)}', constraint.usage)

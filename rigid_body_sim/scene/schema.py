@@ -19,6 +19,8 @@ NUMBER: Schema = {'type': 'number'}
 POSITIVE: Schema = {'type': 'number', 'exclusiveMinimum': 0}
 VECTOR: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 3, 'maxItems': 3}
 QUATERNION: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 4, 'maxItems': 4}
+INFINITE = 'sliding_friction.mu'
+"""The key whose number may be infinite: the body rolls, come what may."""
 MATRIX: Schema = {'type': 'array', 'items': VECTOR, 'minItems': 3, 'maxItems': 3}
 
 
@@ -109,6 +111,8 @@ def _refuse_non_finite(value: Any, where: str) -> None:
         for place, entry in enumerate(value):
             _refuse_non_finite(entry, at(where, place))
     elif isinstance(value, float) and not math.isfinite(value):
+        if value > 0.0 and where.endswith(INFINITE):
+            return
         raise BadInput(where, f'got {value!r}', 'needs a finite number')
     elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) > LARGEST:
         raise BadInput(where, f'got {yaml_text.brief(value)}',

@@ -23,7 +23,7 @@ from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, balance
+from rigid_body_sim.mechanics.ledger import balance, entries_size
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -162,7 +162,7 @@ class Simulation:
                 'a smaller angular velocity, velocity or height',
             )
         self._initial = self._diagnosis.copy()
-        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(ENTRIES_SIZE))]
+        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(entries_size(self.scene)))]
         self._commands = None
         self._foreseen = _Foreseen(None, 0, ())
         self._arrive()

@@ -212,6 +212,23 @@ def force_source(calls, state=STATE):
     return _kernel('force', calls, _sums(calls), state)
 
 
+def applied_source(calls):
+    """Return the source of ``applied(p, q, omega, v)``, all that acts beside a contact.
+
+    It returns force (world), couple (frame), the power of work and that which goes into heat.
+    """
+    power = {'work': [], 'heat': [], 'potential': []}
+    for call in calls:
+        rates = ('vx', 'vy', 'vz') if call.gives == 'force' else OMEGA
+        power[call.books] += [f'{component} * {rate}' for component, rate in
+                              zip((call.x, call.y, call.z), rates, strict=True)]
+    forces = _sums([call for call in calls if call.gives == 'force'])
+    couples = _sums([call for call in calls if call.gives == 'torque'])
+    heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'
+    work = ' + '.join(power['work']) or '0.0'
+    return _kernel('applied', calls, (*forces, *couples, work, heat))
+
+
 def turning_source(calls):
     """Return the source of ``turning(p, q, omega, v)``, the extra rate at which the axes turn."""
     calls = [call for call in calls if call.gives == 'turning']

@@ -18,6 +18,10 @@ def bind(method, stepped):
     """Return the method's kernels on the equations of a scene."""
     if stepped.scene.constraint.mechanism is Mechanism.TABLE:
         return table.OnTable(stepped.scene, method, stepped.wrench, stepped.step)
+    if stepped.scene.constraint.mechanism is Mechanism.PLANE:
+        # only now: its march is made of a method's table, and methods import their family
+        from rigid_body_sim.integrators.marching import contact
+        return contact.OnPlane(stepped.scene, method, stepped.wrench, stepped.step)
     return one_step.bind(method, stepped)
 
 

@@ -22,12 +22,15 @@ class Mechanism(enum.IntEnum):
 
     FREE moves and turns in all directions. POINT turns about a point that a bearing holds. AXIS
     turns about an axis that a bearing holds. TABLE is a sphere that rolls or slides on a plane.
+    PLANE is a convex body that flies, slides or rolls over a plane: between impacts a free body for
+    kernels that know nothing of the plane.
     """
 
     FREE = 0
     POINT = 1
     AXIS = 2
     TABLE = 3
+    PLANE = 4
 
 
 class Constraint(Protocol):
@@ -52,6 +55,11 @@ class Constraint(Protocol):
     SCHEMA: ClassVar[dict[str, Any] | None] = None
     INITIAL: ClassVar[dict[str, dict[str, Any]]]
     mechanism: ClassVar[Mechanism]
+
+    @classmethod
+    def variant(cls, body: Body, settings: Any) -> 'type[Constraint]':
+        """Return the class that the word in a scene file means for a body and the settings."""
+        return cls
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Self:

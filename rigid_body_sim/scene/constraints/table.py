@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Table: a balanced sphere on a horizontal plane; its middle stays at the height of the radius."""
+"""Table: a balanced sphere on a horizontal plane; its middle stays at the height of the radius.
+
+A body with another surface, or a plane that is inclined or lets bodies bounce, is a Plane (plane.py).
+"""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
@@ -7,6 +10,7 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene import initial
 from rigid_body_sim.scene.bodies import Body, Inertia
+from rigid_body_sim.scene.constraints.plane import Plane
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
@@ -24,12 +28,18 @@ class Table(Constraint):
     mechanism: ClassVar[Mechanism] = Mechanism.TABLE
 
     @classmethod
+    def variant(cls, body: Body, settings: Any) -> type[Constraint]:
+        """Return Plane for a body with a surface and for a plane with settings, else Table."""
+        return Plane if settings or body.surface is not None else cls
+
+    @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Self:
         """Return the constraint; it takes a sphere whose centre of mass is its middle."""
         if body.radius is None:
             raise BadInput(where, 'a table needs a sphere',
                            'give body.shape solid_sphere or spherical_shell, '
-                           'or body.radius with equal moments')
+                           'or body.radius with equal moments, or a smooth body.surface (sphere, '
+                           'ellipsoid, torus, disk): edges and polyhedra stay out')
         if any(body.center_of_mass):
             raise BadInput(where,
                            f'the centre of mass {list(body.center_of_mass)} is off the middle',

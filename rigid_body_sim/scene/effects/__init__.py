@@ -8,6 +8,7 @@ neighbours in scene/.
 import importlib.metadata
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.air_film import AirFilm
 from rigid_body_sim.scene.effects.drag import Drag
 from rigid_body_sim.scene.effects.expressed import PotentialEnergy
 from rigid_body_sim.scene.effects.force import Force
@@ -16,6 +17,7 @@ from rigid_body_sim.scene.effects.gravity_gradient import GravityGradient
 from rigid_body_sim.scene.effects.internal_dissipation import InternalDissipation
 from rigid_body_sim.scene.effects.magnetic import Magnetic
 from rigid_body_sim.scene.effects.protocol import Effect
+from rigid_body_sim.scene.effects.rolling_friction import RollingFriction
 from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
 from rigid_body_sim.scene.effects.spring import Spring
 from rigid_body_sim.scene.effects.strike import Strike
@@ -27,7 +29,7 @@ EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
     for effect in (
         Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation, Drag,
-        Spring, Magnetic, GravityGradient)}
+        Spring, Magnetic, GravityGradient, RollingFriction, AirFilm)}
 
 
 def effect_class(name: str) -> type[Effect] | None:

@@ -30,7 +30,7 @@ class Drag(Effect):
     angular: float
     name: ClassVar[str] = 'drag'
     SCHEMA: ClassVar[dict] = mapping_of(linear=COEFFICIENT, angular=COEFFICIENT)
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,

@@ -28,7 +28,7 @@ class Gravity(Effect):
     g: float
     name: ClassVar[str] = 'gravity'
     SCHEMA: ClassVar[dict] = mapping_of(['g'], g={'type': 'number', 'minimum': 0})
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,

@@ -110,18 +110,28 @@ class Bounds(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """How a ball and a table touch.
+    """How a body and a table touch.
 
     Attributes
     ----------
     mu : float
-        Coefficient of sliding friction.
+        Coefficient of sliding friction; infinite for a body that rolls, come what may.
     g : float
-        Acceleration that presses the ball on the table, m/s^2.
+        Acceleration that presses a ball on the table (mechanism TABLE), m/s^2.
+    rolling : float
+        Coefficient of dry rolling friction: a force C N against the velocity of the point of
+        contact over the surface of the body (mechanism PLANE, as what follows).
+    rolling_viscous : float
+        c of the force -c v against that velocity v, N s/m.
+    film : float
+        c of such a force -c v/sin(a) by the air under a disk that is inclined by a, N s/m.
     """
 
-    mu: float
-    g: float
+    mu: float = 0.0
+    g: float = 0.0
+    rolling: float = 0.0
+    rolling_viscous: float = 0.0
+    film: float = 0.0
 
 
 class Effect(Protocol):
@@ -209,7 +219,7 @@ class Effect(Protocol):
 
     @property
     def contact(self) -> Contact | None:
-        """How the ball and the table touch, for an effect of the mechanism TABLE."""
+        """How body and table touch, for an effect of the mechanisms TABLE and PLANE."""
         return None
 
     def notes(self, body: Body, constraint: Constraint) -> list[str]:

@@ -38,7 +38,7 @@ class Torque(Effect):
         value=EXPRESSIONS, books={'enum': ['work', 'heat']}, values={'type': 'array', 'items': VECTOR, 'minItems': 1},
         times={'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
         frame={'enum': ['body', 'world']})
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod

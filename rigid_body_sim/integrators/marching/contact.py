@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A convex body on a plane, from phase to phase: flight, slip, roll, and the impacts between them.
+
+The phases are in equations/contact_rates.py, the kernels that march through one in
+contact_march.py. This module decides which phase follows an event.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.equations import contact_rates, equations
+from rigid_body_sim.integrators.equations.contact_rates import (
+    CREEPING,
+    FLIGHT,
+    GAP,
+    GLIDING,
+    OMEGA,
+    RESTING,
+    ROLLING,
+    ROW,
+    SIZE,
+    SLIDING,
+    TIME,
+    U,
+    VELOCITY,
+    WATCHED,
+)
+from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
+from rigid_body_sim.numerics.functions import hypot, hypot3, power
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.scene.state import TIME as STATE_TIME
+
+ROUNDING = 2.0 ** -47    # of gap, slip and normal velocity, beside the lengths and the speeds
+CHATTER = 1e-13          # an impact rebounds no more below that share of the speeds
+HOLDS = 1e-12            # of the grip: so much beyond it is rounding
+CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
+LARGEST_CREEP = 1e-7
+AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
+MODE, SWIFT, CREEP, UNTIL = (CONTACT.part(name).first
+                             for name in ('mode', 'swift', 'creep', 'until'))
+BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
+PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from sinking "
+           'into the plane; a smaller mu does not meet it')
+PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body would '
+         'stay on it; a finite mu lets it slip')
+IDEAL = 1e300            # a larger mu is infinite
+MU = CONTACT.part('mu').first
+
+
+class OnPlane:
+    """The kernels and the numbers of one scene and wrench.
+
+    The wrench is always in the code, so that no command waits for a compilation.
+    """
+
+    EXCHANGES = True
+
+    def __init__(self, scene, method, wrench, step):
+        if step is not None:
+            raise BadInput('step', f'got {step!r} for a body on a plane',
+                           'steps end where phases do: give an accuracy')
+        self.scene = scene
+        self._wrench = wrench or Wrench()
+        self._actors = [effect for effect in scene.effects if effect.acting is not None]
+        self._frame = scene.constraint.frame(scene.body)
+        self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
+        acting = self._acting(-math.inf)
+        calls = list(equations._calls(acting, contact_rates.PARAMETER_COUNT))
+        self.rates = specialise(contact_rates, applied=equations.applied_source(calls))
+        self.kernels = specialise(contact_march, rate=f'{self.rates.__name__}:rate')
+        self._fixed = contact_parameters(scene)
+
+    def _acting(self, time):
+        return [one for actor in [*self._actors, self._wrench]
+                for one in actor.acting(self._frame, time)]
+
+    def parameters(self, time):
+        """Return the parameters that hold just after a time (s), an array of the caller's own."""
+        values = [value for one in self._acting(time) for value in one.values]
+        return np.array([*self._fixed, *values])
+
+    def course(self, stepped):
+        """Return the course of a started solver."""
+        return PlaneCourse(stepped, self)
+
+
+class PlaneCourse:
+    """One course from a start."""
+
+    TELLS_EVENTS = True
+
+    def __init__(self, stepped, bound):
+        self._bound, self._start = bound, np.array(stepped.vector)
+        self._begin = float(self._start[STATE_TIME])
+        self._tolerance = stepped.accuracy / stepped.horizon
+        self._work = np.zeros((contact_march.WORK_ROWS, ROW))
+        self._phases, self._events, self._over, self._why = [], [], None, ''
+        p, y = bound.parameters(self._begin), np.empty(SIZE)
+        x, yy, height = bound.rates.read(p, self._start, y)
+        self._place = x, yy
+        self._length = length = _length(p, bound.rates, y, self._work[0])
+        self._heaviness = max(weight(bound.scene), 1e-3)
+        speed = self._speed(y)
+        self._creep = min(LARGEST_CREEP, CREEPS * power(stepped.accuracy, 1.0 / 3.0))
+        slack = ROUNDING * (length + abs(height) + hypot(x, yy) * p[CONTACT.part('inclined').first])
+        if y[GAP] > slack:
+            self._open(FLIGHT, p, y)
+            return
+        ux, uy, normal = bound.rates.velocity_of_lowest(p, y)
+        rounding = ROUNDING * speed
+        y[GAP] = 0.0
+        if normal > rounding:
+            self._open(FLIGHT, p, y)
+        elif normal < -rounding:
+            self._impact(p, y)
+        else:
+            self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
+
+    def _speed(self, y):
+        """Return a speed beside which rounding is judged, m/s."""
+        rate = hypot3(*y[OMEGA:U].tolist())
+        return (hypot3(*y[U:U + 3].tolist()) + rate * self._length
+                + math.sqrt(self._heaviness * self._length))
+
+    def _open(self, mode, p, y):
+        """Begin a phase."""
+        time = self._begin + float(y[TIME])
+        p = self._bound.parameters(time)
+        k = bisect.bisect_right(self._bound.breakpoints, time)
+        later = self._bound.breakpoints[k:]
+        p[UNTIL] = later[0] - self._begin if later else math.inf
+        p[MODE], p[SWIFT] = mode, self._speed(y)
+        p[CREEP] = self._creep * p[SWIFT]
+        short = AT_ONCE[1] * self._length / p[SWIFT]
+        if len(self._phases) >= AT_ONCE[0] and (
+                float(y[TIME]) - self._phases[-AT_ONCE[0]].begin <= short):
+            raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
+                               'follow each other without end')
+        self._phases.append(_Phase(self._bound, p, y, self._tolerance, self._work,
+                                   self._length))
+
+    def _land(self, p, y, u):
+        """Begin the phase of contact with the slip u that the laws of contact say."""
+        y[U], y[U + 1], y[U + 2] = *u, 0.0
+        y[GAP] = 0.0
+        mu, row, rates = p[MU], np.empty(ROW), self._bound.rates
+        slides = u[0] != 0.0 or u[1] != 0.0
+        p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
+        rates.rate(p, y, row)
+        if not row[WATCHED + 2] > 0.0:
+            self._end(y)
+            return
+        if not row[WATCHED] > 0.0:
+            self._fly(p, y)
+            return
+        mode = p[MODE]
+        if mode == ROLLING and row[WATCHED + 1] < -HOLDS * mu * row[WATCHED]:
+            self._creep_off(p, y)
+            return
+        self._open(mode, p, y)
+
+    def _creep_off(self, p, y):
+        y[U], y[U + 1] = 0.0, 0.0
+        p[MODE], row = CREEPING, np.empty(ROW)
+        p[CREEP] = self._creep * self._speed(y)
+        self._bound.rates.rate(p, y, row)
+        if not row[WATCHED + 2] > 0.0:
+            self._end(y)
+        elif not row[WATCHED] > 0.0:
+            self._fly(p, y)
+        else:
+            self._open(CREEPING, p, y)
+
+    def _fly(self, p, y):
+        """Begin a flight from a contact whose slip is in y."""
+        row = np.empty(ROW)
+        if p[MU] > IDEAL:
+            # without friction the body would stay: ideal rolling would need a plane that pulls
+            p[MODE] = GLIDING
+            self._bound.rates.rate(p, y, row)
+            if row[WATCHED] > 0.0:
+                self._end(y, PULLS)
+                return
+            p[MODE] = ROLLING
+        self._bound.rates.rate(p, y, row)
+        y[U:U + 3], y[GAP] = row[VELOCITY:VELOCITY + 3], 0.0
+        self._open(FLIGHT, p, y)
+
+    def _end(self, y, why=PARADOX):
+        """End the course: no law of contact says how it goes on."""
+        self._over, self._why = float(y[TIME]), why
+        self._events.append((self._begin + self._over, 'end', {}))
+
+    def _stop(self, p, y, time):
+        """Let a body rest that lies flat or is held by friction, else let it roll on."""
+        if not self._bound.rates.stays(p, y):
+            self._bound.rates.pause(p, y)
+            self._open(int(p[MODE]), p, y)
+            return
+        self._bound.rates.halt(p, y)
+        self._events.append((time, 'rest', {}))
+        self._open(RESTING, p, y)
+
+    def _impact(self, p, y):
+        """Let the body bounce, or land where it rebounds no more."""
+        out, restitution = np.empty(6), p[CONTACT.part('restitution').first]
+        trial = y.copy()
+        self._bound.rates.collide(p, trial, restitution, out)
+        rebounds = out[3] > CHATTER * self._speed(y)
+        if not rebounds:
+            trial = y.copy()
+            self._bound.rates.collide(p, trial, 0.0, out)
+        y[:] = trial
+        y[GAP] = 0.0
+        self._events.append((self._begin + float(y[TIME]), 'impact', {
+            'normal_velocity': float(out[2]), 'impulse': float(out[4])}))
+        if rebounds:
+            self._open(FLIGHT, p, y)
+        else:
+            self._land(p, y, (float(out[0]), float(out[1])))
+
+    def _follow(self, phase):
+        """Begin the phase that follows one that has ended."""
+        p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
+        time = self._begin + float(y[TIME])
+        if why == contact_march.FAILED and self._bound.rates.jams(p, y):
+            why = contact_march.STOPPED
+        if why == contact_march.FAILED:
+            held = p[CONTACT.part('rolling').first] > 0.0 and p[MODE] == ROLLING
+            raise NotConverged(
+                f'{self._bound.scene.name}: no step is small enough at t = {time!r} s' + (
+                    ': dry rolling friction holds a body there that still spins about the normal, '
+                    'which is not solved; viscous rolling friction is' if held else ''))
+        if why == contact_march.PARADOX:
+            self._end(y)
+            return
+        if why == contact_march.TOUCHED:
+            self._impact(p, y)
+            return
+        if why in BEGAN:
+            self._events.append((time, BEGAN[why], {}))
+        if why == contact_march.LOST_CONTACT:
+            self._fly(p, y)
+            if self._over is None:
+                self._events.append((time, 'lift-off', {}))
+        elif why == contact_march.LET_GO:
+            self._creep_off(p, y)
+        elif why == contact_march.STOPPED:
+            self._stop(p, y, time)
+        elif why == contact_march.STUCK:
+            self._land(p, y, (0.0, 0.0))
+        elif why == contact_march.FASTER:
+            row = np.empty(ROW)
+            self._bound.rates.rate(p, y, row)
+            y[U], y[U + 1] = row[contact_rates.SLIP:contact_rates.SLIP + 2]
+            self._open(SLIDING, p, y)
+        else:
+            self._open(int(p[MODE]), p, y)
+
+    def reach(self, elapsed):
+        """March until the time since the start is passed."""
+        while self._over is None and self._phases[-1].reach(elapsed):
+            self._follow(self._phases[-1])
+        if self._over is not None and (elapsed > self._over or not self._phases):
+            raise NotConverged(f'{self._bound.scene.name}: '
+                               + self._why.format(repr(self._begin + self._over)))
+
+    def state(self, time, out):
+        """Fill `out` with the state at a time not before the start.
+
+        Columns from 14 on, where `out` has them, get the entries of the ledger, and behind them
+        the heat by its cause (ledger.HEATS).
+        """
+        elapsed = time - self._begin
+        self.reach(elapsed)
+        place = bisect.bisect_right([phase.begin for phase in self._phases], elapsed) - 1
+        self._phases[place].write(elapsed, time, self._place, out)
+
+    def exchanged(self, time):
+        """Return the ledger's entries from the start to a time, and the HEATS behind them."""
+        row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS))
+        self.state(time, row)
+        return row[STATE_SIZE:]
+
+    def states(self, times, out):
+        """Fill the rows of `out` as `state` does, for times not before the start."""
+        for row in np.argsort(times, kind='stable').tolist():
+            self.state(float(times[row]), out[row])
+
+    def events(self, after, until):
+        """Return the (time, name, values) after one time (s) and up to another."""
+        try:
+            self.reach(until - self._begin)
+        except NotConverged:
+            if self._over is None:
+                raise
+        return [event for event in self._events if after < event[0] <= until]
+
+
+class _Phase:
+    """One phase, from an event to the next.
+
+    Attributes
+    ----------
+    begin : float
+        Time since the start of the course, s.
+    front : array
+        The last point of the march, and where the phase ended.
+    """
+
+    def __init__(self, bound, p, y, tolerance, work, length):
+        self._bound, self.p, self._work, kernels = bound, p, work, bound.kernels
+        self.begin = float(y[TIME])
+        self._meta = np.zeros(contact_march.META)
+        self._meta[contact_march.TOLERANCE] = tolerance
+        speed = float(p[SWIFT])
+        self._meta[contact_march.SPEED], self._meta[contact_march.LENGTH] = speed, length
+        self._meta[contact_march.RATE] = speed / length
+        self.front = np.zeros(contact_march.POINT)
+        self._store, self._sizes = np.empty((8, contact_march.POINT)), np.empty(64)
+        self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
+        kernels.begin(p, work, self.front, self._meta, y)
+
+    @property
+    def status(self):
+        """Why the phase ended; RUNNING if it did not yet."""
+        return self._meta[contact_march.STATUS]
+
+    def reach(self, elapsed):
+        """March until the time is passed or the phase ends; return whether it ends before."""
+        meta = self._meta
+        while meta[contact_march.STATUS] == contact_march.RUNNING and self.front[TIME] <= elapsed:
+            if meta[contact_march.STEPS] == len(self._sizes):
+                self._sizes = np.concatenate((self._sizes, np.empty(len(self._sizes))))
+            if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
+                self._store = np.concatenate((self._store, np.empty_like(self._store)))
+            self._bound.kernels.march(self.p, self._work, self._store, self._sizes, self.front,
+                                      meta, elapsed)
+        return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
+
+    def write(self, elapsed, time, place, out):
+        """Fill `out` with the state at a time that the march has passed."""
+        if not self._meta[contact_march.STEPS]:
+            self._bound.rates.write(self.p, self.front[:SIZE], self._work[0], time, *place, out)
+            return
+        self._bound.kernels.at(self.p, self._work, self._store, self._sizes, self._meta,
+                               self._cursor, elapsed, self._y)
+        self._bound.rates.write(self.p, self._y, self._work[0], time, *place, out)
+
+
+def _length(p, rates, y, row):
+    """Return a length of the body: from its centre of mass to the plane, and its size, m."""
+    rates.rate(p, y, row)
+    lever = hypot3(*row[contact_rates.LEVER:contact_rates.LEVER + 3].tolist())
+    return max(lever, max(map(abs, p[CONTACT.part('size').places])))

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The numbers of a convex body on a plane, as the kernels take them."""
+
+from typing import NamedTuple
+
+from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
+
+
+class ContactParameters(NamedTuple):
+    """A body and its plane; the values of what else acts stand behind it.
+
+    Attributes
+    ----------
+    mode : float
+        The phase (integrators/equations/contact_rates.py).
+    mass : float
+        kg.
+    center : Vector
+        Body's origin -> centre of mass, body axes, m.
+    middle : Vector
+        Centre of mass -> middle of the surface, body axes, m.
+    kind, size : float, Vector
+        Of the surface (surfaces.py).
+    inertia, inverse : Matrix
+        I about the centre of mass, and its inverse, body axes.
+    inclined : float
+        1 if the plane is not level, else 0.
+    plane : Quaternion
+        Turns components along the axes of the plane into those of the world.
+    mu, restitution : float
+        mu is infinite where the body rolls, come what may.
+    rolling, rolling_viscous, film : float
+        Coefficient C of dry rolling friction, c of viscous rolling friction (N s/m), pi eta R/4
+        of a film of air (N s/m).
+    swift : float
+        A speed beside which what is left of a slip is rounding, m/s.
+    creep : float
+        A slip that has just begun is slaved to its direction up to this speed, m/s.
+    until : float
+        Time at which what acts jumps, s; infinite if never.
+    """
+
+    mode: float
+    mass: float
+    center: Vector
+    middle: Vector
+    kind: float
+    size: Vector
+    inertia: Matrix
+    inverse: Matrix
+    inclined: float
+    plane: Quaternion
+    mu: float
+    restitution: float
+    rolling: float
+    rolling_viscous: float
+    film: float
+    swift: float
+    creep: float
+    until: float
+
+
+CONTACT = layout(ContactParameters)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The balance of forces of a body above, or in contact with, a plane at one instant."""
+
+from rigid_body_sim.mechanics.contact.laws import System, departure, slipping, sticking
+from rigid_body_sim.mechanics.contact.numbers import contact_parameters
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.touch import couples, lever, response
+from rigid_body_sim.numerics.functions import hypot, hypot3
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
+from rigid_body_sim.scene.surfaces import shifted
+
+TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
+NOTHING = (0.0, 0.0, 0.0)
+
+
+class Standing:
+    """What a plane does to the body of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+
+    def __init__(self, scene):
+        self._c = CONTACT.load(contact_parameters(scene).tolist())
+
+    def force(self, R, omega, position, velocity, force, couple):
+        """Return what the plane exerts on the body.
+
+        Parameters
+        ----------
+        R : tuple of 3 rows
+            Rotation matrix, body -> world.
+        omega : tuple
+            Body axes, rad/s.
+        position, velocity : tuple
+            Of the centre of mass, world axes, m and m/s.
+        force, couple : tuple
+            Of all else, world and body axes, N and N m.
+
+        Returns
+        -------
+        force : tuple
+            World axes, N; zero if the body does not touch the plane.
+        couple : tuple
+            Of rolling friction, body axes, N m.
+        lever : tuple
+            From the centre of mass to the lowest point, body axes, m.
+        """
+        c = self._c
+        columns = transposed(R)
+        axes = tuple(tuple(apply(columns, rotate(*c.plane, *e)))
+                     for e in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+        gamma = axes[2]
+        r = lever(c, gamma)
+        height = rotate_back(*c.plane, *position)[2]
+        below = dot(gamma, r)
+        u = plus(rotate_back(*c.plane, *velocity), apply(axes, cross(omega, r)))
+        speed = hypot3(*velocity) + hypot3(*omega) * hypot3(*r)
+        if height + below > TOUCHES * (abs(height) + abs(below)) or u[2] > TOUCHES * speed:
+            return NOTHING, NOTHING, r
+        moved = shifted(c.kind, c.size, gamma, cross(gamma, omega))
+        viscous, wrung, _, _ = couples(c, gamma, moved)
+        torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
+        carried = cross(omega, r)
+        b = plus(cross(apply(c.inverse, torque), r),
+                 plus(cross(omega, carried), cross(omega, moved)))
+        free = plus(apply(axes, b), scaled(1.0 / c.mass, rotate_back(*c.plane, *force)))
+        f = self._force(System(response(c, axes, r, wrung), free), u, speed)
+        if not f[2] > 0.0:
+            return NOTHING, NOTHING, r
+        return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
+
+    def _force(self, system, u, speed):
+        """Return the force of the contact, axes of the plane."""
+        mu, slip = self._c.mu, hypot(u[0], u[1])
+        if slip > TOUCHES * speed and mu < 1e300:
+            dx, dy = u[0] / slip, u[1] / slip
+        else:
+            f = sticking(system)
+            size = hypot(f[0], f[1])
+            if size <= mu * f[2]:
+                return f
+            if mu == 0.0 or not f[2] > 0.0:
+                dx, dy = 1.0, 0.0
+            else:
+                dx, dy, _ = departure(system, mu, -f[0] / size, -f[1] / size)
+        N = slipping(system, mu, dx, dy)[2]
+        return -mu * N * dx, -mu * N * dy, N
+

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The point of contact: its lever, how a force there moves it, and the couples of friction.
+
+Symbols: laws.py. Rolling friction acts against the velocity s' at which the point of contact moves
+over the surface of the body: with s' = S (gamma x omega), S symmetric, a force h against it is the
+couple -(S h) x gamma on the body, and its power -h . s'. On a sphere of radius R this is the couple
+-R |h| omega_t/|omega_t| that is usually called rolling friction.
+"""
+
+import math
+
+from rigid_body_sim.compilation.jit import inlined
+from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
+from rigid_body_sim.scene.surfaces import lowest, shifted
+
+
+@inlined
+def lever(c, gamma):
+    """Return r, from the centre of mass to the lowest point, body axes."""
+    return plus(c.middle, lowest(c.kind, c.size, gamma))
+
+
+@inlined
+def response(c, axes, r, wrung):
+    """Return the matrix of a System; `wrung` is the couple that goes with N, body axes."""
+    e1, e2, e3 = axes
+    g1 = plus(scaled(1.0 / c.mass, e1), cross(apply(c.inverse, cross(r, e1)), r))
+    g2 = plus(scaled(1.0 / c.mass, e2), cross(apply(c.inverse, cross(r, e2)), r))
+    g3 = plus(scaled(1.0 / c.mass, e3), cross(apply(c.inverse, plus(cross(r, e3), wrung)), r))
+    return ((dot(e1, g1), dot(e1, g2), dot(e1, g3)), (dot(e1, g2), dot(e2, g2), dot(e2, g3)),
+            (dot(e3, g1), dot(e3, g2), dot(e3, g3)))
+
+
+@inlined
+def couples(c, gamma, moved):
+    """Return the couples of rolling friction and of the film of air, body axes.
+
+    Parameters
+    ----------
+    moved : Vector
+        s', m/s.
+
+    Returns
+    -------
+    viscous, wrung : Vector
+        N m; what goes with N is divided by it, m.
+    speed, film : float
+        |s'| (m/s), and the coefficient of the film of air (N s/m).
+    """
+    viscous, wrung = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    speed, film = math.sqrt(dot(moved, moved)), 0.0
+    if c.rolling > 0.0 or c.rolling_viscous > 0.0 or c.film > 0.0:
+        dual = cross(shifted(c.kind, c.size, gamma, moved), gamma)
+        if c.film > 0.0:
+            film = c.film / math.sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1])
+        viscous = scaled(-(c.rolling_viscous + film), dual)
+        if speed > 0.0:
+            wrung = scaled(-c.rolling / speed, dual)
+    return viscous, wrung, speed, film

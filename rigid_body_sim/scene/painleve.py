@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Painleve's paradox: the coefficient of friction below which a slip always has its force.
+
+Source: F. Genot and B. Brogliato, Eur. J. Mech. A 18 (1999) 653.
+"""
+
+import math
+
+from rigid_body_sim.numerics.functions import cos, sin
+from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
+
+LATITUDES, LONGITUDES = 64, 64    # attitudes at which the bound is looked for
+
+
+def inverse_of(matrix):
+    """Return the inverse of a symmetric 3 x 3 matrix, by its cofactors."""
+    a, b, c = matrix
+    first, second, third = cross(b, c), cross(c, a), cross(a, b)
+    share = 1.0 / dot(a, first)
+    return scaled(share, first), scaled(share, second), scaled(share, third)
+
+
+def painleve_bound(body):
+    """Return mu_P: for a smaller coefficient of friction a slip always has its force.
+
+    It is the least of G_nn/|G_nt| over the attitudes with G of
+    mechanics/contact/laws.py, looked for on a grid and refined; infinite for a sphere about its centre of mass.
+    """
+    surface = body.surface
+    inverse = inverse_of(tuple(map(tuple, body.about_center.matrix.tolist())))
+
+    def quotient(z, angle):
+        level = math.sqrt(max(0.0, 1.0 - z * z))
+        n = level * cos(angle), level * sin(angle), z
+        r = minus(surface.lowest(n), body.center_of_mass)
+        pushed = plus(scaled(1.0 / body.mass, n), cross(apply(inverse, cross(r, n)), r))
+        along = dot(pushed, n)
+        across = minus(pushed, scaled(along, n))
+        size = math.sqrt(dot(across, across))
+        return along / size if size > 1e-12 * along else math.inf
+
+    step_z, step_angle = 2.0 / LATITUDES, 2.0 * math.pi / LONGITUDES
+    least, z, angle = min(
+        (quotient((k + 0.5) * step_z - 1.0, n * step_angle), (k + 0.5) * step_z - 1.0,
+         n * step_angle) for k in range(LATITUDES) for n in range(LONGITUDES))
+    while step_z > 1e-9 and least < math.inf:
+        tries = [(quotient(max(-1.0, min(1.0, z + i * step_z)), angle + j * step_angle),
+                  max(-1.0, min(1.0, z + i * step_z)), angle + j * step_angle)
+                 for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        found = min(tries)
+        if found[0] < least:
+            least, z, angle = found
+        else:
+            step_z, step_angle = 0.5 * step_z, 0.5 * step_angle
+    return least
