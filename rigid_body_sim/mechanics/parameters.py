@@ -63,7 +63,8 @@ def scene_parameters(scene):
     body, constraint = scene.body, scene.constraint
     inertia, axis = constraint.inertia(body), constraint.axis
     return SceneParameters(
-        kind=KINDS.get(constraint.mechanism, constraint.mechanism), mass=body.mass, center=body.center_of_mass,
+        kind=KINDS.get(constraint.mechanism, constraint.mechanism), mass=body.mass,
+        center=body.center_of_mass,
         moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,

@@ -67,7 +67,7 @@ def disk(A, C, m, R, theta0, s0, w0):
 
 def routh_sphere(I1, I3, m, R, offset, theta0, s0, w0):
     """Return half a period and the other turning point of a Routh sphere from theta' = 0."""
-    I1, I3, m, R, l, theta0, s0, w0 = map(mp.mpf, (I1, I3, m, R, offset, theta0, s0, w0))    # noqa: E741
+    I1, I3, m, R, l, theta0, s0, w0 = map(mp.mpf, (I1, I3, m, R, offset, theta0, s0, w0))
     # r = -R n + l e3 in the plane of n and e3: across the axis -R sin, along it l - R cos
 
     def jellett(theta, s, w3):

@@ -52,9 +52,9 @@ applied = UNBOUND
 
 FLIGHT, SLIDING, ROLLING, GLIDING, CREEPING, RESTING = range(6)
 
-# unknowns: attitude, omega (body axes), u or v of the centre of mass (of a creep |u|), place of the
-# centre of mass along the plane since the start of the course, gap, time since the start; then the
-# ledger
+# unknowns: attitude, omega (body axes), u or v of the centre of mass (of a creep |u|), place of
+# the centre of mass along the plane since the start of the course, gap, time since the start; then
+# the ledger
 Q, OMEGA, U, PLACE, GAP, TIME = 0, 4, 7, 10, 12, 13
 UNKNOWNS = 14
 SLID, ROLLED, FILMED, STRUCK, DAMPED, WORK, IMPULSE = 14, 15, 16, 17, 18, 19, 20
@@ -208,7 +208,7 @@ def rate(p, y, k):
     if mode == FLIGHT:
         v = y[7], y[8], y[9]
     else:
-        if mode == ROLLING or mode == CREEPING:
+        if mode in (ROLLING, CREEPING):
             u = 0.0, 0.0, 0.0
         v = minus(u, apply(axes, carried))
     F, T, work, heat = _applied(p, c, q, omega, v)
@@ -248,7 +248,7 @@ def rate(p, y, k):
             else:
                 f = _rolling_force(c, axes, r, omega, carried, moved, torque, F)
             k[WATCHED + 1] = c.mu * f[2] - hypot(f[0], f[1]) if c.mu < 1e300 else 1.0
-        elif mode == GLIDING or mode == SLIDING:
+        elif mode in (GLIDING, SLIDING):
             dx, dy, mu = 1.0, 0.0, 0.0
             if mode == SLIDING:
                 pace, mu = hypot(y[7], y[8]), c.mu

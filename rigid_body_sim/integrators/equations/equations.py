@@ -212,15 +212,17 @@ def force_source(calls, state=STATE):
     return _kernel('force', calls, _sums(calls), state)
 
 
-def applied_source(calls):
+def applied_source(acting, at):
     """Return the source of ``applied(p, q, omega, v)``, all that acts beside a contact.
 
-    It returns force (world), couple (frame), the power of work and that which goes into heat.
+    It returns force (world), couple (frame), the power of work and that which goes into heat. The
+    values of the Actings stand in p from the place `at` on.
     """
+    calls = list(_calls(acting, at))
     power = {'work': [], 'heat': [], 'potential': []}
-    for call in calls:
+    for one, call in zip(acting, calls, strict=True):
         rates = ('vx', 'vy', 'vz') if call.gives == 'force' else OMEGA
-        power[call.books] += [f'{component} * {rate}' for component, rate in
+        power[one.books] += [f'{component} * {rate}' for component, rate in
                               zip((call.x, call.y, call.z), rates, strict=True)]
     forces = _sums([call for call in calls if call.gives == 'force'])
     couples = _sums([call for call in calls if call.gives == 'torque'])

@@ -25,9 +25,9 @@ from rigid_body_sim.integrators.equations.contact_rates import (
     SIZE,
     SLIDING,
     TIME,
-    U,
     VELOCITY,
     WATCHED,
+    U,
 )
 from rigid_body_sim.integrators.marching import contact_march
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
@@ -47,12 +47,12 @@ AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is
 MODE, SWIFT, CREEP, UNTIL = (CONTACT.part(name).first
                              for name in ('mode', 'swift', 'creep', 'until'))
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
-PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from sinking "
-           'into the plane; a smaller mu does not meet it')
-PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body would '
-         'stay on it; a finite mu lets it slip')
+PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
+           'sinking into the plane; a smaller mu does not meet it')
+PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
+         'would stay on it; a finite mu lets it slip')
 IDEAL = 1e300            # a larger mu is infinite
-MU = CONTACT.part('mu').first
+MU, INCLINED = CONTACT.part('mu').first, CONTACT.part('inclined').first
 
 
 class OnPlane:
@@ -73,8 +73,8 @@ class OnPlane:
         self._frame = scene.constraint.frame(scene.body)
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
-        calls = list(equations._calls(acting, contact_rates.PARAMETER_COUNT))
-        self.rates = specialise(contact_rates, applied=equations.applied_source(calls))
+        source = equations.applied_source(acting, contact_rates.PARAMETER_COUNT)
+        self.rates = specialise(contact_rates, applied=source)
         self.kernels = specialise(contact_march, rate=f'{self.rates.__name__}:rate')
         self._fixed = contact_parameters(scene)
 
@@ -110,7 +110,7 @@ class PlaneCourse:
         self._heaviness = max(weight(bound.scene), 1e-3)
         speed = self._speed(y)
         self._creep = min(LARGEST_CREEP, CREEPS * power(stepped.accuracy, 1.0 / 3.0))
-        slack = ROUNDING * (length + abs(height) + hypot(x, yy) * p[CONTACT.part('inclined').first])
+        slack = ROUNDING * (length + abs(height) + p[INCLINED] * hypot(x, yy))
         if y[GAP] > slack:
             self._open(FLIGHT, p, y)
             return

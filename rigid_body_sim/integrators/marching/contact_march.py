@@ -29,10 +29,10 @@ from rigid_body_sim.integrators.equations.contact_rates import (
     SIZE,
     SLIDING,
     TIME,
-    U,
     UNKNOWNS,
     WATCHED,
     WATCHES,
+    U,
 )
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
@@ -54,10 +54,11 @@ for _table, _values in ((B, dop8.B), (E5, dop8.E5), (E3, dop8.E3)):
 LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
 KEPT = 4096                  # points of a phase; beyond, every other one is dropped
-COUNT, STRIDE, STORED, STATUS, TOLERANCE, RATE, SPEED, LENGTH, PLANNED, STEPS, PLACED = range(11)
+(COUNT, STRIDE, STORED, STATUS, TOLERANCE, RATE, SPEED, LENGTH, PLANNED, STEPS,
+ PLACED) = range(11)
 """Numbers of a phase: points passed, steps from one kept point to the next, points kept, why it
-ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, and the number of
-the point at which the cursor stands."""
+ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, and the number
+of the point at which the cursor stands."""
 META = 11
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
  STOPPED) = range(10)

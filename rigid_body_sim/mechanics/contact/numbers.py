@@ -11,6 +11,7 @@ from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.painleve import inverse_of
 from rigid_body_sim.scene.surfaces import KINDS
 
+
 def contact_parameters(scene):
     """Return the ContactParameters of a scene, an array."""
     body, plane = scene.body, scene.constraint

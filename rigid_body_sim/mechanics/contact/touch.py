@@ -3,8 +3,8 @@
 
 Symbols: laws.py. Rolling friction acts against the velocity s' at which the point of contact moves
 over the surface of the body: with s' = S (gamma x omega), S symmetric, a force h against it is the
-couple -(S h) x gamma on the body, and its power -h . s'. On a sphere of radius R this is the couple
--R |h| omega_t/|omega_t| that is usually called rolling friction.
+couple -(S h) x gamma on the body, and its power -h . s'. On a sphere of radius R this is the
+couple -R |h| omega_t/|omega_t| that is usually called rolling friction.
 """
 
 import math

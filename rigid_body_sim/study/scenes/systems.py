@@ -8,6 +8,7 @@ from rigid_body_sim.study.scenes import (
     baseball_bat,
     billiard,
     chandler_wobble,
+    convex_body,
     degenerate,
     driven_body,
     fast_top,
@@ -65,6 +66,10 @@ SYSTEMS = {
     'steady_precession': System(steady_precession.check, 20.0),
     'fast_top': System(fast_top.check, 20.0),
     **dict.fromkeys(('sleeping_top', 'falling_top'), System(sleeping_top.check, 40.0)),
+    **{
+        name: System(getattr(convex_body, name), 10.0)
+        for name in ('rolling_disk', 'euler_disk', 'rattleback')
+    },
     **{
         name: System(getattr(degenerate, name), 20.0)
         for name in ('thin_rod', 'sphere', 'needle', 'spherical_pendulum')
