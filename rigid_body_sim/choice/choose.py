@@ -210,8 +210,12 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
-        settled = settled or trial.settle(scene, fit, finer, horizon)
-        method, tolerance, find = settled.method, settled.tolerance, _known(settled)
+        if len(able) == 1 and settled is None:
+            # nothing to choose from, so nothing was measured: a body on a plane
+            method, tolerance = able[0], finer
+        else:
+            settled = settled or trial.settle(scene, fit, finer, horizon)
+            method, tolerance, find = settled.method, settled.tolerance, _known(settled)
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',

@@ -42,7 +42,7 @@ def kind(scene):
 def _free_directions(scene):
     """Return the table's word for the free directions of a scene's body."""
     return {Mechanism.FREE: 'free', Mechanism.POINT: 'pivot', Mechanism.AXIS: 'hinge',
-            Mechanism.TABLE: 'table', Mechanism.PLANE: 'table'}[scene.constraint.mechanism]
+            Mechanism.TABLE: 'table', Mechanism.PLANE: 'plane'}[scene.constraint.mechanism]
 
 
 def pace(scene):
