@@ -7,7 +7,6 @@ from figures.style import BLACK, LINES, MEASURED, label, panels, run
 from rigid_body_sim.study.scenes.convex_body import normals
 from rigid_body_sim.theory import rolling_disk as theory
 
-
 EFFECTS = 'effects=[gravity: {g: 9.81}, sliding_friction: {mu: .inf}'
 
 

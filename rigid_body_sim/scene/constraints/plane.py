@@ -75,6 +75,7 @@ class Plane(Constraint):
         Without `position` the body touches the plane above the world's origin. With ``rolling:
         true`` the velocity is that of rolling.
         """
+        assert body.surface is not None    # from_scene takes no others
         q = start.orientation
         depth = self.height(q, body)
         if 'position' not in start.mapping:
