@@ -347,6 +347,8 @@ def _effects(entries, body, constraint, parameters, where):
         if constraint.mechanism not in effect.mechanisms:
             able = [kind for kind, one in CONSTRAINTS.items()
                     if one.mechanism in effect.mechanisms]
+            if Plane.mechanism in effect.mechanisms:
+                able.append('table with a body that has a surface')
             raise BadInput(at, f'cannot act on constraint {constraint.kind!r}',
                            f'it can on {", ".join(able)}')
         check(settings, effect.SCHEMA, at)

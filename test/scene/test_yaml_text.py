@@ -92,7 +92,6 @@ def test_a_stray_key_is_named_though_another_is_missing(changed, line):
     'effect',
     [
         'gravity_gradient',
-        'rolling_friction',
         'spinning_friction',
         'spring',
         'magnetic',
