@@ -73,6 +73,10 @@ class OnPlane:
         self._frame = scene.constraint.frame(scene.body)
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
+        if any(one.in_field or one.gives == 'turning' for one in acting):
+            raise BadInput(f'{scene.name}: effects', 'an expression of time or place, or an '
+                           'effect that turns the axes, for a body on a plane',
+                           'numbers that hold, or pieces in time: gravity, torque, drag, strike')
         source = equations.applied_source(acting, contact_rates.PARAMETER_COUNT)
         self.rates = specialise(contact_rates, applied=source)
         self.kernels = specialise(contact_march, rate=f'{self.rates.__name__}:rate')
