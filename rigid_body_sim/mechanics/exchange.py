@@ -39,9 +39,11 @@ ULP = 2.0 ** -52         # of the time, 64 of them: the clock resolves no shorte
 TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
 PLACES = np.array([0.0, *NODES])
 MOST = 2 ** 20
-"""Panels between two times that are asked for: seconds of work.
+"""Panels between two times that are asked for: seconds of work."""
+EVENLY = 2 ** 12
+"""Panels where more than MOST would be asked for, over more than eight million radians.
 
-Over more than eight million radians panels are spread evenly: they give the mean of what acts.
+They are spread evenly, and give the mean of what acts.
 """
 
 
@@ -142,6 +144,8 @@ class Exchange:
         if time < self._time:
             self._rewind()
         self._count, ends = 0, [*self._actors.breakpoints, math.inf]
+        ahead = time - self._time
+        self._least = ahead / EVENLY if ahead > MOST * self._longest else 0.0
         for end in ends[bisect.bisect_right(ends, self._time):]:
             self._time, self._length = self._lay(self._time, time, end, self._length, self._sums)
             if end > time:
@@ -173,7 +177,7 @@ class Exchange:
         """
         p, most, last = self._actors.held(t), 1, min(until, end)
         while t < last:
-            least = (until - t) / MOST if self._count > MOST else 0.0
+            least = (until - t) / EVENLY if self._count > MOST else self._least
             length = max(length, least)
             edges = _edges(t, until, end, length, most)
             if len(edges) < 2:
@@ -181,7 +185,8 @@ class Exchange:
             times = (edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * PLACES).ravel()
             states = np.empty((len(times), STATE_SIZE))
             self._states(times, states)
-            shortest = max(least, 64.0 * ULP * abs(t) + TINY * self._first)
+            # the edges are rounded, so a panel may be an ulp of the time longer than asked
+            shortest = max(1.001 * least, 64.0 * ULP * abs(t) + TINY * self._first)
             added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
                                        shortest, self._slack, sums)
             self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)

@@ -344,8 +344,8 @@ class _Work:
         arrays['status'][where] = plans.DONE
         arrays['method'][where] = plans.METHOD_NAMES.index(choice.method)
         arrays['tolerance'][where] = math.nan if choice.tolerance is None else choice.tolerance
-        arrays['expected_error'][where] = _expected(choice, scene, starts,
-                                                      self.starts_alone_differ(scene))
+        alone = self.starts_alone_differ(scene)
+        arrays['expected_error'][where] = _expected(choice, scene, starts, alone)
         # what overflows does so at the start or grows with time
         if not np.isfinite(states[:, ::max(1, states.shape[1] - 1)]).all():
             places = np.arange(self.size)[where]

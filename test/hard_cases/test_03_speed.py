@@ -23,10 +23,13 @@ HINGE = ('scene: fast\nbody: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_ab
          'initial: {angle: 1.0, rate: %s}\n')
 
 
-@pytest.mark.parametrize('speed', [1e6, 1e20, 1e100])
+@pytest.mark.parametrize('speed', [1e6, 1e20, 1e60])
 @pytest.mark.parametrize('kind', [FREE, TOP, HINGE], ids=['free', 'top', 'hinge'])
 def test_a_fast_body_neither_hangs_nor_floods(kind, speed):
-    """Hundreds of flips a tick, then more than the clock can tell apart: a search for the next one once never ended. Four a tick are told."""
+    """Hundreds of flips a tick, then more than the clock can tell apart; four a tick are told.
+
+    A search for the next one once never ended, nor did the ledger's quadrature.
+    """
     simulation = Simulation(parse_scene(kind % ((speed,) * kind.count('%s'))))
     simulation.advance(100)
     assert len(simulation.events) <= 404
@@ -49,9 +52,10 @@ def test_events_that_crowd_are_the_same_one_tick_at_a_time():
 
 @pytest.mark.parametrize('kind', [FREE, TOP, HINGE], ids=['free', 'top', 'hinge'])
 def test_an_energy_beyond_doubles_is_refused(kind):
+    heavy = 'body={mass: 1.0e+60, shape: {solid_sphere: {radius: 1.0e+40}}}'
     with pytest.raises(
             BadInput, match='fast: initial: energy or momentum is beyond what a double holds'):
-        Simulation(parse_scene(kind % ((1e200,) * kind.count('%s'))))
+        Simulation(parse_scene(kind % ((1e60,) * kind.count('%s')), [heavy]))
 
 
 @pytest.mark.parametrize('case', of_group(3), ids=lambda case: case.name)

@@ -154,8 +154,8 @@ def test_energy_does_not_walk():
 @pytest.mark.parametrize('name', ['dop8', 'lsoda', 'radau'])
 def test_too_many_turns_to_count_end_with_one_error(name):
     scene = parse_scene(smooth_cases.text('driven_body').replace(
-        '[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+200]'))
-    with pytest.raises(NotConverged, match=r'at t = 0\.0 s the body turns with 1e\+200 rad/s'):
+        '[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+75]'))
+    with pytest.raises(NotConverged, match=r'at t = 0\.0 s the body turns with 1e\+75 rad/s'):
         state(scene, name, 1.0, accuracy=1e-6)
 
 

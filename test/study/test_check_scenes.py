@@ -115,9 +115,10 @@ def test_own_file_is_checked_by_the_name_in_it(tmp_path, capsys):
 ])
 def test_what_cannot_be_checked_gets_one_line(arguments, line, capsys):
     assert check_scenes.main(arguments) == 2
-    said = capsys.readouterr().err
-    assert said.startswith(line)
-    assert said.count('\n') == 1
+    said = [one for one in capsys.readouterr().err.splitlines()
+            if not one.startswith('compiling ')]    # a cold cache
+    assert len(said) == 1
+    assert said[0].startswith(line)
 
 
 def test_what_people_read(capsys):

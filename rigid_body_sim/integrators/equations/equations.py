@@ -222,8 +222,8 @@ def applied_source(acting, at):
     power = {'work': [], 'heat': [], 'potential': []}
     for one, call in zip(acting, calls, strict=True):
         rates = ('vx', 'vy', 'vz') if call.gives == 'force' else OMEGA
-        power[one.books] += [f'{component} * {rate}' for component, rate in
-                              zip((call.x, call.y, call.z), rates, strict=True)]
+        components = zip((call.x, call.y, call.z), rates, strict=True)
+        power[one.books] += [f'{component} * {rate}' for component, rate in components]
     forces = _sums([call for call in calls if call.gives == 'force'])
     couples = _sums([call for call in calls if call.gives == 'torque'])
     heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'

@@ -88,4 +88,3 @@ class Standing:
                 dx, dy, _ = departure(system, mu, -f[0] / size, -f[1] / size)
         N = slipping(system, mu, dx, dy)[2]
         return -mu * N * dx, -mu * N * dy, N
-
