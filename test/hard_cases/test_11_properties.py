@@ -65,7 +65,7 @@ def test_any_scene_that_is_stepped_under_any_commands(tmp_path):
     acts = commands(('impulse', 'advance', 'reset', *(['hold'] if SOAK else [])),
                     st.sampled_from([1e-12, 1e-3, 1.0, 10.0]))
     hold_for_all(
-        tmp_path / 'failing.yaml', stepped_scenes(every_effect=SOAK), acts, 2000 if SOAK else 20)
+        tmp_path / 'failing.yaml', stepped_scenes(every_effect=SOAK), acts, 2000 if SOAK else 8)
 
 
 def back_at_its_unstable_place(constraint, body, initial, effects=()):
