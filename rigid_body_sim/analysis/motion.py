@@ -1,4 +1,7 @@
-"""What follows from attitude and angular velocity together, tick by tick: world axes, Euler angles, conserved momenta, slip."""
+"""What follows from attitude and angular velocity together, tick by tick.
+
+World axes, Euler angles, conserved momenta, slip.
+"""
 
 import warnings
 
@@ -12,7 +15,10 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 SAMPLES, HEAD = 8192, 65536
 MOST_PHASES = 1000
 ROLLS = 1e-9
-"""A contact that is slower than this part of the ball's speed and rim speed does not slip: differences of positions tell no more."""
+"""A contact slower than this share of the ball's speed and rim speed does not slip.
+
+Differences of positions tell no more.
+"""
 
 
 class Motion:

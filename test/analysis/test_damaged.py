@@ -1,4 +1,4 @@
-"""Analysis and resimulation of recordings that are damaged where no checksum tells: a line that says so at worst."""
+"""Damaged recordings whose checksum does not tell: at worst analysis and resimulation say so."""
 
 import random
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tops whose moments are equal but for the last digits: taken as symmetric, with an error that is known."""
+"""Tops whose moments differ in the last digits: taken as symmetric, with a known error."""
 
 import pathlib
 import sys

@@ -1,4 +1,4 @@
-"""Parameters: what is refused at the start and by set_parameters, in which words; the table in the README."""
+"""Parameters: what is refused at the start and by set_parameters; the table in the README."""
 
 import math
 

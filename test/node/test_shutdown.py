@@ -1,4 +1,7 @@
-"""How a node ends: soon, with exit status 0, its recording whole; and what it says when it cannot begin."""
+"""How a node ends: soon, with exit status 0, its recording whole.
+
+And what it says when it cannot begin.
+"""
 
 import os
 import pathlib
@@ -18,7 +21,10 @@ WITHIN = 1.0
 
 
 def recording_of(running):
-    """Return the only recording of a node, once it is complete (its recorder may outlive a killed node for a moment)."""
+    """Return the only recording of a node, once it is complete.
+
+    Its recorder may outlive a killed node for a moment.
+    """
     [folder] = (running.folder / 'recordings').iterdir()
     deadline = time.monotonic() + 5.0
     while not (folder / 'metadata.yaml').exists():
@@ -28,7 +34,7 @@ def recording_of(running):
 
 
 def messages_in(folder):
-    """Return how many messages metadata.yaml tells of, by topic, after rosbags has read as many."""
+    """Return the number of messages of each topic in metadata.yaml; rosbags has read as many."""
     from rosbags.highlevel import AnyReader
     told = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
     counts = {entry['topic_metadata']['name']: entry['message_count']
@@ -101,7 +107,7 @@ def test_a_closed_terminal_does_not_turn_the_end_into_a_failure(ros_domain, tmp_
 def test_early_signal_ends_it_too(ros_domain, tmp_path):
     with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p',
                             f'recording.directory:={tmp_path}') as node:
-        # handlers are set before rclpy and numba are loaded; the table of signals in /proc says when
+        # handlers are set before rclpy and numba are loaded; /proc says when
         status = pathlib.Path(f'/proc/{node.pid}/status')
         deadline = time.monotonic() + 20.0
         while not (int(next(line

@@ -24,12 +24,12 @@ STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
 IN_FIELD = {*TIME, *PLACE, *VELOCITY}
 
 
-def _acting(lines, trees, frame, result, gives, books, before=()):
+def _acting(lines, trees, frame, result, gives, books):
     """Return the Acting whose kernel computes trees and returns a result."""
     used = tree.names(*trees)
     in_field = bool(used & IN_FIELD)
     begin = prelude(lines, used, frame)
-    made = kernel(gives, STATE + ', t, x, y, z' * in_field, lines, [*begin, *before], result)
+    made = kernel(gives, STATE + ', t, x, y, z' * in_field, lines, begin, result)
     return Acting(made.name, made.values, gives, books, in_field)
 
 

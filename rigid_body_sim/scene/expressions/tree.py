@@ -92,16 +92,11 @@ def power(a, b):
 
 def names(*trees):
     """Return the names that stand in trees."""
-    return {one.args[0] for one in _parts(trees) if one.op == 'name'}
+    return {one.args[0] for one in parts(*trees) if one.op == 'name'}
 
 
-def operations(*trees):
-    """Return the operations of trees."""
-    return {one.op for one in _parts(trees)}
-
-
-def _parts(trees):
-    """Return each node of trees once, what it is made of before it."""
+def parts(*trees):
+    """Return each node of trees once, in an order in which what it is made of comes before it."""
     found, stack = {}, [(one, False) for one in reversed(trees)]
     while stack:
         one, done = stack.pop()
@@ -113,11 +108,6 @@ def _parts(trees):
         stack.append((one, True))
         stack += [(arg, False) for arg in reversed(one.args)]
     return list(found)
-
-
-def parts(*trees):
-    """Return each node of trees once, in an order in which what it is made of comes before it."""
-    return _parts(trees)
 
 
 def derivatives(tree, variables):
@@ -135,7 +125,7 @@ def derivatives(tree, variables):
     found = []
     for variable in variables:
         rates = {}
-        for one in _parts([tree]):
+        for one in parts(tree):
             rates[one] = _derivative(one, variable, rates)
         found.append(rates[tree])
     return found

@@ -52,4 +52,4 @@ def test_equal_parts_are_the_same_node():
 def test_names_and_operations():
     one = read('k*sin(x) + 0*y', {'x', 'y', 'k'}, 'here')
     assert tree.names(one) == {'k', 'x'}
-    assert tree.operations(one) == {'name', '*', 'sin'}
+    assert {part.op for part in tree.parts(one)} == {'name', '*', 'sin'}
