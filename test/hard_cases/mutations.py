@@ -23,8 +23,8 @@ MUTANTS = {
         'time = start + (0.5 * half_turns - phase) / rate', 'time = start + (0.5 * half_turns + phase) / rate',
         'test/hard_cases/test_01_racket.py::test_case[flips: racket, 0.01 off the middle axis]'),
     'top: own spin added to both phases': (
-        'motions/lagrange_top/anchor.py', 'minus(scaled(rate_b, rate_unit), scaled(own_spin, 0.5))',
-        'plus(scaled(rate_b, rate_unit), scaled(own_spin, 0.5))', 'test/hard_cases/test_06_tops.py::test_case[top, loops]'),
+        'motions/lagrange_top/anchor.py', 'minus(scaled(means.b, units.rate), scaled(own_spin, 0.5))',
+        'plus(scaled(means.b, units.rate), scaled(own_spin, 0.5))', 'test/hard_cases/test_06_tops.py::test_case[top, loops]'),
     'top: a phase not rescaled below 1e-60': (
         'motions/lagrange_top/means.py', 'ab, bb, pb = one, scaled(kc, scale), scaled(kc, 1.0 / scale)', 'ab, bb, pb = one, kc, kc',
         'test/hard_cases/test_06_tops.py::test_a_kick_in_a_plane_stays_in_it_and_follows_the_hyperbolic_sine'),

@@ -1,191 +1,278 @@
-"""The anchor of a heavy symmetric top: everything about its motion that one state decides (symbols: lagrange_top.py)."""
+# SPDX-License-Identifier: Apache-2.0
+"""The anchor of a heavy symmetric top: what one state decides (symbols: lagrange_top.py)."""
 
 import math
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.layout import Pair, layout
 from rigid_body_sim.motions.lagrange_top.means import NEVER, mean_rates
-from rigid_body_sim.motions.lagrange_top.roots import (
-    ABOVE,
-    CHI,
-    DELTA,
-    GAP,
-    LOWER,
-    NARROW,
-    RISE,
-    SEPARATE,
-    SIGMA,
-    SIZE,
-    STEADY,
-    UPPER,
-    W1,
-    W2,
-    W3,
-    WIDE,
-    X1,
-    X2,
-    X3,
-    Y1,
-    Y2,
-    Y3,
-    C,
-    W,
-    X,
-    Y,
-    turning_points,
-)
+from rigid_body_sim.motions.lagrange_top.roots import turning_points
 from rigid_body_sim.motions.lagrange_top.theta import (
-    FORM_SIZE,
+    THETA_1,
+    THETA_2,
+    CircularSeries,
+    HyperbolicSeries,
+    Klein,
     circular,
+    circular_terms,
     hyperbolic,
-    set_circular,
-    set_hyperbolic,
-    set_nome,
+    hyperbolic_terms,
+    powers_of,
 )
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.elliptic import carlson_rf_pair, complete_k, nome, root_nome
 from rigid_body_sim.numerics.functions import atan2, exp
-from rigid_body_sim.numerics.pairs import TURN, minus, plus, put, scaled, times
+from rigid_body_sim.numerics.pairs import TURN, minus, plus, scaled, times
 from rigid_body_sim.numerics.phase import nearest, phase, sin_cos
 
-# layout: the theta functions; phase of nutation (a turn is a period) and phases of a and b (turns): value at the start, rate
-START, START_A, START_B, RATE, RATE_A, RATE_B = FORM_SIZE, FORM_SIZE + 1, FORM_SIZE + 2, FORM_SIZE + 3, FORM_SIZE + 5, FORM_SIZE + 7
-# hyperbolic phase per turn of nutation; phases of a and b (turns) per unit of it; 1 for an odd position at the start; see `functions`
-IS_HYPERBOLIC, STRETCH, DRIFT_A, DRIFT_B, PARITY, SIDE, WINDING, NUTATES = range(FORM_SIZE + 9, FORM_SIZE + 17)
-ROOTS = FORM_SIZE + 17      # what `turning_points` fills
-NUTATION_SIZE = ROOTS + SIZE
-
+CIRCULAR, HYPERBOLIC = 0.0, 1.0    # the forms of theta.py
 QUARTER_TURN = 0.5 * math.pi
 NOTICED = 1e-9
-TINY = 1e-60            # a tilt and swing below this follow linear equations, to far below round-off
+TINY = 1e-60    # a tilt and swing below this follow linear equations, to far below round-off
+
+
+class Beginning(NamedTuple):
+    """Where the nutation begins, and the whole numbers of turns; see the functions below."""
+
+    start: float      # phase of nutation, turns; a turn is a period
+    winding: float    # of omega_c about 0: circular in a period, hyperbolic 0 or 1 in half of one
+    side: float       # 1.0 or -1.0: phase factor of omega_c is i side conj(e_a) e_b
+    parity: float     # 1.0 if `start` counts from the highest position
+    stretch: float    # hyperbolic form: y of a turn of nutation; circular form: 0
+    drift_a: float    # hyperbolic form: phases of a and b (turns) per unit of y
+    drift_b: float
+
+
+class Course(NamedTuple):
+    """How the motion goes on from its start."""
+
+    form: float            # CIRCULAR or HYPERBOLIC
+    begin: Beginning
+    rate: Pair             # of nutation, turns/s
+    rate_a: Pair           # of the phases of a and b, turns/s
+    rate_b: Pair
+    start_a: float         # phases of a and b at the start, turns
+    start_b: float
+    nutates: float         # 1.0 if the nutation is large enough to be seen
+
+
+class Nutation(NamedTuple):
+    """What the kernels below take from an array; of the two series only one is filled."""
+
+    course: Course
+    circular: CircularSeries
+    hyperbolic: HyperbolicSeries
+
+
+class Units(NamedTuple):
+    """Powers of two, exact divisors: they keep rates near 1 and take tiny tilts up to TINY."""
+
+    a: float
+    b: float
+    swing: float    # of a or b, the one that is near 0, and of omega_c
+    rate: float     # rad/s
+
+
+NUTATION = layout(Nutation)
+COURSE, CIRCULAR_PART = NUTATION.part('course'), NUTATION.part('circular')
+HYPERBOLIC_PART = NUTATION.part('hyperbolic')
+load_course, store_course = COURSE.load, COURSE.store
+load_circular, store_circular = CIRCULAR_PART.load, CIRCULAR_PART.store
+load_hyperbolic, store_hyperbolic = HYPERBOLIC_PART.load, HYPERBOLIC_PART.store
 
 
 @compiled_inline
-def circular_functions(anchor, time, time_low):
-    """Return real and imaginary part of a, b and omega_c at a time (s) after the start, the steady spin omega_3 - n included."""
-    turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
-    turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
-    turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
-    c1, s1, ar, ai, br, bi, wr, wi = circular(anchor, turns + anchor[START], low)
-    winding = anchor[WINDING]
-    return _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a, low_a, turns_b, low_b, c1 if winding != 0.0 else 1.0, winding * s1)
+def circular_functions(course, series, dt):
+    """Return the Klein at a time (s, a pair) after the start, without the own spin omega_3 - n."""
+    turns, low = phase(*course.rate, *dt)
+    phase_a, phase_b = phase(*course.rate_a, *dt), phase(*course.rate_b, *dt)
+    begin = course.begin
+    (c1, s1), periodic = circular(series, (turns + begin.start, low))
+    winding = begin.winding
+    turn = c1 if winding != 0.0 else 1.0, winding * s1
+    return _with_phases(course, periodic, phase_a, phase_b, turn)
 
 
 @compiled_inline
-def hyperbolic_functions(anchor, time, time_low):
+def hyperbolic_functions(course, series, dt):
     """Return what :func:`circular_functions` returns: hyperbolic form."""
-    turns, low = phase(anchor[RATE], anchor[RATE + 1], time, time_low)
-    turns_a, low_a = phase(anchor[RATE_A], anchor[RATE_A + 1], time, time_low)
-    turns_b, low_b = phase(anchor[RATE_B], anchor[RATE_B + 1], time, time_low)
-    turns, more = two_sum(turns, anchor[START])
+    turns, low = phase(*course.rate, *dt)
+    turns_a, low_a = phase(*course.rate_a, *dt)
+    turns_b, low_b = phase(*course.rate_b, *dt)
+    begin = course.begin
+    turns, more = two_sum(turns, begin.start)
     turns -= nearest(turns)
-    # half a period on, the highest position stands for the lowest; the phases' mean rates are in RATE_A, RATE_B
+    # half a period on, the highest position stands for the lowest; rate_a and rate_b have the
+    # phases' mean rates
     half_turns = nearest(2.0 * turns)
     odd = abs(half_turns)
-    along = anchor[STRETCH] * ((turns - 0.5 * half_turns) + (more + low))
-    ar, ai, br, bi, wr, wi = hyperbolic(anchor, along, odd != anchor[PARITY])
-    return _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a - anchor[DRIFT_A] * along, low_a, turns_b - anchor[DRIFT_B] * along, low_b,
-                        1.0 - 2.0 * odd * anchor[WINDING], 0.0)
+    along = begin.stretch * ((turns - 0.5 * half_turns) + (more + low))
+    stretched = hyperbolic(series, along, odd != begin.parity)
+    return _with_phases(course, stretched, (turns_a - begin.drift_a * along, low_a),
+                        (turns_b - begin.drift_b * along, low_b),
+                        (1.0 - 2.0 * odd * begin.winding, 0.0))
 
 
 @compiled_inline
-def _with_phases(anchor, ar, ai, br, bi, wr, wi, turns_a, low_a, turns_b, low_b, turn_re, turn_im):
-    """Multiply a, b and omega_c by their phase factors; that of omega_c is i SIDE conj(e_a) e_b times the winding."""
-    sa, ca = sin_cos(turns_a + anchor[START_A], low_a)
-    sb, cb = sin_cos(turns_b + anchor[START_B], low_b)
-    cd, sd = anchor[SIDE] * (ca * cb + sa * sb), anchor[SIDE] * (ca * sb - sa * cb)
+def _with_phases(course, klein, phase_a, phase_b, turn):
+    """Multiply a Klein by its phase factors.
+
+    That of omega_c is i side conj(e_a) e_b times `turn`, a complex number.
+    """
+    (ar, ai), (br, bi), (wr, wi) = klein
+    turn_re, turn_im = turn
+    sa, ca = sin_cos(phase_a[0] + course.start_a, phase_a[1])
+    sb, cb = sin_cos(phase_b[0] + course.start_b, phase_b[1])
+    side = course.begin.side
+    cd, sd = side * (ca * cb + sa * sb), side * (ca * sb - sa * cb)
     to_re, to_im = -(sd * turn_re + cd * turn_im), cd * turn_re - sd * turn_im
-    return (ar * ca - ai * sa, ar * sa + ai * ca,
-            br * cb - bi * sb, br * sb + bi * cb,
-            wr * to_re - wi * to_im, wr * to_im + wi * to_re)
+    return Klein((ar * ca - ai * sa, ar * sa + ai * ca), (br * cb - bi * sb, br * sb + bi * cb),
+                 (wr * to_re - wi * to_im, wr * to_im + wi * to_re))
 
 
 @compiled
-def functions(anchor, time, time_low):
+def functions(nutation, dt):
     """Return what :func:`circular_functions` returns, by the form that the motion has."""
-    if anchor[IS_HYPERBOLIC] == 0.0:
-        return circular_functions(anchor, time, time_low)
-    return hyperbolic_functions(anchor, time, time_low)
+    course = load_course(nutation)
+    if course.form == CIRCULAR:
+        return circular_functions(course, load_circular(nutation), dt)
+    return hyperbolic_functions(course, load_hyperbolic(nutation), dt)
 
 
 @compiled
-def anchor_nutation(a_re, a_im, b_re, b_im, o_re, o_im, n, k, own_spin, anchor):
-    """Fill the anchor from Cayley-Klein parameters (of any norm) and omega_c (rad/s).
+def anchor_nutation(start, n, k, own_spin, out):
+    """Fill the anchor from one state.
 
     Parameters
     ----------
+    start : Klein
+        Its Cayley-Klein parameters may have any norm.
     n, k, own_spin : pair of floats (double_double.py)
         I3 omega_3/I1 (rad/s), M g h/I1 (1/s^2, not negative), omega_3 - n (rad/s).
+    out : array, to be loaded as a Nutation
     """
-    if o_re == 0.0 and o_im == 0.0 and n[0] == 0.0 and (k[0] == 0.0 or (a_re == 0.0 and a_im == 0.0) or (b_re == 0.0 and b_im == 0.0)):
-        _rest(a_re, a_im, b_re, b_im, anchor)
+    a, b, omega = start
+    if _stays(start, n, k):
+        _rest(start, out)
         return
-    # powers of two are exact: in the unit of time used here rates are of order 1, and a tiny tilt and swing are TINY
-    largest = max(max(abs(n[0]), 2.0 * math.sqrt(k[0])), max(abs(o_re), abs(o_im)))
-    rate_unit = math.ldexp(1.0, min(max(math.frexp(largest)[1], -900), 900)) if largest > 0.0 else 1.0
-    n, k = scaled(n, 1.0 / rate_unit), scaled(scaled(k, 1.0 / rate_unit), 1.0 / rate_unit)
-    o_re, o_im = o_re / rate_unit, o_im / rate_unit
-    standing = b_re * b_re + b_im * b_im <= a_re * a_re + a_im * a_im
-    tilt, swing = max(abs(b_re), abs(b_im)) if standing else max(abs(a_re), abs(a_im)), max(abs(o_re), abs(o_im))
-    own = max(abs(n[0]), 2.0 * math.sqrt(k[0]))
-    scale = _scale(max(tilt, swing / own)) if own > 0.0 else 1.0
-    unit_a, unit_b = (1.0, scale) if standing else (scale, 1.0)
-    roots = anchor[ROOTS:NUTATION_SIZE]
-    turning_points(a_re / unit_a, a_im / unit_a, b_re / unit_b, b_im / unit_b, unit_a, unit_b, o_re / scale, o_im / scale, n, k, roots)
-    mean, nutation, rate_a, rate_b = mean_rates(roots, scale if roots[SEPARATE] == 1.0 else 1.0)
-
-    side_a = 1.0 if roots[SIGMA] >= 0.0 else -1.0
-    side_b = 1.0 if roots[DELTA] >= 0.0 else -1.0
-    side_w = -1.0 if roots[CHI] >= 0.0 else 1.0
-    # c at u1: from the pole that is near, or its sign is that of a rounding error
-    lowest = roots[SIGMA] - n[0] * roots[X1] if roots[X1] < 0.5 * roots[X] else roots[C] + n[0] * roots[LOWER]
-    anchor[SIDE] = 1.0 if lowest >= 0.0 else -1.0
-    swing_unit = rate_unit * scale
-    if roots[SEPARATE] == 0.0:
-        _circular(roots, n[0], k[0], mean, unit_a, unit_b, swing_unit, side_a, side_b, side_w, rate_b[0] - rate_a[0], anchor)
+    units = _units(start, n, k)
+    n, k = scaled(n, 1.0 / units.rate), scaled(scaled(k, 1.0 / units.rate), 1.0 / units.rate)
+    in_units = Klein(_over(a, units.a), _over(b, units.b),
+                     _over(_over(omega, units.rate), units.swing))
+    roots = turning_points(in_units, (units.a, units.b), n, k)
+    means = mean_rates(roots, units.swing if roots.apart else 1.0)
+    if roots.apart:
+        begin = _begin_hyperbolic(roots, n[0], k[0], means, units, out)
     else:
-        _hyperbolic(roots, k[0], mean, scale, rate_unit, side_a, side_b, side_w, anchor)
-    rate_a = times(plus(scaled(rate_a, rate_unit), scaled(own_spin, 0.5)), TURN)
-    rate_b = times(minus(scaled(rate_b, rate_unit), scaled(own_spin, 0.5)), TURN)
+        begin = _begin_circular(roots, n[0], k[0], means, units, out)
+    rate_a = times(plus(scaled(means.a, units.rate), scaled(own_spin, 0.5)), TURN)
+    rate_b = times(minus(scaled(means.b, units.rate), scaled(own_spin, 0.5)), TURN)
     # counted as nutation (an event) if u' ever comes near NOTICED times the angular velocity
-    steepest = math.sqrt(roots[WIDE]) * roots[GAP] * (scale * scale if roots[SEPARATE] == 0.0 else 1.0)
-    fastest = math.sqrt(roots[W1]) + abs(n[0] + own_spin[0] / rate_unit)
-    anchor[NUTATES] = 1.0 if steepest > NOTICED * fastest and nutation[0] > 0.0 else 0.0
-    put(anchor, RATE, scaled(nutation, rate_unit))
-    put(anchor, RATE_A, rate_a)
-    put(anchor, RATE_B, rate_b)
+    steepest = math.sqrt(roots.wide[0]) * roots.gap * (
+        1.0 if roots.apart else units.swing * units.swing)
+    fastest = math.sqrt(roots.w1) + abs(n[0] + own_spin[0] / units.rate)
+    nutates = 1.0 if steepest > NOTICED * fastest and means.nutation[0] > 0.0 else 0.0
+    form, rate = HYPERBOLIC if roots.apart else CIRCULAR, scaled(means.nutation, units.rate)
+    store_course(out, Course(form, begin, rate, rate_a, rate_b, 0.0, 0.0, nutates))
+    start_a, start_b = _starting_phases(start, functions(out, (0.0, 0.0)), roots)
+    store_course(out, Course(form, begin, rate, rate_a, rate_b, start_a, start_b, nutates))
 
-    # phases at the start: from those two of the three functions that are farthest from their zeros there
-    anchor[START_A], anchor[START_B] = 0.0, 0.0
-    ar, ai, br, bi, wr, wi = functions(anchor, 0.0, 0.0)
-    phase_a, phase_b, phase_w = _angle(a_re, a_im, ar, ai), _angle(b_re, b_im, br, bi), _angle(o_re, o_im, wr, wi)
-    share_a, share_b, share_w = quotient(roots[X], roots[X2]), quotient(roots[Y], roots[Y1]), quotient(roots[W], roots[W1])
+
+@compiled_inline
+def _stays(start, n, k):
+    """Return whether a top at rest stays so: upright, hanging, or without weight."""
+    a, b, omega = start
+    return omega[0] == 0.0 and omega[1] == 0.0 and n[0] == 0.0 and (
+        k[0] == 0.0 or (a[0] == 0.0 and a[1] == 0.0) or (b[0] == 0.0 and b[1] == 0.0))
+
+
+@compiled
+def _rest(start, out):
+    """Fill the anchor of a top at rest that stays so: its attitude is a root of its own."""
+    (a_re, a_im), (b_re, b_im), _ = start
+    norm = math.sqrt(a_re * a_re + a_im * a_im + b_re * b_re + b_im * b_im)
+    powers = powers_of(0.0)
+    a, _ = circular_terms(
+        powers, 0.0, THETA_1, 1.0, math.sqrt(a_re * a_re + a_im * a_im) / norm)
+    b, _ = circular_terms(
+        powers, 0.0, THETA_2, 1.0, math.sqrt(b_re * b_re + b_im * b_im) / norm)
+    omega, _ = circular_terms(powers, 0.0, THETA_2, 1.0, 0.0)
+    store_circular(out, CircularSeries(powers, a, b, omega))
+    none = (0.0, 0.0)
+    store_course(out, Course(
+        CIRCULAR, Beginning(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0), none, none, none,
+        _angle(start.a, (1.0, 0.0)), _angle(start.b, (1.0, 0.0)), 0.0))
+
+
+@compiled_inline
+def _units(start, n, k):
+    """Return the Units of a state."""
+    a, b, omega = start
+    own = max(abs(n[0]), 2.0 * math.sqrt(k[0]))
+    largest = max(own, _largest(omega))
+    rate = math.ldexp(1.0, min(max(math.frexp(largest)[1], -900), 900)) if largest > 0.0 else 1.0
+    n, k = n[0] * (1.0 / rate), k[0] * (1.0 / rate) * (1.0 / rate)
+    own = max(abs(n), 2.0 * math.sqrt(k))
+    standing = b[0] * b[0] + b[1] * b[1] <= a[0] * a[0] + a[1] * a[1]
+    tilt, swing = _largest(b) if standing else _largest(a), _largest(_over(omega, rate))
+    scale = _scale(max(tilt, swing / own)) if own > 0.0 else 1.0
+    return Units(1.0 if standing else scale, scale if standing else 1.0, scale, rate)
+
+
+@compiled_inline
+def _largest(z):
+    """Return the larger one of real and imaginary part, in size."""
+    return max(abs(z[0]), abs(z[1]))
+
+
+@compiled_inline
+def _over(z, divisor):
+    """Return a complex number divided by a real one."""
+    return z[0] / divisor, z[1] / divisor
+
+
+@compiled
+def _scale(size):
+    """Return the power of two that takes a tilt and swing of this size up to TINY.
+
+    It is 1 if the size is larger than TINY, or zero.
+    """
+    if size >= TINY or size == 0.0:
+        return 1.0
+    _, exponent = math.frexp(size / TINY)
+    return math.ldexp(1.0, exponent)
+
+
+@compiled_inline
+def _starting_phases(start, periodic, roots):
+    """Return the phases (turns) of a and b at the start.
+
+    They come from those two of the three functions that are farthest from their zeros there.
+    `periodic` is the Klein at the start that phases of 0 give.
+    """
+    phase_a, phase_b = _angle(start.a, periodic.a), _angle(start.b, periodic.b)
+    phase_w = _angle(start.omega, periodic.omega)
+    share_a, share_b = quotient(roots.x[0], roots.x2[0]), quotient(roots.y[0], roots.y1[0])
+    share_w = quotient(roots.w, roots.w1)
     if share_a < min(share_b, share_w):
         phase_a = phase_b - phase_w
     elif share_b < min(share_a, share_w):
         phase_b = phase_a + phase_w
-    anchor[START_A], anchor[START_B] = phase_a - nearest(phase_a), phase_b - nearest(phase_b)
+    return phase_a - nearest(phase_a), phase_b - nearest(phase_b)
 
 
 @compiled
-def _rest(a_re, a_im, b_re, b_im, anchor):
-    """Fill the anchor of a top at rest that stays so: upright, hanging, or without weight. Every attitude is a root of its own there."""
-    for place in range(NUTATION_SIZE):
-        anchor[place] = 0.0
-    norm = math.sqrt(a_re * a_re + a_im * a_im + b_re * b_re + b_im * b_im)
-    set_nome(0.0, anchor)
-    set_circular(anchor, 0, 0.0, -1.0, 1.0, math.sqrt(a_re * a_re + a_im * a_im) / norm)
-    set_circular(anchor, 1, 0.0, 1.0, 1.0, math.sqrt(b_re * b_re + b_im * b_im) / norm)
-    set_circular(anchor, 2, 0.0, 1.0, 1.0, 0.0)
-    anchor[SIDE], anchor[START_A], anchor[START_B] = 1.0, _angle(a_re, a_im, 1.0, 0.0), _angle(b_re, b_im, 1.0, 0.0)
+def _angle(to, back):
+    """Return the angle (turns) from the complex number `back` to the complex number `to`.
 
-
-@compiled
-def _angle(to_re, to_im, from_re, from_im):
-    """Return the angle (turns) from one complex number to another; their moduli may be as small as doubles go."""
-    to, back = max(abs(to_re), abs(to_im)), max(abs(from_re), abs(from_im))
-    if to == 0.0 or back == 0.0:
+    Their moduli may be as small as doubles go.
+    """
+    size_to, size_back = _largest(to), _largest(back)
+    if size_to == 0.0 or size_back == 0.0:
         return 0.0
-    to_re, to_im, from_re, from_im = to_re / to, to_im / to, from_re / back, from_im / back
+    to_re, to_im = _over(to, size_to)
+    from_re, from_im = _over(back, size_back)
     return TURN[0] * atan2(to_im * from_re - to_re * from_im, to_re * from_re + to_im * from_im)
 
 
@@ -196,82 +283,119 @@ def quotient(a, b):
 
 
 @compiled
-def _scale(size):
-    """Return the power of two that takes a tilt and swing of this size up to TINY; 1 if it is larger, or zero."""
-    if size >= TINY or size == 0.0:
-        return 1.0
-    _, exponent = math.frexp(size / TINY)
-    return math.ldexp(1.0, exponent)
+def _rf_or_never(x, y, z):
+    """Return whether R_F(x, y, z) is finite, and arguments that R_F may take in any case."""
+    finite = min(x + y, y + z, x + z) > 0.0
+    return finite, (x if finite else 1.0, y if finite else 1.0, z if finite else 1.0)
 
 
 @compiled
-def _lengths(square, x, y, z, other, u, v, w):
-    """Return sqrt(square) R_F(x, y, z) and sqrt(other) R_F(u, v, w), infinite where two arguments of R_F vanish, 0 where the root does."""
-    first, second = min(x + y, y + z, x + z) > 0.0, min(u + v, v + w, u + w) > 0.0
-    R, S = carlson_rf_pair(x if first else 1.0, y if first else 1.0, z if first else 1.0,
-                           u if second else 1.0, v if second else 1.0, w if second else 1.0)
-    return (0.0 if square == 0.0 else math.sqrt(square) * R if first else math.inf,
-            0.0 if other == 0.0 else math.sqrt(other) * S if second else math.inf)
+def _lengths(square, first, other, second):
+    """Return sqrt(square) R_F(first) and sqrt(other) R_F(second).
 
-
-@compiled
-def _arguments(roots, k, from_lowest):
-    """Return, as arguments of Jacobi's functions, the places of the zeros of a, b, omega_c in imaginary time and of the state in real time.
-
-    That of a is counted from u1, those of b and omega_c from u2, that of the state from u1 if `from_lowest`, else from u2.
+    They are infinite where two arguments of R_F vanish, and 0 where the root does.
     """
-    gap, wide, narrow, lower, upper, above = roots[GAP], roots[WIDE], roots[NARROW], roots[LOWER], roots[UPPER], roots[ABOVE]
+    is_first, first = _rf_or_never(*first)
+    is_second, second = _rf_or_never(*second)
+    R, S = carlson_rf_pair(*first, *second)
+    return (0.0 if square == 0.0 else math.sqrt(square) * R if is_first else math.inf,
+            0.0 if other == 0.0 else math.sqrt(other) * S if is_second else math.inf)
+
+
+@compiled_inline
+def _arguments(roots, k, from_lowest):
+    """Return arguments of Jacobi's functions: A, B, C in imaginary time, the state in real time.
+
+    A, B and C are the places of the zeros of a, b and omega_c. That of a is counted from u1, those
+    of b and omega_c from u2, that of the state from u1 if `from_lowest`, else from u2.
+    """
+    gap, wide, narrow = roots.gap, roots.wide[0], roots.narrow[0]
+    lower, upper, above = roots.lower, roots.upper, roots.above
     if gap == 0.0:    # steady: none has a zero, also where it is 0 all the time
         return math.inf, math.inf, math.inf, 0.0
+    x1, x2, x3 = roots.x1[0], roots.x2[0], roots.x3[0]
+    y1, y2, y3 = roots.y1[0], roots.y2[0], roots.y3[0]
     gap2 = 2.0 * k * gap
     if from_lowest:
-        A, along = _lengths(roots[X1], gap, gap * roots[X3] / wide, roots[X2], lower, upper, above * gap / wide, gap)
+        state = upper, above * gap / wide, gap
+        A, along = _lengths(x1, (gap, gap * x3 / wide, x2), lower, state)
     else:
-        A, along = _lengths(roots[X1], gap, gap * roots[X3] / wide, roots[X2], upper * wide, lower * narrow, narrow * gap, gap * above)
-    B, C_ = _lengths(roots[Y2] * wide, roots[Y3] * gap, gap * narrow, roots[Y1] * narrow,
-                     roots[W2] * wide, roots[W3] * gap2, gap2 * narrow, roots[W1] * narrow)
-    return A, B, C_, along
+        state = lower * narrow, narrow * gap, gap * above
+        A, along = _lengths(x1, (gap, gap * x3 / wide, x2), upper * wide, state)
+    B, C = _lengths(y2 * wide, (y3 * gap, gap * narrow, y1 * narrow),
+                    roots.w2 * wide, (roots.w3 * gap2, gap2 * narrow, roots.w1 * narrow))
+    return A, B, C, along
 
 
-@compiled
-def _circular(roots, n, k, mean, unit_a, unit_b, unit_w, side_a, side_b, side_w, rate_difference, anchor):
-    gap, wide = roots[GAP], roots[WIDE]
-    per_argument = 2.0 * mean                               # 2v of an argument of Jacobi's functions
-    set_nome(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots[NARROW] / wide)), anchor)
-    A, B, C_, along = _arguments(roots, k, True)
-    set_circular(anchor, 0, exp(-per_argument * A), -1.0, side_a, unit_a * math.sqrt(0.5 * roots[X2]))
-    set_circular(anchor, 1, exp(-per_argument * B), 1.0, side_b, unit_b * math.sqrt(0.5 * roots[Y1]))
-    slope_w = set_circular(anchor, 2, exp(-per_argument * C_), 1.0, side_w, unit_w * math.sqrt(roots[W1]))
-    # mean rate of arg(omega_c), from its rate at u1, less that of conj(a) b: a whole multiple of the rate of 2v
-    at_lowest = -0.5 * (n + quotient(roots[CHI], roots[W1]))
+@compiled_inline
+def _sides(roots):
+    """Return the orientations of a, b, omega_c (theta.py): signs of sigma, delta and -chi."""
+    return (1.0 if roots.sigma[0] >= 0.0 else -1.0, 1.0 if roots.delta[0] >= 0.0 else -1.0,
+            -1.0 if roots.chi >= 0.0 else 1.0)
+
+
+@compiled_inline
+def _side_at_lowest(roots, n):
+    """Return the sign of c at u1, formed from the pole that is near: else rounding decides it."""
+    near_lower_pole = roots.x1[0] < 0.5 * roots.x[0]
+    lowest = roots.sigma[0] - n * roots.x1[0] if near_lower_pole else roots.c + n * roots.lower
+    return 1.0 if lowest >= 0.0 else -1.0
+
+
+@compiled_inline
+def _begin_circular(roots, n, k, means, units, out):
+    """Store the series of the circular form in `out` and return the Beginning."""
+    gap, wide = roots.gap, roots.wide[0]
+    per_argument = 2.0 * means.mean    # 2v of an argument of Jacobi's functions
+    powers = powers_of(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots.narrow[0] / wide)))
+    A, B, C, along = _arguments(roots, k, True)
+    side_a, side_b, side_w = _sides(roots)
+    a, _ = circular_terms(powers, exp(-per_argument * A), THETA_1, side_a,
+                          units.a * math.sqrt(0.5 * roots.x2[0]))
+    b, _ = circular_terms(powers, exp(-per_argument * B), THETA_2, side_b,
+                          units.b * math.sqrt(0.5 * roots.y1[0]))
+    omega, slope = circular_terms(powers, exp(-per_argument * C), THETA_2, side_w,
+                                  units.rate * units.swing * math.sqrt(roots.w1))
+    store_circular(out, CircularSeries(powers, a, b, omega))
+    # mean rate of arg(omega_c), from its rate at u1, less that of conj(a) b: a whole multiple of
+    # the rate of 2v
+    at_lowest = -0.5 * (n + quotient(roots.chi, roots.w1))
     rate = 0.5 * math.sqrt(wide) * per_argument
-    anchor[WINDING] = nearest((at_lowest - rate_difference) / rate + slope_w) if roots[STEADY] == 0.0 else 0.0
-    anchor[START], anchor[PARITY], anchor[IS_HYPERBOLIC] = TURN[0] * per_argument * math.copysign(along, roots[RISE]), 0.0, 0.0
-    anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 0.0, 0.0, 0.0
+    turns = 0.0 if roots.steady else nearest(
+        (at_lowest - (means.b[0] - means.a[0])) / rate + slope)
+    start = TURN[0] * per_argument * math.copysign(along, roots.rise)
+    return Beginning(start, turns, _side_at_lowest(roots, n), 0.0, 0.0, 0.0, 0.0)
 
 
-@compiled
-def _hyperbolic(roots, k, mean, scale, rate_unit, side_a, side_b, side_w, anchor):
-    wide, narrow = roots[WIDE], roots[NARROW]
-    modulus, complement = math.sqrt(2.0 * k * roots[GAP] / wide), scale * math.sqrt(narrow / wide)
-    per_argument = QUARTER_TURN / complete_k(modulus)       # hyperbolic phase of an argument of Jacobi's functions
-    half_period = per_argument * QUARTER_TURN / mean if mean > 0.0 else NEVER
-    root = root_nome(complement, modulus)
-    set_nome(root * root, anchor)
-    from_lowest = scale * roots[UPPER] * math.sqrt(wide) >= math.sqrt(narrow) * roots[LOWER]     # nearer in time than the highest position
-    A, B, C_, along = _arguments(roots, k, from_lowest)
-    A, B, C_ = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN), min(per_argument * C_, QUARTER_TURN)
-    set_hyperbolic(anchor, 0, A, -1.0, side_a, math.sqrt(0.5 * roots[X2]), root)
-    set_hyperbolic(anchor, 1, B, 1.0, side_b, math.sqrt(0.5 * roots[Y1]), root)
-    set_hyperbolic(anchor, 2, C_, 1.0, side_w, rate_unit * math.sqrt(roots[W1]), root)
-    # from the lowest to the highest position the phases make a step beside their steady growth; that of omega_c is that of b less that of
-    # a, up to half a turn
-    step_a, step_b, step_w = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B), side_w * (QUARTER_TURN - C_)
-    anchor[STRETCH], anchor[DRIFT_A], anchor[DRIFT_B] = 2.0 * half_period, TURN[0] * step_a / half_period, TURN[0] * step_b / half_period
+@compiled_inline
+def _begin_hyperbolic(roots, n, k, means, units, out):
+    """Store the series of the hyperbolic form in `out` and return the Beginning."""
+    wide, narrow = roots.wide[0], roots.narrow[0]
+    modulus = math.sqrt(2.0 * k * roots.gap / wide)
+    per_argument = QUARTER_TURN / complete_k(modulus)    # y of an argument of Jacobi's functions
+    half_period = per_argument * QUARTER_TURN / means.mean if means.mean > 0.0 else NEVER
+    root = root_nome(units.swing * math.sqrt(narrow / wide), modulus)
+    powers = powers_of(root * root)
+    # the lowest position is nearer in time than the highest
+    from_lowest = (units.swing * roots.upper * math.sqrt(wide)
+                   >= math.sqrt(narrow) * roots.lower)
+    A, B, C, along = _arguments(roots, k, from_lowest)
+    A, B = min(per_argument * A, QUARTER_TURN), min(per_argument * B, QUARTER_TURN)
+    C = min(per_argument * C, QUARTER_TURN)
+    side_a, side_b, side_w = _sides(roots)
+    a = hyperbolic_terms(powers, A, THETA_1, side_a, math.sqrt(0.5 * roots.x2[0]), root)
+    b = hyperbolic_terms(powers, B, THETA_2, side_b, math.sqrt(0.5 * roots.y1[0]), root)
+    omega = hyperbolic_terms(
+        powers, C, THETA_2, side_w, units.rate * math.sqrt(roots.w1), root)
+    store_hyperbolic(out, HyperbolicSeries(powers, a, b, omega))
+    # from the lowest to the highest position the phases make a step beside their steady growth;
+    # that of omega_c is that of b less that of a, up to half a turn
+    step_a, step_b = side_a * (QUARTER_TURN - A), side_b * (QUARTER_TURN - B)
+    step_w = side_w * (QUARTER_TURN - C)
     half_turns = nearest((step_w - step_b + step_a) / math.pi)
-    anchor[WINDING] = half_turns - 2.0 * math.floor(0.5 * half_turns)
-    anchor[PARITY], argument = 0.0, math.copysign(along, roots[RISE])
+    winding, stretch = half_turns - 2.0 * math.floor(0.5 * half_turns), 2.0 * half_period
+    side, parity, argument = _side_at_lowest(roots, n), 0.0, math.copysign(along, roots.rise)
     if not from_lowest:
-        anchor[PARITY], argument = 1.0, -argument
-        anchor[SIDE] *= 1.0 - 2.0 * anchor[WINDING]
-    anchor[START], anchor[IS_HYPERBOLIC] = per_argument * argument / anchor[STRETCH], 1.0
+        side, parity, argument = side * (1.0 - 2.0 * winding), 1.0, -argument
+    return Beginning(per_argument * argument / stretch, winding, side, parity, stretch,
+                     TURN[0] * step_a / half_period, TURN[0] * step_b / half_period)

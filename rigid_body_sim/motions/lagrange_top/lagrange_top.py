@@ -1,87 +1,140 @@
-"""Heavy symmetric top with a fixed point, in closed form over any time (notes, "Symmetric Top" to "Fast top").
+# SPDX-License-Identifier: Apache-2.0
+"""Heavy symmetric top with a fixed point, in closed form over any time.
 
-Absorbs: constraint pivot (the body's origin stays where it is), gravity or none, a body with two equal moments about the pivot and its
-centre of mass on the third axis. Spherical tops, thin rods (the spherical pendulum), hanging and standing tops, and tops without weight are
-ordinary cases.
+Notes, "Symmetric Top" to "Fast top". It absorbs a pivot (the body's origin stays where it is),
+gravity or none, and a body with two equal moments about the pivot and its centre of mass on the
+third axis. Spherical tops, thin rods (the spherical pendulum), hanging and standing tops, and tops
+without weight are ordinary cases.
 
-Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the pivot; I1, I1, I3 moments about the pivot; k = M g h/I1;
-n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the vertical, u = cos(beta).
+Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the pivot; I1, I1, I3
+moments about the pivot; k = M g h/I1; n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the
+vertical, u = cos(beta).
 
-A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate omega_3 - n = omega_3 (I1 - I3)/I1, so I3
-enters nowhere else. The attitude is a pair of complex numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2,
-|b|^2 = (1 - u)/2), so nothing happens at beta = 0 and pi where Euler's angles fail. a, b and omega_c = omega_2 - i omega_1 are
-single-valued functions of time: a theta quotient times a phase that grows steadily (lagrange_top_theta.py). The phase of omega_c is that of
-b less that of a, because with gamma the vertical in body axes and c = omega . gamma across e3
+A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate
+omega_3 - n = omega_3 (I1 - I3)/I1, so I3 enters nowhere else. The attitude is a pair of complex
+numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2, |b|^2 = (1 - u)/2),
+so nothing happens at beta = 0 and pi, where Euler's angles fail. a, b and omega_c = omega_2 - i
+omega_1 are single-valued functions of time: a theta quotient times a phase that grows steadily
+(theta.py). The phase of omega_c is that of b less that of a, because with gamma the vertical in
+body axes and c = omega . gamma across e3
 
     omega_c = (c + i u')/(1 - u^2) gamma_c,     gamma_c = 2 i conj(a) b.
 
-What grows with time has more digits than a double (lagrange_top_means.py), so errors do not grow.
+What grows with time has more digits than a double (means.py), so errors do not grow.
 
-Kernels besides those of every motion: `states`, the same operations as `state` on many times side by side; `next_event`, `turning_index`,
-`turning_time` (where beta turns); `reaction`. Nutation too slight to be seen in doubles (NOTICED in lagrange_top_anchor.py) is no event.
+Kernels besides those of every motion: `fill_columns`, the same operations as `state` on many times
+side by side; `next_event`, `turning_index`, `turning_time` (where beta turns); `reaction`. A
+nutation too slight to be seen in doubles (NOTICED in anchor.py) is no event.
 """
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.motions.lagrange_top.anchor import (
-    IS_HYPERBOLIC,
+    CIRCULAR,
     NEVER,
-    NUTATES,
-    NUTATION_SIZE,
-    PARITY,
-    RATE,
-    START,
-    STRETCH,
+    Nutation,
     anchor_nutation,
     circular_functions,
     functions,
     hyperbolic_functions,
+    load_circular,
+    load_course,
+    load_hyperbolic,
 )
-from rigid_body_sim.motions.loops import BLOCK
+from rigid_body_sim.motions.lagrange_top.theta import Klein
+from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import multiply_double, two_sum
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.pairs import pair_at, pair_of
+from rigid_body_sim.numerics.pairs import pair_of
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints import Pivot
 from rigid_body_sim.scene.effects.gravity import Gravity
-
-# layout of the parameters: M, g, h; as pairs M g h/I1, I3/I1, (I1 - I3)/I1; quaternion that turns the axes of the top (third: e3) to the body
-MASS, GRAVITY, ARM, PULL, RATIO, EXCESS, FRAME = 0, 1, 2, 3, 5, 7, 9
-PARAMETER_SIZE = 13
-
-# layout of the anchor: functions of time, then what is constant
-TIME, SPIN, TOP_FRAME, PIVOT = NUTATION_SIZE, NUTATION_SIZE + 1, NUTATION_SIZE + 2, NUTATION_SIZE + 6
-ANCHOR_SIZE = NUTATION_SIZE + 9
+from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
 exchanged = takes = None
 
 
+class Parameters(NamedTuple):
+    """Numbers of the scene."""
+
+    mass: float          # kg
+    g: float             # m/s^2
+    arm: float           # h, m
+    pull: Pair           # M g h/I1, 1/s^2
+    ratio: Pair          # I3/I1
+    excess: Pair         # (I1 - I3)/I1
+    frame: Quaternion    # turns the axes of the top, whose third is e3, to those of the body
+
+
+class Steady(NamedTuple):
+    """What does not change."""
+
+    start: float         # time of the start, s
+    spin: float          # omega_3, rad/s
+    frame: Quaternion    # see Parameters
+    pivot: Vector        # in the world, m
+
+
+class Anchor(NamedTuple):
+    """What one state decides."""
+
+    nutation: Nutation
+    steady: Steady
+
+
+PARAMETERS, ANCHOR = layout(Parameters), layout(Anchor)
+PARAMETER_SIZE, ANCHOR_SIZE = PARAMETERS.size, ANCHOR.size
+load_parameters, load_state, store_state = PARAMETERS.load, STATE.load, STATE.store
+load_steady, store_steady = ANCHOR.part('steady').load, ANCHOR.part('steady').store
+load_start = ANCHOR.part('steady').part('start').load
+store_row = COLUMNS.store
+NOWHERE = (0.0, 0.0, 0.0)
+
+
 def absorbs(scene):
-    """Return whether the scene is a symmetric body on a pivot under its weight alone; symmetric means exactly so (see `symmetry_axis`)."""
+    """Return whether the scene is a symmetric body on a pivot under its weight alone.
+
+    Symmetric means exactly so (:func:`symmetry_axis`).
+    """
     return (isinstance(scene.constraint, Pivot) and scene.acts_only(Gravity)
             and symmetry_axis(scene.body) is not None)
 
 
 def symmetry_axis(body):
-    """Return the number (0, 1, 2) of the principal axis that is e3, and the quaternion that turns the top's axes into the body's, or None.
+    """Return the symmetry axis of a body.
 
-    Two moments about the origin must be the same double and the centre of mass must lie on the third axis: to the last bit where principal
-    axes and body axes coincide up to order and sign, else to the rounding of the turn between them. e3 points towards the centre of mass.
+    Two moments about the origin must be the same double, and the centre of mass must lie on the
+    third axis: to the last bit where principal axes and body axes coincide up to order and sign,
+    else to the rounding of the turn between them.
+
+    Returns
+    -------
+    axis : int
+        0, 1 or 2: the principal axis that is e3; it points towards the centre of mass.
+    frame : quaternion
+        It turns the top's axes into the body's.
+    The result is None where the body is not symmetric.
     """
-    moments, axes, center = body.about_origin.moments, body.about_origin.axes, body.center_of_mass
+    moments, axes = body.about_origin.moments, body.about_origin.axes
+    center = body.center_of_mass
     distance = hypot3(*center)
     if moments[0] == moments[1] == moments[2]:
-        return 2, _turn_to(*(component / distance for component in center)) if distance > 0.0 else bodies.IDENTITY
+        if distance > 0.0:
+            return 2, _turn_to(*(component / distance for component in center))
+        return 2, bodies.IDENTITY
     local = rotate_back(*axes, *center)
     slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else bodies.ULPS * distance
-    for k, order in enumerate(((0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY)):
+    orders = (0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY
+    for k, order in enumerate(orders):
         i, j = (k + 1) % 3, (k + 2) % 3
         if moments[i] == moments[j] and max(abs(local[i]), abs(local[j])) <= slack:
             upside_down = (1.0, 0.0, 0.0, 0.0) if local[k] < 0.0 else bodies.IDENTITY
@@ -91,133 +144,131 @@ def symmetry_axis(body):
 
 def _turn_to(x, y, z):
     """Return a quaternion that turns the third axis into the unit vector (x, y, z)."""
-    if z < 0.0:
-        return multiply(*normalised(y, -x, 0.0, 1.0 - z), 1.0, 0.0, 0.0, 0.0)      # -z into it, after z into -z
+    if z < 0.0:    # -z into it, after z into -z
+        return multiply(*normalised(y, -x, 0.0, 1.0 - z), 1.0, 0.0, 0.0, 0.0)
     return normalised(-y, x, 0.0, 1.0 + z)
 
 
 def parameters(scene):
-    """Return the numbers of the scene, shape (13,): layout above."""
+    """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     body, gravity = scene.body, scene.effect('gravity')
     axis, frame = symmetry_axis(body)
-    I1, I3 = Fraction(body.about_origin.moments[(axis + 1) % 3]), Fraction(body.about_origin.moments[axis])
+    I1 = Fraction(body.about_origin.moments[(axis + 1) % 3])
+    I3 = Fraction(body.about_origin.moments[axis])
     g, arm = gravity.g if gravity else 0.0, hypot3(*body.center_of_mass)
     pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
-    return np.array([body.mass, g, arm, *pair_of(pull), *pair_of(I3 / I1), *pair_of((I1 - I3) / I1), *frame])
+    numbers = np.zeros(PARAMETER_SIZE)
+    PARAMETERS.store(numbers, Parameters(
+        body.mass, g, arm, pair_of(pull), pair_of(I3 / I1), pair_of((I1 - I3) / I1), frame))
+    return numbers
 
 
 @compiled
-def anchor(parameters, start, anchor):
+def anchor(parameters, start, out):
     """Fill the anchor from the state `start`."""
-    fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
-    x, y, z, w = multiply(start[1], start[2], start[3], start[4], fx, fy, fz, fw)
-    omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, start[5], start[6], start[7])
-    anchor_nutation(w, z, y, -x, omega_2, -omega_1, multiply_double(parameters[RATIO], parameters[RATIO + 1], omega_3),
-                    pair_at(parameters, PULL), multiply_double(parameters[EXCESS], parameters[EXCESS + 1], omega_3), anchor)
-    anchor[TIME], anchor[SPIN] = start[0], omega_3
-    anchor[TOP_FRAME], anchor[TOP_FRAME + 1], anchor[TOP_FRAME + 2], anchor[TOP_FRAME + 3] = fx, fy, fz, fw
-    anchor[PIVOT], anchor[PIVOT + 1], anchor[PIVOT + 2] = start[8], start[9], start[10]
+    p, begin = load_parameters(parameters), load_state(start)
+    x, y, z, w = multiply(*begin.orientation, *p.frame)
+    omega_1, omega_2, omega_3 = rotate_back(*p.frame, *begin.angular_velocity)
+    anchor_nutation(Klein((w, z), (y, -x), (omega_2, -omega_1)),
+                    multiply_double(p.ratio[0], p.ratio[1], omega_3), p.pull,
+                    multiply_double(p.excess[0], p.excess[1], omega_3), out)
+    store_steady(out, Steady(begin.time, omega_3, p.frame, begin.position))
 
 
 @compiled_inline
-def _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im):
-    """Return quaternion and angular velocity of the body from a, b, omega_c; the norm is 1 up to rounding, which is taken out."""
-    fx, fy, fz, fw = c[TOP_FRAME], c[TOP_FRAME + 1], c[TOP_FRAME + 2], c[TOP_FRAME + 3]
+def _state_of(steady, time, klein):
+    """Return the state of a Klein; its norm is 1 up to rounding, which is taken out."""
+    (a_re, a_im), (b_re, b_im), (o_re, o_im) = klein
+    fx, fy, fz, fw = steady.frame
     # summed near 0, where rounding has no side
-    excess = ((a_re * a_re - 0.25) + (a_im * a_im - 0.25)) + ((b_re * b_re - 0.25) + (b_im * b_im - 0.25))
+    excess = (((a_re * a_re - 0.25) + (a_im * a_im - 0.25))
+              + ((b_re * b_re - 0.25) + (b_im * b_im - 0.25)))
     scale = 1.0 - 0.5 * excess
-    x, y, z, w = multiply(scale * -b_im, scale * b_re, scale * a_im, scale * a_re, -fx, -fy, -fz, fw)
-    wx, wy, wz = rotate(fx, fy, fz, fw, -o_im, o_re, c[SPIN])
-    return x, y, z, w, wx, wy, wz
+    q = multiply(scale * -b_im, scale * b_re, scale * a_im, scale * a_re, -fx, -fy, -fz, fw)
+    omega = rotate(fx, fy, fz, fw, -o_im, o_re, steady.spin)
+    return StateView(time, q, omega, steady.pivot, NOWHERE)
 
 
 @compiled
-def state(c, time, out):
-    """Fill out with the state (14 doubles) at a time before or after the anchor c."""
-    elapsed, elapsed_low = two_sum(time, -c[TIME])
-    a_re, a_im, b_re, b_im, o_re, o_im = functions(c, elapsed, elapsed_low)
-    out[0] = time
-    out[1], out[2], out[3], out[4], out[5], out[6], out[7] = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
-    out[8], out[9], out[10] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
-    out[11], out[12], out[13] = 0.0, 0.0, 0.0
+def state(anchor, time, out):
+    """Fill out with the state at a time before or after the anchor."""
+    steady = load_steady(anchor)
+    klein = functions(anchor, two_sum(time, -steady.start))
+    store_state(out, _state_of(steady, time, klein))
 
 
 @compiled
-def fill_columns(c, times, columns):
-    """Fill columns, BLOCK times, BLOCK times x, ..., with up to BLOCK states: the operations of `state`, arranged to become vector code."""
-    b = BLOCK
-    if c[IS_HYPERBOLIC] == 0.0:
+def fill_columns(anchor, times, columns):
+    """Fill columns with up to BLOCK states: the operations of `state`, arranged as vector code."""
+    course, steady = load_course(anchor), load_steady(anchor)
+    if course.form == CIRCULAR:
+        series = load_circular(anchor)
         for k in range(len(times)):
-            elapsed, elapsed_low = two_sum(times[k], -c[TIME])
-            a_re, a_im, b_re, b_im, o_re, o_im = circular_functions(c, elapsed, elapsed_low)
-            x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
-            _keep(columns, k, times[k], x, y, z, w, wx, wy, wz)
+            klein = circular_functions(course, series, two_sum(times[k], -steady.start))
+            store_row(columns, _state_of(steady, times[k], klein), k)
     else:
+        series = load_hyperbolic(anchor)
         for k in range(len(times)):
-            elapsed, elapsed_low = two_sum(times[k], -c[TIME])
-            a_re, a_im, b_re, b_im, o_re, o_im = hyperbolic_functions(c, elapsed, elapsed_low)
-            x, y, z, w, wx, wy, wz = _attitude_and_omega(c, a_re, a_im, b_re, b_im, o_re, o_im)
-            _keep(columns, k, times[k], x, y, z, w, wx, wy, wz)
-    for k in range(len(times)):
-        columns[8 * b + k], columns[9 * b + k], columns[10 * b + k] = c[PIVOT], c[PIVOT + 1], c[PIVOT + 2]
-        columns[11 * b + k], columns[12 * b + k], columns[13 * b + k] = 0.0, 0.0, 0.0
-
-
-@compiled_inline
-def _keep(columns, k, time, x, y, z, w, wx, wy, wz):
-    b = BLOCK
-    columns[k], columns[b + k], columns[2 * b + k], columns[3 * b + k], columns[4 * b + k] = time, x, y, z, w
-    columns[5 * b + k], columns[6 * b + k], columns[7 * b + k] = wx, wy, wz
+            klein = hyperbolic_functions(course, series, two_sum(times[k], -steady.start))
+            store_row(columns, _state_of(steady, times[k], klein), k)
 
 
 @compiled
-def next_event(c, after):
-    """Return the time of the first turning point of beta later than `after`, infinite if there is none, and the code 0."""
-    if c[NUTATES] == 0.0:
+def next_event(anchor, after):
+    """Return the time of the first turning point after `after`, infinite if none is, and 0."""
+    if load_course(anchor).nutates == 0.0:
         return math.inf, 0
-    index = turning_index(c, after) - 1.0
+    index = turning_index(anchor, after) - 1.0
     if not abs(index) < COUNTABLE:
         return math.inf, 0
-    time = turning_time(c, index)
+    time = turning_time(anchor, index)
     while time <= after:
         index += 1.0
-        if turning_time(c, index) == math.inf:
+        if turning_time(anchor, index) == math.inf:
             return math.inf, 0
-        time = turning_time(c, index)
+        time = turning_time(anchor, index)
     return time, 0
 
 
 @compiled
-def turning_index(c, time):
-    """Return the number (a whole float) of the last turning point of beta at or before a time; even: lowest, odd: highest position of e3.
+def turning_index(anchor, time):
+    """Return the number (a whole float) of the last turning point of beta at or before a time.
 
-    The turning points in (t1, t2] are those after turning_index(t1) up to turning_index(t2). In steady precession the number never changes.
+    Even numbers are lowest, odd ones highest positions of e3. The turning points in (t1, t2] are
+    those after turning_index(t1) up to turning_index(t2). In steady precession the number never
+    changes.
     """
-    return math.floor(2.0 * (c[START] + c[RATE] * (time - c[TIME]))) + c[PARITY]
+    course, start = load_course(anchor), load_start(anchor)
+    turns = course.begin.start + course.rate[0] * (time - start)
+    return math.floor(2.0 * turns) + course.begin.parity
 
 
 @compiled
-def turning_time(c, index):
-    """Return the time (s) of a turning point of beta by its number, infinite if the motion has no such one."""
-    turns = 0.5 * (index - c[PARITY])
-    if c[RATE] == 0.0 or (turns != 0.0 and c[STRETCH] >= NEVER):
+def turning_time(anchor, index):
+    """Return the time (s) of a turning point of beta by its number, infinite if there is none."""
+    course, start = load_course(anchor), load_start(anchor)
+    begin, rate = course.begin, course.rate[0]
+    turns = 0.5 * (index - begin.parity)
+    if rate == 0.0 or (turns != 0.0 and begin.stretch >= NEVER):
         return math.inf
-    return c[TIME] + (turns - c[START]) / c[RATE]
+    return start + (turns - begin.start) / rate
 
 
 @compiled
 def reaction(parameters, state, out):
-    """Fill out, shape (3,), with the force of the pivot on the body (N, world axes): M (acceleration of the centre of mass + g z).
+    """Fill out, shape (3,), with the force of the pivot on the body (N, world axes).
 
-    There is no couple. c = h e3, c'' = h (omega' x e3 + omega x (omega x e3)), omega' by Euler's equations.
+    It is M (acceleration of the centre of mass + g z), without a couple: c = h e3 and
+    c'' = h (omega' x e3 + omega x (omega x e3)), with omega' by Euler's equations.
     """
-    fx, fy, fz, fw = parameters[FRAME], parameters[FRAME + 1], parameters[FRAME + 2], parameters[FRAME + 3]
-    x, y, z, w = multiply(state[1], state[2], state[3], state[4], fx, fy, fz, fw)
-    omega_1, omega_2, omega_3 = rotate_back(fx, fy, fz, fw, state[5], state[6], state[7])
-    gamma_1, gamma_2, _ = rotate_back(x, y, z, w, 0.0, 0.0, 1.0)
-    rise_1 = parameters[EXCESS] * omega_2 * omega_3 + parameters[PULL] * gamma_2
-    rise_2 = -parameters[EXCESS] * omega_1 * omega_3 - parameters[PULL] * gamma_1
-    push = parameters[MASS] * parameters[ARM]
-    force_x, force_y, force_z = rotate(x, y, z, w, push * (rise_2 + omega_1 * omega_3), push * (omega_2 * omega_3 - rise_1),
-                                       -push * (omega_1 * omega_1 + omega_2 * omega_2))
-    out[0], out[1], out[2] = force_x, force_y, force_z + parameters[MASS] * parameters[GRAVITY]
+    p, now = load_parameters(parameters), load_state(state)
+    q = multiply(*now.orientation, *p.frame)
+    omega_1, omega_2, omega_3 = rotate_back(*p.frame, *now.angular_velocity)
+    gamma_1, gamma_2, _ = rotate_back(*q, 0.0, 0.0, 1.0)
+    excess, pull = p.excess[0], p.pull[0]
+    rise_1 = excess * omega_2 * omega_3 + pull * gamma_2
+    rise_2 = -excess * omega_1 * omega_3 - pull * gamma_1
+    push = p.mass * p.arm
+    x, y, z = rotate(*q, push * (rise_2 + omega_1 * omega_3), push * (omega_2 * omega_3 - rise_1),
+                     -push * (omega_1 * omega_1 + omega_2 * omega_2))
+    out[0], out[1], out[2] = x, y, z + p.mass * p.g
