@@ -11,7 +11,7 @@ time s that goes slower and slower,
     s = (1 - exp(-r t))/r,     omega(t) = exp(-r t) Omega(s),     q(t) = Q(s),
 
 Q and Omega are the torque-free rotation (free_body/rotation.py) from the same start. So a sphere
-under angular drag, and a rod or a point mass that drags at its end, are free rotations that come to
+under angular drag, and a rod or a point mass that drags at its end, are free rotations coming to
 rest after a finite angle. s is a pair of doubles, as the time is.
 
 The event is the `flip` of free_body.py.

@@ -9,9 +9,9 @@ Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third axis k, in 
     omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
 
 It is summed up along the closed form, stretch by stretch, and given to the body as a kick at the
-begin of each stretch. What a kick does until the horizon the closed form says itself, so the way in
-which a motion magnifies or averages out is in it. The changes of attitude by all kicks are added as
-vectors, because they are small; TWICE their largest sum counts as the error.
+start of each stretch. The closed form itself says what a kick does until the horizon, so the way
+in which a motion magnifies or averages out is included. The changes of attitude by all kicks are
+added as vectors, because they are small; TWICE their largest sum counts as the error.
 """
 
 import dataclasses
@@ -135,7 +135,7 @@ def _between(p, q):
 
 
 def _made_equal(moments):
-    """Return the moments with those that lie within NEARLY of each other replaced by their mean."""
+    """Return the moments, with those that lie within NEARLY of each other made equal."""
     ordered = sorted(moments)
     groups = [[ordered[0]]]
     for before, moment in pairwise(ordered):

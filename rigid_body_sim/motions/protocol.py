@@ -17,8 +17,8 @@ from rigid_body_sim.scene.scene import Scene
 class Motion(Protocol):
     """A motion in closed form over any time, from its anchor: the state of the last change.
 
-    `state`, `anchor`, `fill_columns`, `next_event` and `exchanged` are compiled kernels. States are
-    those of scene/state.py (14 doubles), times are simulated seconds.
+    `state`, `anchor`, `fill_columns`, `next_event` and `exchanged` are compiled kernels. States
+    are those of scene/state.py (14 doubles), times are simulated seconds.
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class Motion(Protocol):
     def absorbs(self, scene: Scene) -> bool:
         """Return whether the motion solves the scene whole: constraint, effects and body.
 
-        The match is by what acts (``scene.acts_only``, ``mechanics.pulls.total_pull``), not by what
-        the scene lists. Effects that are impulses, such as strikes, need no mention: after each
-        the motion is anchored anew.
+        The match is by what acts (``scene.acts_only``, ``mechanics.pulls.total_pull``), not by
+        what the scene lists. Effects that are impulses, such as strikes, need no mention: after
+        each the motion is anchored anew.
         """
         ...
 

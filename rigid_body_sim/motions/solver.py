@@ -62,7 +62,7 @@ class Exact:
         return self.motion.takes is None or self.motion.takes(self._solved, vector)
 
     def start(self, vector):
-        """Anchor the motion at a state (14 doubles, its time included); return a solver from it."""
+        """Anchor the motion at a state (14 doubles, with its time); return a solver from it."""
         started = object.__new__(Exact)
         started.__dict__.update(self.__dict__)
         started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
@@ -89,7 +89,7 @@ class Exact:
         if len(times) <= AT_ONCE:
             states(anchor, times, out)
         else:
-            for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between two calls
+            for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between calls
                 look()
                 states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
         if len(times) and times.min() < self._start[TIME]:
@@ -116,7 +116,7 @@ class Exact:
             _refuse_beyond(out.reshape(-1, out.shape[-1]))
 
     def exchanged(self, time):
-        """Return the ledger's entries from the anchor to a time, shape (5,) (mechanics/ledger.py)."""
+        """Return the ledger's entries from anchor to time, shape (5,) (mechanics/ledger.py)."""
         out = np.zeros(ENTRIES_SIZE)
         if self.motion.exchanged is not None:
             self.motion.exchanged(self.anchor, time, out)

@@ -1,8 +1,10 @@
-"""Bodies: shapes, composites and given tensors -> mass, centre of mass, principal moments and axes.
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies: mass, centre of mass, principal moments and axes of shapes, composites and tensors.
 
-Symbols: M mass (kg), I1, I2, I3 principal moments (kg m^2). Every shape is placed with its centre of mass at its own origin and its symmetry
-axis, where it has one, along z. Moments of the shapes: notes, section "Some inertia tensors"; cone, ellipsoid and torus: Landau and Lifshitz,
-Mechanics, section 32.
+Symbols: M mass (kg), I1, I2, I3 principal moments (kg m^2). Every shape is placed with its centre
+of mass at its own origin and its symmetry axis, where it has one, along z. Moments of the shapes:
+notes, section "Some inertia tensors"; cone, ellipsoid and torus: Landau and Lifshitz, Mechanics,
+section 32.
 """
 
 import math
@@ -28,16 +30,22 @@ SMALLEST_MASS = 1e-75     # kg
 PLANES = (0, 1), (0, 2), (1, 2)
 DIGITS, SWEEPS = 40, 20    # of the eigenvectors; four sweeps do for most tensors
 NEGLIGIBLE = Decimal('1e-70')    # square of an entry beside the product of the diagonal ones
-ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of what the user typed
+ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
 
 
 def rod(M, length):
-    """Return the moments of a thin rod along z about its middle; about its end it is M length^2 / 3 (parallel axis)."""
+    """Return the moments of a thin rod along z about its middle.
+
+    About its end it is M length^2 / 3 (parallel axis).
+    """
     return M * length * length / 12.0, M * length * length / 12.0, 0.0
 
 
 def lamina(M, width, height):
-    """Return the moments of a thin rectangle in the xy plane, width along x, height along y; I3 = I1 + I2 (perpendicular axes)."""
+    """Return the moments of a thin rectangle in the xy plane, width along x, height along y.
+
+    I3 = I1 + I2 (perpendicular axes).
+    """
     I1, I2 = M * height * height / 12.0, M * width * width / 12.0
     return I1, I2, I1 + I2
 
@@ -75,7 +83,10 @@ def cylinder(M, radius, length):
 
 
 def cone(M, radius, height):
-    """Return the moments of a homogeneous cone along z about its centre of mass, a quarter of the height above the base."""
+    """Return the moments of a homogeneous cone along z about its centre of mass.
+
+    The centre of mass lies a quarter of the height above the base.
+    """
     across = 3.0 * M * (radius * radius + height * height / 4.0) / 20.0
     return across, across, 3.0 * M * radius * radius / 10.0
 
@@ -87,12 +98,16 @@ def ellipsoid(M, semi_axes):
 
 
 def torus(M, radius, tube):
-    """Return the moments of a homogeneous torus about z: radius to the middle of the tube, tube its own radius."""
+    """Return the moments of a homogeneous torus about z.
+
+    `radius` is that of the circle in the middle of the tube, `tube` the radius of the tube.
+    """
     across = M * (radius * radius / 2.0 + 5.0 * tube * tube / 8.0)
     return across, across, M * (radius * radius + 3.0 * tube * tube / 4.0)
 
 
-SHAPES = {shape.__name__: shape for shape in (rod, lamina, hoop, disk, spherical_shell, solid_sphere, box, cylinder, cone, ellipsoid, torus)}
+SHAPES = {shape.__name__: shape for shape in (
+    rod, lamina, hoop, disk, spherical_shell, solid_sphere, box, cylinder, cone, ellipsoid, torus)}
 SPHERES = ('spherical_shell', 'solid_sphere')
 EXTENTS = {
     'rod': lambda length: length,
@@ -104,7 +119,8 @@ EXTENTS = {
     'box': lambda size: size[0] * size[1] * size[2],
     'cylinder': lambda radius, length: math.pi * radius * radius * length,
     'cone': lambda radius, height: math.pi / 3.0 * radius * radius * height,
-    'ellipsoid': lambda semi_axes: 4.0 * math.pi / 3.0 * semi_axes[0] * semi_axes[1] * semi_axes[2],
+    'ellipsoid':
+        lambda semi_axes: 4.0 * math.pi / 3.0 * semi_axes[0] * semi_axes[1] * semi_axes[2],
     'torus': lambda radius, tube: 2.0 * math.pi * math.pi * radius * tube * tube,
 }
 """What a density is multiplied by: the volume (m^3) of a solid, the area (m^2) of a thin body, the
@@ -113,7 +129,7 @@ length (m) of a rod or a hoop."""
 
 @dataclass(frozen=True)
 class Inertia:
-    """An inertia tensor by its principal moments (kg m^2) and the quaternion that turns principal axes into body axes."""
+    """An inertia tensor: principal moments (kg m^2) and the turn from principal to body axes."""
 
     moments: tuple
     axes: tuple = IDENTITY
@@ -122,8 +138,9 @@ class Inertia:
     def of_matrix(cls, matrix):
         """Diagonalise a symmetric 3 x 3 tensor.
 
-        Among all orders and signs of the principal axes the ones nearest to the body axes are taken; where moments are equal, so is the
-        choice within their plane. A diagonal tensor is taken as it stands, to the last bit.
+        The order and the signs of the principal axes are those nearest to the body axes; where
+        moments are equal, so is the choice within their plane. A diagonal tensor is taken as it
+        stands, to the last bit.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
@@ -141,7 +158,7 @@ class Inertia:
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body in its own axes, which are the user's: origin and axes as the scene file names them.
+    """A rigid body in the user's axes: origin and axes are those of the scene file.
 
     Attributes
     ----------
@@ -150,7 +167,8 @@ class Body:
     center_of_mass : tuple of 3 floats
         From the body's origin, in body axes, m.
     about_center, about_origin : Inertia
-        About the centre of mass and about the body's origin; the one that was given is kept to the last bit.
+        About the centre of mass and about the body's origin; the one that was given is kept to the
+        last bit.
     radius : float or None
         Of a sphere, m; None for every other body.
     surface : Surface or None
@@ -166,7 +184,10 @@ class Body:
 
 
 def moved(inertia, M, shift, sign):
-    """Return the tensor moved by the parallel-axis theorem: I + sign M (shift^2 1 - shift shift^T), sign +1 away from the centre of mass."""
+    """Return the tensor moved by the parallel-axis theorem.
+
+    It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass.
+    """
     if not any(shift):
         return inertia
     return Inertia.of_matrix(inertia.matrix + sign * M * _of_point(shift))
@@ -185,7 +206,8 @@ def _turned(tensor, q):
     return np.array([[dot(row, other) for other in R] for row in half])
 
 
-def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='center_of_mass', radius=None, where='body'):
+def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='center_of_mass',
+              radius=None, where='body'):
     """Return the body of a given tensor.
 
     Parameters
@@ -202,7 +224,8 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     Raises
     ------
     BadInput
-        Mass not positive, tensor not symmetric, a negative moment, a broken triangle inequality about the centre of mass.
+        If the mass is not positive, the tensor not symmetric, a moment negative, or the triangle
+        inequality about the centre of mass broken.
     """
     if not M > 0.0:
         raise BadInput(f'{where}.mass', f'got {M!r}', 'a mass is positive, in kg')
@@ -212,7 +235,8 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     if tensor.shape == (3,):
         tensor = np.diag(tensor)
     if not np.array_equal(tensor, tensor.T, equal_nan=True):
-        raise BadInput(f'{where}.inertia', f'got {tensor.tolist()}, which is not symmetric', 'a tensor equals its transpose')
+        raise BadInput(f'{where}.inertia', f'got {tensor.tolist()}, which is not symmetric',
+                       'a tensor equals its transpose')
     center = tuple(float(x) for x in center_of_mass)
     refuse_beyond(max(float(np.abs(tensor).max()), M * square_of(center)), where)
     given = Inertia.of_matrix(tensor)
@@ -231,28 +255,34 @@ def square_of(arm):
 
 
 def refuse_beyond(moment, where):
-    """Refuse a moment of inertia (kg m^2) that is not finite or so large that its square is not."""
+    """Refuse a moment of inertia (kg m^2) that is not finite, or whose square is not."""
     if not moment <= LARGEST_MOMENT:
-        raise BadInput(where, f'a moment of inertia of {moment!r} kg m^2, about the middle or where it is held', f'at most {LARGEST_MOMENT:g}')
+        raise BadInput(where, f'a moment of inertia of {moment!r} kg m^2, about the middle or '
+                       'where it is held', f'at most {LARGEST_MOMENT:g}')
 
 
 def _check_moments(body, given, where):
-    """Refuse moments that no mass distribution has; rounding is allowed in proportion to the tensor that was given."""
+    """Refuse moments that no mass distribution has, up to the rounding of the `given` tensor."""
     slack = ULPS * max(abs(moment) for moment in given.moments)
     moments = body.about_center.moments
-    point = 'about the centre of mass' + ('' if given is body.about_center else ', moved there by the parallel-axis theorem')
+    point = 'about the centre of mass'
+    if given is not body.about_center:
+        point += ', moved there by the parallel-axis theorem'
     for k, moment in enumerate(moments):
         others = moments[0] + moments[1] + moments[2] - moment
         if moment < -slack:
-            raise BadInput(f'{where}.inertia', f'moment {moment!r} {point} is negative', 'moments of inertia are zero or positive')
+            raise BadInput(f'{where}.inertia', f'moment {moment!r} {point} is negative',
+                           'moments of inertia are zero or positive')
         if moment > others + slack:
-            raise BadInput(f'{where}.inertia', f'moments {list(moments)} {point} break the triangle inequality (I{k + 1} = {moment!r})',
+            raise BadInput(f'{where}.inertia', f'moments {list(moments)} {point} break the '
+                           f'triangle inequality (I{k + 1} = {moment!r})',
                            f'I{k + 1} may be at most the sum of the other two, {others!r}')
         if 0.0 < moment < SMALLEST_MOMENT:
             raise BadInput(f'{where}.inertia', f'moment {moment!r} {point} is too small',
                            f'zero, or at least {SMALLEST_MOMENT:g}')
-    if not any(moment > 0.0 for moment in moments) and not any(moment > 0.0 for moment in body.about_origin.moments):
-        raise BadInput(f'{where}.inertia', f'got {list(moments)}', 'at least two moments are positive')
+    if not any(moment > 0.0 for moment in (*moments, *body.about_origin.moments)):
+        raise BadInput(f'{where}.inertia', f'got {list(moments)}',
+                       'at least two moments are positive')
 
 
 def of_shape(name, M, dimensions, center_of_mass=(0.0, 0.0, 0.0), where='body'):
@@ -277,8 +307,8 @@ def composite(parts, where='body'):
     Parameters
     ----------
     parts : sequence of (Body, at, orientation)
-        `at`: the part's origin in the composite's axes, m; `orientation`: the quaternion that turns
-        part axes into the composite's. A part may be a :func:`hole`.
+        `at`: the part's origin in the composite's axes, m; `orientation`: the quaternion that
+        turns part axes into the composite's. A part may be a :func:`hole`.
     where : str
         Place for the error line.
 
@@ -313,7 +343,7 @@ def _about(center, parts, centers):
 
 
 def eigenvectors(matrix):
-    """Return the eigenvalues of a symmetric 3 x 3 matrix and its eigenvectors, by Jacobi rotations with 40 digits.
+    """Return the eigenvalues and eigenvectors of a symmetric 3 x 3 matrix, with 40 digits.
 
     Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR
     iteration behind LAPACK does not (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
@@ -326,11 +356,12 @@ def eigenvectors(matrix):
             turns = [_turn_away(a, vectors, i, j) for i, j in PLANES]
             if not any(turns):
                 break
-        return [float(a[k][k]) for k in range(3)], [[float(x) for x in vector] for vector in vectors]
+        return ([float(a[k][k]) for k in range(3)],
+                [[float(x) for x in vector] for vector in vectors])
 
 
 def _turn_away(a, vectors, i, j):
-    """Make a[i][j] zero by a rotation in the plane of two axes; return whether there was anything to do.
+    """Make a[i][j] zero by a rotation in the plane of two axes; return whether it was not.
 
     Source: Golub and Van Loan, Matrix Computations, section 8.5.2 (symmetric Schur decomposition).
     """
@@ -352,17 +383,23 @@ def _turn_away(a, vectors, i, j):
 
 
 def _nearest_to_the_body(moments, vectors):
-    """Return the moments and the axes (right-handed) in the order and with the signs that lie nearest to the body axes."""
+    """Return the moments and the axes (right-handed) that lie nearest to the body axes.
+
+    All orders and signs of the axes are compared.
+    """
+    def turned(order, signs):
+        return [[sign * entry for entry in vectors[k]]
+                for k, sign in zip(order, signs, strict=True)]
+
     def trace(choice):
-        order, signs = choice
-        x, y, z = ([sign * entry for entry in vectors[k]] for k, sign in zip(order, signs, strict=True))
+        x, y, z = turned(*choice)
         return x[0] + y[1] + z[2] if dot(cross(x, y), z) > 0.0 else -math.inf
-    order, signs = max(((order, signs) for order in permutations(range(3)) for signs in product((1.0, -1.0), repeat=3)), key=trace)
-    return [moments[k] for k in order], [[sign * entry for entry in vectors[k]] for k, sign in zip(order, signs, strict=True)]
+    order, signs = max(product(permutations(range(3)), product((1.0, -1.0), repeat=3)), key=trace)
+    return [moments[k] for k in order], turned(order, signs)
 
 
 def _nearest_where_equal(moments, axes):
-    """Make moments that agree to rounding equal, and turn their axes within their plane to the body axes."""
+    """Make moments equal that agree to rounding, and turn their axes towards the body axes."""
     slack = ULPS * max(moments)
     equal = [(i, j) for i, j in PLANES if abs(moments[i] - moments[j]) <= slack]
     if len(equal) > 1:

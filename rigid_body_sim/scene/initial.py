@@ -66,7 +66,8 @@ class Start:
         """
         orientation = _orientation(mapping, where)
         omega = _omega(mapping, orientation, inertia, where)
-        position, velocity = (mapping.get(key, (0.0, 0.0, 0.0)) for key in ('position', 'velocity'))
+        position, velocity = (mapping.get(key, (0.0, 0.0, 0.0))
+                              for key in ('position', 'velocity'))
         return cls(mapping, orientation, *(tuple(map(float, vector))
                                            for vector in (omega, position, velocity)))
 

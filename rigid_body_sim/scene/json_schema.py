@@ -33,7 +33,7 @@ def json_schema():
 
 
 def _one_key(name, settings):
-    """Return the schema of a mapping with one key; its settings may be absent if none is needed."""
+    """Return the schema of a mapping with one key; its settings may be absent if none need be."""
     value = settings if settings.get('required') else {'anyOf': [settings, NOTHING]}
     return {'type': 'object', 'properties': {name: value}, 'required': [name],
             'additionalProperties': False}

@@ -63,7 +63,8 @@ def scene_schema():
     return mapping_of(
         ['scene', 'body', 'constraint', 'effects', 'initial'],
         scene={'type': 'string', 'pattern': r'^[A-Za-z][A-Za-z0-9_]{0,63}$'},
-        about={'type': 'string'}, parameters=PARAMETERS, body=BODY, constraint={'type': ['string', 'object']},
+        about={'type': 'string'}, parameters=PARAMETERS, body=BODY,
+        constraint={'type': ['string', 'object']},
         effects={'type': 'array', 'maxItems': 32}, initial=mapping_of(**initial),
         commands={'enum': ['accept', 'refuse']})
 
@@ -242,7 +243,8 @@ def _inert_body(mapping, where):
     if way == 'shape':
         for key in ('inertia_about', 'radius'):
             if key in mapping:
-                raise BadInput(f'{where}.{key}', 'stands beside shape', 'the shape already says it')
+                raise BadInput(f'{where}.{key}', 'stands beside shape',
+                               'the shape already says it')
         (name, dimensions), = mapping['shape'].items()
         return bodies.of_shape(name, M, dimensions, center, where)
     body = bodies.make_body(M, _tensor(mapping['inertia'], where), center,

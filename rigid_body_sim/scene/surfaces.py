@@ -49,8 +49,8 @@ class Surface:
     kind : str
         ``sphere``, ``ellipsoid``, ``torus`` or ``disk``; torus and disk lie about body axis z.
     size : tuple of 3 floats
-        m: the radius; the semi-axes; the radius to the middle of the tube and that of the tube; the
-        radius of the disk. What is left over is 0.
+        m: the radius; the semi-axes; the radius to the middle of the tube and that of the tube;
+        the radius of the disk. What is left over is 0.
     center : tuple of 3 floats
         The middle, from the body's origin, body axes, m.
     """

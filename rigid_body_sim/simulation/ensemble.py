@@ -72,8 +72,9 @@ class Ensemble(Sequence):
 
 
 def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto',
-             accuracy: float = 1e-12, *, overrides: Mapping | None = None, columns: Sequence[str] | None = None, out=None,
-             events: bool = False, memory: float | None = None, progress: bool = False,
+             accuracy: float = 1e-12, *, overrides: Mapping | None = None,
+             columns: Sequence[str] | None = None, out=None, events: bool = False,
+             memory: float | None = None, progress: bool = False,
              horizon: float = HORIZON) -> Ensemble:
     """Return the states of many bodies at many times.
 
@@ -87,8 +88,9 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     times : array (n,)
         s, in any order.
     integrator, accuracy
-        As for Simulation; or a Choice for this scene, which was made before. In closed form and by most methods each body gets the bits that it has
-        alone; `taylor` takes eight bodies at once, with other steps to the same accuracy.
+        As for Simulation; or a Choice for this scene, which was made before. In closed form and by
+        most methods each body gets the bits that it has alone; `taylor` takes eight bodies at
+        once, with other steps to the same accuracy.
     overrides : mapping of str to a value for each body, optional
         ``{'body.mass': masses, 'gravity.g': [9.81, 1.62]}``: parameters that differ from body to
         body. Each combination is a scene of its own: it is checked, and a method is chosen for it

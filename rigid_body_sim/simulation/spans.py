@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spans: what a simulation is made of between two commands or strikes, and the events that they tell of."""
+"""Spans, stretches of the motion between two commands or strikes, and their events."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened: at which tick (the first one at or after it), when (s), what, and its numbers."""
+    """Something that happened: its tick (the first at or after it), time (s), name and values."""
 
     tick: int
     time: float
@@ -15,11 +15,11 @@ class Event:
 
 
 class Span:
-    """A stretch of the motion that one solver covers, from its start to the next impulse, hold or strike.
+    """A stretch of the motion that one solver covers, up to the next impulse, hold or strike.
 
-    `given` is what commands, strikes and effects have exchanged with the body up to the start: work (J), angular impulse about the point of
-    reference (world axes, N m s), dissipated energy (J). `start` is the state (14 doubles) from
-    which the solver was started.
+    `given` is what commands, strikes and effects have exchanged with the body up to the start:
+    work (J), angular impulse about the point of reference (world axes, N m s), dissipated energy
+    (J). `start` is the state (14 doubles) from which the solver was started.
     """
 
     def __init__(self, time, solver, wrench, strikes, given, start):
@@ -28,8 +28,12 @@ class Span:
         self._told, self._looked_until = [], time
 
     def events(self, after, until, tick):
-        """Return the (time, name, values) after one time (s), which never falls from call to call, and not later than another, in order."""
-        # a solver looks for events once, going forward: what it found beyond `until` in an earlier look is kept
+        """Return the (time, name, values) after one time (s) and not after another, in order.
+
+        `after` never falls from call to call.
+        """
+        # A solver looks for events once, going forward: what an earlier look found beyond `until`
+        # is kept.
         if until > self._looked_until:
             self._told += self.solver.events(self._looked_until, until, tick)
             self._looked_until = until

@@ -52,7 +52,7 @@ def test_states_agree_with_34_digits(name, k):
     state = at(anchor, exact['time'])
     attitude, rate = ((2.0, 1.0) * np.array([distance(state[1:5], exact['orientation']),
                                              distance(state[5:8], exact['angular_velocity'])]))
-    size = math.hypot(*case['angular_velocity'], math.sqrt(parameters[motion.PARAMETERS.part("pull").first]))
+    size = math.hypot(*case['angular_velocity'], math.sqrt(parameters[motion.PARAMETERS.part('pull').first]))
     conditioning = exact['sensitivity'] if name in TURNED else (0.0, 0.0)
     # the worst is 1.2e-15 rad (loops, at 0.1 s: rounding of the doubles themselves is 2e-16), also after 1e6 s, where one ulp on the inputs
     # makes up to 1e-8 rad; of the angular velocity 5e-16 of its size

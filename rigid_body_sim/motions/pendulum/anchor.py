@@ -148,8 +148,8 @@ def parameters(scene):
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         [pair_of(component) for component in n], over_d(side), over_d(down),
-        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r, held.momentum,
-        mass * g / moment))
+        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r,
+        held.momentum, mass * g / moment))
     return numbers
 
 

@@ -14,7 +14,7 @@ from rigid_body_sim.scene.state import State
 
 @dataclass(frozen=True)
 class Free(Constraint):
-    """``constraint: free``. The reference point is the centre of mass, which moves as forces do."""
+    """``constraint: free``. The reference point is the centre of mass, which forces move."""
 
     kind: ClassVar[str] = 'free'
     usage: ClassVar[str] = 'free'

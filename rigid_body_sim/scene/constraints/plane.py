@@ -56,8 +56,8 @@ class Plane(Constraint):
                 raise BadInput(where, 'settings for a ball that has no surface',
                                'give body.surface: {sphere: {radius: ...}} as well')
             raise BadInput(where, 'the body has no smooth surface',
-                           'give body.surface (sphere, ellipsoid, torus or disk): edges, polyhedra '
-                           'and composites without a surface stay out')
+                           'give body.surface (sphere, ellipsoid, torus or disk): edges, '
+                           'polyhedra and composites without a surface stay out')
         if not min(body.about_center.moments) > 1e-9 * max(body.about_center.moments):
             raise BadInput(where, f'moments {list(body.about_center.moments)} about the centre of '
                            'mass', 'three positive moments, none below 1e-9 of the largest')
@@ -83,7 +83,8 @@ class Plane(Constraint):
         above = dot(self.normal, start.position) + depth
         size = max(max(body.surface.size), abs(depth))
         if above < -SINKS * size:
-            raise BadInput(f'{where}.position', f'the lowest point is {-above!r} m below the plane',
+            raise BadInput(f'{where}.position',
+                           f'the lowest point is {-above!r} m below the plane',
                            f'a body on or above it: along the normal at least {-depth!r} m')
         if above < SINKS * size:
             start = start.at(minus(start.position, scaled(above, self.normal)))

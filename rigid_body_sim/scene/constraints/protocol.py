@@ -22,8 +22,8 @@ class Mechanism(enum.IntEnum):
 
     FREE moves and turns in all directions. POINT turns about a point that a bearing holds. AXIS
     turns about an axis that a bearing holds. TABLE is a sphere that rolls or slides on a plane.
-    PLANE is a convex body that flies, slides or rolls over a plane: between impacts a free body for
-    kernels that know nothing of the plane.
+    PLANE is a convex body that flies, slides or rolls over a plane: between impacts a free body
+    for kernels that know nothing of the plane.
     """
 
     FREE = 0

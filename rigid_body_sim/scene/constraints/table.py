@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Table: a balanced sphere on a horizontal plane; its middle stays at the height of the radius.
 
-A body with another surface, or a plane that is inclined or lets bodies bounce, is a Plane (plane.py).
+A body with another surface, or a plane that is inclined or lets bodies bounce, is a Plane
+(plane.py).
 """
 
 from dataclasses import dataclass

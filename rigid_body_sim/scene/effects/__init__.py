@@ -28,8 +28,8 @@ GROUP = 'rigid_body_sim.effects'
 EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
     for effect in (
-        Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation, Drag,
-        Spring, Magnetic, GravityGradient, RollingFriction, AirFilm)}
+        Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation,
+        Drag, Spring, Magnetic, GravityGradient, RollingFriction, AirFilm)}
 
 
 def effect_class(name: str) -> type[Effect] | None:

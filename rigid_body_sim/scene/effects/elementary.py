@@ -13,7 +13,7 @@ from rigid_body_sim.numerics.rotations import rotate, rotate_back
 
 @compiled
 def constant(ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the vector u as it is: a force given in world axes, or a couple given in body axes."""
+    """Return the vector u as it is: a force in world axes, or a couple in body axes."""
     return ux, uy, uz
 
 
@@ -25,14 +25,14 @@ def to_frame(ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
 @compiled
 def held_force(fx, fy, fz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the force F + R u (N, world components), F given in world axes and u in the frame's."""
+    """Return the force F + R u (N, world components) of F in world axes and u in the frame's."""
     ux, uy, uz = rotate(qx, qy, qz, qw, ux, uy, uz)
     return fx + ux, fy + uy, fz + uz
 
 
 @compiled
 def held_torque(tx, ty, tz, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
-    """Return the couple R^T T + u (N m, frame components), T given in world axes and u in the frame's."""
+    """Return the couple R^T T + u (N m, frame components) of T in world axes, u in the frame's."""
     tx, ty, tz = rotate_back(qx, qy, qz, qw, tx, ty, tz)
     return tx + ux, ty + uy, tz + uz
 

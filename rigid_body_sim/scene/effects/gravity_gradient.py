@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gravity gradient: a far body attracts the near side more than the far one, and turns the body."""
+"""Gravity gradient: a far body attracts the near side more than the far side: a torque."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Internal dissipation: heat at constant angular momentum, on the way to rotation about the largest axis.
+"""Internal dissipation: heat at constant L, on the way to rotation about the largest axis.
 
 The double bracket of Bloch, Krishnaprasad, Marsden and Ratiu ("The Euler-Poincare equations and
 double bracket dissipation", Commun. Math. Phys. 175, 1996): with m = I omega in body axes,
@@ -66,7 +66,8 @@ def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     s1, s2, s3 = m1 * m1, m2 * m2, m3 * m3
     most, least = max(I1, I2, I3), min(I1, I2, I3)
     across = (s1 if most > I1 else 0.0) + (s2 if most > I2 else 0.0) + (s3 if most > I3 else 0.0)
-    along = (s1 if least == I1 else 0.0) + (s2 if least == I2 else 0.0) + (s3 if least == I3 else 0.0)
+    along = (
+        (s1 if least == I1 else 0.0) + (s2 if least == I2 else 0.0) + (s3 if least == I3 else 0.0))
     ended = ENDED * ENDED * (s1 + s2 + s3)
     free = c * (across / (across + ended)) if across > 0.0 else 0.0
     held = c * (along / (along + ended)) if along > 0.0 else 0.0

@@ -39,7 +39,7 @@ class Acting:
         Where the ledger writes the power: ``potential`` (the view `potential` has the energy),
         ``work`` (done on the body) or ``heat`` (taken from it).
     in_field : bool
-        True if it depends on time, on place, or on the velocity of a free body that no force moves.
+        True if it depends on time, place, or the velocity of a free body that no force moves.
         The kernel then has four more arguments ``t, x, y, z``: the time (s) and the place of the
         point of reference (world, m).
     """

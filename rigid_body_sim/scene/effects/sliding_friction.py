@@ -62,5 +62,5 @@ class SlidingFriction(Effect):
         bound = painleve_bound(body)
         if self.mu < bound:
             return []
-        return [f"sliding_friction: mu = {self.mu!r} reaches mu_P = {bound:.6g}: in some attitude a "
-                "slip meets Painleve's paradox, and a run that meets it ends there"]
+        return [f"sliding_friction: mu = {self.mu!r} reaches mu_P = {bound:.6g}: in some attitude "
+                "a slip meets Painleve's paradox, and a run that meets it ends there"]

@@ -35,7 +35,8 @@ class Torque(Effect):
     frame: str
     name: ClassVar[str] = 'torque'
     SCHEMA: ClassVar[dict] = mapping_of(
-        value=EXPRESSIONS, books={'enum': ['work', 'heat']}, values={'type': 'array', 'items': VECTOR, 'minItems': 1},
+        value=EXPRESSIONS, books={'enum': ['work', 'heat']},
+        values={'type': 'array', 'items': VECTOR, 'minItems': 1},
         times={'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
         frame={'enum': ['body', 'world']})
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)

@@ -124,7 +124,8 @@ def prelude(lines, used, frame):
         point = ', '.join(lines.value(f'point{k}', part)
                           for k, part in enumerate(frame.from_body(frame.point)))
     if used & {*ATTITUDE}:
-        found.append(f'    {_names(ATTITUDE)} = multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})')
+        found.append(
+            f'    {_names(ATTITUDE)} = multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})')
     if used & {*RATES}:
         found.append(f'    {_names(RATES)} = rotate({", ".join(axes)}, wx, wy, wz)')
     if used & {*WORLD_RATES}:
