@@ -1,13 +1,16 @@
-"""Several topics of a recording side by side, in the order of their stamps, however the recorder cut them into chunks."""
+# SPDX-License-Identifier: Apache-2.0
+"""Several topics of a recording side by side in stamp order, whatever its chunks are."""
 
 import numpy as np
 
 LARGEST = 1_000_000
-"""Messages of one topic that may wait for those of another, beyond which they are handed out without."""
+"""Messages of one topic that may wait for those of another; beyond it they are yielded alone."""
 
 
 def aligned(recording, topics, progress=None):
-    """Yield dicts topic -> columns: all messages up to some log time that were not yielded before, in the order of log time.
+    """Yield dicts topic -> columns, in the order of log time.
+
+    Each has all messages up to some log time that were not yielded before.
 
     Parameters
     ----------
@@ -45,7 +48,10 @@ def aligned(recording, topics, progress=None):
 
 
 def _take(waiting, name, until):
-    """Return the columns of a topic up to a log time (None: all), those that all blocks have, or None; leave the rest waiting."""
+    """Return the columns of a topic up to a log time (None: all), and leave the rest waiting.
+
+    The result has the columns that all blocks have; it is None where there are no messages.
+    """
     blocks = waiting[name]
     joined = blocks[0] if len(blocks) == 1 else {
         key: np.concatenate([block[key] for block in blocks]) for key, column in blocks[0].items()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is kept of a stream of millions of numbers: few enough to draw, and true ones.
 
 Each collector takes blocks in the order of time (``add``) and holds a bounded amount of memory.
@@ -9,7 +10,9 @@ import numpy as np
 
 
 class Curve:
-    """Curves thinned to their least and greatest values, so that no spike is lost: of each group of neighbours two are kept, both as they were.
+    """Curves thinned to their least and greatest values, so that no spike is lost.
+
+    Of each group of neighbours two are kept, both as they were.
 
     Parameters
     ----------

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recording against its rerun: the same bits, or where they part and by how much."""
 
 import numpy as np
@@ -19,7 +20,7 @@ SLICES = {'orientation': ORIENTATION, 'angular_velocity': ANGULAR_VELOCITY, 'pos
 
 
 GAP, SPAN = 1000, 100_000
-"""So many missing ticks are skipped, not computed one by one; so many ticks are compared at once."""
+"""Missing ticks beyond which a gap is skipped; ticks that are compared at a time."""
 
 
 class Comparison:
@@ -158,7 +159,7 @@ class Comparison:
 
 
 def _runs(ticks):
-    """Yield (first, last) of runs of ticks, which are unique and rising: without long gaps, and not too many."""
+    """Yield (first, last) of runs of rising ticks, without long gaps and of bounded length."""
     jumps = np.flatnonzero(np.diff(ticks) > GAP) + 1
     begin = 0
     while begin < len(ticks):
@@ -170,7 +171,10 @@ def _runs(ticks):
 
 
 def within(largest, limit):
-    """Return whether all differences are small: attitudes within `limit` (rad), other quantities within 4 times that part of their scale."""
+    """Return whether all differences are small.
+
+    Attitudes may differ by `limit` (rad), other quantities by 4 times that part of their scale.
+    """
     return all(
         worst['difference'] <= limit * (1.0 if quantity == 'orientation' else 4.0 * worst['scale'])
         for quantity, worst in largest.items()
@@ -178,6 +182,9 @@ def within(largest, limit):
 
 
 def _angle(p, q):
-    """Return the angles between attitudes, exact also where they are tiny: the chord of quaternions is 2 sin(angle / 4)."""
+    """Return the angles between attitudes, also where they are tiny.
+
+    The chord of two quaternions is 2 sin(angle / 4).
+    """
     chord = np.minimum(np.linalg.norm(p - q, axis=1), np.linalg.norm(p + q, axis=1))
     return 4.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))

@@ -1,4 +1,5 @@
-"""Does a quantity stay what it should be? Its residual, tick by tick, from the first tick of the segment in which it is kept."""
+# SPDX-License-Identifier: Apache-2.0
+"""Residuals of conserved quantities, from the first tick of the segment in which they are kept."""
 
 import numpy as np
 
@@ -7,7 +8,7 @@ from rigid_body_sim.mechanics import energy, parameters
 from rigid_body_sim.mechanics.potential import energies
 
 FLOOR = 4 * np.finfo(float).eps
-"""Round-off floor of a relative residual: a few units in the last place, for each value is made of a handful of products and sums."""
+"""Round-off floor of a relative residual: values are made of a handful of products and sums."""
 
 
 MOST_LEVELS = 100
@@ -126,7 +127,11 @@ def _plain(values):
 
 
 def scales(scene):
-    """Return the scales of energy (J) and of L^2 in a scene: the largest of its kinetic and potential energy at the start, and 0."""
+    """Return the scales of energy (J) and of L^2 in a scene.
+
+    That of the energy is the larger one of kinetic and potential energy at the start; that of L^2
+    is 0.
+    """
     if scene is None:
         return 0.0, 0.0
     out = np.empty(energy.DIAGNOSIS_SIZE)

@@ -1,4 +1,8 @@
-"""All figures of a report, as PNG and SVG. matplotlib takes a second to import, so this module is imported where figures are made."""
+# SPDX-License-Identifier: Apache-2.0
+"""All figures of a report, as PNG and SVG.
+
+matplotlib takes a second to import, so this module is imported only where figures are made.
+"""
 
 from rigid_body_sim.analysis import panels, plots
 from rigid_body_sim.analysis.space import spaces

@@ -1,4 +1,8 @@
-"""Flips of a free body about its middle axis, counted in the recorded angular velocity, without a look at the events."""
+# SPDX-License-Identifier: Apache-2.0
+"""Flips of a free body about its middle axis, counted in the recorded angular velocity.
+
+They are independent of the recorded events.
+"""
 
 import itertools
 
@@ -10,7 +14,7 @@ SHARE = 0.5
 
 
 class Flips:
-    """Counts how often the middle component m2 of the angular momentum changes its sign after it was at least half of L.
+    """Counts the changes of sign of the middle component m2 of L, each after |m2| >= |L|/2.
 
     Parameters
     ----------

@@ -1,4 +1,8 @@
-"""What happened in a run, from the journal of its recording: marks for people, and segments in which nothing was changed from outside."""
+# SPDX-License-Identifier: Apache-2.0
+"""What happened in a run, from the journal of its recording.
+
+There are marks for people, and segments in which nothing was changed from outside.
+"""
 
 import dataclasses
 from dataclasses import dataclass
@@ -73,7 +77,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class History:
-    """Marks and segments in the order of their stamps; the first segment begins with the recording."""
+    """Marks and segments in stamp order; the first segment begins with the recording."""
 
     marks: tuple
     segments: tuple

@@ -1,4 +1,5 @@
-"""The energy ledger of a recorded run, from its rerun: what the body had, what it was given, what became heat."""
+# SPDX-License-Identifier: Apache-2.0
+"""The energy ledger of a recorded run, from its rerun: energies, work and heat."""
 
 import numpy as np
 
@@ -9,7 +10,19 @@ TERMS = ('kinetic', 'potential', 'dissipated', 'work', 'energy_residual', 'momen
 
 
 def ledger(source):
-    """Return (times in s since the first tick, dict of TERMS -> array) of a Source at evenly spaced ticks; BadInput where there is no rerun."""
+    """Return the ledger of a Source at evenly spaced ticks.
+
+    Returns
+    -------
+    times : array
+        s since the first tick.
+    terms : dict of TERMS -> array
+
+    Raises
+    ------
+    BadInput
+        If the run cannot be run again.
+    """
     first, end = source.stamps or (source.start, source.end)
     rerun = Rerun(source.entries, {}, source.stamps and first)
     last = rerun.ticks(np.array([end]))[0]

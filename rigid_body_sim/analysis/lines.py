@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spectral lines that theory predicts for a scene, from its first state."""
 
 import math
@@ -13,7 +14,7 @@ from rigid_body_sim.theory import asymmetric_top, heavy_top, kater_pendulum, sym
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """A frequency (Hz) at which something periodic is to be found in omega, in ``body`` or ``world`` axes.
+    """A frequency (Hz) of a periodic part of omega, in ``body`` or ``world`` axes.
 
     `source`: where it comes from; `components`: those of omega in which it shows.
     """
@@ -71,7 +72,10 @@ def _free(inertia, omega):
 
 
 def _heavy_top(scene, g, omega):
-    """Nutation shows in the vertical part of omega, precession in the horizontal one; of a body with its centre of mass on its third axis."""
+    """Return nutation and precession of a body with its centre of mass on its third axis.
+
+    Nutation shows in the vertical part of omega, precession in the horizontal one.
+    """
     body = scene.body
     I1, I2, I3 = body.about_origin.moments
     x, y, l = body.center_of_mass
@@ -88,7 +92,10 @@ def _heavy_top(scene, g, omega):
 
 
 def _pendulum(scene, g):
-    """Period 4 K(k) sqrt(I/(M g l)), k = sin(amplitude/2), of a pendulum whose axis may be inclined; l sin(inclination) counts then."""
+    """Return the frequency of a pendulum: its period is 4 K(k) sqrt(I/(M g l)), k = sin(a/2).
+
+    a is the amplitude. The axis may be inclined; l sin(inclination) counts then.
+    """
     body, constraint = scene.body, scene.constraint
     attitude, n = Rotation.from_quat(scene.initial.orientation), np.array(constraint.axis)
     arm = np.subtract(body.center_of_mass, constraint.through)

@@ -1,4 +1,5 @@
-"""One pass through a recording: every message is looked at once, and what the report tells of it is kept."""
+# SPDX-License-Identifier: Apache-2.0
+"""One pass through a recording: every message is read once, and the report's numbers are kept."""
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from rigid_body_sim.messages.timeline import NANOSECONDS
 HAVE_STAMPS = ('pose', 'angular_velocity')
 LARGEST = 1e150     # its square is finite
 UNIT = 1e-6
-"""By how much the square of a quaternion's length may differ from 1: one that went through single precision is off by 1e-7."""
+"""Largest error of the square of a quaternion's length; single precision is off by 1e-7."""
 
 
 class Measured:
@@ -55,7 +56,13 @@ class Measured:
         )
 
     def take(self, stretch):
-        """Take messages of one stretch of time: name in source.EVERY_TICK -> columns. BadInput where they hold no sensible numbers."""
+        """Take messages of one stretch of time: name in source.EVERY_TICK -> columns.
+
+        Raises
+        ------
+        BadInput
+            If they hold no sensible numbers.
+        """
         for name, columns in stretch.items():
             check_numbers(self.source.topics[name], columns, name)
             stamps = columns['log_time']
@@ -75,7 +82,7 @@ class Measured:
             self._take_motion(stretch['pose'], stretch['angular_velocity'])
 
     def _take_motion(self, pose, omega):
-        """Take the ticks of which both messages are here: those with the same stamp in their headers."""
+        """Take the ticks of which both messages are here: those with the same header stamp."""
         _, mine, theirs = np.intersect1d(
             pose['header.stamp'], omega['header.stamp'], assume_unique=True, return_indices=True
         )
@@ -91,7 +98,10 @@ class Measured:
 
 
 def check_numbers(topic, columns, name):
-    """Raise BadInput where the columns of a topic of every tick (`name` in source.EVERY_TICK) are not what a motion has."""
+    """Raise BadInput where the columns of a topic cannot be those of a motion.
+
+    `name` is that of the topic in source.EVERY_TICK.
+    """
     for column, width in COLUMNS[name].items():
         if (
             column not in columns
@@ -121,7 +131,10 @@ def check_numbers(topic, columns, name):
 
 
 def measure(recording, sources, progress=None):
-    """Return a Measured for each Source of a Recording; `progress` is called with numbers of messages done."""
+    """Return a Measured for each Source of a Recording.
+
+    `progress` is called with the number of messages done.
+    """
     measured = [Measured(source) for source in sources]
     names = {
         one.source.topics[name]: (one, name)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What follows from attitude and angular velocity together, tick by tick.
 
 World axes, Euler angles, conserved momenta, slip.
@@ -63,14 +64,24 @@ class Motion:
                 source.ticks,
                 self.conserved.size,
             )
-        self.slip = (
-            Curve(source.ticks) if scene is not None and scene.constraint.mechanism is Mechanism.TABLE else None
-        )
+        on_table = scene is not None and scene.constraint.mechanism is Mechanism.TABLE
+        self.slip = Curve(source.ticks) if on_table else None
         self.phases, self.until = [], 0.0
         self.samples, self.head = Samples(source.ticks, SAMPLES), Head(HEAD)
 
     def add(self, stamps, times, orientation, angular_velocity, position):
-        """Take ticks: stamps (ns) and times from the start (s), (n,); (n, 4) quaternions; (n, 3) rad/s in body axes; (n, 3) m."""
+        """Take n ticks.
+
+        Parameters
+        ----------
+        stamps, times : array (n,)
+            ns, and s from the start.
+        orientation : array (n, 4)
+        angular_velocity : array (n, 3)
+            rad/s, body axes.
+        position : array (n, 3)
+            m.
+        """
         attitude = Rotation.from_quat(orientation)
         world = attitude.apply(angular_velocity)
         self.angular_velocity_world.add(times, world)
@@ -114,7 +125,11 @@ class Motion:
 
 
 class Conserved:
-    """An angular momentum that a scene conserves: `name`, number of components (`size`), |L| at the start (`scale`), where it is `kept`."""
+    """An angular momentum that a scene conserves.
+
+    It has a `name`, a number of components (`size`), |L| at the start (`scale`), and says where it
+    is `kept`.
+    """
 
     def __init__(self, name, scene, inertia, kept):
         self.name, self._inertia, self._vertical = name, inertia.matrix, name == 'L_z'
@@ -133,7 +148,10 @@ class Conserved:
 
 
 def conserved(scene):
-    """Return the Conserved of a scene: L of a free body, L or its vertical part about a fixed point; None if there is none."""
+    """Return the Conserved of a scene, or None if there is none.
+
+    It is L of a free body, L or its vertical part about a fixed point.
+    """
     if scene is None or scene.constraint.mechanism not in (Mechanism.FREE, Mechanism.POINT):
         return None
 

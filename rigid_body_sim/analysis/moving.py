@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body of a report as it moves: what body.js draws, in lengths relative to the body's reach."""
+"""The moving body of a report: what body.js draws, in lengths relative to the body's reach."""
 
 from dataclasses import dataclass
 

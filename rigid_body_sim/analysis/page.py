@@ -159,13 +159,16 @@ def heading_of(moves):
 def player(number, moves):
     """Return the HTML of a moving body, which body.js and player.js fill."""
     legend = {**ARROWS, 'trace of an axis': (0.0, 0.45, 0.7)}
-    shown = ''.join(f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
-                    f'</i>{html.escape(name)}</span>' for name, color in legend.items())
-    speeds = ''.join(f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
-                     for value, name in SPEEDS.items())
+    shown = ''.join(
+        f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
+        f'</i>{html.escape(name)}</span>' for name, color in legend.items())
+    speeds = ''.join(
+        f'<option value="{value}"{" selected" if value == "1" else ""}>{name}</option>'
+        for value, name in SPEEDS.items())
     return (f'<canvas class="body" id="body{number}"></canvas>'
             f'<p class="playback" id="controls{number}"><button>play</button> '
-            f'<input type="range" aria-label="time" min="0" max="{len(moves.times) - 1}" value="0"> '
+            '<input type="range" aria-label="time" min="0" '
+            f'max="{len(moves.times) - 1}" value="0"> '
             f'<select aria-label="speed">{speeds}</select> <output></output></p>'
             f'<p class="legend">{shown}</p>')
 

@@ -1,4 +1,5 @@
-"""The curves of a report, as plain data that the printed and the interactive figures draw alike."""
+# SPDX-License-Identifier: Apache-2.0
+"""The curves of a report, as plain data for the printed and the interactive figures."""
 
 from dataclasses import dataclass
 
@@ -146,7 +147,7 @@ def energies(balance):
 
 
 def differences(comparison):
-    """Return the panels of a compare.Comparison: by how much a rerun differs from what was recorded."""
+    """Return the panels of a compare.Comparison: how much a rerun differs from the recording."""
     panels = []
     for name, worst in comparison.largest.items():
         if worst['difference'] > 0.0:
@@ -170,7 +171,10 @@ def angular_velocity(measured):
 
 
 def residual(found, source, name, unit):
-    """Return the panel of a Residual where the quantity is kept, or else of the quantity itself; None if there is nothing."""
+    """Return the panel of a Residual, else of the quantity itself, or None if there is nothing.
+
+    The residual is shown where the quantity is kept.
+    """
     times, values = found.curve()
     if len(times):
         return Panel(

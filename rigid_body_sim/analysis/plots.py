@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures for print: readable in black and white and by the colour-blind."""
 
 import numpy as np
@@ -29,7 +30,7 @@ ROUND_OFF = 20
 
 
 def stack(panels, title, source):
-    """Return a Figure of Panels over time, one above the other, with the marks of a Source on top."""
+    """Return a Figure of Panels over time, one above the other, with the marks of a Source."""
     figure = _figure(2.1 * len(panels) + 0.9, title)
     axes = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True))
     for one, panel in zip(axes, panels, strict=True):

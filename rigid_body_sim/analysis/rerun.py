@@ -1,4 +1,5 @@
-"""A recorded run, run again from its journal alone: the same scene, and the same commands at the same ticks."""
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded run, run again from its journal alone: the same scene, commands and ticks."""
 
 import json
 
@@ -134,7 +135,16 @@ class Rerun:
         return min(tick, self._actions[-1]['tick']) if self._actions else tick
 
     def through(self, tick):
-        """Run on to a tick; return all ticks not yet given (the first one is 0), their States after all commands, energies and L^2."""
+        """Run on to a tick and return all ticks not yet given; the first one is 0.
+
+        Returns
+        -------
+        ticks : array (n,)
+        states : States
+            After all commands.
+        energies, squares : array (n,)
+            Energies (J) and L^2.
+        """
         first, parts = self._given + 1, []
         if self._given < self.simulation.tick:
             parts.append(

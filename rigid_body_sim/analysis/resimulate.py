@@ -1,4 +1,5 @@
-"""The command `resimulate`: a recording's scene and commands run again, and compared with what was recorded, bit for bit.
+# SPDX-License-Identifier: Apache-2.0
+"""The command `resimulate`: run a recording's scene and commands again and compare, bit for bit.
 
 With another method or accuracy: what that would have changed in this very run.
 """
@@ -63,7 +64,10 @@ def resimulate(path, method=None):
 
 
 def tolerance(rerun, comparison):
-    """Return the difference of attitude (rad) to be expected where bits are not promised: the accuracy asked, and round-off over all turns."""
+    """Return the difference of attitude (rad) to be expected where bits are not promised.
+
+    It is the accuracy asked, and round-off over all turns.
+    """
     exact = rerun.recorded['method'] == 'exact'
     return (
         (0.0 if exact else 10.0 * rerun.recorded['accuracy'])
@@ -128,7 +132,8 @@ def lines(found, changed):
     else:
         parting = found['parting']
         text.append(
-            f'{where}{"as expected, " if changed else ""}differs from tick {parting["tick"]} on (t = {parting["time"]!r} s), '
+            f'{where}{"as expected, " if changed else ""}differs from tick {parting["tick"]} on '
+            f'(t = {parting["time"]!r} s), '
             f'{parting["quantity"].replace("_", " ")}:'
         )
         text += [
@@ -136,7 +141,8 @@ def lines(found, changed):
             for name in ('recorded', 'resimulated')
         ]
         text += [
-            f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, {worst["since_start"]:.9g} s after the start'
+            f'  largest difference of {name.replace("_", " ")}: {worst["difference"]:.3e}, '
+            f'{worst["since_start"]:.9g} s after the start'
             for name, worst in found['largest'].items()
         ]
     if found['not_compared']:
@@ -145,7 +151,8 @@ def lines(found, changed):
     if found['unpromised'] and not (found['identical'] or changed):
         text.append(f'  bits are not promised: {found["unpromised"][0]}')
         text.append(
-            f'  allowed are {found["tolerance"]:.1e} rad: the differences are {"less" if found["good"] else "more than that explains"}'
+            f'  allowed are {found["tolerance"]:.1e} rad: the differences are '
+            f'{"less" if found["good"] else "more than that explains"}'
         )
     return text
 
@@ -156,7 +163,8 @@ def main(arguments=None):
         'resimulate',
         "Run a recording's scene and commands again and compare every state, bit for bit.",
         'python -m rigid_body_sim resimulate recordings/racket\n'
-        '  python -m rigid_body_sim resimulate recordings/racket --integrator dop8 --accuracy 1e-6',
+        '  python -m rigid_body_sim resimulate recordings/racket --integrator dop8 '
+        '--accuracy 1e-6',
     )
     parser.add_argument('recording', help='folder of a recording, or .mcap file')
     parser.add_argument(

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a recording holds of one simulated body: its topics, how it was made, what happened to it.
 
 A recording may hold several bodies, each in a namespace of its own, and it may come from ``ros2
@@ -110,7 +111,7 @@ def sources(recording):
 
 
 def _renamed(journal):
-    """Return what journals tell of remapped topics: complete name -> (namespace, name in TYPES)."""
+    """Return what journals say of remapped topics: full name -> (namespace, name in TYPES)."""
     return {name: (entry['topic'].rpartition('/')[0], last)
             for entry in journal if entry['kind'] == 'begin' and 'topics' in entry
             for last, name in json.loads(entry['topics']).items()}
@@ -164,15 +165,16 @@ def _run(recording, topics, entries, start, end):
 
 @contextlib.contextmanager
 def journal_of(where):
-    """Turn whatever a journal of strange content leads to into BadInput: it is read as what we wrote, though anybody may have written it."""
+    """Turn any error that a strange journal causes into BadInput.
+
+    A journal is read as if we wrote it, but anybody may have written it.
+    """
     try:
         yield
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise BadInput(
-            str(where),
-            f'the journal makes no sense ({type(error).__name__}: {" ".join(str(error).split())[:200]})',
-            'an undamaged recording',
-        ) from error
+        said = ' '.join(str(error).split())[:200]
+        raise BadInput(str(where), f'the journal makes no sense ({type(error).__name__}: {said})',
+                       'an undamaged recording') from error
 
 
 def missed(runs):
@@ -202,7 +204,7 @@ def _first_time(recording, topic):
 
 
 def _last_time(recording, topic):
-    """Return the last log time of a topic, from the last second of the recording if it has it, else from all of it."""
+    """Return the last log time of a topic, from the recording's last second if it is there."""
     for start in (recording.end_time - NANOSECONDS, recording.start_time):
         times = [
             int(columns['log_time'].max()) for _, columns in recording.blocks([topic], [], start)
@@ -213,7 +215,7 @@ def _last_time(recording, topic):
 
 
 def _estimated_rate(recording, topics):
-    """Return the ticks per second that the stamps of the first block of messages show; 0 where there are none."""
+    """Return the ticks per second by the stamps of the first block of messages, 0 without any."""
     for name in ('pose', 'angular_velocity'):
         if name in topics:
             steps = np.diff(

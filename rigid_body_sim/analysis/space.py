@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Paths and surfaces in space: the polhode on its two ellipsoids, the trace of an axis."""
 
 from dataclasses import dataclass
@@ -8,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 FLATTEST = 1e-6
-"""Below this ratio of moments an ellipsoid is a cylinder for all that can be seen, and is not drawn."""
+"""Ratio of moments below which an ellipsoid looks like a cylinder; it is not drawn then."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,10 @@ def _sphere(rows=25, columns=49):
 
 
 def _polhode(measured):
-    """Return omega in the body, with the ellipsoids omega . I omega = 2 T and |I omega| = L of the first tick; of free bodies only."""
+    """Return omega of a free body in body axes, with two ellipsoids of the first tick.
+
+    They are omega . I omega = 2 T and |I omega| = L.
+    """
     scene = measured.source.scene
     if scene is None or scene.constraint.mechanism is not Mechanism.FREE:
         return None
@@ -100,7 +104,10 @@ def _trace(measured):
 
 
 def traced_axis(scene):
-    """Return (what it is, unit vector in body axes): the symmetry axis, else the way to the centre of mass, else the middle principal axis."""
+    """Return (what it is, unit vector in body axes) of the axis whose path is drawn.
+
+    It is the symmetry axis, else the way to the centre of mass, else the middle principal axis.
+    """
     if scene is None:
         return 'body z axis', np.array([0.0, 0.0, 1.0])
     held = scene.constraint.holds_a_point

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spectra of omega over the first ticks, and the lines that theory predicts in them."""
 
 import numpy as np
@@ -9,9 +10,9 @@ FEWEST = 64
 PADDING = 4         # zeros that are added, times the length: a finer curve
 SMALLEST = 1e-9     # amplitude that is shown, of the largest
 SEARCH = 1.5
-"""A line is looked for this far from where it is predicted, in units of the resolution, one over the length."""
+"""Distance from its prediction within which a line is looked for, in units of 1/length."""
 RISES = 30.0
-"""So many times the power around it a line must have: the side lobes of stronger lines have no more than a few times that."""
+"""Power of a line over that around it; side lobes of stronger lines have a few times that."""
 
 
 class Spectrum:
@@ -61,7 +62,10 @@ class Spectrum:
         ]
 
     def seen(self, axes):
-        """Return the amplitudes without the mean, none smaller than SMALLEST of the largest: for logarithmic axes."""
+        """Return the amplitudes without the mean, for logarithmic axes.
+
+        None is smaller than SMALLEST of the largest.
+        """
         amplitudes = self.amplitudes[axes][1:]
         return np.maximum(
             amplitudes, SMALLEST * max(float(amplitudes.max()), np.finfo(float).tiny / SMALLEST)
@@ -69,7 +73,10 @@ class Spectrum:
 
     @property
     def top(self):
-        """The frequency (Hz) up to which there is something to see: the predicted lines, or amplitudes above a thousandth of the largest."""
+        """The frequency (Hz) up to which there is something to see.
+
+        Up to it lie the predicted lines and all amplitudes above a thousandth of the largest.
+        """
         size = sum(amplitudes.max(axis=1) for amplitudes in self.amplitudes.values())[PADDING:]
         above = np.flatnonzero(size > 1e-3 * size.max()) if len(size) else ()
         highest = self.frequencies[above[-1] + PADDING] if len(above) else 0.0
@@ -77,7 +84,10 @@ class Spectrum:
         return min(1.5 * max(highest, 2.0 * predicted) + 10.0 / self.seconds, self.frequencies[-1])
 
     def _measured(self, line):
-        """Return the frequency of the peak at a line, by a parabola through the logarithms; None where no line rises above its surroundings."""
+        """Return the frequency of the peak at a line, or None where no line stands out.
+
+        The peak is that of a parabola through the logarithms.
+        """
         f, resolution = self.frequencies, 1.0 / self.seconds
         power = (self.amplitudes[line.axes][:, line.components] ** 2).sum(axis=1)
         away = np.abs(f - line.frequency) / resolution
@@ -103,7 +113,7 @@ class Spectrum:
 
 
 def _undisturbed(source, times):
-    """Return how many of the first ticks come before the first change from outside and the first hole."""
+    """Return the number of ticks before the first change from outside and the first hole."""
     stop = len(times)
     if len(source.history.segments) > 1:
         stop = int(

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the analysis says of a recording: as data (report.json) and as a few lines for people."""
 
 import collections
@@ -8,7 +9,15 @@ TOLD = 6     # phases named in the short report
 
 
 def summary(measured, spectrum=None, balance=None):
-    """Return all numbers as plain data: of a Measured, and if they were made, of its Spectrum and its ledger (see ledger.ledger)."""
+    """Return all numbers as plain data.
+
+    Parameters
+    ----------
+    measured : Measured
+    spectrum : Spectrum, optional
+    balance : tuple, optional
+        What ledger.ledger returned.
+    """
     source, motion = measured.source, measured.motion
     segment = source.history.segments[0]
     marks = collections.Counter(mark.kind for mark in source.history.marks)
@@ -119,7 +128,8 @@ def lines(found):
         rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
         stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
         text.append(
-            f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, max {late["max"]:.0f} us'
+            f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, '
+            f'max {late["max"]:.0f} us'
             f'{rate}{stood}'
         )
     text.append(f'  drops    {_drops(found)}')
@@ -144,12 +154,14 @@ def _quantity(values, unit):
 
 def _residual(values):
     floor = ', round-off' if values['largest_residual'] <= FLOOR else ''
-    return f'drift {values["last_residual"]:+.1e}, largest residual {values["largest_residual"]:.1e} (relative{floor})'
+    return (f'drift {values["last_residual"]:+.1e}, '
+            f'largest residual {values["largest_residual"]:.1e} (relative{floor})')
 
 
 def _line(line):
     error = line['measured'] / line['predicted'] - 1.0
-    return f'{line["measured"]:.6g} Hz measured, {line["predicted"]:.6g} Hz predicted ({error:+.1e} relative; {line["source"]})'
+    return (f'{line["measured"]:.6g} Hz measured, {line["predicted"]:.6g} Hz predicted '
+            f'({error:+.1e} relative; {line["source"]})')
 
 
 def _drops(found):

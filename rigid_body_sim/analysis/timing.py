@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How punctual a run was: lateness of every tick, the rate achieved, ticks that are missing.
 
 A tick is late by publish time minus stamp over pace, counted from the schedule. The schedule of a
@@ -101,7 +102,10 @@ class Punctuality:
         self._groups.append((stamps[0], stamps[-1], *np.percentile(late, (50, 99, 100))))
 
     def summary(self):
-        """Return lateness (s), the rate achieved (Hz) and counts, as a dict; None for what a run that was not paced cannot tell."""
+        """Return lateness (s), the rate achieved (Hz) and counts, as a dict.
+
+        Values that a run without pacing cannot tell are None.
+        """
         self._take_groups(all_of_them=True)
         found = {
             'ticks': self.ticks,
@@ -124,5 +128,8 @@ class Punctuality:
         return found
 
     def curve(self):
-        """Return an array (n, 5): first and last stamp (ns) of groups of ticks, then p50, p99 and max of their lateness (ns)."""
+        """Return groups of ticks, shape (n, 5).
+
+        Columns: first and last stamp (ns), then p50, p99 and max of the lateness (ns).
+        """
         return np.array(self._groups, dtype=float).reshape(-1, 5)

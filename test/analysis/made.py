@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings made to measure: what a node would write, with known commands, lateness and losses, without a node."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics side by side: every message once, in order, though their chunks are cut anywhere."""
 
 import types

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `analyze` on recordings whose content is known, of ours and of strangers."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Thinning: what is kept was there, and nothing that stands out is lost, however the blocks fall."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged recordings whose checksum does not tell: at worst analysis and resimulation say so."""
 
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Residuals of made-up values: from the start of their segment, only where the quantity is kept, however the blocks fall."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Flips counted in blocks of any size are those that a plain loop counts, and those that theory tells of."""
 
 import math

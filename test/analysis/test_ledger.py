@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ledger in a report is that of the simulation that was recorded."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is derived from attitude and omega: against the simulation's own numbers and against theory."""
 
 import types

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run, run again from the recording alone: the same bits, or the first that is another."""
 
 import json

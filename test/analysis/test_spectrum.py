@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spectra: a sine shows with its amplitude at its frequency; what theory predicts is found where it says."""
 
 import types

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lateness of made-up runs whose lateness is known: prompt, late, paused, slipping, slewed clock, other paces, ticks missing."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What conditioning allows a residual, and a state: what rounding of the states on the way does to them."""
 
 import numpy as np

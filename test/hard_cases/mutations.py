@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mutation check: core kernels with one sign or term wrong, and the named test that must fail then.
 
 The tree is copied, one line changed there, and the test run on the copy without compiling, so no cached code can answer for it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes and commands drawn at random: plain data that is a scene file, so that what fails can be written down and run."""
 
 import json

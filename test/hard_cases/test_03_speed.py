@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 3, speed: 1e6 rad/s at a tick of 1 ms, 1e-12 rad/s, both on one body; and far beyond.
 
 States against 36 digits: '1e6 rad/s', '1e-12 rad/s', '1e6 and 1e-12 rad/s' of the table in cases.

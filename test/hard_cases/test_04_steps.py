@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 4, steps from a nanosecond to 1e3 s, jumps, any order.
 
 The cases stand in rigid_body_sim/study/hard_cases, each with why it is hard and the reason of its bound; `hard_cases` prints what is measured.

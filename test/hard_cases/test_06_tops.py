@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 6, tops through beta = 0 and pi, sleeping, at the threshold, hanging.
 
 States against 34 digits: the tops in the table of cases; more in test/motions/test_lagrange_top*.py.

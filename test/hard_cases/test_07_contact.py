@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 7, contact: the ball on the table.
 
 The cases stand in rigid_body_sim/study/hard_cases, each with why it is hard and the reason of its bound; `hard_cases` prints what is measured.

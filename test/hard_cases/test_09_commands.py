@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 9, commands: bursts, opposites, enormous and denormal values, at odd moments.
 
 More: test/simulation/test_simulation.py (opposite impulses cancel, bad commands), test/node/test_running.py (paused, before the first tick),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 11, properties of whatever scene: finite, a unit quaternion, residuals and states within what conditioning allows (conditioning.py).
 
 A failure shrinks to a scene, which is printed and kept as a file that `simulate --scene` runs.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Group 12, mutated scene files: each runs or gets one clear line; no traceback, no hang, bounded size and depth."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `hard_cases`: table, JSON, exit status."""
 
 import json

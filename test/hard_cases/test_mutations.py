@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every mutant of test/hard_cases/mutations.py is found out by its test; one here, all with `make soak`.
 
 That the tests pass on what is not mutated is shown by themselves here, and by the same way of running them with `make soak`.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Order conditions of Runge-Kutta methods: one for each rooted tree (Hairer, Norsett and Wanner, Solving ODEs I, II.2)."""
 
 from fractions import Fraction

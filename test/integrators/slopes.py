@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Slopes of errors over steps, without numba: a few steps of many methods in seconds, where compiling each would take a minute. Prints JSON.
 
 From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test python test/integrators/slopes.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a scene does not list is neither in the code made for it nor asked for anything."""
 
 import inspect

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """taylor's mode for ensembles: eight bodies at once."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes."""
 
 import gc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """dop8: coefficients, order, and what a solver that steps promises."""
 
 import math

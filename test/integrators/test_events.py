@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Events of stepped scenes are those of the closed form, to the accuracy of the method, and none is lost in a long jump."""
 
 import pytest

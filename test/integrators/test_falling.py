@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fall with drag in closed form, beside Kummer's function with 40 digits."""
 
 import mpmath

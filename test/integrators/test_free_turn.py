@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The drift of compositions: the free rotation by its series, against 36 digits (test/data/make_free_body.py), and its kinetic energy."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """gauss16: its coefficients, order, error control, and what it keeps."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The methods beside dop8: documented, of the order they say, and what each keeps or refuses."""
 
 import json

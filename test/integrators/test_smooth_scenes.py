@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every kind of smooth scene against references of 34 digits (test/data/make_smooth.py), at the round-off floor."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ball on the table under a held wrench: hand calculations for the straight cases, an invariant for curved slides, the energy for all."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """taylor: its recurrence, error control, dense output, and what it refuses."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hinged bodies for the tests of the pendulum: the recorded cases, and random ones."""
 
 import json

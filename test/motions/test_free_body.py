@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free body: against 36 digits for bodies of every kind (test/data/make_free_body.py), its flips, its flight."""
 
 import json

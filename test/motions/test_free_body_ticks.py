@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free body, tick by tick: the same bits however it is asked, no trend under re-anchoring, continuity, invariants of random bodies."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lagrange top against 34 digits of the full equations of motion (test/data/make_lagrange_top.py), and through its hard spots."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lagrange top against the notes, hand calculations and other motions; what it absorbs."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies on hinges: against 34 digits of the equation of motion, and through their hard spots."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the bearing of a hinge does, and the hinged scenes that ship."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ball on a table: against 34 digits of the equations of motion, against hand calculations, and through its hard spots."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client of the node under test: a plain rclpy node in this process, while the simulation runs in another."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bytes of commands as they come: what is read of them, whatever the length of the frame_id."""
 
 import struct

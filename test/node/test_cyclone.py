@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # ruff: noqa: D101 - the types are what their names say
 """A client of another vendor: Eclipse Cyclone DDS, with types written out by hand, hears the node and commands it."""
 

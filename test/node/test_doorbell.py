@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The doorbell: no message waits for long, no look is wasted, and a busy executor keeps nothing from the tick thread."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What others do wrong, and what may fail inside: the node goes on, or ends in order."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lost messages, told by the numbers of those that came."""
 
 import pytest

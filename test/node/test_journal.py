@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node's recording tells: states as they were published, and every command, reset and change with its tick."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node under load, on other clocks, and among clients that fit badly."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A long run with all that can befall it: random commands, changes and services, subscribers that come and go, a full disk, a dead recorder.
 
 The quick form takes seconds; RIGID_BODY_SIM_SOAK=1 makes it RIGID_BODY_SIM_SOAK_SECONDS (7200) at 1 kHz. Whatever happened, the recording

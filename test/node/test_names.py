@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes beside each other: in namespaces they share nothing but /diagnostics; with one name they are told of it."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters: what is refused at the start and by set_parameters; the table in the README."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `replay`: what was recorded reaches subscribers, every bit of it and in order, with the quality of service it had."""
 
 import collections

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A running node as other people's nodes see it: topics, stamps, commands, services, diagnostics."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The policy for SROS2 allows the node exactly what it uses."""
 
 import pathlib

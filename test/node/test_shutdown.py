@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a node ends: soon, with exit status 0, its recording whole.
 
 And what it says when it cannot begin.
