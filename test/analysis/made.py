@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings made to measure: what a node would write, with known commands, lateness and losses, without a node."""
+"""Recordings made to measure, without a node: known commands, lateness and losses."""
 
 import numpy as np
 from rosbags.rosbag2 import StoragePlugin
@@ -23,8 +23,9 @@ def record(path, scene='tennis_racket', ticks=1000, rate=1000.0, acts=None, late
            namespace='', bodies=None):
     """Record a run as the node would and return its Simulation at the end.
 
-    `acts`: tick -> list of (topic, force, torque, frame), or ``('reset',)``. `late`: ns, of each tick. `left_out`: a range of ticks that the
-    recorder drops. `bodies`: further namespaces that get the same messages.
+    `acts`: tick -> list of (topic, force, torque, frame), or ``('reset',)``. `late`: ns, of each
+    tick. `left_out`: a range of ticks that the recorder drops. `bodies`: further namespaces that
+    get the same messages.
     """
     simulation = Simulation(scene if not isinstance(scene, str) else load_scene(scene), rate=rate)
     spaces = [namespace, *(bodies or ())]
@@ -86,7 +87,10 @@ def _act(simulation, acts, tick, stamp, note):
 
 
 def record_foreign(path, simulation, ticks, period, with_scene=True, seed=5):
-    """Record poses, angular velocities, energies and L^2 as ``ros2 bag record`` would (times of arrival), by rosbags; return the times."""
+    """Record pose, angular velocity, energy and L^2 as ``ros2 bag record`` would, by rosbags.
+
+    Log times are times of arrival; they are returned.
+    """
     store = get_typestore(Stores.ROS2_JAZZY)
     names = {'Time': 'builtin_interfaces/msg/Time', 'Header': 'std_msgs/msg/Header',
              'Float64': 'std_msgs/msg/Float64', 'String': 'std_msgs/msg/String',

@@ -23,7 +23,7 @@ LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)
 
 @pytest.fixture(scope='module')
 def eventful(tmp_path_factory):
-    """Return the path of a recording of 3 s: an impulse, a wrench held for 0.5 s, a reset, a gap, known lateness."""
+    """Return the path of 3 s with an impulse, a wrench held 0.5 s, a reset, a gap, lateness."""
     path = tmp_path_factory.mktemp('analyze') / 'eventful'
     acts = {500: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')],
             1000: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), 'body')],
@@ -49,7 +49,8 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
     assert (found['commands'], found['resets'], found['left_out_by_recorder'],
             found['events']['reset']) == (3, 1, 40, 1)
     energy, momentum = found['energy'], found['angular_momentum_squared']
-    # the impulse and the wrench change them by far more than this, but not the residuals; kept in 2461 ticks of 2961
+    # the impulse and the wrench change them by far more than this, but not the residuals; they are
+    # kept in 2461 ticks of 2961
     assert energy['greatest'] > energy['least'] + 1.0
     for quantity in (energy, momentum):
         assert 0.0 < quantity['largest_residual'] < 2e-14     # 1.3e-14
@@ -92,7 +93,7 @@ def test_flips_are_counted_without_looking_at_events(tmp_path):
 
 
 def test_drift_that_is_there_is_found(tmp_path):
-    """The energy of a stepped method with coarse steps drifts: the report has the drift that the messages show."""
+    """The energy of coarse steps drifts: the report has the drift that the messages show."""
     simulation = Simulation('tennis_racket', integrator='dop8', accuracy=1e-4, rate=100.0)
     states = made.record_foreign(tmp_path / 'run', simulation, 2000, 0.01)
     energies, momenta = simulation.diagnose(states)

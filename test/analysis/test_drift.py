@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Residuals of made-up values: from the start of their segment, only where the quantity is kept, however the blocks fall."""
+"""Residuals of made-up values, from the start of their segment, only where they are kept."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flips counted in blocks of any size are those that a plain loop counts, and those that theory tells of."""
+"""Flips counted in blocks of any size are those of a plain loop, and those of theory."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run, run again from the recording alone: the same bits, or the first that is another."""
+"""A recorded run, run again from the recording alone: the same bits, or the first other one."""
 
 import json
 import pathlib
@@ -59,7 +59,7 @@ def test_what_simulate_wrote_is_reproduced_to_the_bit(tmp_path, capsys):
 
 
 def test_one_bit_in_one_message_is_found(commanded, tmp_path, capsys):
-    """The last bit of omega_y at tick 1234 is turned over on the disk, in a copy without compression."""
+    """The last bit of omega_y at tick 1234 is flipped on the disk, in an uncompressed copy."""
     recording = Recording(commanded)
     value = recording.read('/angular_velocity')['vector'][1234 - 40, 1]
     damaged = rewritten(
@@ -99,7 +99,10 @@ def rewritten(source, folder, old, new):
 
 
 def test_a_converted_recording_without_our_metadata_is_reproduced(commanded, tmp_path, capsys):
-    """Like after `ros2 bag convert`: other chunks, no metadata record, no custom_data, sequence numbers lost; the journal tells all."""
+    """After `ros2 bag convert` the journal is enough.
+
+    Chunks are other ones, and metadata record, custom_data and sequence numbers are lost.
+    """
     copy = rewritten(commanded, tmp_path / 'copy',
                      np.float64(Recording(commanded).read('/angular_velocity')['vector'][7, 0]),
                      np.float64(0.0))
@@ -202,7 +205,7 @@ def test_scipys_methods_promise_their_bits_on_the_same_machine_only(tmp_path, mo
 @pytest.mark.parametrize('scene', ['skew_top', 'heavy_top'])
 def test_recordings_of_version_0_1_0_are_reproduced_within_the_tolerance_they_state(
         scene, tmp_path, capsys):
-    """Made before the bits were the same on every machine: one by taylor, one in closed form, with commands."""
+    """Made before bits were the same on every machine: by taylor, and in closed form."""
     path = DATA / 'recordings_0.1.0' / scene
     status, found = outcome(capsys, path, '--output', tmp_path)
     assert status == 0 and found['states'] == 301

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spectra: a sine shows with its amplitude at its frequency; what theory predicts is found where it says."""
+"""Spectra: a sine shows at its frequency with its amplitude, a predicted line where it should."""
 
 import types
 

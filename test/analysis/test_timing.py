@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lateness of made-up runs whose lateness is known: prompt, late, paused, slipping, slewed clock, other paces, ticks missing."""
+"""Lateness of made-up runs: prompt, late, paused, slipping, slewed clock, other paces, gaps."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,8 @@ def run(ticks=20_000, seed=1):
 def test_lateness_is_counted_from_the_promptest_tick(blocks):
     stamps, late = run()
     summary, _ = measured(stamps, stamps + 17 * MS + late, blocks=blocks)
-    # the schedule of each second is that of its promptest tick, within the 1 us that 1000 draws leave open, less 30 us
+    # the schedule of each second is that of its promptest tick, within the 1 us that 1000 draws
+    # leave open, less 30 us
     assert summary['lateness']['p50'] == pytest.approx(15e-6, abs=1.5e-6)
     assert summary['lateness']['p99'] == pytest.approx(5e-3 - 30e-6, abs=2e-6)
     assert summary['lateness']['max'] == pytest.approx(5e-3 - 30e-6, abs=2e-6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What conditioning allows a residual, and a state: what rounding of the states on the way does to them."""
+"""What conditioning allows a state and a residual, given the rounding of states on the way."""
 
 import numpy as np
 
@@ -13,18 +13,20 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 EPSILON = float(np.finfo(float).eps)
 SMALLEST = 5e-324       # energies of 1e-320 J are whole multiples of this
 WEIGHTS = sum(map(abs, dop8.B.values()))
-"""12.9: an ulp of each stage, in a sum of the work by dop8, which makes the ledger of methods with steps."""
+"""12.9: an ulp of each stage in a sum of the work by dop8, which makes stepped ledgers."""
 FEW = 8.0
 """Ulp of each number of a state. Measured over 5500 scenes: 2.0 (energy), 2.8 (momentum)."""
 
 
 class Allowed:
-    """Sums up, over the states at which a motion was anchored or is looked at, what an ulp of their numbers does.
+    """The sum of what an ulp does to states at which a motion is anchored or looked at.
 
-    An ulp of omega (of its largest size, as closed forms round it) changes the energy by I_k |omega_k| |omega| a component, the momentum by
-    |I| |omega|; an ulp of the attitude lifts the weight M g by the arm; one of v changes M v^2. Nothing of it grows with time, but for the
-    angular impulse of the weight, which is a sum over the time. For a needle the terms are sqrt(I_max/I_min) times the energy: that is its
-    conditioning. A method that steps adds the accuracy it was asked for, in proportion to the time.
+    An ulp of omega (of its largest size, as closed forms round it) changes the energy by
+    I_k |omega_k| |omega| a component, the momentum by |I| |omega|; an ulp of the attitude lifts
+    the weight M g by the arm; one of v changes M v^2. Nothing of it grows with time, but for the
+    angular impulse of the weight, which is a sum over the time. For a needle the terms are
+    sqrt(I_max/I_min) times the energy: that is its conditioning. A method that steps adds the
+    accuracy it was asked for, in proportion to the time.
 
     Attributes
     ----------
@@ -66,14 +68,15 @@ class Allowed:
         ulp = FEW * (EPSILON + self._loss * passed)
         self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v)
                               + self._weight + self._quadrature * abs(simulation.ledger()['work']))
-        # the ledger's quadrature of the weight's torque has so many panels at most: beyond, it no longer follows the turning
+        # the ledger's quadrature of the weight's torque has a limited number of panels: beyond, it
+        # no longer follows the turning
         resolved = size * passed <= RADIANS * MOST
         self.momentum += (ulp * float(np.linalg.norm(self._moments)) * size
                           + (ulp if resolved else 1.0) * self._weight * passed)
         self._time = simulation.time
 
     def check(self, simulation):
-        """Assert what holds for every scene: finite numbers, a unit quaternion, residuals within what is allowed."""
+        """Assert finite numbers, a unit quaternion, and residuals within what is allowed."""
         vector, ledger = simulation.vector, simulation.ledger()
         assert np.isfinite(vector).all()
         assert np.isfinite(list(ledger.values())).all()

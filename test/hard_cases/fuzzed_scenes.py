@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random scenes of all constraints and effects, with extremes in every number, run in plain Python.
+"""Random scenes of all constraints and effects, with extreme numbers, run in plain Python.
 
-``python fuzzed_scenes.py FIRST END`` prints a line for each seed: refused, gave up, or runs and the
-method. Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to a
-hundredth of their work. Every scene is given SECONDS, after which an alarm interrupts it: what
-runs on then hears no interrupt and has no bound.
+``python fuzzed_scenes.py FIRST END`` prints a line for each seed: refused, gave up, or runs and
+the method. Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to
+a hundredth of their work. Every scene is given SECONDS, after which an alarm interrupts it: a run
+that goes on then hears no interrupt and has no bound.
 """
 
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes and commands drawn at random: plain data that is a scene file, so that what fails can be written down and run."""
+"""Random scenes and commands: plain data that is a scene file, so a failure can be run again."""
 
 import json
 
@@ -60,9 +60,10 @@ def scenes(draw):
 
 @st.composite
 def stepped_scenes(draw, every_effect):
-    """Draw a scene that no closed form absorbs, turning with 20 rad/s at most: an asymmetric top, a driven body, one that loses energy.
+    """Draw a scene that no closed form absorbs, turning with 20 rad/s at most.
 
-    With `every_effect` drag too, and dissipation so strong that other methods are taken: kinds that take minutes to compile.
+    It is an asymmetric top, a driven body, or one that loses energy. With `every_effect` drag too,
+    and dissipation so strong that other methods are taken: kinds that take minutes to compile.
     """
     kind = draw(st.sampled_from([
         'top', 'driven', 'relaxing', *(['dragged', 'stiff'] if every_effect else [])]))
@@ -103,7 +104,14 @@ def in_one_line(refusal):
 
 
 def run(scene, acts):
-    """Run a drawn scene under commands; return the Simulation and what is Allowed it, or None where the scene is refused in one line."""
+    """Run a random scene under commands.
+
+    Returns
+    -------
+    simulation : Simulation
+    allowed : Allowed
+    The result is None where the scene is refused in one line.
+    """
     try:
         simulation = Simulation(parse_scene(json.dumps(scene)))
     except BadInput as refusal:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Group 11, properties of whatever scene: finite, a unit quaternion, residuals and states within what conditioning allows (conditioning.py).
+"""Group 11, properties of any scene: finite, a unit quaternion, errors as conditioning allows.
 
 A failure shrinks to a scene, which is printed and kept as a file that `simulate --scene` runs.
 """
@@ -54,7 +54,7 @@ def test_any_scene_in_closed_form_under_any_commands(tmp_path):
 
 
 def test_any_scene_that_is_stepped_under_any_commands(tmp_path):
-    """A few in a process that does not compile; held wrenches, drag and strong dissipation too with `make soak`."""
+    """A few run in a process that does not compile; `make soak` has more kinds of scenes."""
     if HAVE_NUMBA and not SOAK:
         this = f'{__file__}::{test_any_scene_that_is_stepped_under_any_commands.__name__}'
         done = subprocess.run(
@@ -97,7 +97,7 @@ def test_anchored_anew_on_the_way_it_ends_where_an_ulp_would_bring_it(scene, tim
 
 
 def test_a_failure_leaves_a_scene_file_that_the_command_runs(tmp_path, capsys):
-    """A check that no free body passes leaves the smallest scene with one, and `simulate` runs the file."""
+    """A check that free bodies fail leaves the smallest one as a file, and `simulate` runs it."""
     def not_free(_, simulation):
         assert simulation.scene.constraint.kind != 'free'
     place = tmp_path / 'failing.yaml'

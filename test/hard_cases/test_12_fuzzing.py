@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Group 12, mutated scene files: each runs or gets one clear line; no traceback, no hang, bounded size and depth."""
+"""Group 12, mutated scene files: each runs or gets one clear line, in bounded time and memory."""
 
 import os
 import pathlib

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Order conditions of Runge-Kutta methods: one for each rooted tree (Hairer, Norsett and Wanner, Solving ODEs I, II.2)."""
+"""Order conditions of Runge-Kutta methods, one for each rooted tree.
+
+Source: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.2.
+"""
 
 from fractions import Fraction
 from functools import cache
@@ -45,7 +48,10 @@ def weight(tree, A):
 
 
 def largest_defect(order, A, B):
-    """Return the largest |sum b Phi(t) - 1/gamma(t)| over the trees of an order, in exact arithmetic on the doubles given."""
+    """Return the largest |sum b Phi(t) - 1/gamma(t)| over the trees of an order.
+
+    The arithmetic on the given doubles is exact.
+    """
     A = [{j: Fraction(a) for j, a in row.items()} for row in A]
     sums = {tree: sum(Fraction(b) * weight(tree, A)[j] for j, b in B.items())
             for tree in trees(order)}

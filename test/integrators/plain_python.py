@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Solve cases without numba: many scene kinds in a few seconds, where compiling each would take minutes. Prints JSON.
+"""Solve cases without numba and print JSON: compiling each scene kind would take minutes.
 
-From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test python test/integrators/plain_python.py METHOD accuracy|step VALUE [CASE ...]
+From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test python
+test/integrators/plain_python.py METHOD accuracy|step VALUE [CASE ...]
 """
 
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Slopes of errors over steps, without numba: a few steps of many methods in seconds, where compiling each would take a minute. Prints JSON.
+"""Slopes of errors over steps, without numba, as JSON: compiling each would take a minute.
 
 From the source tree: NUMBA_DISABLE_JIT=1 PYTHONPATH=.:test python test/integrators/slopes.py
 """

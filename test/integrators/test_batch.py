@@ -38,7 +38,7 @@ def starts_of(scene, factors):
                          ['asymmetric_heavy_top', 'skew_heavy_top', 'driven_body',
                           'driven_from_rest', 'driven_in_pieces'])
 def test_one_of_many_bodies_is_where_the_reference_says(name):
-    """At the round-off floor: an ulp on omega turns the body by an ulp of its whole angle, and 4 ulp are for input and output.
+    """At the round-off floor, an ulp of the angle for an ulp on omega, and 4 ulp for in and out.
 
     Random ulps on the three components of omega move driven_in_pieces by up to 1.3 of that floor.
     """
@@ -61,7 +61,7 @@ def test_one_of_many_bodies_is_where_the_reference_says(name):
 
 
 def test_slow_and_fast_bodies_share_the_lanes():
-    """19 tops, a resting one and one that turns with 240 rad/s, each with its own start, beside the method one by one."""
+    """19 tops, one at rest and one at 240 rad/s, each with its own start, against one by one."""
     scene = parse_scene(smooth_cases.text('asymmetric_heavy_top'))
     starts = starts_of(scene, np.random.default_rng(2).permutation(np.linspace(0.0, 4.0, 19)))
     starts[:, 0] = np.linspace(0.0, 0.5, 19)
@@ -82,7 +82,7 @@ def test_slow_and_fast_bodies_share_the_lanes():
 
 
 def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
-    """Spun about a principal axis the angle is 5 t + 0.005 t^2; to 0.1 rad in 100 s a step takes 4 rad."""
+    """Spun about a principal axis the angle is 5 t + 0.005 t^2; a step takes up to 4 rad."""
     spun = parse_scene('scene: spun\nbody: {mass: 1.0, inertia: [1.0, 1.5, 2.0]}\n'
                        'constraint: free\neffects: [torque: {value: [0, 0, 0.02]}]\n'
                        'initial: {angular_velocity: [0, 0, 5]}\n')
@@ -90,11 +90,12 @@ def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
     half = 0.5 * (5.0 * times + 0.005 * times ** 2)
     for body in ensemble(spun, starts_of(spun, [1.0, 1.0]), times, 'taylor', 0.1):
         # 1.9e-4
-        assert np.abs(body.orientation[:, 2:] - np.transpose([np.sin(half), np.cos(half)])).max() < 1e-3
+        exact = np.transpose([np.sin(half), np.cos(half)])
+        assert np.abs(body.orientation[:, 2:] - exact).max() < 1e-3
 
 
 def test_force_and_couple_change_the_angular_momentum():
-    """A top under its weight and a couple askew to it: L is at every time what it was and the integral of r x F + couple."""
+    """L of a top under its weight and an askew couple is the integral of r x F + couple."""
     body, constraint, _, initial, _, _ = smooth_cases.CASES['skew_heavy_top']
     couple = np.array([0.2, -0.3, 0.4])
     scene = parse_scene(f'scene: pulled\nbody: {body}\nconstraint: {constraint}\n'
@@ -112,14 +113,19 @@ def test_force_and_couple_change_the_angular_momentum():
 
 
 def test_thrown_bodies_fall():
-    """Beside the same bodies without weight: centre of mass off the origin, the torque changes on the way."""
+    """Against the same bodies without weight; the torque changes on the way."""
     def states(effects):
         return ensemble(scene_with(effects), starts, [0.5, 5.0], 'taylor', 1e-9).vector
 
     def scene_with(effects):
-        return parse_scene('scene: thrown\nbody: {mass: 2.0, inertia: [0.8, 0.9, 1.3], center_of_mass: [0.1, -0.2, 0.3]}\nconstraint: free\n'
-                           f'effects: [{effects}torque: {{times: [0, 2], values: [[0.1, 0, 0.5], [0, 1, 0]], frame: body}}]\n'
-                           'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, 8.0], position: [1.0, 2.0, 3.0]}\n')
+        return parse_scene(
+            'scene: thrown\n'
+            'body: {mass: 2.0, inertia: [0.8, 0.9, 1.3], center_of_mass: [0.1, -0.2, 0.3]}\n'
+            'constraint: free\n'
+            f'effects: [{effects}torque: {{times: [0, 2], values: [[0.1, 0, 0.5], [0, 1, 0]], '
+            'frame: body}]\n'
+            'initial: {angular_velocity: [0.4, -0.2, -1.1], velocity: [3.0, 0.0, 8.0], '
+            'position: [1.0, 2.0, 3.0]}\n')
     starts = starts_of(scene_with(''), [1.0, 2.0])
     drop = states('gravity: {g: 10.0}, ') - states('')
     expected = np.zeros((2, 2, 14))
@@ -167,7 +173,7 @@ def test_who_fails_is_named():
 
 
 def test_a_step_is_the_same_in_plain_python():
-    """The recurrence on arrays and compiled: coefficients to the rounding of sums of 18 terms, and the step's end."""
+    """The recurrence on arrays agrees to the rounding of sums of 18 terms, and so does the end."""
     draw = np.random.default_rng(1)
     table = np.zeros((series.ROWS, LANES))
     table[series.EULER:series.EULER + 3] = [[-0.3], [0.6], [-0.4]]
@@ -200,4 +206,6 @@ def test_a_step_is_the_same_in_plain_python():
     for q, e in zip(written[end][series.QUATERNION:series.SERIES].T,
                     written[end][series.SERIES:series.OMEGA].T, strict=True):
         # 3.5
-        assert np.abs(np.append(rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), rotate(*-q[:3], q[3], 0.0, 1.0, 0.0)) - e).max() < 8 * ULP
+        back = *-q[:3], q[3]
+        axes = np.append(rotate(*back, 1.0, 0.0, 0.0), rotate(*back, 0.0, 1.0, 0.0))
+        assert np.abs(axes - e).max() < 8 * ULP

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""States between the nodes of the methods whose steps are long: the same whatever else is asked, as good as the nodes."""
+"""States between the nodes of methods with long steps: as good as the nodes, in any order."""
 
 import gc
 import weakref

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events of stepped scenes are those of the closed form, to the accuracy of the method, and none is lost in a long jump."""
+"""Events of stepped scenes are those of the closed form; none is lost in a long jump."""
 
 import pytest
 
@@ -59,7 +59,7 @@ def test_pendulum_let_go_from_rest_turns_in_one_long_jump():
 
 
 def test_body_that_a_torque_sets_spinning_loses_no_flip_in_a_long_jump():
-    """From rest, pushed about the middle axis for a second, then left to itself: it flips like the racket."""
+    """From rest, pushed about the middle axis for a second, then free: it flips as the racket."""
     text = ('scene: pushed\nbody: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\n'
             'effects: [torque: {times: [0, 1], values: [[0.02, 10.0, 0.02], [0, 0, 0]]}]\n'
             'initial: {}\n')

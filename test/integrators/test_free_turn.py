@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drift of compositions: the free rotation by its series, against 36 digits (test/data/make_free_body.py), and its kinetic energy."""
+"""The drift of compositions: the free rotation by its series, and its kinetic energy.
+
+References of 36 digits come from test/data/make_free_body.py.
+"""
 
 import json
 import math
@@ -69,7 +72,10 @@ def test_against_digits(record, states):
 
 @pytest.mark.parametrize(('h', 'bound'), [(1e-3, 2e-19), (1e-6, 2e-22)])    # 5.4e-20; 5.5e-23
 def test_increments_err_by_a_rounding_of_themselves(h, bound):
-    """Two halves and the whole agree to much less than a rounding of the state, whose low part is kept."""
+    """Two halves and the whole agree to much less than a rounding of the state.
+
+    The low part of the state is kept.
+    """
     p, start = parameters_of((2.0, 3.0, 4.0)), (0.1, 0.2, -0.3, math.sqrt(0.86), 0.7, -0.4, 1.1)
     once = turned_freely(p, start, NOTHING, h)
     twice = turned_freely(p, *turned_freely(p, start, NOTHING, 0.5 * h), 0.5 * h)

@@ -103,7 +103,7 @@ def test_accuracy_asked_is_met(top, exact, accuracy):
 
 
 def test_time_can_be_reversed(top):
-    """The heavy top run back: omega turned about, the axes seen in a mirror of time, is the same motion backward."""
+    """The heavy top with omega reversed and mirrored axes is the same motion backward."""
     there = state(top, 5.0, accuracy=1e-13)
     there[5:8] = -there[5:8]
     there[0] = 0.0
@@ -140,15 +140,19 @@ def fast_top():
 
 @pytest.mark.parametrize('accuracy', [10.0 ** -k for k in range(1, 13)])
 def test_accuracy_asked_is_met_by_a_fast_top(fast_top, accuracy):
-    """Its torque turns in body axes twice as fast as q, and omega changes little: omega's error is seen by its own group alone."""
+    """Its torque turns twice as fast as q while omega hardly changes: omega has its own group."""
     scene, exact = fast_top
     # 0.84 at most
-    assert angle_between(*state(scene, 20.0, accuracy=accuracy, horizon=20.0)[1:5], *exact) < 2.0 * accuracy
+    found = state(scene, 20.0, accuracy=accuracy, horizon=20.0)
+    assert angle_between(*found[1:5], *exact) < 2.0 * accuracy
 
 
 @pytest.mark.parametrize('half_angle', [1.0, 1.7, 1.9])
 def test_norm_of_q_does_not_grow_where_a_step_turns_it_far(fast_top, half_angle):
-    """A stretch added after the next step would make errors of the norm grow by 1 - cos(half angle): beyond a quarter turn, without end."""
+    """A stretch that came a step late would let the norm grow by 1 - cos(half angle).
+
+    Beyond a quarter turn it would grow without end.
+    """
     scene, exact = fast_top
     # 2.5e-13, 9.2e-10, 5.2e-9
     assert angle_between(*state(scene, 20.0, step=2.0 * half_angle / 180.0)[1:5], *exact) < 1e-8

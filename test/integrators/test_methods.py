@@ -115,7 +115,7 @@ def test_scenes_without_heat_run_by_every_method():
     assert set(runnable(scene_of('asymmetric_heavy_top'))) == set(METHODS)
 
 
-# measured: 1.01, 3.95, 2.00, 3.92, 6.03, 8.29, 15.4; split6 is still above its order on the top, 7.1 at these steps
+# measured: 1.01, 3.95, 2.00, 3.92, 6.03, 8.29, 15.4; split6 is above its order on the top, 7.1
 @pytest.mark.parametrize('name', [name for name, *_ in slopes.CASES])
 def test_slope_of_the_error_is_the_order(name, measured_slopes):
     order = METHODS[name].ORDER
@@ -145,7 +145,8 @@ def test_energy_does_not_walk():
     scene = scene_of('asymmetric_heavy_top')
     out = np.empty((201, 14))
     # 1e5 steps
-    Stepped(scene, 'split4', step=5e-4).start(scene.initial.vector).states(np.linspace(0.0, 50.0, 201), out)
+    solver = Stepped(scene, 'split4', step=5e-4).start(scene.initial.vector)
+    solver.states(np.linspace(0.0, 50.0, 201), out)
     start = energy(scene, out[0])
     residual = np.array([energy(scene, row) / start - 1.0 for row in out])
     # 1.8e-15, of which 1e-15 is truncation and does not grow; plain sums: 3e-14
@@ -161,7 +162,8 @@ def test_too_many_turns_to_count_end_with_one_error(name):
 
 
 # 4.9e-10; 5.4e-8
-@pytest.mark.parametrize(('name', 'accuracy', 'bound'), [('lsoda', 1e-10, 5e-9), ('radau', 1e-7, 5e-7)])
+@pytest.mark.parametrize(('name', 'accuracy', 'bound'), [
+    ('lsoda', 1e-10, 5e-9), ('radau', 1e-7, 5e-7)])
 def test_solvers_of_scipy_are_as_good_as_asked(name, accuracy, bound):
     scene = scene_of('driven_body')
     found, coarse = (state(scene, name, 1.0, accuracy=accuracy),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A body let go from rest close to its balance: large terms cancel but for their rounding.
 
-No step errs by less than that rounding, however short it is: a march that asks for less never ends.
+No step errs by less than that rounding, however short it is: a march that asks for less hangs.
 """
 
 import math

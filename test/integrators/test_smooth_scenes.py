@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every kind of smooth scene against references of 34 digits (test/data/make_smooth.py), at the round-off floor."""
+"""Every kind of smooth scene against 34 digits (test/data/make_smooth.py), at round-off."""
 
 import json
 import os
@@ -39,8 +39,9 @@ def solved(request):
 def check(name, states):
     """Compare with the reference.
 
-    Bound: an ulp on omega turns the body by an ulp of all the angle it went through, an ulp on a wrench that is held about a hinge by an ulp of
-    what it turns the body, 4 ulp are for input and output. Measured: at most 0.79 of it for the attitude (held_hinge), 0.58 for omega
+    Bound: an ulp on omega turns the body by an ulp of all the angle it went through, an ulp on a
+    wrench that is held about a hinge by an ulp of what it turns the body, 4 ulp are for input and
+    output. Measured: at most 0.79 of it for the attitude (held_hinge), 0.58 for omega
     (held_hinge), 0.67 for the books (driven_from_rest), 0.29 for the rest.
     """
     speed = np.linalg.norm(plain_python.parse_scene(smooth_cases.text(

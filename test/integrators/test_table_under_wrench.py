@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ball on the table under a held wrench: hand calculations for the straight cases, an invariant for curved slides, the energy for all."""
+"""A ball on the table under a held wrench: hand calculations, an invariant, the energy."""
 
 import math
 
@@ -79,7 +79,7 @@ def test_onset_of_rolling_under_a_push_along_the_slide():
 
 
 def test_strong_push_against_the_slide_turns_it_round():
-    """The slip goes through zero and friction changes sides at once, since F k/(1 + k) > mu M g: no rolling in between."""
+    """The slip goes through zero and friction reverses at once, since F k/(1 + k) > mu M g."""
     F, v0 = -2.0, 1.0
     solver = held(ball('{velocity: [1.0, 0, 0]}'), (F, 0.0, 0.0))
     turn = v0 / ((1.0 + 1.0 / k) * mu * g - F / M)
@@ -90,7 +90,10 @@ def test_strong_push_against_the_slide_turns_it_round():
 
 @pytest.mark.parametrize('F', [(0.1, 0.25, 0.0), (0.0, 1.2, 0.0)])
 def test_curved_slide_keeps_its_invariant(F):
-    """With theta between the slip u and G: |u| sin(theta) cot(theta/2)^(c/G) is constant (du/dtheta = u (c - G cos theta)/(G sin theta))."""
+    """|u| sin(theta) cot(theta/2)^(c/G) is constant, theta between the slip u and G.
+
+    That is because du/dtheta = u (c - G cos theta)/(G sin theta).
+    """
     solver = held(ball('{velocity: [1.0, 0.0, 0], angular_velocity: [0, 0, 30]}'), F)
     G, c = math.hypot(*F) / M, (1.0 + 1.0 / k) * mu * g
     found = []
@@ -120,7 +123,7 @@ def test_energy_and_angular_momentum_balance(wrench):
 
 
 def test_a_push_that_turns_with_the_ball_makes_it_roll_and_slip_by_turns():
-    """Seen from the world the press of 1.2 N turns over with the ball, so the grip comes and goes."""
+    """In the world the press of 1.2 N turns with the ball, so the grip comes and goes."""
     wrench = (0.0, 0.0, 1.2), (0.006, 0.0, 0.0), 'body'
     solver = held(ball('{}'), *wrench)
     names = [name for _, name, _ in solver.events(0.0, 0.65)]

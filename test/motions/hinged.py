@@ -26,7 +26,10 @@ def scene_of(body, axis, through=(0.0, 0.0, 0.0), g=9.81, initial=None):
 
 
 def unit_scene(g=13.5, axis=(1.0, 0.0, 0.0)):
-    """Return a thin rod of I = 0.75 kg m^2 about its end; for g = 13.5 m/s^2 and a level axis Omega = 3 rad/s to the last bit."""
+    """Return a thin rod of I = 0.75 kg m^2 about its end.
+
+    For g = 13.5 m/s^2 and a level axis Omega is 3 rad/s to the last bit.
+    """
     return scene_of(make_body(1.0, (0.5, 0.0, 0.5), (0.0, 0.0, -0.5)), axis, g=g)
 
 
@@ -61,7 +64,7 @@ def recorded(name):
 
 
 def random_scene(rng):
-    """Return a scene with everything at random, hinge tilted and off the origin, and a start that swings or turns over."""
+    """Return a random scene: hinge tilted and off the origin; it swings or turns over."""
     turn = Rotation.random(random_state=rng).as_matrix()
     tensor = turn @ np.diag(rng.uniform(0.5, 1.0, 3)) @ turn.T
     body = make_body(

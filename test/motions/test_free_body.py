@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Free body: against 36 digits for bodies of every kind (test/data/make_free_body.py), its flips, its flight."""
+"""Free body against 36 digits for all kinds of bodies (data/make_free_body.py); flips; flight."""
 
 import json
 import math
@@ -71,15 +71,20 @@ def difference(found, expected):
 
 @pytest.mark.parametrize('record', RECORDS, ids=lambda record: record['name'])
 def test_reference(record):
-    """Errors stay at the floor, whatever one ulp on the inputs does (up to 3 rad on the separatrix): rates have more digits than a double."""
+    """Errors stay at the floor, although one ulp on the inputs makes up to 3 rad (separatrix).
+
+    Rates have more digits than a double.
+    """
     anchor, _ = of_record(record)
     size = math.hypot(*record['angular_velocity'])
     for state in record['states']:
         found, turned = at(anchor, state['time']), size * abs(state['time'])
-        # measured: 1.1e-15 up to 100 rad; at most 0.25 eps |omega| t (racket, 1e-40 off the middle axis) beyond
+        # measured: 1.1e-15 up to 100 rad; at most 0.25 eps |omega| t beyond (racket, 1e-40 off the
+        # middle axis)
         assert angle(
             found[1:5], state['orientation']) < 2e-15 + 0.5 * EPSILON * turned, state['time']
-        # measured: 1e-15; 0.035 eps |omega| t for the turned principal axes, which round omega at the start
+        # measured: 1e-15; 0.035 eps |omega| t for the turned principal axes, which round omega at
+        # the start
         assert difference(found[5:8], state['angular_velocity']) <= (
             2e-15 + 0.05 * EPSILON * turned) * size, state['time']
         if 'position' in state:
@@ -113,7 +118,7 @@ def test_flips_are_at_their_times(record):
 
 
 def test_no_flip_is_lost_in_a_long_jump_or_counted_twice():
-    """Flips come every half period of omega_2, as the sampled motion shows, also when the motion is anchored anew just beside one."""
+    """Flips come every half period of omega_2, also where the motion is anchored beside one."""
     parameters = parameters_of((1.0, 2.0, 3.0))
     start = State.of(0.0, angular_velocity=(0.01, 5.0, 0.01)).vector
     anchor = anchored(parameters, start)
@@ -143,7 +148,7 @@ def test_a_wobble_is_no_flip():
 
 
 def test_on_the_separatrix_the_body_turns_over_once_and_never_returns():
-    """I = (3, 4, 6), omega = (2, c, 1): K is infinite; one bit lost would let it come back after 70 s."""
+    """I = (3, 4, 6), omega = (2, c, 1): K is infinite; one lost bit would end it after 70 s."""
     for c in (-5.0, 0.0, 0.7):
         anchor = anchored(
             parameters_of((3.0, 4.0, 6.0)), State.of(0.0, angular_velocity=(2.0, c, 1.0)).vector)
@@ -158,7 +163,10 @@ def test_on_the_separatrix_the_body_turns_over_once_and_never_returns():
 def test_scene_file_is_absorbed():
     text = """
 scene: thrown
-body: {mass: 2.0, inertia: [[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]], center_of_mass: [0.1, 0.0, -0.2]}
+body:
+  mass: 2.0
+  inertia: [[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]]
+  center_of_mass: [0.1, 0.0, -0.2]
 constraint: %s
 effects: [gravity: {g: 9.81}%s]
 initial: {angular_velocity: [0.3, 2.0, -0.4]}

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lagrange top against 34 digits of the full equations of motion (test/data/make_lagrange_top.py), and through its hard spots."""
+"""Lagrange top against 34 digits of the equations of motion, and through its hard spots.
+
+test/data/make_lagrange_top.py makes the references.
+"""
 
 import json
 import math
@@ -19,7 +22,7 @@ from rigid_body_sim.numerics.rotations import from_euler_zyz
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = json.loads((ROOT / 'test' / 'data' / 'lagrange_top.json').read_text())
 MOMENTS = [(name, k) for name, case in CASES.items() for k in range(len(case['states']))]
-# cases whose top's axes are not the body's, so that turning into them rounds like a change of the inputs
+# cases whose top's axes are not the body's: the turn into them rounds like a change of the inputs
 TURNED = ('axis_x_hanging', 'axis_y', 'ball_on_a_string')
 
 
@@ -31,7 +34,10 @@ def distance(found, exact):
 
 
 def invariants(body, states):
-    """Return energy, P_alpha and P_gamma of states of a body with e3 = z (in units of I1), and the sizes of their terms."""
+    """Return energy, P_alpha and P_gamma (in units of I1) of states, and the sizes of their terms.
+
+    The body has e3 = z.
+    """
     I1, _, I3 = body['moments']
     k = body['mass'] * body['g'] * body['center'][2] / I1
     x, y, z, w = states[:, 1:5].T
@@ -53,10 +59,12 @@ def test_states_agree_with_34_digits(name, k):
     state = at(anchor, exact['time'])
     attitude, rate = ((2.0, 1.0) * np.array([distance(state[1:5], exact['orientation']),
                                              distance(state[5:8], exact['angular_velocity'])]))
-    size = math.hypot(*case['angular_velocity'], math.sqrt(parameters[motion.PARAMETERS.part('pull').first]))
+    pull = parameters[motion.PARAMETERS.part('pull').first]
+    size = math.hypot(*case['angular_velocity'], math.sqrt(pull))
     conditioning = exact['sensitivity'] if name in TURNED else (0.0, 0.0)
-    # the worst is 1.2e-15 rad (loops, at 0.1 s: rounding of the doubles themselves is 2e-16), also after 1e6 s, where one ulp on the inputs
-    # makes up to 1e-8 rad; of the angular velocity 5e-16 of its size
+    # the worst is 1.2e-15 rad (loops, at 0.1 s: rounding of the doubles themselves is 2e-16), also
+    # after 1e6 s, where one ulp on the inputs makes up to 1e-8 rad; of the angular velocity 5e-16
+    # of its size
     assert attitude <= max(2e-15, conditioning[0])
     assert rate <= max(1e-15 * size, conditioning[1])
 
@@ -80,7 +88,8 @@ def test_the_start_comes_back(name):
     ('swinging_1e-300', 1e-300), ('swinging_1e-9', 1e-9),
     ('falling_1e-9', 1e-6)])
 def test_a_tiny_tilt_keeps_its_digits(name, tilt):
-    # an absolute error of 1e-16 is nothing to the attitude, but decides when an unstable top falls after the next anchor
+    # an absolute error of 1e-16 is nothing to the attitude, but decides when an unstable top falls
+    # after the next anchor
     case = CASES[name]
     _, anchor = anchored(case, case['orientation'], case['angular_velocity'])
     exact = case['states'][0]
@@ -89,7 +98,8 @@ def test_a_tiny_tilt_keeps_its_digits(name, tilt):
     small = [1, 2] if abs(q[0]) < 0.5 and abs(q[1]) < 0.5 else [3, 4]
     assert 0.0 < np.abs(state[small]).max() < 10.0 * tilt
     # 5e-14
-    np.testing.assert_allclose(state[small], [q[k - 1] for k in small], rtol=0.0, atol=2e-13 * np.abs(state[small]).max())
+    np.testing.assert_allclose(state[small], [q[k - 1] for k in small], rtol=0.0,
+                               atol=2e-13 * np.abs(state[small]).max())
     omega = [float(x) for x in exact['angular_velocity']][:2]
     np.testing.assert_allclose(
         state[5:7], omega, rtol=0.0, atol=2e-13 * max(np.abs(omega).max(), tilt))
@@ -105,7 +115,8 @@ def test_turning_points_are_found_to_round_off(name):
     index = motion.turning_index(anchor, float(first + half / 2))
     assert motion.turning_index(anchor, float(first - half / 2)) == index - 1.0
     for k in (0, 1, -1, 10 ** 6):
-        # turning points are counted, so their times do not drift: the error is that of one rounding, 2e-16 of the time
+        # turning points are counted, so their times do not drift: the error is that of one
+        # rounding, 2e-16 of the time
         assert (abs(motion.turning_time(anchor, index + k) - first - k * half)
                 <= 1e-15 * half + 3e-16 * abs(first + k * half))
     if name == 'tiny_nutation':     # slighter than what doubles show: no event
@@ -148,10 +159,11 @@ def test_invariants_over_a_million_seconds(name):
     states = many(anchor, np.linspace(0.0, 1e6, 20001))
     values, sizes = invariants(case, states)
     residual = (values - values[:, :1]) / sizes[:, None]
-    # stationary round-off, without a trend: the mean of either half is as good as that of the other
+    # round-off without a trend: the mean of either half is as good as that of the other
     assert np.abs(residual).max() <= 2e-15                              # 1.3e-15
     # 6e-18
-    assert np.abs(residual[:, :10000].mean(axis=1) - residual[:, 10001:].mean(axis=1)).max() <= 2e-17
+    halves = residual[:, :10000].mean(axis=1) - residual[:, 10001:].mean(axis=1)
+    assert np.abs(halves).max() <= 2e-17
     norm = np.linalg.norm(states[:, 1:5], axis=1)
     assert np.abs(norm - 1.0).max() <= 4.5e-16
 
@@ -190,7 +202,8 @@ def test_flow_composes_with_new_anchors():
         motion.state(again, time, state)
         motion.anchor(parameters, state.copy(), again)
     assert time > 100.0
-    # every new anchor rounds its start, and one ulp there makes up to 2e-12 rad at the end (40 rad/s for 250 s): sqrt(1000 / 3) of them
+    # every new anchor rounds its start, and one ulp there makes up to 2e-12 rad at the end
+    # (40 rad/s for 250 s): sqrt(1000 / 3) of them
     # 4.3e-11
     np.testing.assert_allclose(state[1:8], at(anchor, time)[1:8], rtol=0.0, atol=2e-10)
 

@@ -46,7 +46,7 @@ def test_sleeping_top_sleeps():
 
 
 def test_falling_top_nods_to_the_angle_of_the_notes():
-    # ERRATA, "Sleeping top": cos(beta_max) = P_gamma^2/(2 I1 M g l) - 1, from rest upright but for a seed
+    # ERRATA, "Sleeping top": cos(beta_max) = P_gamma^2/(2 I1 M g l) - 1, from upright with a seed
     _, anchor = anchored(ROUND, [1e-9, 0.0, 0.0, 1.0], (0.0, 0.0, 1.0))
     index = motion.turning_index(anchor, 0.0)
     lowest = index + 1.0 if (index + 1.0) % 2.0 == 0.0 else index + 2.0
@@ -55,8 +55,9 @@ def test_falling_top_nods_to_the_angle_of_the_notes():
 
 
 def test_threshold_decides_by_one_ulp():
-    # P_gamma^2 = 4 I1 M g l at omega_3 = 2. One ulp below it a tilt of 1e-20 grows e-fold in 6.7e7 s, and up to the 3e-8 rad of the notes'
-    # beta_max; at it in proportion to time; above it, it stays of its size
+    # P_gamma^2 = 4 I1 M g l at omega_3 = 2. One ulp below it a tilt of 1e-20 grows e-fold in
+    # 6.7e7 s, and up to the 3e-8 rad of the notes' beta_max; at it in proportion to time; above
+    # it, it keeps its size
     for omega_3, least, most in ((2.0 - 2.0 ** -52, 2e-8, 4e-8), (2.0, 1e-10, 1.4e-10),
                                  (2.0 + 2.0 ** -51, 1e-20, 1e-12)):
         _, anchor = anchored(ROUND, [1e-20, 0.0, 0.0, 1.0], (0.0, 0.0, omega_3))
@@ -88,7 +89,8 @@ def test_without_weight_the_momentum_stays():
     L = np.array([rotate(*state[1:5], *(np.array(HEAVY['moments']) * state[5:8]))
                   for state in states])
     # 9e-16
-    np.testing.assert_allclose(L, L[:1].repeat(1001, axis=0), rtol=0.0, atol=2e-15 * np.linalg.norm(L[0]))
+    np.testing.assert_allclose(
+        L, L[:1].repeat(1001, axis=0), rtol=0.0, atol=2e-15 * np.linalg.norm(L[0]))
 
 
 def reaction(parameters, state):
@@ -101,7 +103,8 @@ def test_reactions_by_hand():
     parameters, anchor = anchored(HEAVY, UPRIGHT, (0.0, 0.0, 60.0))
     np.testing.assert_allclose(
         reaction(parameters, at(anchor, 3.0)), [0.0, 0.0, 9.81], rtol=1e-15, atol=0.0)
-    # let go with the axis horizontal: the end of a rod of I1 = M h^2 + I presses with M g (1 - M h^2/I1)
+    # released with a level axis: the end of a rod of I1 = M h^2 + I presses with
+    # M g (1 - M h^2/I1)
     parameters, anchor = anchored(HEAVY, from_euler_zyz(0.7, math.pi / 2.0, 0.3), (0.0, 0.0, 0.0))
     np.testing.assert_allclose(reaction(parameters, at(anchor, 0.0)),
                                [0.0, 0.0, 9.81 * (1.0 - 0.01 / 0.03)], rtol=0.0, atol=2e-15)
@@ -126,7 +129,8 @@ def test_reaction_is_mass_times_acceleration(case):
         -1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
     by_differences = case['mass'] * (weights @ r / h ** 2 + [0.0, 0.0, case['g']])
     # 2e-10
-    np.testing.assert_allclose(reaction(parameters, at(anchor, time)), by_differences, rtol=0.0, atol=2e-9)
+    np.testing.assert_allclose(
+        reaction(parameters, at(anchor, time)), by_differences, rtol=0.0, atol=2e-9)
 
 
 def test_what_is_absorbed():

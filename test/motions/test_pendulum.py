@@ -55,7 +55,8 @@ def test_reference(name):
         state = at(anchor, time)[1:]
         fastest = max(np.linalg.norm(start[5:8]), np.linalg.norm(expected[4:7]), angle)
         reach = np.linalg.norm(record.get('through', (0.0, 0.0, 0.0)))
-        # worst measured: 3.3e-15 (1e7 rad turned over in 1e6 s, from the 5e-20 of the period); 5e-16 within 100 rad
+        # worst measured: 3.3e-15 (1e7 rad turned over in 1e6 s, from the 5e-20 of the period);
+        # 5e-16 within 100 rad
         assert np.abs(state[:3] - expected[:3]).max() <= 5e-15 * angle, entry['time']
         assert abs(state[3] - expected[3]) <= 5e-15, entry['time']
         # worst measured: 5e-15, as the angle
@@ -81,7 +82,7 @@ def test_tiny_distances_grow_to_scale(name):
 @pytest.mark.parametrize(
     'name', [name for name, record in RECORDS.items() if record['swings'] and record['period']])
 def test_turning_points(name):
-    """Half a period apart, at rest there, and each later one found from the one before; none when it turns over."""
+    """They are half a period apart, at rest, each found from the one before; some turn over."""
     _, start, anchor = recorded(name)
     period = float(RECORDS[name]['period'])
     fastest = max(np.linalg.norm(at(anchor, time)[5:8]) for time in np.linspace(0.0, period, 50))
@@ -90,7 +91,8 @@ def test_turning_points(name):
     assert motion.next_event(anchor, 0.0)[1] == 0
     assert np.diff(times) == near(0.5 * period, 1e-14)
     for time in times:
-        # a time is rounded by half an ulp, in which the rate grows by no more than the square of the fastest, and the swing by as much
+        # a time is rounded by half an ulp, in which the rate grows by at most the square of the
+        # fastest rate, and the swing by as much
         assert np.linalg.norm(at(anchor, time)[5:8]) <= 1e-14 * fastest
     far = motion.next_event(anchor, 1e6 * period)[0]
     assert 0.0 < far - 1e6 * period <= 0.5 * period * (1.0 + 1e-9)
@@ -144,7 +146,7 @@ def test_the_start_comes_back():
 
 
 def test_energy_and_hinge_stay():
-    """Whatever the scene: kinetic plus potential energy, the place of the hinge in the world, and the direction of the axis."""
+    """Energy, place of the hinge and direction of the axis stay in random scenes."""
     rng = np.random.default_rng(4)
     diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
     for _ in range(100):
@@ -230,7 +232,8 @@ def test_nothing_turns_it(case):
     anchor = anchored(scene_of(body, axis, g=g), start_of(orientation, 0.7 * np.array(axis)))
     for time in (-3.0, 1.0, 1e6):
         state = at(anchor, time)
-        # the phase is exact where the axis is a coordinate axis; elsewhere the rate is that of the rounded vector
+        # the phase is exact where the axis is a coordinate axis; elsewhere the rate is that of the
+        # rounded vector
         with mp.workdps(30):
             half = mpf(0.7) / 2 * mpf(time)
             sine, cosine = float(sin(half)), float(cos(half))
@@ -243,7 +246,10 @@ def test_nothing_turns_it(case):
 
 @pytest.mark.parametrize('name', ['kater', 'skew swing', 'skew turning over'])
 def test_anchored_anew_at_every_tick(name):
-    """Ten thousand anchors end where one does, to the rounding of the rate at each, which repeats: measured 2.5e-12 rad (skew swing)."""
+    """Ten thousand anchors end where one does, to the repeated rounding of the rate.
+
+    Measured: 2.5e-12 rad (skew swing).
+    """
     scene, state, anchor = recorded(name)
     parameters = motion.parameters(scene)
     for k in range(1, 10_001):

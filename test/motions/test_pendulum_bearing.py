@@ -18,7 +18,7 @@ EPSILON = np.finfo(float).eps
 
 
 def test_reaction_by_hand():
-    """Rod of length l about its end: M g at rest; M g/4 when let go level; M g (1 + 3) at the bottom after falling from upright."""
+    """Rod about its end: M g at rest, M g/4 released level, 4 M g at the bottom from upright."""
     M, g, length = 2.0, 9.81, 1.2
     rod = make_body(
         M, (M * length ** 2 / 12.0, 0.0, M * length ** 2 / 12.0), (0.0, 0.0, -0.5 * length))
@@ -33,7 +33,7 @@ def test_reaction_by_hand():
 
 
 def test_unbalanced_wheel_shakes_its_bearing():
-    """A disk on its middle, canted by an angle: the couple is w^2 (I3 - I1) sin cos, across the axis, and turns with the disk."""
+    """A canted disk on its middle: the couple w^2 (I3 - I1) sin cos turns with the disk."""
     I1, I3, w, cant = 0.3, 0.6, 7.0, 0.2
     axis = (math.sin(cant), 0.0, math.cos(cant))
     scene = scene_of(make_body(1.0, (I1, I1, I3)), axis, g=0.0)
@@ -44,7 +44,7 @@ def test_unbalanced_wheel_shakes_its_bearing():
 
 
 def test_reaction_is_what_momentum_asks_for():
-    """Newton and Euler on the motion itself, by differences: M v' = F - M g z, and L' = r x (-M g z) + couple about the hinge point."""
+    """Newton and Euler by differences: M v' = F - M g z, L' = r x (-M g z) + couple."""
     rng = np.random.default_rng(6)
     for _ in range(40):
         scene, start = random_scene(rng)
@@ -78,7 +78,7 @@ def test_reaction_is_what_momentum_asks_for():
 
 @pytest.mark.parametrize('name', ['kater_pendulum', 'kater_pendulum_from_p'])
 def test_kater(name):
-    """The same period from both edges, the finite swing included; g comes back from l' Omega^2 with its bias of -phi0^2/8."""
+    """The same period from both edges, with the finite swing; g = l' Omega^2 errs by -phi0^2/8."""
     scene = load_scene(name)
     simulation = Simulation(scene)
     assert simulation.choice.method == 'exact'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Damped, driven and hinged bodies in closed form: against 34 digits, and through the simulation."""
+"""Damped, driven and hinged bodies in closed form, against 34 digits and in the simulation."""
 
 import json
 import math

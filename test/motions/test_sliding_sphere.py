@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball on a table: against 34 digits of the equations of motion, against hand calculations, and through its hard spots."""
+"""Ball on a table: against 34 digits, against hand calculations, and through its hard spots."""
 
 import json
 import math
@@ -92,7 +92,8 @@ def test_reference(name):
         for part, where in PARTS.items():
             floor = (2.0 * EPSILON
                      * max(np.linalg.norm(expected[where]), np.linalg.norm(start[where])))
-            # worst measured: 0.68 of this (attitude 2.2e-14 after 500 rad, fast spin); the others below 0.35
+            # worst measured: 0.68 of this (attitude 2.2e-14 after 500 rad, fast spin); the others
+            # are below 0.35
             bound = floor + conditioning(parameters, start, time, where)
             assert np.linalg.norm(state[where] - expected[where]) <= bound, (part, entry['time'])
 
@@ -113,7 +114,10 @@ def test_struck_at_the_centre_rolls_after_two_sevenths():
 
 @pytest.mark.parametrize('h', [-0.9, -0.3, 0.2, 0.41, 0.7, 1.0])
 def test_struck_off_the_centre(h):
-    """Both sides of h = 2a/5: t = 2 |v0 - a omega0|/(7 mu g), v = (5/7) v0 (1 + h/a); friction points forward above."""
+    """On both sides of h = 2a/5: t = 2 |v0 - a omega0|/(7 mu g) and v = (5/7) v0 (1 + h/a).
+
+    Above it friction points forward.
+    """
     a, _, M, mu, g = BALL
     v0 = 2.0
     anchor = anchored(start_of((v0, 0.0), (0.0, 2.5 * v0 * h / a, 0.0)))
@@ -143,7 +147,7 @@ def test_struck_at_two_fifths_rolls_at_once():
 
 
 def test_a_hair_off_two_fifths_slides():
-    """The snap is no wider than rounding: 1e-14 off the height still slides, for as long as the formula says."""
+    """The snap is no wider than rounding: 1e-14 off the height still slides as predicted."""
     for off in (1e-14, -1e-14):
         anchor = anchored(start_of((2.0, 0.0), (0.0, 2.0 / BALL[0] * (1.0 + off), 0.0)))
         assert motion.rolling_onset(anchor) == near(
@@ -161,7 +165,7 @@ def test_draw_shot_comes_back():
 
 
 def test_masse_runs_on_a_parabola():
-    """The slip keeps its direction, so the friction is constant and the path a parabola; side spin is untouched."""
+    """The slip keeps its direction, so the path is a parabola; side spin is untouched."""
     anchor = anchored(start_of((1.5, 0.0), (70.0, 20.0, 40.0)))
     onset = motion.rolling_onset(anchor)
     u = np.array(motion.slip(anchor, 0.0))
@@ -203,7 +207,7 @@ def test_hardly_any_friction():
 
 
 def test_energy_lost_is_heat():
-    """Kinetic energy and the work of friction along the slide balance; so do spin and the torque of the table."""
+    """Kinetic energy balances the work of friction; so do spin and the torque of the table."""
     rng = np.random.default_rng(7)
     for _ in range(200):
         start = start_of(rng.normal(size=2) * 3.0, rng.normal(size=3) * 80.0)
@@ -223,7 +227,7 @@ def test_energy_lost_is_heat():
 
 
 def test_rolling_does_not_chatter():
-    """Anchored anew at every millisecond for ten seconds: it never slips, and the velocity stays to the last bit."""
+    """Anchored at every millisecond for 10 s it never slips, and the velocity keeps all bits."""
     anchor = anchored(start_of((1.2, -0.7), (30.0, 15.0, 60.0), (0.5, -0.5, 0.1, 0.7)))
     onset = motion.rolling_onset(anchor)
     state = at(anchor, onset)
@@ -234,22 +238,23 @@ def test_rolling_does_not_chatter():
         assert motion.slip(anchor, state[0] + 0.3) == (0.0, 0.0)
         state = at(anchor, onset + 0.001 * (k + 1))
         assert np.array_equal(state[11:13], velocity)
-    # the vertical spin goes 10000 times into body axes and back, half an ulp of omega each way at random; measured 42 epsilon of omega,
-    # and 540 when rotations.normalised rounds to one side
+    # the vertical spin goes 10000 times into body axes and back, half an ulp of omega each way at
+    # random; measured 42 epsilon of omega, and 540 when rotations.normalised rounds to one side
     assert world_spin(state)[2] == near(
         spin, 100.0 * EPSILON * np.linalg.norm(state[5:8]) / abs(spin))
 
 
 @pytest.mark.parametrize('spin', [(30.0, -40.0, 0.0), (30.0, -40.0, 90.0)])
 def test_anchored_anew_while_sliding(spin):
-    """Two thousand anchors along the slide end where one does: they start to roll together, at the same attitude."""
+    """Two thousand anchors along the slide end where one does, in onset and attitude."""
     start = start_of((1.5, 0.4), spin)
     anchor = anchored(start)
     onset, state = motion.rolling_onset(anchor), start
     for k in range(1, 2001):
         state = at(anchored(state), k * onset / 2000.0 * 0.999)
     assert motion.rolling_onset(anchored(state)) == near(onset, 1e-13)
-    # every anchor rounds omega by half an ulp, and equal decrements round alike: 2000 * 7e-15 rad/s * 2 s = 3e-11; measured 4e-12
+    # every anchor rounds omega by half an ulp, and equal decrements round alike:
+    # 2000 * 7e-15 rad/s * 2 s = 3e-11; measured 4e-12
     assert at(anchored(state), 2.0)[1:5] == pytest.approx(at(anchor, 2.0)[1:5], abs=3e-11)
 
 
@@ -266,7 +271,7 @@ def test_struck_again_at_the_very_onset():
 
 
 def test_attitude_is_continuous():
-    """No jump of the quaternion, its sign included: along the slide, its checkpoints, the onset, and before the anchor."""
+    """The quaternion never jumps, at the checkpoints of the slide, the onset or the anchor."""
     anchor = anchored(start_of((3.0, 1.0), (20.0, -90.0, 70.0)))
     onset = motion.rolling_onset(anchor)
     times = np.linspace(-0.5 * onset, 1.5 * onset, 20001)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Starts nodes in fresh processes and tells what each of them did for the first time once its clock ran.
+"""Starts nodes in fresh processes and tells what each did for the first time under its clock.
 
-``python cold_starts.py CASE ...``, each case a JSON list of the node's arguments, prints one JSON object
-a case. A case is a fork of a process that has imported the package and run nothing: no kernel has been
-loaded in it. Kernels that are loaded from the cache once the clock runs are those that a machine without
-a cache would compile then, so the outcome does not depend on what the cache holds.
+``python cold_starts.py CASE ...``, each case a JSON list of the node's arguments, prints one JSON
+object a case. A case is a fork of a process that has imported the package and run nothing: no
+kernel has been loaded in it. Kernels that are loaded from the cache once the clock runs are those
+that a machine without a cache would compile then, so the outcome does not depend on what the cache
+holds.
 """
 
 import json
@@ -82,7 +83,7 @@ class Stop:
 
 
 def run(arguments):
-    """Run one node; return what it did for the first time, and the processor time of its dearest tick (s)."""
+    """Run one node; return what it did for the first time, and its dearest tick's CPU time (s)."""
     watch, costs, begin, run_tick = Watch(), [], Session.begin, Session.run_tick
 
     def watched_begin(session):
@@ -145,7 +146,7 @@ def run(arguments):
 def main(cases):
     """Run all cases, each in a child of its own; print what each says."""
     for case in cases:
-        # a fork of a process with one thread, in which numba has called no kernel and rclpy is not up
+        # a fork of a process with one thread, where numba has called no kernel and rclpy is down
         child = os.fork()
         if child == 0:
             try:

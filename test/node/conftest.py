@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client of the node under test: a plain rclpy node in this process, while the simulation runs in another."""
+"""A client of the node under test: a plain rclpy node here; the simulation runs elsewhere."""
 
 import contextlib
 import fcntl
@@ -19,7 +19,7 @@ START = 60.0
 
 @pytest.fixture(scope='session')
 def compiled_kernels():
-    """Compile what the nodes of these tests need, in one process only, so that none of them has to."""
+    """Compile what the nodes of these tests need, in one process, so that none of them has to."""
     from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
     from rigid_body_sim.node.rehearsal import rehearse
     from rigid_body_sim.simulation.simulation import Simulation
@@ -64,7 +64,7 @@ class Client:
             self._executor.spin_once(timeout_sec=0.02)
 
     def collect(self, message_type, topic, qos=10):
-        """Subscribe as users do; return the list that fills with messages. It is empty until :meth:`until` or :meth:`spin` runs."""
+        """Subscribe as users do; return the list of messages, which :meth:`spin` fills."""
         messages = []
         self.node.create_subscription(message_type, topic, messages.append, qos)
         return messages
@@ -130,7 +130,7 @@ def _running(folder, *arguments):
 
 @pytest.fixture(scope='session')
 def run_node_in(compiled_kernels):
-    """Return the context manager that runs a node with its recordings in a folder, with arguments, and yields a Running."""
+    """Return the context manager that runs a node with arguments and yields a Running."""
     return _running
 
 
@@ -142,6 +142,6 @@ def run_node(tmp_path, compiled_kernels):
 
 @pytest.fixture(scope='module')
 def shared_node(request, tmp_path_factory, compiled_kernels):
-    """Yield a Running that all tests of a module share; its arguments are the module's ARGUMENTS."""
+    """Yield a Running for all tests of a module; its arguments are the module's ARGUMENTS."""
     with _running(tmp_path_factory.mktemp('node'), *request.module.ARGUMENTS) as running:
         yield running

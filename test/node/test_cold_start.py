@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Once the clock of a node runs, nothing is compiled, loaded or imported for the first time.
 
-How late a tick is depends on the machine; what it does for the first time does not. So these tests look
-at the latter: see cold_starts.py.
+How late a tick is depends on the machine; what it does for the first time does not. So these
+tests look at the latter: see cold_starts.py.
 """
 
 import json
@@ -14,7 +14,8 @@ import pytest
 DRIVER = pathlib.Path(__file__).with_name('cold_starts.py')
 CASES = [
     ['scene:=tennis_racket', 'record:=false'],
-    ['scene:=tennis_racket', 'publish:=[odom, imu, marker, clock]', 'recording.directory:={folder}'],
+    ['scene:=tennis_racket', 'publish:=[odom, imu, marker, clock]',
+     'recording.directory:={folder}'],
     ['scene:=tennis_racket', 'rate:=4000', 'record:=false'],
     ['scene:=free_body', 'integrator:=dop8', 'record:=false'],
     ['scene:=sphere', 'publish:=[imu]', 'record:=false'],
@@ -23,7 +24,8 @@ CASES = [
     # a strike and a change of torque that the rehearsal does not reach
     ['scene:=billiard_center', 'scene_overrides:=[strike.time=0.11]', 'record:=false'],
     ['scene:=driven_body', 'record:=false',
-     'scene_overrides:=["torque={times: [0.0, 0.11], values: [[0.0, 0.0, 0.1], [0.0, 0.1, 0.0]]}"]'],
+     'scene_overrides:=["torque={times: [0.0, 0.11], '
+     'values: [[0.0, 0.0, 0.1], [0.0, 0.1, 0.0]]}"]'],
     ['scene:=thin_rod', 'rate:=100', 'record:=false'],
 ]
 COMPILED_IN = 0.05

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # ruff: noqa: D101 - the types are what their names say
-"""A client of another vendor: Eclipse Cyclone DDS, with types written out by hand, hears the node and commands it."""
+"""A client of another vendor, Eclipse Cyclone DDS, hears the node and commands it.
+
+Its types are written out by hand.
+"""
 
 import time
 from dataclasses import dataclass
@@ -16,8 +19,10 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-CONFIGURATION = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false</AllowMulticast>
-</General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>"""
+CONFIGURATION = """<CycloneDDS><Domain><General>
+<Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false</AllowMulticast>
+</General><Discovery><ParticipantIndex>auto</ParticipantIndex>
+<Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>"""
 
 
 @dataclass
@@ -98,6 +103,7 @@ def test_cyclone_client_hears_the_node_and_commands_it(run_node):
         [k] = np.flatnonzero(np.abs(steps).max(axis=1) > 1e-9)
         moment = 0.25 / steps[k, 2]
         assert moment == pytest.approx(SPHERE_MOMENT, rel=1e-14, abs=0.0)
-        # two momenta of size 10 (kg m^2/s), each turned to the world: an entry of the matrix is a sum of products of rounded components, a
-    # component of the momentum a sum of three of them, 12 roundings of each; measured up to 3.7e-14, at a tick that differs from run to run
+        # two momenta of size 10 (kg m^2/s), each turned to the world: an entry of the matrix is a
+        # sum of products of rounded components, a component of the momentum a sum of three of
+        # them, 12 roundings of each; measured up to 3.7e-14, at a tick that differs between runs
         assert np.abs(steps[k, :2]).max() < 24 * np.finfo(float).eps * 10.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The doorbell: no message waits for long, no look is wasted, and a busy executor keeps nothing from the tick thread."""
+"""The doorbell: no message waits long, no look is wasted, no busy executor is in the way."""
 
 import time
 
@@ -13,7 +13,7 @@ from rigid_body_sim.node.doorbell import GLANCE, LOOKS, Doorbell
 
 
 class House:
-    """A node with two subscriptions behind a doorbell, a publisher to the second, and an executor."""
+    """A node with two subscriptions behind a doorbell, a publisher and an executor."""
 
     def __init__(self, context):
         self.node = rclpy.create_node('house', context=context)
@@ -27,7 +27,7 @@ class House:
         self.executor.add_node(self.node)
 
     def look(self):
-        """Take all that waits, as a tick does when the bell is not silent; return how many messages."""
+        """Take all that waits, as a tick does when the bell rings; return the number taken."""
         found = 0
         for subscription in self.subscriptions:
             while subscription.handle.take_message(Float64, True) is not None:

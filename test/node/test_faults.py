@@ -48,7 +48,7 @@ sim_node.main(sys.argv[1:])
 
 
 def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
-    """A reliable subscriber is stopped by a signal: its queue fills, the other one goes on hearing every tick, and no tick is skipped."""
+    """A stopped reliable subscriber fills its queue; the other hears every tick, none skipped."""
     with run_node('-p', 'rate:=200', '-p', 'record:=false') as node, node.domain.process(
             '-c', READER) as reader:
         energies, arrays = (node.client.collect(Float64, 'energy', 1000),
@@ -76,7 +76,7 @@ def test_callback_that_fails_ends_it_with_a_whole_recording(
 
 def test_wall_clock_set_back_by_an_hour_loses_and_doubles_no_tick(
         ros_domain, tmp_path, compiled_kernels):
-    """Stamps count ticks from the instant of the first one; only the times of publication tell of the wall clock."""
+    """Stamps count ticks from the first one; only times of publication follow the wall clock."""
     node = ros_domain.run('-c', BACK, '--ros-args', '-p', 'rate:=200', '-p', 'duration:=1.0', '-p',
                           f'recording.directory:={tmp_path / "recordings"}', timeout=90)
     assert (node.returncode, node.stderr) == (0, '')

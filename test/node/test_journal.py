@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node's recording tells: states as they were published, and every command, reset and change with its tick."""
+"""A node's recording: states as published, and every command, reset and change with its tick."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,8 @@ def test_files_are_split_and_compressed_as_asked(recording):
         assert {index.compression for index in summary.chunk_indexes} == {'lz4'}
         # and what came in a last chunk
         assert summary.statistics.message_end_time - summary.statistics.message_start_time < 1.4e9
-    # each tells all about the run, and a moment later the full state: the last one may have ended before
+    # each begins with all about the run, and a moment later the full state: the last one may have
+    # ended before
     assert len(entries(recording, 'begin')) == len(files)
     assert len(entries(recording, 'state')) in (len(files) - 1, len(files))
 
@@ -93,7 +94,7 @@ def test_resets_and_changes_stand_there_with_their_ticks(recording):
 
 
 def test_recording_alone_gives_every_state_again_to_the_last_bit(recording):
-    """Run the scene again with the journal's commands at their ticks: each recorded pose and angular velocity is met exactly."""
+    """The scene and the journal's commands give every recorded pose and velocity, bit for bit."""
     simulation = Simulation('tennis_racket', rate=RATE)
     acts = {}
     for entry in recording.journal():

@@ -60,7 +60,7 @@ def set_parameter(client, name, value):
 
 
 def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
-    """Two processes send 2500 impulses a second each; the journal has every one, in the order of its sender."""
+    """Two processes send 2500 impulses a second; the journal has all in their senders' order."""
     count = 2500
     with run_node('-p', 'rate:=500') as node:
         arrays = node.client.collect(DiagnosticArray, '/diagnostics')
@@ -89,7 +89,7 @@ def test_flood_from_two_publishers_is_applied_once_each_and_in_order(run_node):
 
 
 def test_commands_that_a_full_queue_drives_out_are_counted(run_node):
-    """Room for five, and a look every 10 ms: of 2000 at once most are lost, and none is lost unseen."""
+    """Room for five, a look every 10 ms: most of 2000 at once are lost, and all are counted."""
     count = 2000
     with run_node('-p', 'rate:=1', '-p', 'record:=false', '-p',
                   'qos_overrides./cmd_impulse.subscription.depth:=5') as node:

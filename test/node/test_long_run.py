@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A long run with all that can befall it: random commands, changes and services, subscribers that come and go, a full disk, a dead recorder.
+"""A long run with random commands, changes, services, subscribers, a full disk, a dead recorder.
 
-The quick form takes seconds; RIGID_BODY_SIM_SOAK=1 makes it RIGID_BODY_SIM_SOAK_SECONDS (7200) at 1 kHz. Whatever happened, the recording
-alone gives every state again to the last bit.
+The quick form takes seconds; RIGID_BODY_SIM_SOAK=1 makes it RIGID_BODY_SIM_SOAK_SECONDS (7200) at
+1 kHz. Whatever happened, the recording alone gives every state again to the last bit.
 """
 
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes beside each other: in namespaces they share nothing but /diagnostics; with one name they are told of it."""
+"""Nodes in namespaces share only /diagnostics; two of one name are told of each other."""
 
 import contextlib
 import select

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `replay`: what was recorded reaches subscribers, every bit of it and in order, with the quality of service it had."""
+"""The command `replay`: every recorded bit reaches subscribers in order, with its QoS."""
 
 import collections
 import importlib
@@ -36,7 +36,7 @@ def recording(tmp_path_factory):
 
 
 def subscribe(client, topic, depth=10_000):
-    """Subscribe to a recorded topic as it was offered; return the list that fills with its messages, as bytes."""
+    """Subscribe to a recorded topic as it was offered; return the list of its messages, bytes."""
     package, _, name = topic.type.split('/')
     message_type, taken = getattr(importlib.import_module(f'{package}.msg'), name), []
     profile = QoSProfile(depth=depth, durability=offered_qos(topic.qos).durability)
@@ -130,7 +130,7 @@ def test_loops_do_not_drift(recording):
 
 
 def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
-    """A clock that only sleep moves: each message goes out at its instant, and a pause moves all that come after it."""
+    """A clock that only sleep moves: a pause moves all messages that come after it."""
     clock, published = types.SimpleNamespace(now=5 * SECOND), collections.defaultdict(list)
 
     def sleep(seconds):
@@ -164,14 +164,18 @@ def test_a_message_is_never_early_whatever_the_rate(recording, monkeypatch):
 
 @pytest.mark.parametrize(('text', 'reliability', 'durability', 'depth'), [
     (Topic('/a', 'x', 7, 'best_effort').qos_text(), 'BEST_EFFORT', 'VOLATILE', 7),
-    (Topic('/a', 'x', 3, 'reliable', 'transient_local').qos_text(), 'RELIABLE', 'TRANSIENT_LOCAL', 3),
+    (Topic('/a', 'x', 3, 'reliable', 'transient_local').qos_text(),
+     'RELIABLE', 'TRANSIENT_LOCAL', 3),
     # rosbag2 of Humble wrote numbers; two publishers of one topic
-    ('- {history: 1, depth: 5, reliability: 2, durability: 2, deadline: FOREVER, lifespan: FOREVER, liveliness: 1, '
-     'liveliness_lease_duration: FOREVER, avoid_ros_namespace_conventions: false}'.replace('FOREVER', '{sec: 9223372036, nsec: 854775807}'),
+    ('- {history: 1, depth: 5, reliability: 2, durability: 2, deadline: FOREVER, '
+     'lifespan: FOREVER, liveliness: 1, liveliness_lease_duration: FOREVER, '
+     'avoid_ros_namespace_conventions: false}'.replace(
+         'FOREVER', '{sec: 9223372036, nsec: 854775807}'),
      'BEST_EFFORT', 'VOLATILE', 5),
-    (Topic('/a', 'x', 2, 'best_effort').qos_text() + Topic('/a', 'x', 9, 'reliable', 'transient_local').qos_text(),
+    (Topic('/a', 'x', 2, 'best_effort').qos_text()
+     + Topic('/a', 'x', 9, 'reliable', 'transient_local').qos_text(),
      'RELIABLE', 'TRANSIENT_LOCAL', 9),
-    ('', 'RELIABLE', 'VOLATILE', 10), ('[1, 2]', 'RELIABLE', 'VOLATILE', 10), ('{', 'RELIABLE', 'VOLATILE', 10)])
+    *((text, 'RELIABLE', 'VOLATILE', 10) for text in ('', '[1, 2]', '{'))])
 def test_recorded_qos(text, reliability, durability, depth):
     profile = offered_qos(text)
     durability = DurabilityPolicy[durability] if text and text[0] == '-' else profile.durability

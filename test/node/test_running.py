@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A running node as other people's nodes see it: topics, stamps, commands, services, diagnostics."""
+"""A running node as other nodes see it: topics, stamps, commands, services, diagnostics."""
 
 import itertools
 import math
@@ -25,7 +25,8 @@ DEPTHS = [word for topic in ('pose', 'angular_velocity', 'energy', 'angular_mome
 ARGUMENTS = (
     '-p', f'rate:={RATE}', '-p', 'scene:=free_body', '-p', 'publish:=[odom, imu, marker]', *DEPTHS)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-# two momenta of size 10 (kg m^2/s), each turned to the world by a rounded quaternion: 8 roundings of each; measured up to 1.2e-14
+# two momenta of size 10 (kg m^2/s), each turned to the world by a rounded quaternion: 8 roundings
+# of each; measured up to 1.2e-14
 TURNED = 16 * np.finfo(float).eps * 10.0
 
 
@@ -61,7 +62,7 @@ class States:
         self.spins = client.collect(Vector3Stamped, 'angular_velocity', 1000)
 
     def momenta(self, inertia):
-        """Return stamps and angular momenta in world axes of the ticks of which both messages came."""
+        """Return stamps and angular momenta (world) of the ticks of which both messages came."""
         spins = {nanoseconds(spin): vector(spin.vector) for spin in list(self.spins)}
         stamps, momenta = [], []
         for pose in list(self.poses):
@@ -121,7 +122,7 @@ def test_impulse_changes_the_momentum_by_exactly_its_value_at_one_tick(client, f
 
 
 def test_held_wrench_is_the_same_whatever_its_rate_of_messages(client):
-    """A torque along the angular momentum of a free body in world axes: L grows by torque x time, from tick to tick."""
+    """A torque along L of a free body in world axes: L grows by torque x time at every tick."""
     publisher = client.publisher(WrenchStamped, 'cmd_wrench')
     states = States(client)
     client.until(lambda: len(states.poses) > 5, what='ticks')

@@ -56,7 +56,10 @@ def test_listener_can_change_nothing():
 
 @pytest.mark.parametrize('keys', [False, True])
 def test_node_that_cannot_be_as_secure_as_asked_does_not_run(ros_domain, tmp_path, keys):
-    """Without keys nothing of ROS runs, nor with files that are none; the Fast DDS among the wheels, built without security, never does."""
+    """Nothing of ROS runs without keys, nor with files that are none.
+
+    The Fast DDS of the wheels is built without security and never runs then.
+    """
     enclave = tmp_path / 'enclaves' / 'rigid_body_sim' / 'sim_node'
     enclave.mkdir(parents=True)
     for name in FILES if keys else ():

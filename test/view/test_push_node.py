@@ -33,7 +33,8 @@ def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
     parameters = {'scene': scene, 'rate': 200.0, 'recording.directory': tmp_path,
                   'recording.name': 'pushed'}
     assignments = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
-    with ros_domain.process('-m', 'rigid_body_sim', 'sim_node', '--ros-args', *assignments) as node, \
+    arguments = '-m', 'rigid_body_sim', 'sim_node', '--ros-args', *assignments
+    with ros_domain.process(*arguments) as node, \
             ros_domain.process('-m', 'rigid_body_sim', 'view', '--node', '/sim_node', '--port',
                                '0') as view:
         tab = open_tab(address_of(view))

@@ -28,6 +28,9 @@ class Outcome:
         """Whether the error is a number within the bound."""
         return self.error <= self.bound
 
+    def __str__(self):
+        return f'{self.error:.3g} {self.unit}, bound {self.bound:.3g} ({self.reason})'
+
 
 @dataclass(frozen=True)
 class Question:
