@@ -1,30 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the table at the end of docs/machines.md from the results of `make test-machines`.
+"""Write the table at the end of docs/machines.md from what `make test-machines` found.
 
 ::
 
-    .venv/bin/python docs/make_machines.py       # reads .cache/machines/table.json
+    .venv/bin/python docs/make_machines.py       # reads docs/machines.json
 """
 
 import json
 import pathlib
 
+from rigid_body_sim.simulation import arithmetic
+
 DOCS = pathlib.Path(__file__).resolve().parent
-MEASURED = DOCS.parent / '.cache' / 'machines' / 'table.json'
 BEGIN = '## What was measured\n'
+HEAD = ('this machine stands for', 'digests', 'numeric tests', 'seconds', 'processor', 'date')
+
+
+def section(rows, version):
+    """Return the last section of the page."""
+    old = sum(row['arithmetic'] != version for row in rows)
+    about = ('A row is what `make test-machines` found when it last visited a machine. Visits '
+             'share the processor with each other, so their times are upper bounds.')
+    about += f' The arithmetic is `{version}`' + (
+        f' but for {old} rows, which are of the version that they name.' if old else '.')
+    lines = [BEGIN, about + '\n']
+    cells = [HEAD, ('---',) * len(HEAD)]
+    for row in rows:
+        verdict = row['verdict'] + f' (`{row["arithmetic"]}`)' * (row['arithmetic'] != version)
+        cells.append((row['name'], verdict, row['tests'] or '-', str(row['seconds']),
+                      row['processor'], row['date']))
+    return '\n'.join([*lines, *(f'| {" | ".join(row)} |' for row in cells)]) + '\n'
 
 
 def main():
     """Replace the last section of the page."""
-    found = json.loads(MEASURED.read_text())
+    rows = json.loads((DOCS / 'machines.json').read_text(encoding='utf-8'))
     page = DOCS / 'machines.md'
-    lines = [
-        BEGIN,
-        f'Arithmetic {found["arithmetic"]}, {found["cases"]} cases on a {found["processor"]}.\n',
-        '| this machine stands for | digests | numeric tests | time |',
-        '| --- | --- | --- | --- |',
-        *(f'| {" | ".join(row)} |' for row in found['rows'])]
-    page.write_text(page.read_text().partition(BEGIN)[0] + '\n'.join(lines) + '\n')
+    page.write_text(page.read_text(encoding='utf-8').partition(BEGIN)[0]
+                    + section(rows, arithmetic.version()), encoding='utf-8')
 
 
 if __name__ == '__main__':

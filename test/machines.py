@@ -10,8 +10,14 @@ This machine stands for others by settings, which its libraries take from the en
 is emulated (Debian's qemu-user-static). On each one the digests are computed and compared with
 those kept in rigid_body_sim/simulation/digests.json, and a recording made here runs again to the
 bit; on some the numeric tests run as well. What a machine lacks is said, and is no failure.
+
+As many machines are visited at a time as there are cores. What is found is kept in
+docs/machines.json, a row a machine, from which docs/make_machines.py makes the table of the page;
+a visit to a few machines leaves the rows of the others.
 """
 
+import concurrent.futures
+import datetime
 import json
 import os
 import pathlib
@@ -29,6 +35,7 @@ from rigid_body_sim.study.machines import digests, scenes
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 CACHE = ROOT / '.cache' / 'machines'
+KEPT = ROOT / 'docs' / 'machines.json'
 AVX2 = '+sse3,+ssse3,+sse4.1,+sse4.2,+popcnt,+avx,+avx2,+fma,+f16c,+bmi,+bmi2,+lzcnt,+movbe'
 AVX512 = f'{AVX2},+avx512f,+avx512cd,+avx512bw,+avx512dq,+avx512vl'
 OLD_LIBC = ','.join(f'-{name}' for name in (
@@ -128,7 +135,10 @@ def _record():
 
 
 def _run(call, settings):
-    return subprocess.run(call, env=os.environ | settings, cwd=ROOT, capture_output=True,
+    """Run a command with the settings of a machine and without those of all other machines."""
+    foreign = {name for machine in machines() for name in machine.settings} - {'PYTHONPATH'}
+    usual = {name: value for name, value in os.environ.items() if name not in foreign}
+    return subprocess.run(call, env=usual | settings, cwd=ROOT, capture_output=True,
                           text=True, timeout=PATIENCE)
 
 
@@ -143,8 +153,9 @@ def visit(machine, recording):
         return 0, [f'failed: {lines[-1]}'], ''
     found, kept = json.loads(run.stdout), arithmetic.digests()
     apart = digests.different(found, kept)
-    run = _run([*python, '-W', 'ignore', '-m', 'rigid_body_sim', 'resimulate', recording,
-                '--output', CACHE / 'differences'], machine.settings)
+    with tempfile.TemporaryDirectory(dir=CACHE) as differences:
+        run = _run([*python, '-W', 'ignore', '-m', 'rigid_body_sim', 'resimulate', recording,
+                    '--output', differences], machine.settings)
     if not run.stdout.startswith('identical'):
         apart.append('; '.join((run.stdout or run.stderr).strip().splitlines()[-3:]))
     tests = ''
@@ -153,8 +164,8 @@ def visit(machine, recording):
                     *machine.tests], machine.settings)
         tests = re.sub(r' in .*', '', (run.stdout.strip().splitlines() or ['failed'])[-1])
         if run.returncode:
-            apart += [line for line in run.stdout.splitlines() if line.startswith('FAILED')]
-            apart = apart or [f'tests: {tests}']
+            failed = [line for line in run.stdout.splitlines() if line.startswith('FAILED')]
+            apart += failed or [f'tests: {tests}']
     return sum(map(len, kept.values())), apart, tests
 
 
@@ -168,32 +179,39 @@ def _tell(machine, apart):
         print(f'{machine.name}: ... all in {path}')
 
 
+def _visited(machine, recording):
+    """Visit a machine, print what is found, and return its row of the table."""
+    begin = time.monotonic()
+    row = {'name': machine.name, 'arithmetic': arithmetic.version(), 'tests': '', 'differ': 0,
+           'processor': environment.processor().split()[0],
+           'date': datetime.datetime.now(datetime.UTC).date().isoformat()}
+    try:
+        row['digests'], apart, row['tests'] = visit(machine, recording)
+        row['differ'] = len(apart)
+        row['verdict'] = f'{len(apart)} differ' if apart else f'{row["digests"]} the same'
+        _tell(machine, apart)
+    except (Unavailable, subprocess.TimeoutExpired) as lack:
+        row['verdict'] = f'not here: {lack}'
+    row['seconds'] = round(time.monotonic() - begin)
+    print(row['name'], row['verdict'], row['tests'] or '-', f'{row["seconds"]} s', sep=' | ',
+          flush=True)
+    return row
+
+
 def main(words):
-    """Visit the machines; print the differences of each and a table; return the exit status."""
-    rows, bad = [], False
+    """Visit the machines, keep the table; return the exit status."""
     CACHE.mkdir(parents=True, exist_ok=True)
     recording = _record()
-    for machine in machines():
-        if words and not machine.name.startswith(tuple(words)):
-            continue
-        begin, tests = time.monotonic(), ''
-        try:
-            count, apart, tests = visit(machine, recording)
-            verdict = f'{count - len(apart)} the same' + f', {len(apart)} differ' * bool(apart)
-            bad |= bool(apart)
-            _tell(machine, apart)
-        except (Unavailable, subprocess.TimeoutExpired) as lack:
-            verdict = f'not here: {lack}'
-        rows.append((machine.name, verdict, tests or '-', f'{time.monotonic() - begin:.0f} s'))
-        print(*rows[-1], sep=' | ', flush=True)
-    here = {'arithmetic': arithmetic.version(), 'processor': environment.processor().split()[0],
-            'cases': len(arithmetic.digests()), 'rows': rows}
-    if not words:
-        (CACHE / 'table.json').write_text(json.dumps(here))
-    print(f'\nArithmetic {here["arithmetic"]} on {here["processor"]}\n')
-    for row in [('machine', 'digests', 'tests', 'time'), ('---',) * 4, *rows]:
-        print('|', ' | '.join(row), '|')
-    return int(bad)
+    wanted = [one for one in machines() if not words or one.name.startswith(tuple(words))]
+    # the first one compiles what those that differ in their libraries only find compiled
+    rows = [_visited(one, recording) for one in wanted[:1]]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        rows += pool.map(lambda one: _visited(one, recording), wanted[1:])
+    kept = {row['name']: row for row in json.loads(KEPT.read_text())} if KEPT.exists() else {}
+    kept |= {row['name']: row for row in rows if 'digests' in row or row['name'] not in kept}
+    table = [kept[one.name] for one in machines() if one.name in kept]
+    KEPT.write_text(json.dumps(table, indent=1) + '\n')
+    return int(any(row['differ'] for row in rows))
 
 
 if __name__ == '__main__':

@@ -151,7 +151,7 @@ def conditioning(scene, prototype, times, states):
         squares = np.zeros(len(times))
         for signs in SIGNS:
             moved = run(scene, prototype, _moved(scene, start, signs, many), times)
-            squares += apart(moved, states) ** 2
+            squares += np.square(apart(moved, states))
         change = np.sqrt(squares / len(SIGNS))
         small = np.maximum.accumulate(change) <= LINEAR
         found = np.where(small & (found == math.inf), change / many, found)

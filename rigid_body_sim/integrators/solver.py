@@ -151,7 +151,7 @@ class Stepped:
         if batch is None:
             on_all_cores(one_by_one, len(starts))
             return
-        begins, squares = starts[:, TIME], starts[:, ANGULAR_VELOCITY] ** 2
+        begins, squares = starts[:, TIME], np.square(starts[:, ANGULAR_VELOCITY])
         rates = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2])
         first, last = float(times.min()), float(times.max())
         for body in np.flatnonzero((first < begins) | (last > _latest(begins, rates))):

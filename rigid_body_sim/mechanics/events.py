@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.root import root
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
@@ -184,4 +184,4 @@ class Watcher:
 
         if value(begin) == 0.0:
             return begin
-        return brentq(value, begin, end, xtol=4e-16 * max(abs(end), 1e-300), rtol=8.9e-16)
+        return root(value, begin, end, 4e-16 * max(abs(end), 1e-300), 8.9e-16)

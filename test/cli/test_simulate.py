@@ -280,6 +280,7 @@ def test_a_terminal_sees_from_the_first_moment_what_is_done(tmp_path):
     assert '/5.00k' in shown.decode()
 
 
+@pytest.mark.without_numba
 def test_methods_that_are_listed_but_need_a_step_can_be_taken(capsys):
     listed = [name for name in methods_for(load_scene('tennis_racket'))
               if name != 'exact' and 'accuracy' not in METHODS[name].TAKES]

@@ -32,8 +32,8 @@ def test_a_fast_body_neither_hangs_nor_floods(kind, speed):
     A search for the next one once never ended, nor did the ledger's quadrature.
     """
     simulation = Simulation(parse_scene(kind % ((speed,) * kind.count('%s'))))
-    simulation.advance(100)
-    assert len(simulation.events) <= 404
+    simulation.advance(20)
+    assert len(simulation.events) <= 84
     assert np.isfinite(simulation.vector).all()
     assert abs(simulation.vector[1:5] @ simulation.vector[1:5] - 1.0) < 1e-15
     ledger = simulation.ledger()

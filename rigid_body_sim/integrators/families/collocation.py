@@ -105,7 +105,8 @@ def begin(stepped, march):
     if stepped.accuracy is not None:
         control[march.TOLERANCE] = stepped.accuracy / stepped.horizon
     control[march.FIXED] = stepped.step or 0.0
-    control[march.SWING] = swing_rate(stepped.scene) ** 2
+    swing = swing_rate(stepped.scene)
+    control[march.SWING] = swing * swing
     return control, np.zeros(march.KEPT + STAGES * march.SIZE)
 
 
@@ -204,7 +205,7 @@ def _shares(groups, name):
             yield square
         else:
             scale = f'scales[{place}]'
-            yield f'({square}) / {scale} if {scale} > {unroll.NOTHING**2!r} else 0.0'
+            yield f'({square}) / {scale} if {scale} > {unroll.NOTHING * unroll.NOTHING!r} else 0.0'
             place += 1
 
 

@@ -47,6 +47,7 @@ def begin(stepped, march):
     point = np.zeros(VALUES + 2 * march.SIZE)
     if stepped.step is None:
         # what potentials do, undiminished: swing_rate^2 = 4 U/I
-        rounding = ROUNDING * swing_rate(stepped.scene) ** 2
+        swing = swing_rate(stepped.scene)
+        rounding = ROUNDING * (swing * swing)
         return np.array([stepped.accuracy / stepped.horizon, rounding]), point
     return np.array([stepped.step, 0.0]), point

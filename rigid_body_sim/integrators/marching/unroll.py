@@ -70,7 +70,7 @@ def trial_source(method, n, extra, groups):
             lines.append(f'    square{place} = max(scales[{place}], {before}, {after})')
             lines.append(
                 f'    weight{place} = 1.0 / square{place} '
-                f'if square{place} > {NOTHING**2!r} else 0.0'
+                f'if square{place} > {NOTHING * NOTHING!r} else 0.0'
             )
             squares.append(f'square{place}')
             weight = f'weight{place} * '
@@ -111,7 +111,7 @@ def fastest_source(groups):
             lines += [
                 f'    square = {square}',
                 f'    found = max(found, math.sqrt(({change}) / square)) '
-                f'if square > {NOTHING**2!r} else found',
+                f'if square > {NOTHING * NOTHING!r} else found',
             ]
     return '\n'.join([*lines, f'    return found if found > {NOTHING!r} else 0.0', ''])
 

@@ -91,7 +91,8 @@ def absorbs(scene):
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    g = sum(effect.g for effect in scene.effects if effect.name == 'gravity')
+    gravity = scene.effect('gravity')
+    g = gravity.g if gravity else 0.0
     inertia = rotation_parameters(scene.body.about_center)
     return np.concatenate([inertia, scene.body.center_of_mass, [g]])
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Magnetic: a moment fixed in the body, in a field of the world."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -64,4 +65,4 @@ class Magnetic(Effect):
 
 def _size(vector):
     x, y, z = map(float, vector)
-    return (x * x + y * y + z * z) ** 0.5
+    return math.sqrt(x * x + y * y + z * z)
