@@ -5,6 +5,7 @@
 
     python test/machines.py                  # all; make test-machines
     python test/machines.py ARM64 OpenBLAS   # those whose names begin with one of these words
+    python test/machines.py --digests        # without the numeric tests, which take longest
 
 This machine stands for others by settings, which its libraries take from the environment; ARM64
 is emulated (Debian's qemu-user-static). On each one the digests are computed and compared with
@@ -159,7 +160,7 @@ def visit(machine, recording):
     if not run.stdout.startswith('identical'):
         apart.append('; '.join((run.stdout or run.stderr).strip().splitlines()[-3:]))
     tests = ''
-    if machine.tests:
+    if machine.tests and '--digests' not in sys.argv:
         run = _run([*python, '-m', 'pytest', '-q', '--timeout', '1200', '-p', 'no:cacheprovider',
                     *machine.tests], machine.settings)
         tests = re.sub(r' in .*', '', (run.stdout.strip().splitlines() or ['failed'])[-1])
@@ -202,7 +203,8 @@ def main(words):
     """Visit the machines, keep the table; return the exit status."""
     CACHE.mkdir(parents=True, exist_ok=True)
     recording = _record()
-    wanted = [one for one in machines() if not words or one.name.startswith(tuple(words))]
+    names = tuple(word for word in words if word != '--digests')
+    wanted = [one for one in machines() if not names or one.name.startswith(names)]
     # the first one compiles what those that differ in their libraries only find compiled
     rows = [_visited(one, recording) for one in wanted[:1]]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
