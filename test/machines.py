@@ -33,12 +33,11 @@ import typing
 from rigid_body_sim.compilation import environment
 from rigid_body_sim.simulation import arithmetic
 from rigid_body_sim.study.machines import digests, scenes
+from rigid_body_sim.study.machines.targets import TARGETS
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 CACHE = ROOT / '.cache' / 'machines'
 KEPT = ROOT / 'docs' / 'machines.json'
-AVX2 = '+sse3,+ssse3,+sse4.1,+sse4.2,+popcnt,+avx,+avx2,+fma,+f16c,+bmi,+bmi2,+lzcnt,+movbe'
-AVX512 = f'{AVX2},+avx512f,+avx512cd,+avx512bw,+avx512dq,+avx512vl'
 OLD_LIBC = ','.join(f'-{name}' for name in (
     'FMA', 'FMA4', 'AVX', 'AVX2', 'AVX512F', 'AVX512CD', 'AVX512BW', 'AVX512DQ', 'AVX512VL'))
 OLD_NUMPY = ('X86_V3 X86_V4 AVX2 FMA3 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL '
@@ -90,8 +89,6 @@ def _arm64():
 
 def machines():
     """Return the table of machines."""
-    def target(name, features):
-        return {'NUMBA_CPU_NAME': name, 'NUMBA_CPU_FEATURES': features}
     others = [version for version in ('3.11', '3.12', '3.13')
               if version != '.'.join(platform.python_version_tuple()[:2])]
     arm = {'PYTHONPATH': os.pathsep.join(map(str, (ROOT, CACHE / 'arm64' / 'packages'))),
@@ -105,9 +102,9 @@ def machines():
         Machine('C library without FMA, AVX', {'GLIBC_TUNABLES': f'glibc.cpu.hwcaps={OLD_LIBC}'}),
         Machine('C library without FMA, AVX; no numba',
                 {'GLIBC_TUNABLES': f'glibc.cpu.hwcaps={OLD_LIBC}', **PLAIN}),
-        Machine('numba for generic x86-64', target('generic', ''), tests=TESTS),
-        Machine('numba for Haswell (AVX2)', target('haswell', AVX2), tests=TESTS, needs='avx2'),
-        Machine('numba for AVX-512', target('skylake-avx512', AVX512), tests=TESTS,
+        Machine('numba for generic x86-64', TARGETS['generic'], tests=TESTS),
+        Machine('numba for Haswell (AVX2)', TARGETS['avx2'], tests=TESTS, needs='avx2'),
+        Machine('numba for AVX-512', TARGETS['avx512'], tests=TESTS,
                 needs='avx512vl'),
         *(Machine(f'Python {version}', {}, lambda version=version: _other_python(version), TESTS)
           for version in others),
