@@ -18,7 +18,8 @@ PYTHON_VERSIONS = 3.11 3.12 3.13
 COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
-PYTEST = python -m pytest --numprocesses 3 --timeout 300 --ignore test/test_installed.py
+# worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels
+PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
 .PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
 
@@ -51,10 +52,10 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth; millions of arguments of each function
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py \
-	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py
+	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py test/numerics/test_functions.py
 	.venv/bin/python bench/choice_random.py --count 300
 
 test-machines: .venv/test.stamp ## the bits as on other machines: processors, C library, BLAS, NumPy, Pythons, ARM64 emulated; docs/machines.md anew

@@ -19,7 +19,7 @@ from rigid_body_sim.scene.scene import parse_scene, scene_folder
 from rigid_body_sim.simulation.simulation import Simulation
 
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
-FILES = 100_000 if SOAK else 1500
+FILES = 100_000 if SOAK else 1000
 RUN_EVERY = 10
 NUMBERS = [
     '0', '-1', '1e308', '-1e308', '1e309', '.inf', '-.inf', '.nan', '5e-324', '1e-300', '9' * 400,
