@@ -21,7 +21,7 @@ NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 f
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels
 PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble clean
+.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures docs bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -77,6 +77,10 @@ test-kilted: .venv-kilted/stamp ## the tests of the node on ROS 2 Kilted
 figures: .venv/run.stamp ## figures and tables of README and docs anew
 	.venv/bin/python docs/make_figures.py
 
+docs: .venv-docs/stamp ## the pages as a site, in .cache/site: tutorial, how-to, reference, explanation; no network once .venv-docs is there
+	.venv-docs/bin/python -m sphinx --quiet --fail-on-warning --builder html docs .cache/site
+	@echo 'Open .cache/site/index.html'
+
 bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading; sweeps
 	.venv/bin/python bench/closed_forms.py
 	.venv/bin/python bench/energy.py
@@ -116,8 +120,11 @@ pins-kilted: .venv-kilted/stamp ## requirements/kilted.txt anew from kilted.in
 pins-noble: .venv-noble/stamp ## requirements/noble.txt anew from noble.in
 	.venv-noble/bin/python requirements/pin.py noble
 
+pins-docs: .venv-docs/stamp ## requirements/docs.txt anew from docs.in
+	.venv-docs/bin/python requirements/pin.py docs
+
 clean: ## remove the environments and what was built; recordings stay
-	rm -rf .venv .venv-kilted .venv-noble .venv-noble-numba .venv-peers .cache
+	rm -rf .venv .venv-docs .venv-kilted .venv-noble .venv-noble-numba .venv-peers .cache
 
 .venv/run.stamp: requirements/run.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv requirements/run.txt $(PYTHON_VERSIONS)
@@ -139,6 +146,10 @@ clean: ## remove the environments and what was built; recordings stay
 
 .venv-kilted/stamp: requirements/kilted.txt requirements/make_venv.sh
 	@requirements/make_venv.sh .venv-kilted requirements/kilted.txt $(PYTHON_VERSIONS)
+	@touch $@
+
+.venv-docs/stamp: requirements/docs.txt requirements/make_venv.sh
+	@requirements/make_venv.sh .venv-docs requirements/docs.txt $(PYTHON_VERSIONS)
 	@touch $@
 
 .venv-noble/stamp: requirements/noble.txt requirements/make_venv.sh

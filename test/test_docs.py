@@ -13,9 +13,11 @@ from rigid_body_sim.scene.scene import load_scene, scene_names
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
 sys.path.insert(0, str(DOCS))
-from figures import tables  # noqa: E402  (docs/ is no package)
+import make_reference  # noqa: E402  (docs/ is no package)
+from figures import tables  # noqa: E402
 
 README = DOCS.parent / 'README.md'
+PAGES = sorted(DOCS.rglob('*.md'))
 # scenes whose kernels other tests compile anyway; one function makes the other tables too
 QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top',
          'heavy_top', 'fast_top'}
@@ -53,11 +55,31 @@ def test_every_scene_has_a_page():
         assert f'config/scenes/{name}.yaml' in text, name
 
 
-@pytest.mark.parametrize(
-    'path', [*tables.pages(), DOCS / 'scenes.md', README], ids=lambda path: path.stem)
+@pytest.mark.parametrize('path', [*PAGES, README], ids=lambda path: path.stem)
 def test_links_lead_somewhere(path):
     for target in re.findall(r'\]\(([^)#:]+)\)', path.read_text()):
         assert (path.parent / target).exists(), target
+
+
+def test_every_page_is_in_the_site():
+    """Each is in a table of contents; `make docs` fails on a page that is in none."""
+    listed = set(re.findall(r'^[\w/]+$', (DOCS / 'index.md').read_text(), re.MULTILINE))
+    for path in PAGES:
+        page = path.relative_to(DOCS).with_suffix('').as_posix()
+        assert page in listed | {'index'} or page.startswith('systems/'), page
+
+
+@pytest.mark.parametrize('page', ['topics', 'commands', 'parameters'])
+def test_tables_of_the_reference_are_those_of_the_package(page):
+    if page == 'parameters':
+        pytest.importorskip('rclpy')
+    text = (DOCS / 'reference' / f'{page}.md').read_text()
+    assert make_reference.filled(text) == text, 'run: python docs/make_reference.py'
+
+
+def test_the_readme_is_short():
+    """What a user needs first; parameters, topics and costs have pages of their own."""
+    assert len(README.read_text().split()) < 1000
 
 
 def test_the_gallery_shows_every_page_and_pictures_are_small():

@@ -135,7 +135,7 @@ def test_the_parameter_file_is_made_from_the_table():
     parameters = pytest.importorskip('rigid_body_sim.node.parameters', reason='no ROS here')
     text = (ROOT / 'config' / 'sim_node.yaml').read_text()
     assert text == parameters.parameter_file() + '\n', (
-        'run: python -m rigid_body_sim.node.parameters yaml > config/sim_node.yaml')
+        'run: python -m rigid_body_sim.node.parameters > config/sim_node.yaml')
     shown = yaml.safe_load(text)['/**']['ros__parameters']
     flat = {}
     for name, value in shown.items():

@@ -82,7 +82,7 @@ class Rerun:
         if not self._method and asked['expected_error'] is not None:
             settled = Settled(asked['method'], asked['tolerance'], asked['expected_error'],
                               asked.get('met_until', asked['horizon']))
-        return Simulation(
+        simulation = Simulation(
             parse_scene(text),
             asked['integrator'],
             asked['accuracy'],
@@ -92,6 +92,9 @@ class Rerun:
             horizon=asked['horizon'],
             settled=settled,
         )
+        # states are compared, not events; a damaged stamp may lie years away
+        simulation.watching = False
+        return simulation
 
     def ticks(self, stamps):
         """Return the ticks of stamps (n,) int64, ns; BadInput where one lies between ticks."""
@@ -129,7 +132,6 @@ class Rerun:
         while self.simulation.tick < tick:
             self.simulation.advance(self._next(tick) - self.simulation.tick)
             self._act()
-            self.simulation.events.clear()
 
     def _next(self, tick):
         return min(tick, self._actions[-1]['tick']) if self._actions else tick
@@ -165,7 +167,6 @@ class Rerun:
                     self.simulation.energy,
                     self.simulation.angular_momentum_squared,
                 )
-            self.simulation.events.clear()
             parts.append((vectors, energies, momenta))
         vectors, energies, momenta = (
             np.concatenate(columns) for columns in zip(*parts, strict=True)

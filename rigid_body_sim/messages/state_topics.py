@@ -47,6 +47,8 @@ class Output:
     Attributes
     ----------
     name, type : str
+    about : str
+        What it holds, and in which axes: one line for docs/reference/topics.md.
     constants : callable
         Takes (scene, frames) and returns the fields that never change, and the lengths of
         sequences; raises BadInput if the topic has no meaning for a scene.
@@ -65,6 +67,7 @@ class Output:
 
     name: str
     type: str
+    about: str
     constants: Callable
     variable: tuple
     places: tuple
@@ -185,21 +188,44 @@ def _transform(scene, frames):
 
 
 EVERY_TICK = (
-    Output('pose', 'geometry_msgs/msg/PoseStamped', _in_world, ('pose',), (POSITION, ORIENTATION)),
+    Output(
+        'pose',
+        'geometry_msgs/msg/PoseStamped',
+        'position (m) and orientation of the body frame in the world',
+        _in_world,
+        ('pose',),
+        (POSITION, ORIENTATION),
+    ),
     Output(
         'angular_velocity',
         'geometry_msgs/msg/Vector3Stamped',
+        'angular velocity, rad/s, components along the axes of the body',
         _in_body,
         ('vector',),
         (ANGULAR_VELOCITY,),
     ),
-    Output('energy', 'std_msgs/msg/Float64', _nothing, ('data',), (ENERGY,)),
-    Output('angular_momentum_squared', 'std_msgs/msg/Float64', _nothing, ('data',), (SQUARE,)),
+    Output(
+        'energy',
+        'std_msgs/msg/Float64',
+        'kinetic and potential energy, J',
+        _nothing,
+        ('data',),
+        (ENERGY,),
+    ),
+    Output(
+        'angular_momentum_squared',
+        'std_msgs/msg/Float64',
+        'L^2 about the fixed point, else about the centre of mass, (kg m^2/s)^2',
+        _nothing,
+        ('data',),
+        (SQUARE,),
+    ),
 )
 ON_REQUEST = (
     Output(
         'odom',
         'nav_msgs/msg/Odometry',
+        'pose in the world; velocity (m/s) and angular velocity along the axes of the body',
         _odometry,
         ('pose.pose', 'twist.twist'),
         (POSITION, ORIENTATION, BODY_VELOCITY, ANGULAR_VELOCITY),
@@ -208,6 +234,7 @@ ON_REQUEST = (
     Output(
         'imu',
         'sensor_msgs/msg/Imu',
+        'orientation, angular velocity, proper acceleration a - g of the origin (REP 145)',
         _in_body,
         ('orientation', 'angular_velocity', 'linear_acceleration'),
         (ORIENTATION, ANGULAR_VELOCITY, ACCELERATION),
@@ -216,17 +243,25 @@ ON_REQUEST = (
     Output(
         'joint_states',
         'sensor_msgs/msg/JointState',
+        'angle (rad) and rate (rad/s) of a hinge',
         _joint,
         ('position', 'velocity'),
         (HINGE,),
         _hinge,
     ),
     Output(
-        'reaction', 'geometry_msgs/msg/WrenchStamped', _held, ('wrench',), (REACTION,), _reaction
+        'reaction',
+        'geometry_msgs/msg/WrenchStamped',
+        'force (N) and torque (N m) of pivot, hinge or table on the body, world axes',
+        _held,
+        ('wrench',),
+        (REACTION,),
+        _reaction,
     ),
     Output(
         'marker',
         'visualization_msgs/msg/Marker',
+        'the true shape of the body, for RViz',
         _marker,
         ('pose',),
         (SHAPE,),
@@ -236,13 +271,22 @@ ON_REQUEST = (
     Output(
         'tf',
         'tf2_msgs/msg/TFMessage',
+        'the transform from the world frame to the body frame',
         _transform,
         ('transforms[0].transform',),
         (POSITION, ORIENTATION),
         absolute=True,
         paced=True,
     ),
-    Output('clock', 'rosgraph_msgs/msg/Clock', _nothing, (), (), absolute=True),
+    Output(
+        'clock',
+        'rosgraph_msgs/msg/Clock',
+        'simulated time',
+        _nothing,
+        (),
+        (),
+        absolute=True,
+    ),
 )
 DISPLAY_RATE = 30.0
 """Default rate of paced outputs (Hz of simulated time), which are for display, not control."""

@@ -23,6 +23,7 @@ from rigid_body_sim.realtime.session import Session
 from rigid_body_sim.realtime.shutdown import say, tell
 from rigid_body_sim.realtime.ticking import Steady, Ticker
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS
+from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -57,6 +58,8 @@ class Engine:
                 'got clock together with use_sim_time',
                 'a node cannot follow the /clock that it publishes',
             )
+        if settings.record:
+            need_mcap()     # before kernels are compiled for a run that could not begin
         self._node, self._settings = node, settings
         self._entities_before, self.commands = set(_entities(node)), None
         try:

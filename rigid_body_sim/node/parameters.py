@@ -3,15 +3,14 @@
 
 rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let
 a deleted parameter go. So the overrides are read here, checked by the same rules that hold later
-for ``set_parameters``, and declared already converted. The README shows the table; ``python -m
-rigid_body_sim.node.parameters`` prints it, and ``... parameters yaml`` the parameter file.
+for ``set_parameters``, and declared already converted. docs/reference/parameters.md shows the
+table; ``python -m rigid_body_sim.node.parameters`` prints config/sim_node.yaml.
 """
 
 import array
 import dataclasses
 import math
 import re
-import sys
 import textwrap
 
 import yaml
@@ -37,7 +36,7 @@ class Entry:
     default : str, bool, float or tuple of str
         Its type is the parameter's type; an integer is accepted for a float.
     about : str
-        One line for `ros2 param describe` and the README.
+        One line for `ros2 param describe` and the reference page.
     low, high : float
         Least and largest value of a float, both allowed.
     choices : tuple of str
@@ -520,7 +519,7 @@ def _nearest(name, known):
 
 
 def table():
-    """Return the table of the parameters in Markdown, for the README."""
+    """Return the table of the parameters in Markdown, for docs/make_reference.py."""
     rows = [
         '| parameter | type | default | range | while running | meaning |',
         '|---|---|---|---|---|---|',
@@ -543,7 +542,7 @@ def table():
 def parameter_file():
     """Return config/sim_node.yaml: every parameter with its default, its meaning and range."""
     lines = ['# SPDX-License-Identifier: Apache-2.0',
-             '# Made by: python -m rigid_body_sim.node.parameters yaml > config/sim_node.yaml',
+             '# Made by: python -m rigid_body_sim.node.parameters > config/sim_node.yaml',
              '# The parameters of sim_node with their defaults.',
              '# Copy the file, keep the lines that you change, and run one of',
              '#   ros2 run rigid_body_sim sim_node --ros-args --params-file FILE',
@@ -569,4 +568,4 @@ def _as_yaml(value):
 
 
 if __name__ == '__main__':
-    print(parameter_file() if sys.argv[1:] == ['yaml'] else table())
+    print(parameter_file())

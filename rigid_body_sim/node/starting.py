@@ -26,7 +26,7 @@ def start(name, about, examples, node_class, arguments):
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     parser = command_line.parser(
-        name, f'{about} Everything is a ROS parameter (README, section Parameters).', examples
+        name, f'{about} Everything is a ROS parameter (docs/reference/parameters.md).', examples
     )
     parser.parse_args(
         arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments

@@ -85,6 +85,9 @@ class Simulation:
         :attr:`state`).
     events : list of Event
         What happened so far.
+    watching : bool
+        Whether :meth:`advance` looks for events; True. Without it, a jump costs the same however
+        much happens on the way.
 
     Raises
     ------
@@ -117,7 +120,7 @@ class Simulation:
         self.integrator, self.accuracy = integrator, accuracy
         self.choice = choose(self.scene, integrator, accuracy, step, horizon, settled)
         self.tick = 0
-        self.events = []
+        self.events, self.watching = [], True
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = parameters.parameters(self.scene)
         self._dynamics = Dynamics(self.scene)
@@ -236,7 +239,8 @@ class Simulation:
         spans = self._spans
         try:
             self._arrive()
-            self.events += list(self._events_between(self._spans, before, self.time))
+            if self.watching:
+                self.events += list(self._events_between(self._spans, before, self.time))
         except BaseException:
             self.tick, self._spans, self._commands = tick, spans, commands
             self._arrive()

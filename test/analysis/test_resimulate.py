@@ -12,7 +12,9 @@ from rosbags.rosbag2 import Reader, StoragePlugin
 from rosbags.rosbag2 import Writer as ForeignWriter
 from rosbags.typesys import Stores, get_typestore
 
+from rigid_body_sim.analysis.rerun import Rerun
 from rigid_body_sim.analysis.resimulate import main
+from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.recording import about, metadata
 from rigid_body_sim.recording.reader import Recording
@@ -48,6 +50,17 @@ def outcome(capsys, *arguments):
 def test_commands_resets_and_gaps_are_reproduced_to_the_bit(commanded, capsys):
     assert main([str(commanded)]) == 0
     assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
+
+
+def test_a_stamp_that_lies_years_away_is_a_jump_without_a_search_for_events(tmp_path):
+    """A racket flips 10^10 times until then; a damaged stamp of one message leads there."""
+    made.record(tmp_path / 'run', 'tennis_racket', 120)
+    with Recording(tmp_path / 'run') as recording:
+        [source] = sources(recording)
+        rerun = Rerun(source.entries, {})
+        rerun.to(10**14)
+    assert rerun.simulation.tick == 10**14
+    assert rerun.simulation.events == []
 
 
 def test_what_simulate_wrote_is_reproduced_to_the_bit(tmp_path, capsys):

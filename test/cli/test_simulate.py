@@ -18,6 +18,7 @@ import time
 import numpy as np
 import pytest
 import yaml
+from notices import without_notices
 
 from rigid_body_sim.analysis.resimulate import main as resimulate
 from rigid_body_sim.choice.choose import methods_for
@@ -39,9 +40,6 @@ effects: []
 initial: {orientation: [0, 0, 0, 1], angular_velocity: [0.3, 5.0, 0.2],
           position: [1, 2, 3], velocity: [0.1, 0.2, 0.3]}
 """
-
-NOTICES = 'numba is not', 'compiling '
-"""How lines begin that tell of the machine, not of the run."""
 
 
 @pytest.fixture(scope='module')
@@ -218,7 +216,7 @@ def test_a_signal_ends_it_with_a_whole_recording(tmp_path, number):
         process.send_signal(number)
         _, error = process.communicate(timeout=30)
     assert process.returncode == 128 + number
-    missed, line = (line for line in error.splitlines() if not line.startswith(NOTICES))
+    missed, line = without_notices(error).splitlines()
     assert 'the accuracy asked, 1e-12 rad, is missed' in missed    # over 100,000 s
     assert line.startswith('interrupted at t = ') and line.endswith('is whole up to there')
     pose = Recording(path).read('/pose', ['pose.orientation'])
@@ -235,7 +233,7 @@ def test_a_full_disk_loses_nothing_recorded(tmp_path):
     with start('--duration', '1000', '--output', path, preexec_fn=small_disk) as process:
         _, error = process.communicate(timeout=60)
     assert process.returncode == 1
-    [line] = [line for line in error.splitlines() if not line.startswith(NOTICES)]
+    [line] = without_notices(error).splitlines()
     assert (line.startswith(f'{path}: the disk refuses (File too large) at t = ')
             and 'recover' in line)
     recover(path)

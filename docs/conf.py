@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sphinx: pages in MyST Markdown, the Python interface by numpydoc. ``make docs`` builds it.
+
+Nothing is fetched: equations become MathML, which browsers draw themselves, and the search runs
+in the page.
+"""
+
+import pathlib
+import sys
+import xml.etree.ElementTree
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+manifest = xml.etree.ElementTree.parse(HERE.parent / 'package.xml').getroot()
+
+project = manifest.findtext('name')
+author = manifest.findtext('author')
+copyright = author  # noqa: A001  (Sphinx reads the name)
+release = version = manifest.findtext('version')
+
+extensions = ['myst_nb', 'sphinx.ext.autodoc', 'sphinx.ext.autosummary', 'numpydoc',
+              'sphinx_mathml']
+html_math_renderer = 'mathml'
+myst_enable_extensions = ['dollarmath', 'deflist']
+myst_heading_anchors = 3
+# a file of the tree (a scene, a script) is a download; pages of folders outside of docs are not
+suppress_warnings = ['misc.highlighting_failure']
+nb_execution_mode = 'off'
+exclude_patterns = ['_build', 'figures', 'images']
+
+autosummary_generate = True
+autodoc_typehints = 'none'           # numpydoc shows the types that the docstrings say
+autodoc_default_options = {'members': True, 'undoc-members': False}
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+
+html_theme = 'furo'
+html_title = f'{project} {release}'
+html_static_path = []
+html_show_sourcelink = False
+html_copy_source = False
+highlight_language = 'text'      # of code blocks that name no language

@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What commands say of the machine, not of the run: numba is missing, kernels are compiled."""
+
+BEGINNINGS = 'numba is not', 'compiling '
+
+
+def without_notices(error):
+    """Return the text of a standard error without such lines, the same warm and cold."""
+    return ''.join(line for line in error.splitlines(keepends=True)
+                   if not line.startswith(BEGINNINGS))
