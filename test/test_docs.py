@@ -86,6 +86,8 @@ def test_the_gallery_shows_every_page_and_pictures_are_small():
     text = README.read_text()
     for path in (DOCS / 'systems').glob('*.md'):
         assert f'(docs/systems/{path.name})' in text
+        if path.stem == 'index':
+            continue
         assert (f'](../images/{path.stem}.png)\n'
                 == path.read_text()[-len(f'](../images/{path.stem}.png)\n'):])
         assert (DOCS / 'images' / f'{path.stem}.png').stat().st_size < 100_000
