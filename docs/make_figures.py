@@ -18,13 +18,13 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-from figures import tables  # noqa: E402  (this folder is on the path only now)
+from figures import bodies, tables  # noqa: E402  (this folder is on the path only now)
 from figures.style import IMAGES, save  # noqa: E402
 
 # image -> scene, seconds, figure of the report
 RUNS = {'run': ('tennis_racket', 20, 'overview'), 'recordings': ('heavy_top', 20, 'spectrum')}
 DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py')
-               if path.stem not in ('__init__', 'style', 'tables'))
+               if path.stem not in ('__init__', 'bodies', 'style', 'tables'))
 
 
 def command(*arguments):
@@ -47,6 +47,9 @@ def main(names):
         if not names or name in names:
             print(f'docs/images/{name}.png')
             save(importlib.import_module(f'figures.{name}').draw(), name)
+    for name in bodies.BODIES:
+        if not names or {f'body_{name}', 'bodies'} & set(names):
+            save(bodies.draw(name), f'body_{name}')
     if not names or 'tables' in names:
         tables.fill()
 

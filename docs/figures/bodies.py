@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The labelled body of each handout: its shape, axes, angular velocity, and the named lengths.
+
+The shape is the one that reports and the browser view show. A scene with a bare tensor has none;
+the box of equal inertia stands for it.
+"""
+
+import types
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import LightSource, to_rgb
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from scipy.spatial.transform import Rotation
+
+from figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from rigid_body_sim.drawing.body import drawing_of
+from rigid_body_sim.drawing.setting import middle_of, reach_of
+from rigid_body_sim.scene.scene import load_scene
+
+TONES = '#9cc4e4', '#f0c07c'
+ALPHA = 0.45
+NONE = types.MappingProxyType({})
+
+
+class Labelled(NamedTuple):
+    """What a body is drawn with.
+
+    Attributes
+    ----------
+    scene : str
+    overrides : tuple of str
+    view : (float, float)
+        Elevation and azimuth of the eye, degrees.
+    points : dict of str to (x, y, z)
+        Labels of points, body axes, m.
+    lengths : dict of str to ((x, y, z), (x, y, z))
+        Labels of lengths between two points, body axes, m.
+    arrows : dict of str to ((x, y, z), (x, y, z))
+        Label to point and direction, body axes; drawn as long as the body reaches.
+    vertical : bool
+        Whether to show the weight.
+    axes : str
+        The body axes to show, of '123'.
+    """
+
+    scene: str
+    overrides: tuple = ()
+    view: tuple = (22.0, -60.0)
+    points: Mapping = NONE
+    lengths: Mapping = NONE
+    arrows: Mapping = NONE
+    vertical: bool = False
+    axes: str = '123'
+
+
+O = (0.0, 0.0, 0.0)
+TOP = {'points': {'O': O, 'C': (0.0, 0.0, 0.1)}, 'lengths': {'l': (O, (0.0, 0.0, 0.1))},
+       'vertical': True, 'view': (14.0, -70.0)}
+BODIES = {
+    'billiard_ball': Labelled(
+        'billiard_follow', view=(8.0, -80.0), axes='', points={'C': O},
+        lengths={'a': (O, (0.0, 0.0, -0.028575)), 'h': (O, (0.0, 0.0, 0.02))},
+        arrows={'cue: M v$_0$': ((-0.0571, 0.0, 0.02), (1.0, 0.0, 0.0))}),
+    'kater_pendulum': Labelled(
+        'kater_pendulum', ('initial.angle=0.35',), view=(4.0, -88.0), axes='', vertical=True,
+        points={'Q': O, 'C': (0.0, 0.0, -0.4), 'P': (0.0, 0.0, -1.0)},
+        lengths={'l': ((0.14, 0.0, 0.0), (0.14, 0.0, -0.4)),
+                 "l'": ((-0.2, 0.0, 0.0), (-0.2, 0.0, -1.0))}),
+    'baseball_bat': Labelled(
+        'baseball_bat', view=(80.0, -90.0), axes='',
+        points={'hand': O, 'C': (0.55, 0.0, 0.0)},
+        lengths={'l': ((0.0, 0.12, 0.0), (0.55, 0.12, 0.0)),
+                 'd': ((0.0, -0.14, 0.0), (0.6227, -0.14, 0.0))},
+        arrows={'F': ((0.6227, -0.42, 0.0), (0.0, 1.0, 0.0))}),
+    'driven_body': Labelled('driven_body', arrows={'Γ': (O, (0.0, 0.0, 1.0))}, axes='12'),
+    'free_body': Labelled('free_body'),
+    'symmetric_top': Labelled('symmetric_top'),
+    'chandler_wobble': Labelled('chandler_wobble', axes='13'),
+    'asymmetric_top': Labelled('asymmetric_top', axes='12'),
+    'tennis_racket': Labelled('tennis_racket', axes='13'),
+    'major_axis_relaxation': Labelled('major_axis_relaxation', axes='23'),
+    'euler_angles': Labelled('heavy_top', ('initial.euler_zyz=[0.7, 0.5, 0.4]',), **TOP),
+    'heavy_top': Labelled('heavy_top', **TOP),
+    'steady_precession': Labelled('steady_precession', **TOP),
+    'sleeping_top': Labelled('sleeping_top', **TOP),
+    'fast_top': Labelled('fast_top', **TOP),
+    'degenerate': Labelled('thin_rod', points={'C': O},
+                           lengths={'L': ((0.0, 0.0, -0.5), (0.0, 0.0, 0.5))}),
+    'inertia_tensors': Labelled('sphere', points={'C': O}),
+    'rolling_disk': Labelled('rolling_disk', vertical=True, points={'C': O},
+                             lengths={'R': (O, (0.5, 0.0, 0.0))}),
+    'rattleback': Labelled('rattleback', view=(25.0, -75.0), vertical=True),
+}
+
+
+def draw(name):
+    """Return the figure of the body of a page."""
+    about = BODIES[name]
+    scene = load_scene(about.scene, about.overrides)
+    turn, reference = Rotation.from_quat(scene.initial.orientation), middle_of(scene)
+    drawing = drawing_of(scene)
+    reach = reach_of(scene, drawing)
+
+    def world(point):
+        return turn.apply(np.subtract(point, reference)) / reach
+
+    figure = Figure(figsize=(3.6, 3.2), dpi=100)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes([-0.1, -0.1, 1.2, 1.2], projection='3d', computed_zorder=False)
+    seen = [world(drawing.vertices)]
+
+    def arrow(start, vector, *style):
+        _arrow(axes, start, vector, *style)
+        seen.append([start, start + 1.2 * vector])
+
+    for surface in drawing.surfaces:
+        _fill(axes, surface, world(surface.vertices))
+    for k in map(int, about.axes):
+        arrow(np.zeros(3), 1.25 * turn.apply(np.eye(3)[k - 1]), f'e$_{k}$', GREY, 1.0)
+    omega = scene.initial.angular_velocity
+    if np.any(omega):
+        arrow(np.zeros(3), 1.5 * turn.apply(omega / np.linalg.norm(omega)), 'ω', ORANGE)
+    for text, (at, direction) in about.arrows.items():
+        arrow(world(at), turn.apply(direction), text, GREEN)
+    if about.vertical:
+        center = world(scene.body.center_of_mass)
+        arrow(center, np.array([0.0, 0.0, -0.7]), 'M g', BLACK)
+    for text, point in about.points.items():
+        seen.append([world(point)])
+        axes.plot(*world(point), 'o', color=BLACK, markersize=4, zorder=8)
+        axes.text(*(world(point) + 0.06), text, fontsize=12, zorder=9)
+    for text, ends in about.lengths.items():
+        first, last = (world(point) for point in ends)
+        axes.plot(*np.transpose([first, last]), color=BLUE, linewidth=1.4, zorder=7,
+                  marker='_', markersize=6)
+        axes.text(*(0.5 * (first + last) + 0.05), text, color=BLUE, fontsize=12, zorder=9)
+        seen.append([first, last])
+    least, most = (function(np.concatenate(seen), axis=0) for function in (np.min, np.max))
+    middles, half = 0.5 * (least + most), 0.5 * (most - least).max()
+    axes.set(**{f'{k}lim': (middle - half, middle + half)
+                for k, middle in zip('xyz', middles, strict=True)})
+    axes.set_box_aspect((1.0, 1.0, 1.0), zoom=1.1)
+    axes.view_init(*about.view)
+    axes.set_axis_off()
+    return figure
+
+
+def _fill(axes, surface, vertices):
+    """Draw a surface as shaded triangles, seen through."""
+    corners = vertices[surface.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    kept = lengths > 0.0
+    light = LightSource(azdeg=300.0, altdeg=50.0).shade_normals(
+        normals[kept] / lengths[kept, np.newaxis], fraction=0.6)
+    tones = np.array([to_rgb(tone) for tone in TONES])[surface.accent[kept].astype(int)]
+    colors = np.clip(tones * (0.75 + 0.35 * light[:, np.newaxis]), 0.0, 1.0)
+    axes.add_collection3d(Poly3DCollection(
+        corners[kept], facecolors=np.column_stack([colors, np.full(len(colors), ALPHA)]),
+        linewidths=0.0, zorder=1))
+
+
+def _arrow(axes, start, vector, text, color, width=2.0):
+    axes.quiver(*start, *vector, color=color, linewidth=width, arrow_length_ratio=0.13, zorder=6)
+    axes.text(*(start + 1.12 * vector), text, color=color, fontsize=12, zorder=9)
