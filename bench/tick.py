@@ -23,9 +23,9 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import node as node_bench
 
-from rigid_body_sim.cli import simulate
 from rigid_body_sim.messages.state_topics import EVERY_TICK, Frames
 from rigid_body_sim.messages.tick_messages import TickMessages
+from rigid_body_sim.recording.of_simulation import SimulationRecording
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.precision import suite
@@ -66,12 +66,12 @@ def making(simulation):
 
 def recording(simulation, folder):
     """Return a callable that records TICKS ticks in blocks, as a recorder takes them."""
-    made = simulate.Recording(folder, simulation, {})
+    made = SimulationRecording(folder, 'simulate', simulation, {})
     states = simulation.states(simulation.time + np.arange(1, TICKS + 1) / simulation.rate)
     first = [1]
 
     def record():
-        made.ticks(first[0], states, ())
+        made.ticks(first[0], states)
         first[0] += TICKS
     return record
 

@@ -15,6 +15,7 @@ from rigid_body_sim.analysis.history import History, Segment, history
 from rigid_body_sim.analysis.replayed import stamps_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
+from rigid_body_sim.recording.about import UNPACED
 from rigid_body_sim.scene.scene import parse_scene
 
 EVERY_TICK = {
@@ -152,7 +153,7 @@ def _run(recording, topics, entries, start, end):
     run = json.loads(begin.get('simulation', '{}'))
     pace = (
         0.0
-        if begin.get('made_by') == 'simulate'
+        if begin.get('made_by') in UNPACED
         else float(json.loads(begin.get('parameters', '{}')).get('real_time_factor', 1.0))
     )
     # commands without a journal: nobody knows at which tick they acted

@@ -6,7 +6,6 @@ The recording is the one that the node would write.
 
 import collections
 import contextlib
-import operator
 import signal
 import sys
 import time
@@ -18,10 +17,9 @@ from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import state_topics
-from rigid_body_sim.messages.timeline import Pace, Timeline
+from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about, compression
-from rigid_body_sim.recording.needed import need_mcap
-from rigid_body_sim.recording.topics import Topic, journal_message, journal_topic
+from rigid_body_sim.recording.of_simulation import SimulationRecording
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import States
 from rigid_body_sim.simulation.simulation import Simulation
@@ -30,104 +28,7 @@ BLOCK = 4096
 """Ticks that are computed, packed and written at once."""
 LONGEST = 10**9
 """Most ticks of a run: more would fill any disk."""
-SOURCE = 'simulate'
 PARTS = ('orientation', 'angular_velocity', 'position', 'velocity')
-SCENE = Topic('/scene', about.STRING_TYPE, 1, durability='transient_local')
-EVENTS = Topic('/events', about.STATUS_TYPE, 100, durability='transient_local')
-
-
-class Recording:
-    """A recording of a simulation: topics of every tick, events, the latched scene, the journal.
-
-    Stamps begin at the wall clock and count ticks. Nothing is published, so the publish times are
-    the stamps.
-
-    Parameters
-    ----------
-    path : path-like
-        The folder to make.
-    simulation : Simulation
-    parameters : dict
-        What the command was told.
-    publish : sequence of str
-        Topics beside those of every tick, by the names of state_topics.ON_REQUEST.
-    writing : dict
-        ``compression_name``, ``split_bytes``, ``split_seconds`` of the Writer.
-    """
-
-    def __init__(self, path, simulation, parameters, publish=(), **writing):
-        need_mcap()
-        from rigid_body_sim.recording.writer import Writer
-        self._simulation = simulation
-        outputs = state_topics.chosen(publish)
-        self._messages = state_topics.scene_messages(outputs, simulation.scene,
-                                                     state_topics.Frames())
-        self._pace = Pace(state_topics.DISPLAY_RATE, simulation.rate)
-        self._paced = [Topic(f'/{output.name}', output.type) for output in outputs.paced]
-        self._journal = journal_topic()
-        ticking = [(Topic(f'/{output.name}', output.type), size)
-                   for output, size in zip(outputs.ticking, self._messages.ticking.sizes,
-                                           strict=True)]
-        self._writer = Writer(path, ticking, [EVENTS, SCENE, *self._paced], self._journal,
-                              about.about(SOURCE, simulation, parameters), **writing)
-        self._timeline = Timeline(time.time_ns(), simulation.rate)
-        self._message(SCENE, self._timeline.instant(0), about.scene_message(simulation.scene))
-
-    def ticks(self, first, states, events):
-        """Record the States of the ticks from `first` up to now, and the events among them."""
-        stamps = np.array(self._timeline.instants(first, len(states)))
-        given = states.vector, *self._simulation.diagnose(states), stamps
-        rows = self._messages.ticking.columns(*given, self._simulation.wrench)
-        begin = 0
-        between = [*_events(events), *self._paced_messages(first, *given)]
-        for tick, topic, data in sorted(between, key=operator.itemgetter(0)):
-            self._record_ticks(first, begin, tick - first, stamps, rows)
-            begin = tick - first
-            self._message(topic, stamps[begin], data)
-        self._record_ticks(first, begin, len(states), stamps, rows)
-        self._record_state(int(stamps[-1]))
-
-    def _paced_messages(self, first, vectors, energies, squares, stamps):
-        """Return (tick, topic, bytes) of the topics with a rate of their own."""
-        if not self._paced:
-            return []
-        due = self._pace.due(first, len(vectors))
-        k = np.array(due, dtype=int) - first
-        made = self._messages.paced.messages(vectors[k], energies[k], squares[k], stamps[k],
-                                             self._simulation.wrench)
-        return [(tick, topic, data) for tick, messages in zip(due, made, strict=True)
-                for topic, data in zip(self._paced, messages, strict=True)]
-
-    def _record_ticks(self, first, begin, end, stamps, rows):
-        if end > begin:
-            self._writer.ticks(first + begin, stamps[begin:end], stamps[begin:end],
-                               [part[begin:end] for part in rows])
-
-    def _record_state(self, stamp):
-        """Put the full state into the journal of a new file."""
-        if self._writer.state_wanted:
-            self._writer.state_wanted = False
-            entry = about.state_entry(self._simulation.tick, stamp, self._simulation)
-            self._message(self._journal, stamp, journal_message('state', **entry))
-
-    def _message(self, topic, stamp, data):
-        self._writer.message(topic.name, stamp, stamp, data)
-
-    @property
-    def messages(self):
-        """How many messages are in the files."""
-        return self._writer.messages_written
-
-    def close(self):
-        """Finish the files."""
-        self._writer.close()
-
-
-def _events(events):
-    """Return (tick, topic, bytes) of events."""
-    return [(event.tick, EVENTS,
-             about.event_message(SOURCE, about.OK, event.name, *about.event_text(event)))
-            for event in events]
 
 
 @contextlib.contextmanager
@@ -155,7 +56,7 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
     simulation : Simulation
         Just made.
     ticks : int
-    recording : Recording, optional
+    recording : SimulationRecording, optional
         Gets the states at all ticks, the first one included.
     stop : sequence
         The run ends early when it is not empty any more.
@@ -164,12 +65,13 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
     """
     counts = collections.Counter()
     if recording:
-        recording.ticks(0, States(simulation.vector[np.newaxis].copy()), ())
+        recording.ticks(0, States(simulation.vector[np.newaxis].copy()))
     while simulation.tick < ticks and not stop:
         first, count = simulation.tick + 1, min(BLOCK, ticks - simulation.tick)
         if recording:
             states = simulation.advance_through(count)
-            recording.ticks(first, states, simulation.events)
+            recording.note(simulation.events)
+            recording.ticks(first, states)
         else:
             simulation.advance(count)
         counts.update(event.name for event in simulation.events)
@@ -232,8 +134,9 @@ def _simulate(options, bar):
                             options.step, horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
     with interruptible() as asked:
-        recording = Recording(options.output, simulation, _parameters(options), options.publish,
-                              **_writing(options)) if options.output else None
+        recording = SimulationRecording(
+            options.output, 'simulate', simulation, _parameters(options), options.publish,
+            **_writing(options)) if options.output else None
         prepared = time.perf_counter()
         bar.set_description(simulation.scene.name)
         bar.reset(ticks)

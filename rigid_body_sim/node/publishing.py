@@ -4,8 +4,6 @@
 Each message is made once, as bytes, for the wire and for the recording.
 """
 
-import importlib
-
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -15,6 +13,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.messages.state_topics import Frames, Outputs, SceneMessages
 from rigid_body_sim.node import qos
+from rigid_body_sim.node.display import Display
+from rigid_body_sim.node.message_types import import_type
 from rigid_body_sim.recording import about
 from rigid_body_sim.recording.topics import Topic
 
@@ -63,6 +63,7 @@ class Publishing:
         self._node, self._frames, self._outputs = node, frames, outputs
         self._ticking = [self._output(output) for output in outputs.ticking]
         self._paced = [self._output(output) for output in outputs.paced]
+        self._display = Display(node, outputs.ticking)
         self._publish = [publisher.handle.publish_raw for publisher in self._ticking]
         self._publish_paced = [
             (publisher.topic_name, publisher.handle.publish_raw) for publisher in self._paced
@@ -78,7 +79,7 @@ class Publishing:
 
     def _output(self, output):
         return self._create(
-            _import_type(output.type, output.name),
+            import_type(output),
             output.name,
             QoSProfile(depth=DEPTH),
             output.absolute,
@@ -101,6 +102,7 @@ class Publishing:
         """Publish the messages of a tick."""
         for publish, message in zip(self._publish, messages):
             publish(message)
+        self._display.tick(messages)
 
     def paced(self, messages: list[bytes]) -> list[tuple[str, bytes]]:
         """Publish messages of the outputs with a rate of their own; return them by topic."""
@@ -162,15 +164,3 @@ def _offer(publisher, type_name):
         profile.reliability.name.lower(),
         profile.durability.name.lower(),
     )
-
-
-def _import_type(name, topic):
-    package, _, message = name.split('/')
-    try:
-        return getattr(importlib.import_module(f'{package}.msg'), message)
-    except ImportError:
-        raise BadInput(
-            'parameter publish',
-            f'got {topic}, but {package} is not installed here',
-            f'install {package}, or leave {topic} out',
-        ) from None

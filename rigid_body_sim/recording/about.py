@@ -20,6 +20,8 @@ from rigid_body_sim.simulation import arithmetic
 
 STATUS_TYPE, STRING_TYPE = 'diagnostic_msgs/msg/DiagnosticStatus', 'std_msgs/msg/String'
 OK, WARN, ERROR = 0, 1, 2
+UNPACED = ('simulate', 'view')
+"""Commands whose recordings have the stamps as publish times."""
 SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', 'step', 'rate'}
 """Parameters whose change makes a new Simulation, which continues the one before."""
 

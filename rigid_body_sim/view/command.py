@@ -6,6 +6,7 @@ import sys
 
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.view.access import LOCAL, Access
 
@@ -26,6 +27,9 @@ def main(arguments=None):
     parser.add_argument('--integrator', default='auto', help='method (auto)')
     parser.add_argument('--accuracy', type=float, default=1e-12,
                         help='error of the attitude that is asked for, rad (1e-12)')
+    parser.add_argument('--output', metavar='FOLDER',
+                        help='recording of a scene to make, pushes included; it must not exist '
+                        'yet')
     parser.add_argument('--host', default=LOCAL,
                         help=f'address to listen on ({LOCAL}: this machine only); another one '
                         'puts a token into the address')
@@ -59,6 +63,7 @@ def _run(options):
 
 def _source(options):
     """Return where the frames come from."""
+    _refuse_output(options)
     recordings = [one for one in options.what if _is_recording(one)]
     if options.node:
         if options.what:
@@ -74,7 +79,20 @@ def _source(options):
     scene = load_scene(options.what[0] if options.what else 'tennis_racket', options.set)
     settings = {'rate': options.rate, 'integrator': options.integrator,
                 'accuracy': options.accuracy}
-    return Live(scene.text, settings)
+    return Live(scene.text, settings, options.output)
+
+
+def _refuse_output(options):
+    """Raise BadInput where the recording asked for cannot be made."""
+    if options.output is None:
+        return
+    if options.node or any(map(_is_recording, options.what)):
+        raise BadInput('--output', f'got {options.output!r} without a scene to run',
+                       'the parameter record of the node, or the recording that is there')
+    if pathlib.Path(options.output).exists():
+        raise BadInput(options.output, 'exists already',
+                       'the name of a recording that does not exist yet')
+    need_mcap()
 
 
 def _is_recording(name):

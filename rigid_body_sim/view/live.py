@@ -13,6 +13,9 @@ from rigid_body_sim.view import runner
 SLOWEST = 1e-3
 """A body that turns more slowly than this (rad/s) is not shown in real time."""
 
+FINISHED_WITHIN = 10.0
+"""Time that the process may take to end a step and to finish its recording, s."""
+
 
 class Live:
     """A scene that runs in another process.
@@ -23,6 +26,8 @@ class Live:
         YAML of the scene.
     settings : dict
         Keywords of the Simulation: ``rate``, ``integrator``, ``accuracy``.
+    output : str, optional
+        Folder of the recording to make.
 
     Attributes
     ----------
@@ -42,13 +47,14 @@ class Live:
 
     pushes, edits, plays, paces = True, True, False, True
 
-    def __init__(self, text, settings):
+    def __init__(self, text, settings, output=None):
         self.scene, self.generation, self.method = parse_scene(text), 0, ''
         self.speed = pace_for(self.scene)
         self.messages, self.expected = list(self.scene.notes), {}
         context = multiprocessing.get_context('spawn')
         self._pipe, other = context.Pipe()
-        self._process = context.Process(target=runner.serve, args=(other, settings), daemon=True)
+        self._process = context.Process(target=runner.serve, args=(other, settings, output),
+                                        daemon=True)
         with deaf_children():
             self._process.start()
         other.close()
@@ -93,7 +99,7 @@ class Live:
     def close(self):
         """End the process."""
         self._pipe.close()
-        self._process.join(1.0)
+        self._process.join(FINISHED_WITHIN)
         if self._process.is_alive():
             self._process.terminate()
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The source that is a running node: its topics drawn, and the mouse published as its commands.
 
-Subscriptions keep one message and are best effort; nothing is spun, the page's loop takes the
-latest message of each when it draws. So the node sends no message twice, and a thousand poses a
-second cost this process next to nothing. What the mouse holds is sent again at every frame; if the
-page is gone, the node's ``command_timeout`` lets go.
+The node sends the latest state at the pace of a picture (node/display.py); of a node without these
+topics, as of a replayed recording, those of every tick are taken. Subscriptions keep one message
+and are best effort; nothing is spun, the page's loop takes the latest message of each when it
+draws. What the mouse holds is sent again at every frame; if the page is gone, the node's
+``command_timeout`` lets go.
 """
 
 import math
@@ -14,11 +15,12 @@ import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Vector3Stamped, WrenchStamped
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node import display
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import State
@@ -27,6 +29,10 @@ from rigid_body_sim.view.frames import Frame
 
 APPEARS_WITHIN = 8.0
 """How long the node may take to be discovered, s."""
+DISPLAY_WITHIN = 1.0
+"""How long a node that publishes a scene may take to show its topics for pages, s."""
+STATES = {'angular_velocity': Vector3Stamped, 'energy': Float64, 'pose': PoseStamped}
+"""Topics of the state, in the order in which they are taken."""
 NANOSECONDS = 1e9
 
 
@@ -63,19 +69,11 @@ class NodeSource:
             raise
 
     def _connect(self, namespace):
-        latest = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._types, self._subscriptions = {}, {}
         latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        topics = {'scene': (String, latched), 'events': (DiagnosticStatus, latched),
-                  'pose': (PoseStamped, latest), 'angular_velocity': (Vector3Stamped, latest),
-                  'energy': (Float64, latest)}
-        self._types = {topic: kind for topic, (kind, _) in topics.items()}
-        self._subscriptions = {
-            topic: self._node.create_subscription(kind, f'{namespace}/{topic}', lambda _: None,
-                                                  qos)
-            for topic, (kind, qos) in topics.items()}
-        self._types['diagnostics'] = DiagnosticArray
-        self._subscriptions['diagnostics'] = self._node.create_subscription(
-            DiagnosticArray, '/diagnostics', lambda _: None, QoSProfile(depth=10))
+        for topic, kind in (('scene', String), ('events', DiagnosticStatus)):
+            self._subscribe(topic, kind, f'{namespace}/{topic}', latched)
+        self._subscribe('diagnostics', DiagnosticArray, '/diagnostics', QoSProfile(depth=10))
         self._held = self._node.create_publisher(WrenchStamped, f'{namespace}/cmd_wrench', 10)
         self._struck = self._node.create_publisher(WrenchStamped, f'{namespace}/cmd_impulse', 10)
         self._clients = {
@@ -89,6 +87,24 @@ class NodeSource:
                                f'the name of a running sim_node on this ROS_DOMAIN_ID, not '
                                f'{self._name}')
             time.sleep(0.05)
+        self._subscribe_to_states(namespace)
+
+    def _subscribe(self, name, kind, topic, profile):
+        self._types[name] = kind
+        self._subscriptions[name] = self._node.create_subscription(kind, topic, lambda _: None,
+                                                                   profile)
+
+    def _subscribe_to_states(self, namespace):
+        """Subscribe to what the node sends for pages, or else to the topics of every tick."""
+        shown = {name: display.topic_of(name).replace('~', self._name) for name in STATES}
+        deadline = time.monotonic() + DISPLAY_WITHIN
+        while not all(map(self._node.count_publishers, shown.values())):
+            if time.monotonic() > deadline:
+                shown = {name: f'{namespace}/{name}' for name in STATES}
+                break
+            time.sleep(0.05)
+        for name, topic in shown.items():
+            self._subscribe(name, STATES[name], topic, display.PROFILE)
 
     def _take(self, topic):
         """Yield the messages that wait on a topic."""
@@ -110,7 +126,7 @@ class NodeSource:
         for message in self._take('diagnostics'):
             self._diagnose(message)
         fresh = False
-        for topic in ('angular_velocity', 'energy', 'pose'):
+        for topic in STATES:
             for message in self._take(topic):
                 self._last[topic], fresh = message, True
         if not fresh or not {'pose', 'angular_velocity'} <= self._last.keys():

@@ -6,6 +6,7 @@ Frame)``, ``('scene', About)``, ``('refused', text)`` and ``('failed', text)`` b
 that takes long never holds up the page, and the page never holds up the simulation.
 """
 
+import contextlib
 import math
 import signal
 import time
@@ -14,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.recording.of_simulation import SimulationRecording
 from rigid_body_sim.scene.scene import parse_scene
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME, States
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory.prediction import expectation
@@ -48,11 +50,14 @@ class Runner:
     pipe : multiprocessing.Connection
     settings : dict
         ``rate``, ``integrator`` and ``accuracy`` of the Simulation.
+    output : str or None
+        Folder of the recording to make.
     """
 
-    def __init__(self, pipe, settings):
-        self._pipe, self._settings = pipe, settings
-        self._simulation = None
+    def __init__(self, pipe, settings, output):
+        self._pipe, self._settings, self._output = pipe, settings, output
+        self._simulation = self._recording = None
+        self._events = []
         self._speed, self._paused, self._steps = 1.0, False, 0
         self._cost = 0.0
         self._told = {'scene': self._begin, 'command': self._command, 'speed': self._set_speed,
@@ -82,6 +87,7 @@ class Runner:
         try:
             simulation = Simulation(parse_scene(text), **self._settings)
             self._rehearse(simulation.scene)
+            self._record(simulation)
         except BadInput as error:
             self._pipe.send(('refused', str(error)))
             return
@@ -89,6 +95,64 @@ class Runner:
         self._pipe.send(('scene', About(simulation.scene.text, simulation.choice.method,
                                         list(simulation.scene.notes))))
         self._restarted()
+
+    def _record(self, simulation):
+        """Have the recording, if there is one, go on with a simulation that begins."""
+        if self._recording:
+            simulation.follow(self._simulation, keep_state=False)
+            changed = {'scene': simulation.scene.name}
+            self._write(lambda recording: recording.switch(simulation, changed))
+        elif self._output:
+            output, self._output = self._output, None
+            parameters = {'scene': simulation.scene.name, **self._settings}
+            self._recording = SimulationRecording(output, 'view', simulation, parameters,
+                                                  commanded=True)
+
+    def _write(self, act):
+        """Call a function with the recording, if there is one; a full disk ends it."""
+        if self._recording is None:
+            return
+        try:
+            act(self._recording)
+        except OSError as error:
+            recording, self._recording = self._recording, None
+            with contextlib.suppress(OSError):
+                recording.close()
+            with contextlib.suppress(OSError):
+                self._pipe.send(('refused', f'the disk refuses the recording ({error.strerror}): '
+                                 'it ends here; "recover" keeps all up to here'))
+
+    def _write_present(self):
+        """Record the present tick, after all that took effect at it."""
+        simulation, states = self._simulation, States(self._simulation.vector[None].copy())
+        self._take_events()
+        self._write(lambda recording: recording.ticks(simulation.tick, states))
+
+    def _take_events(self):
+        """Take the events since the last call, for the recording and for the frame."""
+        events = list(self._simulation.events)
+        self._simulation.events.clear()
+        self._events += events
+        self._write(lambda recording: recording.note(events))
+
+    def _go(self, ticks):
+        """Go on by a number of ticks, and record those that are left behind."""
+        simulation = self._simulation
+        if not ticks or self._recording is None:
+            simulation.advance(ticks)
+            return
+        first = simulation.tick + 1
+        self._write_present()
+        states = simulation.advance_through(ticks)
+        # what the mouse does now still acts at the last one
+        self._take_events()
+        self._write(lambda recording: recording.ticks(first, States(states.vector[:-1])))
+
+    def close(self):
+        """Finish the recording, if there is one."""
+        if self._recording:
+            self._write_present()
+            self._write(lambda recording: recording.close())
 
     def _rehearse(self, scene):
         """Compile what the first command needs, before the mouse comes."""
@@ -106,8 +170,11 @@ class Runner:
     def _command(self, rows):
         if self._simulation is None:
             return
-        for refusal in self._simulation.command(rows):
+        refused = self._simulation.command(rows)
+        for refusal in refused:
             self._pipe.send(('refused', str(refusal.error)))
+        taken = np.delete(rows, [refusal.place for refusal in refused], axis=0)
+        self._write(lambda recording: recording.commands(taken))
         self._expected = None
 
     def _set_speed(self, speed):
@@ -122,6 +189,7 @@ class Runner:
     def _reset(self, _):
         if self._simulation is not None:
             self._simulation.reset()
+            self._write(lambda recording: recording.reset())
             self._restarted()
 
     def _advance(self, seconds):
@@ -148,7 +216,7 @@ class Runner:
         """Bring the motion to a time (s), which need not be a tick's, and send the frame."""
         simulation = self._simulation
         origin = simulation.time_at(0)
-        simulation.advance(max(int((until - origin) * simulation.rate) - simulation.tick, 0))
+        self._go(max(int((until - origin) * simulation.rate) - simulation.tick, 0))
         rate = float(np.linalg.norm(simulation.vector[ANGULAR_VELOCITY]))
         between = 1 + min(int(rate * (until - self._time) / TURN_BETWEEN), MOST_BETWEEN)
         times = np.linspace(self._time, until, between + 1)[1:]
@@ -160,8 +228,9 @@ class Runner:
     def _send(self, trail, restarted=False):
         simulation = self._simulation
         ledger = simulation.ledger()
-        happened = [(event.time, event.name) for event in simulation.events]
-        simulation.events.clear()
+        self._take_events()
+        happened = [(event.time, event.name) for event in self._events]
+        self._events.clear()
         if self._expected:
             for at, name in happened:
                 self._expected.note(name, at)
@@ -174,10 +243,13 @@ class Runner:
                                           if isinstance(value, str) or math.isfinite(value)}))
 
 
-def serve(pipe, settings):
+def serve(pipe, settings, output=None):
     """Run as the main function of the process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    runner = Runner(pipe, settings, output)
     try:
-        Runner(pipe, settings).run()
+        runner.run()
     except (EOFError, OSError):
         return
+    finally:
+        runner.close()

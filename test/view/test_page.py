@@ -13,6 +13,8 @@ import ros
 
 pytest.importorskip('viser')
 
+from rigid_body_sim.analysis.resimulate import resimulate
+from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.view import access, mouse
 from rigid_body_sim.view.live import Live
@@ -51,8 +53,8 @@ def page():
 def test_a_drag_in_a_browser_moves_the_body_and_nothing_outside_is_asked(
         tmp_path, open_tab, address_of):
     (tmp_path / 'ball.yaml').write_text(BALL)
-    command = [
-        sys.executable, '-m', 'rigid_body_sim', 'view', tmp_path / 'ball.yaml', '--port', '0']
+    command = [sys.executable, '-m', 'rigid_body_sim', 'view', tmp_path / 'ball.yaml', '--port', '0',
+               '--output', tmp_path / 'pushed']
     with subprocess.Popen(command, cwd=ros.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as process:
         try:
@@ -69,6 +71,24 @@ def test_a_drag_in_a_browser_moves_the_body_and_nothing_outside_is_asked(
             assert process.wait(30) == 0, process.stderr.read()
         finally:
             process.kill()
+    commands = commands_in(tmp_path / 'pushed')
+    assert sum(any(command['force']) for command in commands) > 5
+    assert commands[-1]['topic'] == 'release'
+    assert parting_of(tmp_path / 'pushed') is None
+
+
+def commands_in(path):
+    """Return the commands of a recording."""
+    with Recording(path) as recording:
+        return [command for entry in recording.journal() if entry['kind'] == 'commands'
+                for command in entry['commands']]
+
+
+def parting_of(path):
+    """Return where a recording that is run again parts from itself, or None."""
+    [(_, _, comparison)] = resimulate(path)
+    assert comparison.ticks > 100
+    return comparison.parting
 
 
 def test_a_pull_and_a_strike_are_commands_to_the_simulation(page):
@@ -82,6 +102,36 @@ def test_a_pull_and_a_strike_are_commands_to_the_simulation(page):
                               np.array([1.0, 0.0, 0.0])))
     until(page, lambda: page.frame.vector[11] > before[0] + 0.01)
     assert abs(page.frame.energy_residual) < 1e-12
+
+
+def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_path):
+    page = Page(Live(parse_scene(BALL).text, {'rate': 1000.0}, str(tmp_path / 'run')), port=0)
+    try:
+        until(page, lambda: page.frame)
+        page.mouse.pull = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
+        until(page, lambda: page.frame.energy > 0.0)
+        page.mouse.pull = None
+        until(page, lambda: not page.frame.wrench)
+        page.panel.requests.put(('run', 'pause'))
+        page.mouse.clicks.append((np.array([-3.0, 0.0, 0.0]) + page._stages[0]._offset,
+                                  np.array([1.0, 0.0, 0.0])))
+        page.turn()
+        assert not page.mouse.clicks
+        page.panel.requests.put(('run', 'play'))
+        page.panel.requests.put(('run', 'reset'))
+        until(page, lambda: page.frame.energy == 0.0)
+        page.panel.requests.put(('choose', 'tennis_racket'))
+        until(page, lambda: page._source.scene.name == 'tennis_racket')
+        page.panel.requests.put(('speed', 10.0))
+        until(page, lambda: page.frame.events)
+    finally:
+        page.close()
+    with Recording(tmp_path / 'run') as recording:
+        kinds = [entry['kind'] for entry in recording.journal()]
+        names = [event['name'] for _, event in recording.decoded('/events')]
+    assert {'commands', 'reset', 'parameters'} <= set(kinds)
+    assert {'reset', 'flip'} <= set(names)
+    assert parting_of(tmp_path / 'run') is None
 
 
 def test_another_scene_and_a_changed_number_begin_anew(page):
