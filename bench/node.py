@@ -8,9 +8,10 @@ The floor has no simulation, commands, diagnostics or recording. Each row is a p
 with its subscriber processes (plain rclpy). Floor, node without recording, node with recording and
 node with the server of `view --node` attached (without a browser) take turns, so that other load
 on the machine affects all; the figures are medians over the turns. CPU is in percent of one core
-and lateness in microseconds, over the whole life of the process; memory counts from one second
-after the first message. Where the system allows it the tick threads have real-time priority; with
---normal they do not.
+and lateness in microseconds, over the whole life of the process, `p99 of 1 s` over a second (the
+median over the seconds measured: without the start of the process and of its viewer); memory
+counts from one second after the first message. Where the system allows it the tick threads have
+real-time priority; with --normal they do not.
 """
 
 import argparse
@@ -102,29 +103,35 @@ def subscribe():
     It prints when all topics are heard, and at the end how many messages of each have come.
     """
     import rclpy
+    from diagnostic_msgs.msg import DiagnosticArray
     from geometry_msgs.msg import PoseStamped, Vector3Stamped
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.signals import SignalHandlerOptions
     from std_msgs.msg import Float64
 
     from rigid_body_sim.realtime.shutdown import leave, signals
-    counts = dict.fromkeys(TOPICS, 0)
+    counts, late = dict.fromkeys(TOPICS, 0), []
 
     def count(topic):
         counts[topic] += 1
         if counts[topic] == 1 and all(counts.values()):
             print('heard', flush=True)
+
+    def diagnose(message):
+        late.extend((time.monotonic(), 1e6 * float(value.value)) for status in message.status
+                    for value in status.values if value.key == 'lateness_p99')
     with signals() as stop:
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node('subscriber')
         for topic, kind in zip(
                 TOPICS, (PoseStamped, Vector3Stamped, Float64, Float64), strict=True):
             node.create_subscription(kind, topic, lambda _, topic=topic: count(topic), 1000)
+        node.create_subscription(DiagnosticArray, '/diagnostics', diagnose, 10)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         while not stop.wanted:
             executor.spin_once(timeout_sec=0.1)
-        print(json.dumps(counts), flush=True)
+        print(json.dumps([counts, late]), flush=True)
         leave(0)
 
 
@@ -196,14 +203,18 @@ def measure(row, rate, seconds, subscribers, folder, normal):
             one.kill()
             one.wait()
     text, _ = process.communicate(timeout=10.0)
-    counts = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
+    heard = [json.loads(listener.communicate(timeout=10.0)[0]) for listener in listeners]
+    counts = [count for count, _ in heard]
+    # the first second was partly before
+    late = [p99 for at, p99 in heard[0][1] if began + 1.0 < at < began + took]
     p50, p99, worst = map(int, LATENESS.search(text).groups())
     ticks, _, achieved = ACHIEVED.search(text).groups()
     [overruns] = re.findall(r'(\d+) overruns', text)
     return {'cpu': 100.0 * cpu / took, 'recorder_cpu': 100.0 * recording / took,
             'tick_us': cpu / took / rate * 1e6, 'rate': float(achieved),
-            'p50': p50, 'p99': p99, 'max': worst, 'growth_kib': growth / 1024,
-            'overruns': int(overruns),
+            'p50': p50, 'p99': p99, 'max': worst,
+            'p99_of_1_s': statistics.median(late) if late else float('nan'),
+            'growth_kib': growth / 1024, 'overruns': int(overruns),
             'received': (min(min(count.values()) for count in counts) / int(ticks)
                          if counts else float('nan'))}
 
@@ -260,6 +271,7 @@ def main():
           f'load {load:.1f}\n')
     print(f'{"heard by":>8}{"rate":>7} {"":16}{"CPU %":>7}{"/ floor":>9}{"us/tick":>9}'
           f'{"recorder %":>12}{"rate Hz":>12}{"late p50":>10}{"p99":>7}{"max":>8}'
+          f'{"p99 of 1 s":>12}'
           f'{"overruns":>10}{"growth KiB":>12}{"received":>10}')
     for case in cases:
         for row, found in case['rows'].items():
@@ -267,7 +279,7 @@ def main():
             print(f'{case["subscribers"]:8}{case["rate"]:7.0f} {row:16}{found["cpu"]:7.1f}'
                   f'{ratio:>9}{found["tick_us"]:9.1f}{found["recorder_cpu"]:12.1f}'
                   f'{found["rate"]:12.3f}{found["p50"]:10.0f}{found["p99"]:7.0f}'
-                  f'{found["max"]:8.0f}{found["overruns"]:10.0f}{found["growth_kib"]:12.0f}'
+                  f'{found["max"]:8.0f}{found["p99_of_1_s"]:12.0f}{found["overruns"]:10.0f}{found["growth_kib"]:12.0f}'
                   f'{found["received"]:10.5f}')
     return 0
 
