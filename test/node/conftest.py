@@ -63,6 +63,14 @@ class Client:
         while time.monotonic() < deadline:
             self._executor.spin_once(timeout_sec=0.02)
 
+    def settle(self, *collected):
+        """Serve callbacks until what was sent has come: lists of :meth:`collect` stop growing."""
+        idle = 0
+        while idle < 10:
+            before = sum(map(len, collected))
+            self._executor.spin_once(timeout_sec=0.05)
+            idle = idle + 1 if sum(map(len, collected)) == before else 0
+
     def collect(self, message_type, topic, qos=10):
         """Subscribe as users do; return the list of messages, which :meth:`spin` fills."""
         messages = []

@@ -199,7 +199,7 @@ def test_paused_node_queues_commands_and_steps_tick_by_tick(client):
     client.until(lambda: len(states.poses) > 5, what='ticks')
     assert not client.call(Trigger, '/sim_node/step').success
     assert client.call(SetBool, '/sim_node/pause', data=True).success
-    client.spin(0.2)
+    client.settle(states.poses, states.spins)
     # the two topics may have been heard from different ticks on
     before, spins_before, (_, momenta) = (
         len(states.poses), len(states.spins), states.momenta(INERTIA))
