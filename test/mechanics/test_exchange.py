@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from rigid_body_sim.mechanics.exchange import Actors, Exchange
+from rigid_body_sim.mechanics.exchange import Actors, Exchange, _edges
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -132,3 +132,71 @@ def test_a_short_pulse_in_a_slow_motion_is_seen():
     exchange = turning(scene, rate)
     work = 1.0 + np.arctan((10.0 - place) / width) + np.arctan(place / width)
     assert exchange.until(10.0)[WORK] == pytest.approx(work, rel=1e-12)
+
+
+def lengths_of_panels(scene, until):
+    """Return the lengths of the panels that are looked at, in order, of a body that stands."""
+    found = []
+
+    def states(times, out):
+        out[:] = 0.0
+        out[:, 0], out[:, 4] = times, 1.0
+        out[:, 5:8] = start[0, 5:8]
+        for k in range(0, len(times), 17):
+            # the nodes are symmetric: the last one is as far from the end as the first
+            found.append(float(times[k + 16] + times[k + 1] - 2.0 * times[k]))
+    start = np.zeros((1, 14))
+    start[0, 4:8] = 1.0, *scene.initial.angular_velocity
+    Exchange(Actors(scene), states, start[0], 0.0).until(until)
+    return found
+
+
+@pytest.mark.parametrize('omega', [0.0, 5.0])
+def test_no_panel_is_longer_than_eight_radians_of_the_fastest_turn(omega):
+    """A pendulum of 9.81 m/s^2 and 1 m: to its 5 rad/s come 2 sqrt(9.81) at most."""
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 1, 0], inertia_about: origin, '
+                        'center_of_mass: [0, 0, 1]}\nconstraint: pivot\n'
+                        'effects: [gravity: {g: 9.81}]\n'
+                        f'initial: {{angular_velocity: [{omega}, 0, 0]}}\n')
+    lengths = lengths_of_panels(scene, 40.0)
+    longest = 8.0 / (omega + 2.0 * np.sqrt(9.81))
+    assert lengths[0] == pytest.approx(longest, rel=1e-12)
+    assert max(lengths) == pytest.approx(longest, rel=1e-12)
+
+
+def test_the_first_panel_of_a_driven_body_at_rest_is_the_time_of_eight_radians():
+    """t^2 2/2 = 8 about the axis of least moment; then panels grow, for nothing turns here."""
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\n'
+                        'effects: [torque: {value: [0, 0, 2], frame: world}]\ninitial: {}\n')
+    lengths = lengths_of_panels(scene, 400.0)
+    assert lengths[0] == pytest.approx(np.sqrt(8.0), rel=1e-12)
+    assert lengths[1] == pytest.approx(2.0 * np.sqrt(8.0), rel=1e-12)
+
+
+def test_time_that_goes_back_gives_the_entries_of_then():
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\n'
+                        'effects: [torque: {times: [3], values: [[0, 0, 2]], frame: world}]\n'
+                        'initial: {angular_velocity: [0, 0, 7]}\n')
+    exchange = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
+    later = exchange.until(9.0)
+    assert not exchange.until(2.0).any()
+    assert exchange.until(9.0).tobytes() == later.tobytes()
+    assert later[WORK] == pytest.approx(2.0 * 7.0 * 6.0, rel=1e-14)
+
+
+@pytest.mark.parametrize('end', [1.0, 1.05, 1.1, 1.3, 2.04, 2.2])
+def test_a_panel_that_would_leave_less_than_a_tenth_of_another_goes_up_to_the_jump(end):
+    edges = [0.0]
+    while edges[-1] < end:
+        edges += _edges(edges[-1], 10.0, end, 1.0, 4)[1:].tolist()
+    lengths = np.diff(edges)
+    assert edges[-1] == end
+    assert lengths[:-1].tolist() == [1.0] * (len(lengths) - 1)
+    assert 0.0999 < lengths[-1] < 1.1001
+
+
+def test_edges_do_not_depend_on_where_a_call_begins():
+    at_once = _edges(0.0, 10.0, np.inf, 0.1, 64)
+    assert len(at_once) == 65
+    assert np.array_equal(_edges(at_once[20], 10.0, np.inf, 0.1, 44), at_once[20:])
+    assert _edges(9.95, 10.0, np.inf, 0.1, 8).tolist() == [9.95]

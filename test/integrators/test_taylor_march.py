@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A step of taylor's march by itself: what its sums carry, where it ends, how long it is."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from data import smooth_cases
+
+from rigid_body_sim.integrators.families import power_series
+from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.taylor_series import ORDER
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.scene import parse_scene
+
+Q = np.array([0.1, -0.5, 0.7, 0.5])      # of norm 1 to the last bit
+OMEGA = [1.0, -2.0, 0.5]
+
+
+def marching(step=None, accuracy=None):
+    """Return (march module, parameters, control, point, following) of a body under a torque."""
+    scene = parse_scene(smooth_cases.text('driven_body'))
+    stepped = Stepped(scene, 'taylor', step=step, accuracy=accuracy, horizon=1.0)
+    equations = power_series.equations_of(scene, None)
+    march = power_series.march(stepped.method, equations, True)
+    control, point = power_series.begin(stepped, march)
+    parameters = equations.held(0.0)
+    point[VALUES:VALUES + 7] = [*Q, *OMEGA]
+    march.begin(parameters, control, point)
+    return march, parameters, control, point, point.copy()
+
+
+def one_step(lost, **how):
+    """Return the sum of value and loss of each unknown after one step, exactly."""
+    march, p, control, point, following = marching(**how)
+    point[VALUES + 7:VALUES + 14] = lost
+    moved, good = march.march(p, control, point, following, 0.05, 10.0, 1)
+    assert good
+    end = point if moved else following
+    return [Fraction(float(value)) + Fraction(float(rest))
+            for value, rest in zip(end[VALUES:VALUES + 7], end[VALUES + 7:VALUES + 14],
+                                   strict=True)]
+
+
+@pytest.mark.parametrize('unknown', range(7))
+def test_what_a_sum_has_lost_is_carried_on_in_each_unknown(unknown):
+    """It is added to the end of the step; of q the part along q is taken by the norm.
+
+    2^-50 is 64 ulps of the change of a step, a tenth.
+    """
+    lost = np.zeros(7)
+    lost[unknown] = 2.0 ** -50
+    before, after = one_step(np.zeros(7), step=0.1), one_step(lost, step=0.1)
+    change = [float((b - a) * 2 ** 50) for a, b in zip(before, after, strict=True)]
+    expected = np.eye(7)[unknown]
+    if unknown < 4:
+        q = np.array([float(value) for value in before[:4]])
+        expected[:4] -= Q[unknown] * q
+    assert change == pytest.approx(expected, abs=0.05)
+
+
+def test_the_norm_of_the_quaternion_comes_back_to_one():
+    """It lacks 2^-50 of it at the start of the step."""
+    march, p, control, point, following = marching(step=0.1)
+    point[VALUES:VALUES + 4] *= 1.0 - 2.0 ** -50
+    march.march(p, control, point, following, 0.05, 10.0, 1)
+    norm = math.fsum([*(x * x for x in following[VALUES:VALUES + 4]),
+                      *(2.0 * x * c for x, c in zip(following[VALUES:VALUES + 4],
+                                                    following[VALUES + 7:VALUES + 11],
+                                                    strict=True)), -1.0])
+    assert abs(norm) < 2.0 ** -54
+
+
+def test_fixed_steps_are_counted_from_the_start_and_the_last_one_ends_at_the_end():
+    march, p, control, point, following = marching(step=0.1)
+    times = []
+    for target in (0.05, 0.15, 0.22):
+        march.march(p, control, point, following, target, 0.25, 100)
+        times.append((float(point[TIME]), float(following[TIME])))
+    assert times == [(0.0, 0.1), (0.1, 0.2), (0.2, 0.25)]
+    assert march.march(p, control, point, following, 0.25, 0.25, 100) == (1, True)
+    assert point[TIME] == 0.25
+    # an end that close to a point is that point
+    march, p, control, point, following = marching(step=0.1)
+    march.march(p, control, point, following, 0.15, 0.2 + 1e-12, 100)
+    assert following[TIME] == 0.2 + 1e-12
+
+
+@pytest.mark.parametrize(('room', 'ends'), [(1.05, True), (1.15, False)])
+def test_a_step_that_leaves_less_than_a_tenth_of_itself_goes_to_the_end(room, ends):
+    march, p, control, point, following = marching(accuracy=1e-9)
+    march.march(p, control, point, following, 0.0, 100.0, 1)
+    length = following[TIME]
+    march, p, control, point, following = marching(accuracy=1e-9)
+    march.march(p, control, point, following, 0.0, room * length, 1)
+    assert following[TIME] == (room * length if ends else length)
+
+
+def test_the_first_step_makes_the_last_term_what_the_tolerance_allows():
+    """c_16 h^16 = tolerance h where the term before it is smaller."""
+    march, p, control, point, following = marching(accuracy=1e-9)
+    march.march(p, control, point, following, 0.0, 100.0, 1)
+    h, S = float(following[TIME]), control[march.WORK:].reshape(-1, march.PLACES)
+    scale = 5.25
+    assert point[SCALES] == scale
+
+    def size(order):
+        q, omega = S[order, :4], S[order, 4:7]
+        return math.sqrt(q @ q + omega @ omega / scale)
+    larger = max(size(ORDER) * h ** ORDER, size(ORDER - 1) * h ** (ORDER - 1))
+    assert 0.5 < larger / (power_series.SAFETY * 1e-9 * h) < 1.5
+    assert following[STEP] > 0.0
+
+
+def test_between_two_points_is_the_series_of_the_first():
+    march, p, control, point, following = marching(step=0.1)
+    march.march(p, control, point, following, 0.05, 10.0, 1)
+    assert march.between(p, control, point, following, 0.0) == (*Q, *OMEGA)
+    half = march.between(p, control, point, following, 0.05)
+    other, q, c, begin, _ = marching(step=0.05)
+    after = begin.copy()
+    other.march(q, c, begin, after, 0.02, 10.0, 1)
+    assert half == pytest.approx(after[VALUES:VALUES + 7], abs=1e-15)
+    # another series stands in the working numbers: it is made anew
+    control[march.FOR] = math.nan
+    control[march.WORK:] = 7.0
+    assert march.between(p, control, point, following, 0.05) == half

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bounds of what potentials and drives can do, by hand, and never below what happens."""
+
+import math
+
+import pytest
+
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
+
+
+def scene(constraint, effects, inertia=(2.0, 3.0, 4.0)):
+    return parse_scene(f'scene: s\nbody: {{mass: 2.0, inertia: {list(inertia)}, '
+                       f'center_of_mass: [0.3, 0, 0.4]}}\nconstraint: {constraint}\n'
+                       f'effects: [{effects}]\ninitial: {{}}\n')
+
+
+TORQUE = 'torque: {value: [0, 3, 4]}'
+HINGE = '{hinge: {axis: [0, 1, 0], through: [0, 0, 0.4]}}'
+
+
+def test_a_drive_turns_a_body_about_its_least_moment():
+    """5 N m: over 2 for a free body; about a point the body of 2 + 2*0.16 is no lighter."""
+    assert drive(scene('free', TORQUE), None) == pytest.approx(2.5)
+    held = scene('pivot', TORQUE)
+    least = min(held.constraint.inertia(held.body).moments)
+    assert drive(held, None) == pytest.approx(5.0 / least)
+
+
+def test_a_drive_turns_a_hinged_body_about_its_hinge():
+    """3 + 2 * 0.3^2 about the hinge, whatever the other moments are."""
+    assert drive(scene(HINGE, TORQUE), None) == pytest.approx(5.0 / 3.18)
+
+
+def test_an_axis_without_moment_takes_no_torque_and_does_not_count():
+    assert drive(scene('free', TORQUE, (2.0, 2.0, 0.0)), None) == pytest.approx(2.5)
+
+
+def test_what_nothing_drives_has_no_bound_but_zero():
+    assert drive(scene('free', ''), None) == 0.0
+    assert swing_rate(scene('pivot', '')) == 0.0
+
+
+@pytest.mark.parametrize(('constraint', 'lever'), [('free', 0.0), ('pivot', 0.5), (HINGE, 0.3)])
+def test_a_held_force_drives_by_its_lever_about_what_holds_the_body(constraint, lever):
+    one = scene(constraint, '')
+    alone = drive(one, Wrench(torque=(0.0, 0.0, 2.0)))
+    both = drive(one, Wrench(force=(6.0, 0.0, 8.0), torque=(0.0, 0.0, 2.0)))
+    assert alone > 0.0
+    assert both == pytest.approx(alone * (2.0 + 10.0 * lever) / 2.0)
+    driven = drive(scene(constraint, TORQUE), Wrench(torque=(0.0, 0.0, 2.0)))
+    assert driven == pytest.approx(alone * 7.0 / 2.0)
+
+
+def test_a_pendulum_let_go_upright_reaches_its_swing_rate_and_no_more():
+    """At the bottom: I omega^2/2 = 2 M g r."""
+    rate = swing_rate(scene(HINGE, 'gravity: {g: 10}'))
+    assert rate == pytest.approx(math.sqrt(4.0 * 2.0 * 10.0 * 0.3 / 3.18))
+
+
+def test_a_swinging_body_counts_by_the_middle_moment_about_its_point():
+    held = scene('pivot', 'gravity: {g: 10}')
+    middle = sorted(held.constraint.inertia(held.body).moments)[1]
+    assert swing_rate(held) == pytest.approx(math.sqrt(4.0 * 2.0 * 10.0 * 0.5 / middle))

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The quadrature's rules, panel by panel: what it adds, and what it says of the next length."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.mechanics import panels
+from rigid_body_sim.mechanics.panels import (
+    AT_BEGIN,
+    COLUMNS,
+    ENERGY,
+    KEPT,
+    LONGER,
+    LOST,
+    MOMENTUM,
+    NODES,
+    POINTS,
+    SHORTER,
+    SUMS,
+    TAILS,
+    TURNED,
+    WEIGHTS,
+    add_panels,
+)
+
+PLACES = np.array([0.0, *NODES])
+
+
+def rates_of(functions, edges, speed=0.0):
+    """Return the rates of panels: one function of time for each of the five entries, |omega|."""
+    rates = np.zeros((POINTS * (len(edges) - 1), COLUMNS))
+    for k, (begin, end) in enumerate(zip(edges, edges[1:], strict=False)):
+        times = begin + (end - begin) * PLACES
+        rows = slice(POINTS * k, POINTS * (k + 1))
+        for column, function in functions.items():
+            rates[rows, column] = [function(time) for time in times]
+        rates[rows, -1] = speed
+    return rates
+
+
+def added(functions, edges, longest=math.inf, shortest=0.0, slack=0.0, speed=0.0, size=0.0):
+    """Return (panels added, advice, sums)."""
+    sums = np.zeros(SUMS)
+    sums[[ENERGY, MOMENTUM]] = size
+    edges = np.array(edges, dtype=float)
+    found = add_panels(rates_of(functions, edges, speed), edges, longest, shortest, slack, sums)
+    return (*found, sums)
+
+
+def test_the_rule_is_exact_for_polynomials_up_to_order_31():
+    for power in range(32):
+        assert WEIGHTS @ NODES ** power == pytest.approx(1.0 / (power + 1), rel=1e-14)
+
+
+def test_the_rows_give_legendre_coefficients_and_the_value_at_the_beginning():
+    legendre = np.polynomial.legendre.Legendre
+    draw = np.random.default_rng(1).normal(size=16)
+    values = legendre(draw)(2.0 * NODES - 1.0)
+    assert pytest.approx(draw[panels.FIRST_TAIL:], abs=1e-12) == TAILS @ values
+    assert AT_BEGIN @ values == pytest.approx(legendre(draw)(-1.0), abs=1e-12)
+
+
+@pytest.mark.parametrize('column', range(5))
+def test_each_entry_is_integrated_for_itself(column):
+    count, advice, sums = added({column: math.exp}, [0.0, 0.5, 1.0], longest=0.5)
+    assert (count, advice) == (2, KEPT)
+    expected = np.zeros(5)
+    expected[column] = math.e - 1.0
+    assert sums[:5] == pytest.approx(expected, rel=1e-15)
+    sizes = np.zeros(2)
+    sizes[0 if column < 2 else 1] = math.e - 1.0
+    assert sums[[ENERGY, MOMENTUM]] == pytest.approx(sizes, rel=1e-14)
+
+
+def test_sizes_are_those_of_what_came_and_went():
+    """A sine over a whole turn adds nothing to the sum, and 4 to the size."""
+    _, _, sums = added({0: math.sin, 3: lambda t: -1.0}, np.linspace(0.0, 2.0 * math.pi, 9),
+                       longest=1.0)
+    assert sums[0] == pytest.approx(0.0, abs=1e-15)
+    assert sums[[ENERGY, MOMENTUM]] == pytest.approx([4.0, 2.0 * math.pi], rel=1e-6)
+
+
+def test_what_a_sum_loses_is_carried_on():
+    """A thousand panels of a constant 0.1 beside 1e6: without the rest 1e-10 would be lost."""
+    sums = np.zeros(SUMS)
+    sums[0] = 1e6
+    edges = np.linspace(0.0, 1.0, 1001)
+    add_panels(rates_of({0: lambda t: 1e-3}, edges), edges, 0.0, 0.0, 0.0, sums)
+    assert (sums[0] - 1e6) + sums[LOST] == pytest.approx(1e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize('column', [0, 1, 2, 4])
+@pytest.mark.parametrize(('width', 'advice'), [(0.01, SHORTER), (1.0, KEPT), (30.0, LONGER)])
+def test_a_panel_is_shorter_kept_or_longer_as_its_integrand_is_sharp_or_flat(
+        column, width, advice):
+    """A pole at a distance of `width` from the middle of the panel."""
+    count, found, sums = added(
+        {column: lambda t: 1.0 / ((t - 0.5) ** 2 + width ** 2)}, [0.0, 1.0])
+    assert found == advice
+    assert count == (advice != SHORTER)
+    if advice == SHORTER:
+        assert not sums.any()
+    else:
+        exact = 2.0 / width * math.atan(0.5 / width)
+        assert sums[column] == pytest.approx(exact, rel=2e-16)
+
+
+@pytest.mark.parametrize('width', np.geomspace(0.02, 3.0, 25))
+def test_a_panel_that_is_taken_errs_by_rounding_only(width):
+    count, _, sums = added({2: lambda t: 1.0 / ((t - 0.3) ** 2 + width ** 2)}, [0.0, 1.0])
+    exact = (math.atan(0.7 / width) + math.atan(0.3 / width)) / width
+    assert not count or sums[2] == pytest.approx(exact, rel=4e-16)
+    assert bool(count) == (width > 0.9)
+
+
+def test_what_is_over_before_the_first_node_is_seen():
+    """exp(-t/1e-4) is 1 at the beginning and nothing at the nodes, from 0.0053 on."""
+    count, advice, _ = added({1: lambda t: math.exp(-1e4 * t)}, [0.0, 1.0])
+    assert (count, advice) == (0, SHORTER)
+    # beside a million times as much it does not fit either, beside 1e17 it is rounding
+    assert added({1: lambda t: math.exp(-1e4 * t)}, [0.0, 1.0], size=1e10)[1] == SHORTER
+    assert added({1: lambda t: math.exp(-1e4 * t)}, [0.0, 1.0], size=1e17)[1] == LONGER
+
+
+def test_a_small_error_beside_a_large_integral_is_rounding():
+    sharp = {0: lambda t: 1.0 / ((t - 0.5) ** 2 + 0.01)}
+    assert added(sharp, [0.0, 1.0])[1] == SHORTER
+    assert added(sharp, [0.0, 1.0], size=1e20)[1] == LONGER
+    # energy and momentum are measured by their own sizes
+    both = {**sharp, 3: sharp[0]}
+    assert added(both, [0.0, 1.0], size=np.array([1e20, 0.0]))[1] == SHORTER
+    assert added(both, [0.0, 1.0], size=np.array([0.0, 1e20]))[1] == SHORTER
+
+
+def test_a_trajectory_that_is_uncertain_makes_no_panel_shorter():
+    def jagged(time):
+        return 1.0 + 1e-6 * math.cos(1e4 * time)
+    assert added({0: jagged}, [0.0, 1.0])[1] == SHORTER
+    assert added({0: jagged}, [0.0, 1.0], slack=1e-5)[1] == KEPT
+
+
+def test_a_panel_as_short_as_can_be_is_taken_as_it_is():
+    sharp = {0: lambda t: 1.0 / ((t - 0.5) ** 2 + 1e-4)}
+    assert added(sharp, [0.0, 1.0], shortest=1.0)[:2] == (1, KEPT)
+    assert added(sharp, [0.0, 1.0], shortest=0.99)[:2] == (0, SHORTER)
+
+
+def test_in_a_panel_the_body_turns_by_a_bounded_angle():
+    flat = {0: lambda t: 1.0}
+    assert added(flat, [0.0, 1.0], speed=TURNED + 0.1)[:2] == (0, SHORTER)
+    assert added(flat, [0.0, 1.0], speed=TURNED)[:2] == (1, KEPT)
+    assert added(flat, [0.0, 1.0], speed=0.5 * TURNED)[:2] == (1, LONGER)
+    assert added(flat, [0.0, 1.0], speed=0.51 * TURNED)[:2] == (1, KEPT)
+
+
+def test_a_longer_panel_is_advised_up_to_the_longest_and_after_the_first_that_allows_it():
+    flat, edges = {0: lambda t: 1.0}, [0.0, 1.0, 2.0, 3.0]
+    assert added(flat, edges, longest=2.0)[:2] == (1, LONGER)
+    assert added(flat, edges, longest=1.9)[:2] == (3, KEPT)
+
+
+def test_panels_before_one_that_should_be_shorter_are_added():
+    def steep(time):
+        return 1.0 if time < 2.0 else 1.0 + 1.0 / ((time - 2.5) ** 2 + 1e-3)
+    count, advice, sums = added({0: steep}, [0.0, 1.0, 2.0, 3.0], longest=1.0)
+    assert (count, advice, sums[0]) == (2, SHORTER, pytest.approx(2.0))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The exact solver beside a motion that is easily counted: its events, and what it asks for."""
+
+import math
+import types
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.motions import solver
+from rigid_body_sim.motions.solver import CROWD, NONE_YET, Exact
+from rigid_body_sim.scene.scene import load_scene
+
+
+def counting(times):
+    """Return an Exact whose motion has events at these times, of two names in turn."""
+    asked = []
+
+    def next_event(anchor, after):
+        asked.append(after)
+        later = [(time, k % 2) for k, time in enumerate(times) if time > after]
+        return later[0] if later else (math.inf, 0)
+    one = object.__new__(Exact)
+    one.motion = types.SimpleNamespace(next_event=next_event, EVENTS=('even', 'odd'))
+    one._tells, one.anchor, one._next_event, one._last_events = True, None, None, NONE_YET
+    return one, asked
+
+
+def test_an_event_on_a_tick_belongs_to_the_tick_that_it_ends():
+    one, _ = counting([1.0, 2.0, 2.5])
+    assert one.events(0.0, math.nextafter(1.0, 0.0)) == []
+    assert one.events(0.5, 1.0) == [(1.0, 'even', {})]
+    assert one.events(1.0, 2.0) == [(2.0, 'odd', {})]
+    assert one.events(2.0, 9.0) == [(2.5, 'even', {})]
+    assert one.events(9.0, 99.0) == []
+
+
+def test_more_events_than_a_crowd_within_a_tick_are_passed_over():
+    one, _ = counting(np.linspace(0.1, 10.0, 100).tolist())
+    found = [time for time, _, _ in one.events(0.0, 10.0, 1.0)]
+    for time in found:
+        assert sum(time <= other < time + 1.0 - 1e-9 for other in found) <= CROWD
+    assert found[:CROWD + 1] == pytest.approx([0.1, 0.2, 0.3, 0.4, 1.2])
+    every, _ = counting(np.linspace(0.1, 10.0, 100).tolist())
+    assert len(every.events(0.0, 10.0)) == 100
+
+
+@pytest.mark.parametrize('name', ['kater_pendulum', 'tennis_racket', 'heavy_top'])
+def test_a_tick_that_ends_on_an_event_of_a_scene_tells_it_and_the_next_tick_does_not(name):
+    scene = load_scene(name)
+
+    def started():
+        return choose(scene, 'exact').solver(scene.initial.vector, None)
+    time, told, _ = started().events(0.0, 20.0)[0]
+    again = started()
+    assert again.events(0.0, math.nextafter(time, 0.0)) == []
+    assert again.events(math.nextafter(time, 0.0), time) == [(time, told, {})]
+    assert [event[0] for event in again.events(time, time + 1e-9)] == []
+
+
+def test_states_at_once_are_those_one_by_one_in_pieces_too(monkeypatch):
+    scene = load_scene('tennis_racket')
+    one = choose(scene, 'exact').solver(scene.initial.vector, None)
+    times = np.linspace(3.0, 0.0, 23)
+    alone, at_once, pieces = (np.empty((23, 14)) for _ in range(3))
+    for time, row in zip(times, alone, strict=True):
+        one.state(time, row)
+    one.states(times, at_once)
+    monkeypatch.setattr(solver, 'AT_ONCE', 5)
+    one.states(times, pieces)
+    assert (alone == at_once).all()
+    assert (alone == pieces).all()
+    together = np.empty((2, 23, 14))
+    one.many(np.array([scene.initial.vector] * 2), times, together)
+    assert (together == alone).all()
+
+
+def test_a_time_before_the_start_at_which_drag_makes_it_infinite_is_refused():
+    scene = load_scene('free_body', ['effects=[drag: {linear: 1.0, angular: 0.0}]',
+                                     'initial.velocity=[1, 0, 0]'])
+    one, out = choose(scene, 'exact').solver(scene.initial.vector, None), np.empty((2, 14))
+    one.states(np.array([-0.1, 0.0]), out)
+    assert np.isfinite(out).all()
+    with pytest.raises(BadInput, match='before the start'):
+        one.states(np.array([0.0, -1e6]), out)
