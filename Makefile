@@ -3,6 +3,8 @@
 SCENE ?= tennis_racket
 RATE ?= 1000
 DURATION ?= 20
+SEED ?= 1
+COUNT ?= 100
 
 # A ROS that is sourced in the shell hides the wheels of .venv or makes them load what they do not have.
 FOREIGN = PYTHONHOME PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
@@ -21,7 +23,7 @@ NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 f
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels
 PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold soak figures docs bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
+.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -52,11 +54,15 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 	$(COLCON) test --base-paths . $(COLCON_FOLDERS) --event-handlers console_direct+ --return-code-on-test-failure \
 	    --pytest-args test/test_installed.py --timeout 300
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth; millions of arguments of each function
+mutants: .venv/test.stamp ## COUNT (100) random changes of the code, drawn by SEED (1): at least 95 % are found by a test
+	.venv/bin/python test/mutants.py --seed $(SEED) --count $(COUNT)
+
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth; millions of arguments of each function; mutants
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py \
 	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py test/numerics/test_functions.py
 	.venv/bin/python bench/choice_random.py --count 300
+	@$(MAKE) --no-print-directory mutants
 
 test-machines: .venv/test.stamp ## the bits as on other machines: processors, C library, BLAS, NumPy, Pythons, ARM64 emulated; docs/machines.md anew
 	.venv/bin/python test/machines.py; good=$$?; .venv/bin/python docs/make_machines.py && exit $$good

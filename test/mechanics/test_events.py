@@ -25,9 +25,9 @@ def vector(omega, q=(0.0, 0.0, 0.0, 1.0)):
 
 
 def shares_of_a_free_turn(omega):
-    """Return the momentum along the middle axis over all of it, for a long time: Euler's equations.
+    """Return the share of the momentum along the middle axis, for a long time.
 
-    Of a body with the principal moments MOMENTS.
+    By Euler's equations of a free body with the principal moments MOMENTS.
     """
     I1, I2, I3 = MOMENTS
 

@@ -142,9 +142,9 @@ def lengths_of_panels(scene, until):
         out[:] = 0.0
         out[:, 0], out[:, 4] = times, 1.0
         out[:, 5:8] = start[0, 5:8]
-        for k in range(0, len(times), 17):
-            # the nodes are symmetric: the last one is as far from the end as the first
-            found.append(float(times[k + 16] + times[k + 1] - 2.0 * times[k]))
+        # the nodes are symmetric: the last one is as far from the end as the first is from 0
+        first, last = times[1::17] - times[::17], times[16::17] - times[::17]
+        found.extend((first + last).tolist())
     start = np.zeros((1, 14))
     start[0, 4:8] = 1.0, *scene.initial.angular_velocity
     Exchange(Actors(scene), states, start[0], 0.0).until(until)

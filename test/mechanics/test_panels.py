@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The quadrature's rules, panel by panel: what it adds, and what it says of the next length."""
 
+import itertools
 import math
 
 import numpy as np
@@ -31,7 +32,7 @@ PLACES = np.array([0.0, *NODES])
 def rates_of(functions, edges, speed=0.0):
     """Return the rates of panels: one function of time for each of the five entries, |omega|."""
     rates = np.zeros((POINTS * (len(edges) - 1), COLUMNS))
-    for k, (begin, end) in enumerate(zip(edges, edges[1:], strict=False)):
+    for k, (begin, end) in enumerate(itertools.pairwise(edges)):
         times = begin + (end - begin) * PLACES
         rows = slice(POINTS * k, POINTS * (k + 1))
         for column, function in functions.items():

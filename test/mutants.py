@@ -1,0 +1,421 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draw mutants of the package by a seed, test each, print those that survive, and the rate.
+
+::
+
+    python test/mutants.py                             # 100 of seed 1; make mutants
+    python test/mutants.py --seed 7 --count 20 rigid_body_sim/mechanics
+
+A mutant is the package with one small change of its code: a sign, a factor, a comparison, min for
+max, `and` for `or`, a number, a neighbouring name (x2 for x3). Each kind is drawn as often as the
+others. The change is made in a copy of the tree. The tests next to it run first, then those of its
+room, then wider ones, in plain Python: it starts in a second, where compiling takes minutes. The
+first test that fails finds the mutant, if that test passes on what is not mutated; so does one
+that hangs. Mutants that change no answer are named in equivalent_mutants.yaml, and do not count.
+Exit status 1 if fewer than 95 % are found.
+
+Why no library: mutmut (3.8) replaces each function by a switch between all its mutants, which
+neither numba nor compilation/templates.py, which rewrites sources, can take; Cosmic Ray (8.7) runs
+one test command for every mutant, and draws no sample. The drawing below takes fewer lines than
+either would to be led around these.
+"""
+
+import argparse
+import ast
+import collections
+import concurrent.futures
+import contextlib
+import copy
+import os
+import pathlib
+import queue
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import typing
+
+import yaml
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PACKAGE = 'rigid_body_sim'
+EQUIVALENT = pathlib.Path(__file__).with_name('equivalent_mutants.yaml')
+ELSEWHERE = ('study/precision/peers/', 'numerics/make_functions.py', 'study/precision/make_')
+"""Not drawn from: other engines, which the tests do not install, and what makes stored tables."""
+WANTED = 0.95
+PATIENCE = 120      # s, a test; the tests next to a change take seconds
+LONGEST = 1800      # s, all tests of a stage
+PROCESSES = 2
+
+DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
+WIDER = {
+    'compilation': (DIGESTS, 'test/numerics', 'test/motions'),
+    'numerics': (DIGESTS, 'test/motions', 'test/theory'),
+    'scene': (DIGESTS, 'test/simulation', 'test/motions', 'test/hard_cases/test_12_fuzzing.py'),
+    'theory': ('test/study/test_check_scenes.py', 'test/analysis'),
+    'mechanics': (DIGESTS, 'test/simulation', 'test/motions', 'test/integrators'),
+    'motions': (DIGESTS, 'test/simulation'),
+    'integrators': (DIGESTS, 'test/simulation', 'test/hard_cases/test_13_stiff.py'),
+    'choice': ('test/simulation', 'test/cli'),
+    'simulation': (DIGESTS, 'test/analysis', 'test/sweeps'),
+    'drawing': ('test/messages', 'test/view'),
+    'messages': ('test/recording', 'test/simulation'),
+    'recording': ('test/analysis',),
+    'study': (DIGESTS, 'test/hard_cases/test_command.py'),
+    'realtime': ('test/node',),
+    'cli': ('test/test_command_line.py',),
+    'command_line': ('test/test_command_line.py',),
+    'errors': ('test/test_command_line.py', 'test/scene'),
+    'testing': ('test/test_extending.py',),
+}
+"""Room -> what runs when its own tests have found nothing."""
+
+
+# ---------------------------------------------------------------------------- what is mutated
+
+class Mutant(typing.NamedTuple):
+    """A change of the code: where it is, the statement before and after, the new source."""
+
+    file: str
+    line: int
+    function: str
+    kind: str
+    before: str
+    after: str
+    source: str
+
+    def __str__(self):
+        place = f'{self.file}:{self.line}' + f' ({self.function})' * bool(self.function)
+        return f'{place}\n    - {self.before}\n    + {self.after}'
+
+
+class Site(typing.NamedTuple):
+    """A node that can be changed, what it becomes, and where it stands."""
+
+    kind: str
+    node: ast.AST
+    becomes: tuple
+    statement: ast.AST
+    function: str
+
+
+SIGNS = {ast.Add: ast.Sub, ast.Sub: ast.Add}
+FACTORS = {ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult, ast.Mod: ast.Mult,
+           ast.Pow: ast.Mult, ast.LShift: ast.RShift, ast.RShift: ast.LShift,
+           ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd}
+COMPARISONS = {
+    ast.Lt: (ast.LtE, ast.Gt), ast.LtE: (ast.Lt, ast.GtE), ast.Gt: (ast.GtE, ast.Lt),
+    ast.GtE: (ast.Gt, ast.LtE), ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.Is: (ast.IsNot,),
+    ast.IsNot: (ast.Is,), ast.In: (ast.NotIn,), ast.NotIn: (ast.In,)}
+CALLS = {'min': 'max', 'max': 'min', 'any': 'all', 'all': 'any', 'minimum': 'maximum',
+         'maximum': 'minimum', 'sin': 'cos', 'cos': 'sin', 'argmin': 'argmax', 'argmax': 'argmin',
+         'floor': 'ceil', 'ceil': 'floor', 'bisect_left': 'bisect_right',
+         'bisect_right': 'bisect_left'}
+
+
+def _changed(node, **fields):
+    other = copy.copy(node)
+    for name, value in fields.items():
+        setattr(other, name, value)
+    return other
+
+
+def _operators(node):
+    """Return the kind and the nodes that a node with an operator may become."""
+    if isinstance(node, (ast.BinOp, ast.AugAssign)):
+        if isinstance(node.op, ast.Mod) and isinstance(node.left, ast.Constant):
+            return None    # formats a text
+        for kind, table in (('sign', SIGNS), ('factor', FACTORS)):
+            if type(node.op) in table:
+                return kind, [_changed(node, op=table[type(node.op)]())]
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.Not)):
+        return 'sign' if isinstance(node.op, ast.USub) else 'logic', [node.operand]
+    if isinstance(node, ast.BoolOp):
+        return 'logic', [_changed(node, op=ast.Or() if isinstance(node.op, ast.And)
+                                  else ast.And())]
+    if isinstance(node, ast.Compare):
+        return 'comparison', [
+            _changed(node, ops=[*node.ops[:k], other(), *node.ops[k + 1:]])
+            for k, operator in enumerate(node.ops) for other in COMPARISONS[type(operator)]]
+    return None
+
+
+def _values(node, names):
+    """Return the kind and the nodes that a name, a call or a number may become."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, (bool, int, float)):
+        value = node.value
+        others = ([not value] if isinstance(value, bool) else [value + 1, value - 1]
+                  if isinstance(value, int) else [2.0 * value, 0.5 * value] if value else [1.0])
+        return 'number', [ast.Constant(other) for other in others]
+    if isinstance(node, ast.Call):
+        f = node.func
+        name = f.id if isinstance(f, ast.Name) else f.attr if isinstance(f, ast.Attribute) else ''
+        if name in CALLS:
+            return 'call', [_changed(node, func=_changed(
+                f, **{'id' if isinstance(f, ast.Name) else 'attr': CALLS[name]}))]
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+        found = re.fullmatch(r'(.*?)(?:([0-9])|([xyz]))', node.id)
+        if found:
+            stem, others = found[1], '0123456789' if found[2] else 'xyz'
+            kin = [stem + other for other in others
+                   if stem + other != node.id and stem + other in names]
+            return ('name', [ast.Name(name, ast.Load()) for name in kin]) if kin else None
+    return None
+
+
+def sites(tree):
+    """Yield the sites of a module."""
+    def names_in(node):
+        return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} | {
+            part.arg for part in ast.walk(node) if isinstance(part, ast.arg)}
+
+    def visit(node, statement, function, names):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            function = f'{function}.{node.name}'.lstrip('.')
+            if not isinstance(node, ast.ClassDef):
+                names = names_in(node)
+        if isinstance(node, (ast.stmt, ast.match_case)):
+            statement = node
+        found = _operators(node) or _values(node, names)
+        if found:
+            yield Site(found[0], node, tuple(found[1]), statement, function)
+        for field, value in ast.iter_fields(node):
+            # types say nothing to the machine, and places inside of a text are wrong before
+            # Python 3.12
+            if field in ('annotation', 'returns', 'decorator_list') or isinstance(
+                    node, ast.JoinedStr):
+                continue
+            for part in value if isinstance(value, list) else [value]:
+                if isinstance(part, ast.AST):
+                    yield from visit(part, statement, function, names)
+
+    for statement in tree.body:
+        guard = isinstance(statement, ast.If) and '__main__' in ast.unparse(statement.test)
+        if not guard:
+            yield from visit(statement, statement, '', set())
+
+
+def _text(statement):
+    """Return the text of a statement; of a compound one its head."""
+    empty = {name: [] for name in ('orelse', 'finalbody', 'handlers', 'decorator_list')
+             if hasattr(statement, name)}
+    if hasattr(statement, 'body') and isinstance(statement.body, list):
+        empty['body'] = [ast.Expr(ast.Constant(...))]
+    if 'handlers' in empty:
+        return 'try'
+    return ast.unparse(_changed(statement, **empty)).removesuffix('...').strip()
+
+
+def _put(statement, node, other):
+    """Return a copy of a statement with one node replaced."""
+    class Put(ast.NodeTransformer):
+        def visit(self, part):
+            return other if part is node else self.generic_visit(part)
+
+    def shallow(part):
+        """Copy a tree, but for the node, so that it is still itself."""
+        if part is node:
+            return part
+        if isinstance(part, list):
+            return [shallow(one) for one in part]
+        if isinstance(part, ast.AST):
+            return _changed(part, **{name: shallow(value)
+                                     for name, value in ast.iter_fields(part)})
+        return part
+    return Put().visit(shallow(statement))
+
+
+def mutants_of(path, root=ROOT):
+    """Return kind -> list of functions that make the mutants of a file."""
+    text = path.read_text()
+    lines = text.splitlines(keepends=True)
+    starts = [0]
+    for line in lines:
+        starts.append(starts[-1] + len(line.encode()))
+    data, found = text.encode(), collections.defaultdict(list)
+
+    def make(site, other):
+        node = site.node
+        begin = starts[node.lineno - 1] + node.col_offset
+        end = starts[node.end_lineno - 1] + node.end_col_offset
+        new = ast.unparse(other)
+        new = new if isinstance(other, (ast.stmt, ast.Name)) else f'({new})'
+        source = (data[:begin] + new.encode() + data[end:]).decode()
+        return Mutant(str(path.relative_to(root)), node.lineno, site.function, site.kind,
+                      _text(site.statement), _text(_put(site.statement, node, other)), source)
+
+    for site in sites(ast.parse(text)):
+        found[site.kind].append(lambda chance, site=site: make(site, chance.choice(site.becomes)))
+    return found
+
+
+def drawn(seed, count, folders):
+    """Return `count` mutants, the kinds in turn."""
+    chance, kinds = random.Random(seed), collections.defaultdict(list)
+    for folder in folders:
+        base = ROOT / folder
+        for path in sorted(base.rglob('*.py')) if base.is_dir() else [base]:
+            inside = str(path.relative_to(ROOT / PACKAGE))
+            if not inside.startswith(ELSEWHERE):
+                for kind, makers in mutants_of(path).items():
+                    kinds[kind] += makers
+    names, found, seen = sorted(kinds), [], set()
+    total = sum(map(len, kinds.values()))
+    print(f'{total} places, ' + ', '.join(f'{len(kinds[name])} of kind {name}' for name in names))
+    while len(found) < min(count, total):
+        mutant = chance.choice(kinds[names[len(found) % len(names)]])(chance)
+        # some are not even a change of the code: -0.0 for 0.0 in another spelling, a text
+        if mutant.source not in seen and mutant.before != mutant.after:
+            seen.add(mutant.source)
+            found.append(mutant)
+    return found
+
+
+def why_equivalent(mutant, table):
+    """Return the reason why a mutant changes no answer, or None."""
+    for entry in table:
+        if (entry['file'] == mutant.file and entry.get('function', '') == mutant.function
+                and entry['statement'] == mutant.before
+                and entry.get('becomes', mutant.after) == mutant.after):
+            return entry['because']
+    return None
+
+
+# ---------------------------------------------------------------------------- what is run
+
+def stages(file):
+    """Return lists of tests that bear on a file of the package, the nearest first."""
+    parts = pathlib.PurePath(file).with_suffix('').parts[1:]
+    room, stem, tests = parts[0], parts[-1], ROOT / 'test'
+    module = '.'.join((PACKAGE, *parts)).removesuffix('.__init__')
+    words = re.compile(rf'{re.escape(module)}\b|from {re.escape(module.rpartition(".")[0])} import'
+                       rf'[^\n]*(\([^)]*)?\b{stem}\b')
+    of_room = sorted(tests.joinpath(room).rglob('test_*.py'))
+    named = [path for path in of_room if path.stem in (f'test_{stem}', f'test_{room}_{stem}')]
+    importing = [path for path in sorted(tests.rglob('test_*.py'))
+                 if path not in named and words.search(path.read_text())
+                 and (path.parent.name not in ('node', 'hard_cases') or room == 'node')]
+    nearest = [*named, *sorted(importing, key=lambda path: path not in of_room)]
+    found = [nearest, [path for path in of_room if path not in nearest],
+             *([test] for test in WIDER.get(room, ()))]
+    return [[str(path.relative_to(ROOT)) if isinstance(path, pathlib.Path) else path
+             for path in stage] for stage in found if stage]
+
+
+class Tree:
+    """A copy of the repository in which a mutant can be tested."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder) / 'tree'
+        shutil.copytree(ROOT, self.folder, symlinks=True, ignore=shutil.ignore_patterns(
+            '.venv*', '.git', '.cache', '__pycache__', '.*_cache'))
+        (self.folder / '.venv').symlink_to(ROOT / '.venv')
+        self.environment = {name: value for name, value in os.environ.items()
+                            if not name.startswith('PYTEST')}
+        self.environment |= {
+            'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(self.folder), 'OMP_NUM_THREADS': '1',
+            'PYTHONDONTWRITEBYTECODE': '1', 'XDG_CACHE_HOME': str(pathlib.Path(folder) / 'cache')}
+
+    def failing(self, tests, without=()):
+        """Return the first test that fails, None if all pass, or 'a hang'."""
+        left_out = [part for test in without for part in ('--deselect', test)]
+        run = subprocess.Popen(
+            [sys.executable, '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', '--timeout',
+             str(PATIENCE), '--tb', 'no', '-rfE', *left_out, *tests], cwd=self.folder,
+            env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            start_new_session=True)
+        try:
+            output, _ = run.communicate(timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, signal.SIGKILL)
+            run.communicate()
+            return 'a hang'
+        finally:
+            with contextlib.suppress(ProcessLookupError):    # what a failed test left behind
+                os.killpg(run.pid, signal.SIGKILL)
+        if run.returncode in (0, 5):
+            return None
+        found = re.search(r'^(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*)', output, re.MULTILINE)
+        return found[1] if found else f'pytest itself (status {run.returncode})'
+
+
+class Trial:
+    """Tests mutants, each in one of a few trees."""
+
+    def __init__(self, folder, stages):
+        self._trees, self._sound, self._stages = queue.Queue(), {}, stages
+        for number in range(PROCESSES):
+            self._trees.put(Tree(pathlib.Path(folder) / str(number)))
+
+    def found_by(self, mutant):
+        """Return (the test that finds a mutant, or None; the s that this took)."""
+        tree, begin = self._trees.get(), time.monotonic()
+        path = tree.folder / mutant.file
+        original = path.read_text()
+        try:
+            left = stages(mutant.file)[:self._stages]
+            while left:
+                path.write_text(mutant.source)
+                unsound = [test for test, sound in self._sound.items() if not sound]
+                failing = tree.failing(left[0], unsound)
+                path.write_text(original)
+                if failing is None:
+                    left.pop(0)
+                elif self._passes(failing, tree):
+                    return failing, time.monotonic() - begin
+            return None, time.monotonic() - begin
+        finally:
+            path.write_text(original)
+            self._trees.put(tree)
+
+    def _passes(self, test, tree):
+        """Return whether a test passes on what is not mutated."""
+        if '.py' not in test:
+            return True
+        if test not in self._sound:
+            self._sound[test] = tree.failing([test]) is None
+            if not self._sound[test]:
+                print(f'{test} fails on what is not mutated', flush=True)
+        return self._sound[test]
+
+
+def main():
+    """Run the command; return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('--seed', default='1', help='default: 1')
+    parser.add_argument('--count', type=int, default=100, help='default: 100')
+    parser.add_argument('--near', action='store_true',
+                        help='run the nearest tests only: minutes, and a lower bound of the rate')
+    parser.add_argument('folders', nargs='*', default=[PACKAGE], help='default: all')
+    options = parser.parse_args()
+    table = yaml.safe_load(EQUIVALENT.read_text()) or []
+    mutants = drawn(options.seed, options.count, options.folders)
+    survivors, begin = [], time.monotonic()
+    counted = [mutant for mutant in mutants if not why_equivalent(mutant, table)]
+    for mutant in mutants:
+        if mutant not in counted:
+            print(f'equivalent: {mutant}\n    {why_equivalent(mutant, table)}', flush=True)
+    with (tempfile.TemporaryDirectory() as folder,
+          concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool):
+        trial = Trial(folder, 1 if options.near else None)
+        waiting = {pool.submit(trial.found_by, mutant): mutant for mutant in counted}
+        for done in concurrent.futures.as_completed(waiting):
+            mutant, (test, took) = waiting[done], done.result()
+            if test is None:
+                survivors.append(mutant)
+            print(f'{test or "SURVIVES"} ({took:.0f} s): {mutant}', flush=True)
+    rate = 1.0 - len(survivors) / len(counted) if counted else 1.0
+    for mutant in survivors:
+        print(f'survivor: {mutant}')
+    print(f'seed {options.seed}: {len(counted) - len(survivors)} of {len(counted)} mutants found, '
+          f'{100.0 * rate:.1f} %; {len(mutants) - len(counted)} equivalent ones; '
+          f'{time.monotonic() - begin:.0f} s')
+    return rate < WANTED
+
+
+if __name__ == '__main__':
+    sys.exit(main())
