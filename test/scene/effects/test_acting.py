@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The force and the torque of every effect at random states, by hand in world axes.
+
+The body has principal axes and a centre of mass askew to its origin; it is free, or held at its
+origin, or on an axis beside it. What expressions know is worked out from the motion of the origin.
+"""
+
+import importlib
+import typing
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
+
+TENSOR = [[0.3, 0.01, 0.02], [0.01, 0.4, -0.03], [0.02, -0.03, 0.5]]
+CENTER = np.array([0.1, -0.2, 0.3])
+MASS = 2.0
+THROUGH = np.array([0.2, 0.1, -0.1])
+CONSTRAINTS = {'free': 'free', 'pivot': 'pivot',
+               'hinge': f'{{hinge: {{axis: [1, 2, 2], through: {THROUGH.tolist()}}}}}'}
+POINTS = {'free': CENTER, 'pivot': np.zeros(3), 'hinge': THROUGH}
+
+
+class Now(typing.NamedTuple):
+    """A state: time, turn body -> world, omega (body), place and velocity of the origin."""
+
+    t: float
+    turn: Rotation
+    omega: np.ndarray
+    place: np.ndarray
+    velocity: np.ndarray
+
+    def names(self):
+        """Return what expressions know."""
+        world = self.turn.apply(self.omega)
+        known = dict(zip(('qx', 'qy', 'qz', 'qw'), self.turn.as_quat(), strict=True), t=self.t)
+        for letters, values in (('wx wy wz', self.omega), ('Wx Wy Wz', world),
+                                ('x y z', self.place), ('vx vy vz', self.velocity)):
+            known |= zip(letters.split(), values, strict=True)
+        return known
+
+    def at(self, point):
+        """Return the place and the velocity of a point of the body (body axes)."""
+        arm = self.turn.apply(point)
+        return self.place + arm, self.velocity + np.cross(self.turn.apply(self.omega), arm)
+
+
+def drawn(kind, seed):
+    draw = np.random.default_rng(seed)
+    turn, omega = Rotation.random(random_state=seed), draw.normal(size=3)
+    place, velocity = draw.normal(size=(2, 3))
+    if kind != 'free':    # the held point stays in the world's origin
+        arm = turn.apply(POINTS[kind])
+        place, velocity = -arm, -np.cross(turn.apply(omega), arm)
+    return Now(float(draw.uniform(0.1, 2.0)), turn, omega, place, velocity)
+
+
+def scene_of(effects, kind):
+    return parse_scene(
+        f'scene: s\nparameters: {{k: 1.7}}\nbody: {{mass: {MASS}, inertia: {TENSOR}, '
+        f'center_of_mass: {CENTER.tolist()}}}\nconstraint: {CONSTRAINTS[kind]}\n'
+        f'effects: [{effects}]\ninitial: {{}}\n')
+
+
+def function(kernel):
+    """Return a kernel as plain Python: compiling each one takes longer than all of this."""
+    module, _, name = kernel.partition(':')
+    found = getattr(importlib.import_module(module), name)
+    return getattr(found, 'py_func', found)
+
+
+def pushed(effect, frame, now, time=None):
+    """Return force (at the centre of mass) and torque (about the point of reference), in world."""
+    total = {'force': np.zeros(3), 'torque': np.zeros(3)}
+    turn = now.turn * Rotation.from_quat(frame.axes)
+    omega = Rotation.from_quat(frame.axes).inv().apply(now.omega)
+    # what is not `in_field` is given the velocity of the centre of mass of a free body alone
+    _, velocity = now.at(CENTER)
+    for one in effect.acting(frame, now.t if time is None else time):
+        more = (now.t, *now.at(frame.point)[0]) if one.in_field else ()
+        found = function(one.kernel)(*one.values, *turn.as_quat(), *omega,
+                                     *(velocity if frame.moves else np.zeros(3)), *more)
+        total[one.gives] += turn.apply(found) if one.gives == 'torque' else found
+    return total['force'], total['torque']
+
+
+def energy(effect, frame, now):
+    one = effect.potential(frame)
+    turn = now.turn * Rotation.from_quat(frame.axes)
+    return function(one.kernel)(*one.values, *turn.as_quat(), *now.at(CENTER)[0])
+
+
+def at_point(now, point, force, kind):
+    """Return force and torque (world) of a force at a point of the body."""
+    torque = np.cross(now.turn.apply(np.subtract(point, POINTS[kind])), force)
+    return (np.array(force) if kind == 'free' else np.zeros(3)), torque
+
+
+def weight(now, kind):
+    return at_point(now, CENTER, [0.0, 0.0, -9.81 * MASS], kind)
+
+
+def linear_drag(now, kind):
+    return at_point(now, CENTER, -0.7 * now.at(CENTER)[1], kind)
+
+
+def angular_drag(now, kind):
+    return np.zeros(3), -0.3 * now.turn.apply(now.omega)
+
+
+def both_drags(now, kind):
+    return tuple(a + b for a, b in zip(linear_drag(now, kind), angular_drag(now, kind),
+                                       strict=True))
+
+
+def body_torque(now, kind):
+    return np.zeros(3), now.turn.apply([1.0, -2.0, 3.0])
+
+
+def world_torque(now, kind):
+    return np.zeros(3), np.array([1.0, -2.0, 3.0])
+
+
+def formula(now):
+    n = now.names()
+    return np.array([n['wx'] * n['qy'] - 1.7, np.sin(n['Wz']) + n['qw'] ** 2, 2.0 - n['Wx']])
+
+
+def formula_in_field(now):
+    n = now.names()
+    return formula(now) + [n['x'] * n['vy'], n['t'] * n['vz'] - n['y'], n['z'] * n['vx']]
+
+
+FORMULA = ['wx*qy - k', 'sin(Wz) + qw^2', '2 - Wx']
+IN_FIELD = [f'{one} + {more}' for one, more in zip(
+    FORMULA, ('x*vy', 't*vz - y', 'z*vx'), strict=True)]
+AT = np.array([0.4, -0.1, 0.7])
+
+
+def text(formulas):
+    return str(formulas).replace("'", '"')
+
+
+def spring(now, kind, length=0.0, damping=0.0):
+    place, velocity = now.at(AT)
+    d = place - [1.0, 0.5, -2.0]
+    size = np.linalg.norm(d)
+    force = -3.0 * (size - length) * d / size
+    along = velocity @ d / size ** 2 * d if length else velocity
+    return at_point(now, AT, force - damping * along, kind)
+
+
+def gradient(now, kind):
+    n = now.turn.inv().apply([2.0, -1.0, 2.0]) / 3.0
+    return np.zeros(3), now.turn.apply(np.cross(n, np.array(TENSOR) @ n) * 3.0 * 5.0 / 27.0)
+
+
+def magnet(now, kind):
+    m = now.turn.apply([0.2, -0.5, 1.1])
+    return np.zeros(3), np.cross(m, [0.3, 0.1, -0.7])
+
+
+def magnet_in_field(now, kind):
+    """B = (x y, z^2, k x): F = grad (m . B) at the body's origin."""
+    m, (x, y, z) = now.turn.apply([0.2, -0.5, 1.1]), now.place
+    force, moment = at_point(now, np.zeros(3), [
+        m[0] * y + m[2] * 1.7, m[0] * x, 2.0 * m[1] * z], kind)
+    return force, moment + np.cross(m, [x * y, z * z, 1.7 * x])
+
+
+HERE = 'at: [0.4, -0.1, 0.7]'
+SPRING = 'spring: {at: [0.4, -0.1, 0.7], anchor: [1, 0.5, -2], stiffness: 3'
+EVERYWHERE, NO_AXIS, FREE = ('free', 'pivot', 'hinge'), ('free', 'pivot'), ('free',)
+CASES = {
+    'gravity: {g: 9.81}': (weight, EVERYWHERE),
+    'drag: {linear: 0.7}': (linear_drag, EVERYWHERE),
+    'drag: {angular: 0.3}': (angular_drag, EVERYWHERE),
+    'drag: {linear: 0.7, angular: 0.3}': (both_drags, EVERYWHERE),
+    'torque: {value: [1, -2, 3]}': (body_torque, EVERYWHERE),
+    'torque: {value: [1, -2, 3], frame: world}': (world_torque, EVERYWHERE),
+    f'torque: {{value: {text(FORMULA)}}}': (
+        lambda now, kind: (np.zeros(3), now.turn.apply(formula(now))), EVERYWHERE),
+    f'torque: {{value: {text(IN_FIELD)}, frame: world}}': (
+        lambda now, kind: (np.zeros(3), formula_in_field(now)), NO_AXIS),
+    'force: {value: [1, -2, 3]}': (
+        lambda now, kind: at_point(now, CENTER, now.turn.apply([1.0, -2.0, 3.0]), kind),
+        EVERYWHERE),
+    f'force: {{value: {text(FORMULA)}, {HERE}}}': (
+        lambda now, kind: at_point(now, AT, now.turn.apply(formula(now)), kind), EVERYWHERE),
+    f'force: {{value: {text(IN_FIELD)}, {HERE}, frame: world}}': (
+        lambda now, kind: at_point(now, AT, formula_in_field(now), kind), NO_AXIS),
+    f'{SPRING}}}': (spring, NO_AXIS),
+    f'{SPRING}, length: 0.8}}': (
+        lambda now, kind: spring(now, kind, 0.8), NO_AXIS),
+    f'{SPRING}, damping: 0.6}}': (
+        lambda now, kind: spring(now, kind, 0.0, 0.6), NO_AXIS),
+    f'{SPRING}, length: 0.8, damping: 0.6}}': (
+        lambda now, kind: spring(now, kind, 0.8, 0.6), NO_AXIS),
+    'gravity_gradient: {mu: 5, position: [2, -1, 2]}': (gradient, FREE),
+    'magnetic: {moment: [0.2, -0.5, 1.1], field: [0.3, 0.1, -0.7]}': (magnet, EVERYWHERE),
+    'magnetic: {moment: [0.2, -0.5, 1.1], field: ["x*y", "z^2", "k*x"]}': (
+        magnet_in_field, NO_AXIS),
+}
+PLACES = [(effects, kind) for effects, (_, kinds) in CASES.items() for kind in kinds]
+
+
+@pytest.mark.parametrize(('effects', 'kind'), PLACES)
+def test_what_acts_is_what_the_formula_says(effects, kind):
+    scene = scene_of(effects, kind)
+    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    for seed in range(3):
+        now = drawn(kind, seed)
+        for found, expected in zip(pushed(effect, frame, now), CASES[effects][0](now, kind),
+                                   strict=True):
+            assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+POTENTIALS = ('gravity: {g: 9.81}', f'{SPRING}}}', f'{SPRING}, length: 0.8}}',
+              'gravity_gradient: {mu: 5, position: [2, -1, 2]}',
+              'magnetic: {moment: [0.2, -0.5, 1.1], field: [0.3, 0.1, -0.7]}',
+              'magnetic: {moment: [0.2, -0.5, 1.1], field: ["x*y", "z^2", "k*x"]}')
+POTENTIAL = 'potential: {energy: "k*x*qy + qx^2*z - cos(y*qw) + 0.3*qz"}'
+
+
+@pytest.mark.parametrize(('effects', 'kind'), [
+    *((effects, kind) for effects in POTENTIALS for kind in CASES[effects][1]),
+    (POTENTIAL, 'free'), (POTENTIAL, 'pivot'), ('potential: {energy: "qx*qy + 2*qz^2"}', 'hinge')])
+def test_a_potential_falls_by_the_work_of_what_acts(effects, kind):
+    """Along any small motion that the constraint allows, by differences: dU = -F dx - Gamma da."""
+    scene = scene_of(effects, kind)
+    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    now, h = drawn(kind, 5), 1e-6
+    force, torque = pushed(effect, frame, now)
+    for k in range(6 if kind == 'free' else 3):
+        step = np.eye(6)[k] * h
+
+        def moved(sign, step=step):
+            turn = Rotation.from_rotvec(sign * step[:3]) * now.turn
+            point = now.at(POINTS[kind])[0] + sign * step[3:]
+            place = point - turn.apply(POINTS[kind])
+            # the quaternion goes on without a jump of its sign
+            q = turn.as_quat()
+            q = q if q @ now.turn.as_quat() > 0.0 else -q
+            return energy(effect, frame, now._replace(turn=Rotation.from_quat(q), place=place))
+        slope = (moved(1.0) - moved(-1.0)) / (2.0 * h)
+        work = (torque @ step[:3] + force @ step[3:]) / h
+        assert slope == pytest.approx(-work, rel=1e-7, abs=1e-8)
+
+
+def test_a_torque_in_pieces_begins_at_its_times():
+    scene = scene_of('torque: {times: [1, 2.5], values: [[1, 2, 3], [0, 0, -4]], frame: world}',
+                     'free')
+    torque, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    now = drawn('free', 0)
+    for time, value in ((0.999, [0, 0, 0]), (1.0, [1, 2, 3]), (2.499, [1, 2, 3]),
+                        (2.5, [0, 0, -4]), (99.0, [0, 0, -4])):
+        assert pushed(torque, frame, now, time)[1] == pytest.approx(value, abs=1e-15)
+    assert torque.bounds(scene.body, scene.constraint).torque == 4.0
+    assert torque.breakpoints == (1.0, 2.5)
+
+
+@pytest.mark.parametrize('kind', CONSTRAINTS)
+@pytest.mark.parametrize('axes', ['world', 'body'])
+def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
+    wrench = Wrench((1.0, -2.0, 3.0), (0.5, 0.7, -0.2), axes)
+    scene, now = scene_of('', kind), drawn(kind, 2)
+    force, torque = (np.array(one) if axes == 'world' else now.turn.apply(one)
+                     for one in (wrench.force, wrench.torque))
+    at_center, moment = at_point(now, CENTER, force, kind)
+    found = pushed(wrench, scene.constraint.frame(scene.body), now)
+    assert found[0] == pytest.approx(at_center, abs=1e-13)
+    assert found[1] == pytest.approx(moment + torque, abs=1e-13)
+
+
+@pytest.mark.parametrize(('effects', 'kind'), [
+    (effects, kind) for effects, kind in PLACES
+    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1'))])
+def test_a_power_series_is_given_the_same(effects, kind):
+    """Pull: constant + arm x R^T force + R^T couple + drag omega; a free body is moved by it."""
+    scene, now = scene_of(effects, kind), drawn(kind, 4)
+    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    pull, turn = effect.series(frame, 0.0), now.turn * Rotation.from_quat(frame.axes)
+    omega = Rotation.from_quat(frame.axes).inv().apply(now.omega)
+    torque = turn.apply(pull.constant) + np.array(pull.couple or np.zeros(3))
+    if pull.drag:
+        torque = torque + turn.apply(np.array(pull.drag) @ omega)
+    force = np.array(pull.force or np.zeros(3)) - pull.slowing * now.at(CENTER)[1]
+    if kind != 'free':
+        torque = torque + np.cross(turn.apply(frame.arm), force)
+    expected_force, expected_torque = CASES[effects][0](now, kind)
+    assert torque == pytest.approx(expected_torque, abs=1e-13)
+    if kind == 'free':
+        assert force == pytest.approx(expected_force, abs=1e-13)
