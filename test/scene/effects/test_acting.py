@@ -131,7 +131,8 @@ def formula(now):
 
 def formula_in_field(now):
     n = now.names()
-    return formula(now) + [n['x'] * n['vy'], n['t'] * n['vz'] - n['y'], n['z'] * n['vx']]
+    more = n['x'] * n['vy'], n['t'] * n['vz'] - n['y'], n['z'] * n['vx']
+    return np.add(formula(now), more)
 
 
 FORMULA = ['wx*qy - k', 'sin(Wz) + qw^2', '2 - Wx']

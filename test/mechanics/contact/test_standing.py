@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a plane does to a body at one instant, beside the motion that follows from it."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.mechanics.contact.standing import Standing
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.surfaces import KINDS, lowest
+
+MASS, INERTIA = 2.0, np.array([[0.03, 0.001, 0.0], [0.001, 0.04, 0.002], [0.0, 0.002, 0.05]])
+MIDDLE, SIZE = np.array([0.02, -0.01, 0.03]), (0.2, 0.15, 0.1)
+ELLIPSOID = 'ellipsoid: {semi_axes: [0.2, 0.15, 0.1], center: [0.02, -0.01, 0.03]}'
+NORMAL = np.array([0.0, 0.6, 0.8])
+WEIGHT, COUPLE = np.array([0.0, 0.0, -9.81 * MASS]), np.array([0.01, -0.02, 0.03])
+
+
+def standing(effects='', surface=ELLIPSOID, table='{table: {normal: [0, 0.6, 0.8]}}'):
+    return Standing(parse_scene(
+        f'scene: s\nbody: {{mass: {MASS}, inertia: {INERTIA.tolist()}, surface: {{{surface}}}}}\n'
+        f'constraint: {table}\neffects: [gravity: {{g: 9.81}}{effects}]\n'
+        'initial: {position: [0, 0, 1]}\n'))
+
+
+def to_lowest(turn):
+    """Return the lowest point of the body, from the centre of mass, world axes."""
+    gamma = turn.inv().apply(NORMAL)
+    return turn.apply(MIDDLE + lowest(KINDS['ellipsoid'], SIZE, tuple(gamma.tolist())))
+
+
+def slip_of(turn, omega, velocity):
+    """Return the velocity (world) of the body's point that is lowest now."""
+    return velocity + np.cross(turn.apply(omega), to_lowest(turn))
+
+
+def touching(seed, slip=None):
+    """Return (turn, omega, position, velocity) of a body on the plane; `slip` is the point's."""
+    draw = np.random.default_rng(seed)
+    turn, omega = Rotation.random(random_state=seed), draw.normal(size=3)
+    position = -to_lowest(turn) + np.cross(NORMAL, draw.normal(size=3))
+    velocity = -np.cross(turn.apply(omega), to_lowest(turn))
+    return turn, omega, position, velocity + (0.0 if slip is None else slip)
+
+
+def on_body(one, turn, omega, position, velocity, force=WEIGHT, couple=COUPLE):
+    rows = tuple(map(tuple, turn.as_matrix().tolist()))
+    found = one.force(rows, *(tuple(x.tolist()) for x in (omega, position, velocity)),
+                      tuple(force.tolist()), tuple(couple.tolist()))
+    return tuple(map(np.array, found))
+
+
+def change_of_slip(turn, omega, velocity, force, couple):
+    """Return u' under a force (world) at the lowest point and a couple (body) from the plane.
+
+    By differences along the motion of the body: Newton's and Euler's equations.
+    """
+    arm = turn.inv().apply(np.cross(to_lowest(turn), force)) + couple + COUPLE
+    rate = np.linalg.solve(INERTIA, arm - np.cross(omega, INERTIA @ omega))
+    push, h = (force + WEIGHT) / MASS, 1e-5
+
+    def later(t):
+        then = turn * Rotation.from_rotvec(omega * t + 0.5 * rate * t * t)
+        return slip_of(then, omega + rate * t, velocity + push * t)
+    return (later(h) - later(-h)) / (2.0 * h)
+
+
+CROSS = np.cross(NORMAL, [1.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_a_body_that_slips_is_held_on_the_plane_by_a_force_on_the_cone(seed):
+    slip = 0.7 * np.cos(seed) * np.array([1.0, 0.0, 0.0]) + 0.7 * np.sin(seed) * CROSS
+    state = touching(seed, slip)
+    force, couple, lever = on_body(standing(', sliding_friction: {mu: 0.1}'), *state)
+    turn, omega, _, velocity = state
+    assert turn.apply(lever) == pytest.approx(to_lowest(turn), abs=1e-14)
+    assert not couple.any()
+    N = force @ NORMAL
+    assert N > 0.0
+    assert force - N * NORMAL == pytest.approx(-0.1 * N * slip / 0.7, abs=1e-12)
+    moved = change_of_slip(turn, omega, velocity, force, couple)
+    assert moved @ NORMAL == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize('mu', ['.inf', '50'])
+@pytest.mark.parametrize('seed', range(6))
+def test_a_body_that_rolls_goes_on_rolling_where_friction_can_hold_it(seed, mu):
+    one = standing(f', sliding_friction: {{mu: {mu}}}, '
+                   'rolling_friction: {dry: 0.01, viscous: 0.2}')
+    state = touching(seed)
+    force, couple, _ = on_body(one, *state)
+    turn, omega, _, velocity = state
+    assert force @ NORMAL > 0.0
+    assert couple @ omega < 0.0
+    moved = change_of_slip(turn, omega, velocity, force, couple)
+    assert moved == pytest.approx(np.zeros(3), abs=1e-6)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_where_friction_cannot_hold_it_slip_begins_along_its_own_change(seed):
+    state = touching(seed)
+    turn, omega, _, velocity = state
+    force, couple, _ = on_body(standing(', sliding_friction: {mu: 0.01}'), *state)
+    N = force @ NORMAL
+    friction = force - N * NORMAL
+    assert np.linalg.norm(friction) == pytest.approx(0.01 * N)
+    moved = change_of_slip(turn, omega, velocity, force, couple)
+    assert moved @ NORMAL == pytest.approx(0.0, abs=1e-6)
+    assert moved / np.linalg.norm(moved) == pytest.approx(-friction / np.linalg.norm(friction),
+                                                          abs=1e-6)
+
+
+def test_without_friction_the_plane_pushes_along_its_normal():
+    turn, omega, position, velocity = touching(1)
+    force, couple, _ = on_body(standing(), turn, omega, position, velocity)
+    assert np.cross(force, NORMAL) == pytest.approx(np.zeros(3), abs=1e-14)
+    assert force @ NORMAL > 0.0
+    moved = change_of_slip(turn, omega, velocity, force, couple)
+    assert moved @ NORMAL == pytest.approx(0.0, abs=1e-6)
+
+
+def test_what_does_not_touch_or_leaves_or_is_pulled_off_feels_nothing():
+    one = standing(', sliding_friction: {mu: 0.3}')
+    turn, omega, position, velocity = touching(2)
+    for lift, speed, force in (
+            (1e-6, 0.0, WEIGHT), (0.0, 1e-6, WEIGHT), (0.0, 0.0, -9.0 * WEIGHT)):
+        found = on_body(one, turn, omega, position + lift * NORMAL, velocity + speed * NORMAL,
+                        force)
+        assert not found[0].any()
+        assert not found[1].any()
+    # rounding of a gap and of a speed is none
+    for lift, speed in ((1e-14, 0.0), (0.0, 1e-14), (-1e-3, -1e-3)):
+        assert on_body(one, turn, omega, position + lift * NORMAL,
+                       velocity + speed * NORMAL)[0].any()
+
+
+def test_a_ball_at_rest_on_a_slope_needs_the_tangent_for_friction():
+    """The slope is 3/4; a ball rolls where mu is at least 2/7 of it, and slides with mu N else."""
+    ball = ('scene: s\nbody: {mass: 2, shape: {solid_sphere: {radius: 0.1}}, '
+            'surface: {sphere: {radius: 0.1}}}\n'
+            'constraint: {table: {normal: [0, 0.6, 0.8]}}\n'
+            'effects: [gravity: {g: 9.81}, sliding_friction: {mu: %s}]\n'
+            'initial: {position: [0, 0.06, 0.08]}\n')
+    down = np.array([0.0, 0.8, -0.6])
+    rows, still = tuple(map(tuple, np.eye(3).tolist())), (0.0, 0.0, 0.0)
+    for mu, share in (('0.25', 2.0 / 7.0), ('0.2', 0.2 * 0.8 / 0.6)):
+        one = Standing(parse_scene(ball % mu))
+        force, _, _ = one.force(rows, still, (0.0, 0.06, 0.08), still, tuple(WEIGHT), still)
+        assert np.array(force) @ NORMAL == pytest.approx(2.0 * 9.81 * 0.8)
+        assert np.array(force) @ down == pytest.approx(-2.0 * 9.81 * 0.6 * share)
+        assert math.isclose(force[0], 0.0, abs_tol=1e-14)
