@@ -174,7 +174,8 @@ class PlaneCourse:
     def _creep_off(self, p, y):
         y[U], y[U + 1] = 0.0, 0.0
         p[MODE], row = CREEPING, np.empty(ROW)
-        p[CREEP] = self._creep * self._speed(y)
+        p[SWIFT] = self._speed(y)
+        p[CREEP] = self._creep * p[SWIFT]
         self._bound.rates.rate(p, y, row)
         if not row[WATCHED + 2] > 0.0:
             self._end(y)

@@ -44,6 +44,7 @@ rate = UNBOUND
 STAGES = len(dop8.A)
 A = np.zeros((STAGES, STAGES))
 B, E5, E3 = np.zeros(STAGES), np.zeros(STAGES), np.zeros(STAGES)
+WEIGHED = tuple(dop8.B)        # stages that a step adds up, and its errors
 for _i, _row in enumerate(dop8.A):
     for _j, _a in _row.items():
         A[_i, _j] = _a
@@ -85,26 +86,36 @@ def step_from(p, w, y, lost, h):
         0 if the numbers stayed finite, else infinite.
     """
     for i in range(1, STAGES):
-        for n in range(UNKNOWNS):
-            w[TRIED, n] = 0.0
+        # sums stay in registers: two arrays in a loop would be looked at for overlap each time
+        s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = s8 = s9 = s10 = s11 = s12 = s13 = 0.0
         for j in range(i):
             a = h * A[i, j]
             if a != 0.0:
-                for n in range(UNKNOWNS):
-                    w[TRIED, n] += a * w[j, n]
+                s0 += a * w[j, 0]
+                s1 += a * w[j, 1]
+                s2 += a * w[j, 2]
+                s3 += a * w[j, 3]
+                s4 += a * w[j, 4]
+                s5 += a * w[j, 5]
+                s6 += a * w[j, 6]
+                s7 += a * w[j, 7]
+                s8 += a * w[j, 8]
+                s9 += a * w[j, 9]
+                s10 += a * w[j, 10]
+                s11 += a * w[j, 11]
+                s12 += a * w[j, 12]
+                s13 += a * w[j, 13]
+        sums = s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13
         for n in range(UNKNOWNS):
-            w[TRIED, n] += y[n]
+            w[TRIED, n] = sums[n] + y[n]
         rate(p, w[TRIED], w[i])
-    for n in range(SIZE):
-        w[FRESH, n] = 0.0
-    for j in range(STAGES):
-        b = h * B[j]
-        if b != 0.0:
-            for n in range(SIZE):
-                w[FRESH, n] += b * w[j, n]
+    b0, b5, b6, b7 = h * B[0], h * B[5], h * B[6], h * B[7]
+    b8, b9, b10, b11 = h * B[8], h * B[9], h * B[10], h * B[11]
     bad = 0.0
     for n in range(SIZE):
-        d = w[FRESH, n] + lost[n]
+        d = lost[n] + (
+            b0 * w[0, n] + b5 * w[5, n] + b6 * w[6, n] + b7 * w[7, n]
+            + b8 * w[8, n] + b9 * w[9, n] + b10 * w[10, n] + b11 * w[11, n])
         s = y[n] + d
         w[FRESH, n] = s
         w[TRIED, n] = d - (s - y[n])
@@ -131,7 +142,7 @@ def error_of(w, h, meta):
     fifth = third = moved = 0.0
     for n in range(UNKNOWNS):
         e5 = e3 = d = 0.0
-        for j in range(STAGES):
+        for j in WEIGHED:
             e5 += E5[j] * w[j, n]
             e3 += E3[j] * w[j, n]
             d += B[j] * w[j, n]
@@ -273,11 +284,11 @@ def march(p, w, phase, sizes, front, meta, target):
         rate(p, w[FRESH], w[END])
         status, part = RUNNING, h
         for k in range(WATCHES):
-            low = w[END, WATCHED + k]
+            below = w[END, WATCHED + k] < 0.0
             for i in range(1, STAGES):
-                low = min(low, w[i, WATCHED + k])
+                below |= w[i, WATCHED + k] < 0.0
             from_below = w[0, WATCHED + k] <= 0.0
-            if low < 0.0 and not (from_below and (k == 4 or w[END, WATCHED + k] >= 0.0)):
+            if below and not (from_below and (k == 4 or w[END, WATCHED + k] >= 0.0)):
                 at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
                 # the rows are those of the last look: put them back
                 step_from(p, w, y, lost, h)
