@@ -30,6 +30,7 @@ from rigid_body_sim.integrators.equations.contact_rates import (
     U,
 )
 from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
@@ -51,7 +52,10 @@ PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
+HELD = (': dry rolling friction holds a body there that still slides or spins, which is not solved; '
+        'viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
+DRY = CONTACT.part('rolling').first
 MU, INCLINED = CONTACT.part('mu').first, CONTACT.part('inclined').first
 
 
@@ -106,6 +110,7 @@ class PlaneCourse:
         self._begin = float(self._start[STATE_TIME])
         self._tolerance = stepped.accuracy / stepped.horizon
         self._work = np.zeros((contact_march.WORK_ROWS, ROW))
+        self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most)
         self._phases, self._events, self._over, self._why = [], [], None, ''
         p, y = bound.parameters(self._begin), np.empty(SIZE)
         x, yy, height = bound.rates.read(p, self._start, y)
@@ -239,11 +244,9 @@ class PlaneCourse:
         if why == contact_march.FAILED and self._bound.rates.jams(p, y):
             why = contact_march.STOPPED
         if why == contact_march.FAILED:
-            held = p[CONTACT.part('rolling').first] > 0.0 and p[MODE] == ROLLING
-            raise NotConverged(
-                f'{self._bound.scene.name}: no step is small enough at t = {time!r} s' + (
-                    ': dry rolling friction holds a body there that still spins about the normal, '
-                    'which is not solved; viscous rolling friction is' if held else ''))
+            held = p[DRY] > 0.0
+            raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
+                               f't = {time!r} s{HELD if held else ""}')
         if why == contact_march.PARADOX:
             self._end(y)
             return
@@ -272,7 +275,7 @@ class PlaneCourse:
 
     def reach(self, elapsed):
         """March until the time since the start is passed."""
-        while self._over is None and self._phases[-1].reach(elapsed):
+        while self._over is None and self._phases[-1].reach(elapsed, self._steps):
             self._follow(self._phases[-1])
         if self._over is not None and (elapsed > self._over or not self._phases):
             raise NotConverged(f'{self._bound.scene.name}: '
@@ -339,16 +342,42 @@ class _Phase:
         """Why the phase ended; RUNNING if it did not yet."""
         return self._meta[contact_march.STATUS]
 
-    def reach(self, elapsed):
-        """March until the time is passed or the phase ends; return whether it ends before."""
+    def reach(self, elapsed, work):
+        """March until the time is passed or the phase ends; return whether it ends before.
+
+        Parameters
+        ----------
+        elapsed : float
+            s.
+        work : Work
+            Bounds the steps.
+
+        Raises
+        ------
+        TooMuchWork
+        """
         meta = self._meta
-        while meta[contact_march.STATUS] == contact_march.RUNNING and self.front[TIME] <= elapsed:
-            if meta[contact_march.STEPS] == len(self._sizes):
-                self._sizes = np.concatenate((self._sizes, np.empty(len(self._sizes))))
-            if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
-                self._store = np.concatenate((self._store, np.empty_like(self._store)))
-            self._bound.kernels.march(self.p, self._work, self._store, self._sizes, self.front,
-                                      meta, elapsed)
+
+        def arrived():
+            return (meta[contact_march.STATUS] != contact_march.RUNNING
+                    or self.front[TIME] > elapsed)
+
+        def follow(limit):
+            end = int(meta[contact_march.STEPS]) + limit
+            if end > len(self._sizes):
+                self._sizes = np.concatenate((self._sizes, np.empty(end)))
+            while not arrived() and meta[contact_march.STEPS] < end:
+                if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
+                    self._store = np.concatenate((self._store, np.empty_like(self._store)))
+                self._bound.kernels.march(self.p, self._work, self._store, self._sizes[:end],
+                                          self.front, meta, elapsed)
+            return arrived()
+
+        if not arrived():
+            try:
+                work.go(follow, lambda: float(self.front[TIME]), elapsed)
+            except TooMuchWork as error:
+                raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
         return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
 
     def write(self, elapsed, time, place, out):
