@@ -45,7 +45,7 @@ def runnable(scene):
     frame = scene.constraint.frame(scene.body)
     acting = [one for effect in effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
-    hot = any(one.books == 'heat' for one in acting)
+    hot = any(one.books == 'heat' or one.of_motion for one in acting)
     in_field = any(one.in_field for one in acting)
     return [name for name, method in METHODS.items()
             if all(getattr(effect, method.NEEDS) is not None for effect in effects)

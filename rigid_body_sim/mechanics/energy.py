@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: energy and angular momentum of a state.
 
-potential.py binds it to the potentials of the effects that a scene lists.
+potential.py binds it to the potentials of the effects that a scene lists, and to what parts
+carry inside the body.
 
 Symbols: M mass, c centre of mass from the body's origin (body axes), omega angular velocity (body
 axes), I inertia tensor and L angular momentum about the point of reference (parameters.py), R
@@ -45,6 +46,8 @@ KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = (
 load_scene, load_state, store_diagnosis = SCENE.load, STATE.load, DIAGNOSIS.store
 
 potential = UNBOUND    # (p, scene, q, position) -> J
+# (p, scene, time, momentum) -> momentum with that of parts inside, body axes
+with_parts = UNBOUND
 
 
 @compiled
@@ -63,12 +66,12 @@ def diagnose(p, state, out):
 
         kinetic     omega . I omega/2, and M V^2/2 with V = v + R (omega x c) of a body that moves
         potential   the sum of the potentials of the effects
-        L           R I omega
+        L           R (I omega + h), h what parts carry inside the body
 
     Parameters
     ----------
     p : array
-        SceneParameters, and the values of the potentials.
+        SceneParameters, the values of the potentials, those of the parts.
     state : array (14,)
         StateView.
     out : array (6,)
@@ -81,6 +84,7 @@ def diagnose(p, state, out):
     if scene.kind == FREE or scene.kind == TABLE:
         of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
         kinetic += 0.5 * scene.mass * dot(of_center, of_center)
+    momentum = with_parts(p, scene, now.time, momentum)
     # L^2 of the body components: the rotation to the world would only add its rounding
     store_diagnosis(out, Diagnosis(kinetic, potential(p, scene, q, now.position),
                                    dot(momentum, momentum), rotate(*q, *momentum)))

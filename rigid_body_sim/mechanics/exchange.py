@@ -230,7 +230,7 @@ def _source(acting):
         lines.append(f'    {name} = kernel_{number}({values}*q, *omega, *v{field})')
         if one.gives == 'turning':    # what keeps L = R m: the torque m x u
             lines.append(f'    {name} = cross(m, {name})')
-        elif one.gives == 'torque':
+        elif one.gives == 'torque' and not one.inner:
             torques.append(name)
         if one.books in power:
             power[one.books].append(f'dot({name}, {"v" if one.gives == "force" else "omega"})')

@@ -19,7 +19,7 @@ NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
 
 class SceneParameters(NamedTuple):
-    """A body and its constraint; the values of the potentials stand behind it (potential.py).
+    """A body and its constraint; the values of potentials and parts stand behind it (potential.py).
 
     Attributes
     ----------
@@ -72,8 +72,8 @@ def scene_parameters(scene):
 
 
 def parameters(scene):
-    """Return the flat array that kernels take: SceneParameters, then values of potentials."""
-    values = [value for one in potentials(scene) for value in one.values]
+    """Return the flat array that kernels take: SceneParameters, values of potentials and parts."""
+    values = [value for one in (*potentials(scene), *momenta(scene)) for value in one.values]
     p = np.zeros(SCENE.size + len(values))
     SCENE.store(p, scene_parameters(scene))
     p[SCENE.size:] = values
@@ -84,6 +84,13 @@ def potentials(scene):
     """Return the Potential of each effect of a scene that has one."""
     frame = scene.constraint.frame(scene.body)
     return [effect.potential(frame) for effect in scene.effects if effect.potential is not None]
+
+
+def momenta(scene):
+    """Return the Momentum of each effect of a scene that carries one inside the body."""
+    frame = scene.constraint.frame(scene.body)
+    found = [effect.momentum(frame) for effect in scene.effects if effect.momentum is not None]
+    return [one for one in found if one is not None]
 
 
 def moment_about_hinge(body, constraint):

@@ -102,9 +102,9 @@ def _velocity_in_body(scene):
 
 def _proper_acceleration(scene):
     """Derive the proper acceleration a - g of the body's origin (REP 145), exact at the tick."""
-    gravity, dynamics = scene.effect('gravity'), Dynamics(scene)
-    friction = scene.effect('sliding_friction')
-    g = np.array([0.0, 0.0, gravity.g if gravity else friction.g if friction else 0.0])
+    dynamics, friction = Dynamics(scene), scene.effect('sliding_friction')
+    fields = [effect.field for effect in scene.effects if effect.field is not None]
+    g = -np.array(fields[0]) if fields else np.array([0.0, 0.0, friction.g if friction else 0.0])
 
     def derive(samples, wrench):
         for sample in samples:

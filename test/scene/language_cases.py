@@ -12,6 +12,9 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 SKEW = '{mass: 1.3, inertia: [0.05, 0.08, 0.11], center_of_mass: [0.02, -0.03, 0.1]}'
 DISK = '{mass: 2.0, inertia: [0.3, 0.3, 0.5]}'
+DRAGGED = ('{linear: [[0.5, 0.1, 0], [0.1, 0.3, 0], [0, 0, 0.7]], '
+           'angular: [[0.05, 0.01, 0], [0.01, 0.03, 0], [0, 0, 0.07]], '
+           'quadratic: [[0.5, 0.1, 0], [0.1, 0.3, 0], [0, 0, 0.7]], angular_quadratic: 0.02}')
 TURNING = '{orientation: [0.1, -0.4, 0.2, 0.888], angular_velocity: [1, -2, 3]}'
 
 # case: body, constraint, parameters, effects, initial, time (s)
@@ -54,6 +57,19 @@ CASES = {
         '{rotation_vector: [0, 0, 1.5708963267948966]}', 2.0),    # 1e-4 rad beyond upright
     'force at a point': (
         DISK, 'free', '', 'force: {value: [0, 0.3, 0], at: [0.5, 0, 0]}', '{spin: 3.0}', 2.0),
+    'fall by the key quadratic': (
+        DISK, 'free', '', 'gravity: {g: 9.81}}, {drag: {quadratic: 0.7}', '{}', 3.0),
+    'disk by the key angular_quadratic': (
+        DISK, 'free', '', 'drag: {angular_quadratic: 0.7}', '{spin: 3.0}', 2.0),
+    'drag by a matrix': (
+        DISK, 'free', '', 'drag: {linear: [[3, 0, 0], [0, 1, 0], [0, 0, 1]], '
+        'angular: [[0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.3]]}', '{spin: 3.0}', 2.0),
+    'thrown aslant': (DISK, 'free', '', 'gravity: {g: [1, 2, -3]}', '{velocity: [4, 0, 0]}', 2.0),
+    'gyrostat': (DISK, 'free', '', 'rotor: {axis: [0, 0, 2], momentum: 0.4}',
+                 '{angular_velocity: [0.3, 0.1, 1.5]}', 2.0),
+    'reaction wheel': (
+        DISK, 'free', '', 'rotor: {axis: [0, 0, 1], inertia: 0.01, rate: 30, torque: 0.1}',
+        '{angular_velocity: [0.3, 0.1, 1.5]}', 2.0),
     # what has none: the ledger balances, potential and force fit together
     'body axes': (SKEW, 'free', 'k: 0.02, w0: 12.0',
                   "torque: {value: ['-k*wx', 0, '0.1*sin(w0*t)']}", TURNING, 1.0),
@@ -74,6 +90,21 @@ CASES = {
     'at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', 'k: 0.1',
                    "gravity: {g: 9.81}}, {torque: {value: ['-k*wx^3', 0, 0], books: heat}}, "
                    "{potential: {energy: '0.2*qx^2'}", '{angle: 1.0, rate: 2.0}', 1.0),
+    'top in a world that is turned': (
+        SKEW, 'pivot', '', 'gravity: {g: [0, -9.81, 0]}', '{rotation_vector: '
+        '[-1.5707963267948966, 0, 0], angular_velocity: [1, -2, 3]}', 1.0),
+    'the same upright': (SKEW, 'pivot', '', 'gravity: {g: 9.81}',
+                         '{angular_velocity: [1, -2, 3]}', 1.0),
+    'all of drag': (SKEW, 'free', '', f'drag: {DRAGGED}', TURNING, 1.0),
+    'all of drag at a pivot': (SKEW, 'pivot', '', f'drag: {DRAGGED}', TURNING, 1.0),
+    'all of drag at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', '', f'drag: {DRAGGED}',
+                               '{angle: 1.0, rate: 2.0}', 1.0),
+    'gyrostat on a tip': (
+        SKEW, 'pivot', '', 'gravity: {g: 9.81}}, {rotor: {axis: [1, 2, 3], momentum: 0.4}',
+        TURNING, 1.0),
+    'reaction wheels on a tip': (
+        SKEW, 'pivot', '', 'gravity: {g: [0, 1, -9]}}, {rotor: {axis: [1, 2, 3], momentum: 0.4}}, '
+        '{rotor: {axis: [1, 0, 0], inertia: 0.01, rate: 30, torque: 0.1}', TURNING, 1.0),
     'four at once': (
         SKEW, 'free', '', 'gravity: {g: 9.81}}, {spring: {at: [0.1, 0, 0.3], anchor: [0, 0, 1], '
         'stiffness: 4.0}}, {drag: {linear: 0.1, angular: 0.01}}, '
@@ -96,7 +127,11 @@ def run(name, method='dop8'):
     return {'state': simulation.vector.tolist(), 'ledger': simulation.ledger()}
 
 
+BY_TWO = 'four at once', 'body axes', 'reaction wheels on a tip', 'all of drag'
+BY_SERIES = 'gyrostat on a tip', 'top in a world that is turned'
+
 if __name__ == '__main__':
     print(json.dumps({name: run(name) for name in CASES}
                      | {f'{name} by gauss16': run(name, 'gauss16')
-                        for name in ('four at once', 'body axes')}))
+                        for name in BY_TWO} | {f'{name} by taylor': run(name, 'taylor')
+                                               for name in BY_SERIES}))

@@ -47,7 +47,7 @@ class Equations:
     parameter_count, fixed_count : int
         Of the parameters, and of those at their beginning that do not change at breakpoints.
     makes_heat : bool
-        Whether anything is booked as heat: it depends on velocities.
+        Whether anything depends on velocities: what is booked as heat, and what says so.
     """
 
     def __init__(self, scene, wrench=None):
@@ -70,7 +70,7 @@ class Equations:
             self.groups = turning.APART
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
-        self.makes_heat = any(one.books == 'heat' for one in acting)
+        self.makes_heat = any(one.books == 'heat' or one.of_motion for one in acting)
         state = STATE + FIELD if self.kind is field else STATE
         if self.kind is hinged:
             sources = {'torque': torque_source(calls)}

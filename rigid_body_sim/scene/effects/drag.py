@@ -1,25 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drag: resistance in proportion to velocity (creeping flow; Stokes's law)."""
+"""Drag: resistance in proportion to velocity (creeping flow; Stokes's law), or to its square."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.vectors import apply, cross, scaled, transposed
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import mapping_of
+from rigid_body_sim.scene.schema import MATRIX, mapping_of
 
-COEFFICIENT = {'type': 'number', 'minimum': 0}
+COEFFICIENT = {**MATRIX, 'type': ['number', 'array'], 'minimum': 0}
+KEYS = 'linear', 'angular', 'quadratic', 'angular_quadratic'
+SYMMETRY = 1e-12    # share of a matrix: what rounding may spoil
 
 
 @dataclass(frozen=True)
 class Drag(Effect):
     """``drag: {linear: c, angular: k}``; either may be left out (0).
+
+    With a matrix, or with drag in proportion to squares, it is a :class:`ShapedDrag`.
 
     F = -c v at the centre of mass (c in N s/m = kg/s, v its velocity) and the couple -k omega (k
     in N m s). At a pivot or hinge F acts by its torque about the constraint. It does not act on
@@ -29,16 +36,20 @@ class Drag(Effect):
     linear: float
     angular: float
     name: ClassVar[str] = 'drag'
-    SCHEMA: ClassVar[dict] = mapping_of(linear=COEFFICIENT, angular=COEFFICIENT)
+    SCHEMA: ClassVar[dict] = mapping_of(**dict.fromkeys(KEYS, COEFFICIENT))
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
-                   where: str) -> Self:
+                   where: str) -> Effect:
         """Return the effect of its settings in a scene file; it needs a coefficient."""
         if not settings:
-            raise BadInput(where, 'no coefficient',
-                           'give linear (N s/m), angular (N m s), or both')
+            raise BadInput(where, 'no coefficient', 'give linear (N s/m), angular (N m s), '
+                           'quadratic (N s^2/m^2), angular_quadratic (N m s^2), or some of them')
+        if set(settings) - {'linear', 'angular'} or any(
+                isinstance(value, list) for value in settings.values()):
+            return ShapedDrag(*(_matrix(settings.get(key, 0.0), f'{where}.{key}')
+                                for key in KEYS))
         return cls(float(settings.get('linear', 0.0)), float(settings.get('angular', 0.0)))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
@@ -63,6 +74,103 @@ class Drag(Effect):
         first, second, third = matrix.tolist()
         return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
                     slowing=self.linear if frame.moves else 0.0)
+
+
+Matrix = tuple[tuple[float, ...], ...]
+
+
+def _matrix(value, where: str) -> Matrix:
+    """Return a coefficient as a matrix; BadInput unless it takes energy whatever the motion."""
+    if not isinstance(value, list):
+        c = float(value)
+        return (c, 0.0, 0.0), (0.0, c, 0.0), (0.0, 0.0, c)
+    rows = np.array(value, dtype=float)
+    size = np.abs(rows).max()
+    if np.abs(rows - rows.T).max() > SYMMETRY * size:
+        raise BadInput(where, f'got {value}, which is not symmetric',
+                       'a symmetric matrix, or a force in expressions for the rest')
+    a, b, c, d, e, f = *rows[0], *rows[1, 1:], rows[2, 2]
+    minors = a * d - b * b, a * f - c * c, d * f - e * e
+    third = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
+    slack = SYMMETRY * size
+    if (min(a, d, f) < -slack or min(minors) < -slack * size
+            or third < -slack * size * size):
+        raise BadInput(where, f'got {value}, which drives some motions',
+                       'a matrix that is positive semidefinite: drag takes energy')
+    return tuple(tuple(0.5 * (rows[i] + rows[:, i])) for i in range(3))
+
+
+def _flat(matrix: Matrix, frame: Frame) -> tuple[float, ...]:
+    """Return a matrix given in body axes by its nine components in the frame."""
+    columns = [frame.from_body(row) for row in matrix]
+    rows = [frame.from_body(column) for column in transposed(tuple(columns))]
+    return tuple(part for row in rows for part in row)
+
+
+@dataclass(frozen=True)
+class ShapedDrag(Effect):
+    """``drag: {linear: C, angular: K, quadratic: D, angular_quadratic: Q}``, numbers or matrices.
+
+    In body axes, with v the velocity of the centre of mass and omega:
+
+        F = -(C + |v| D) v,    Gamma = -(K + |omega| Q) omega
+
+    A number is that times the identity. C is in N s/m, D in N s^2/m^2, K in N m s, Q in N m s^2;
+    matrices are symmetric and positive semidefinite. At a pivot or hinge F acts by its torque.
+    """
+
+    linear: Matrix
+    angular: Matrix
+    quadratic: Matrix
+    angular_quadratic: Matrix
+    name: ClassVar[str] = 'drag'
+    mechanisms: ClassVar = Drag.mechanisms
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return force and couple; what is zero does not act."""
+        acting = []
+        for matrix, square in ((self.linear, 0.0), (self.quadratic, 1.0)):
+            if not any(map(any, matrix)):
+                continue
+            values = square, *_flat(matrix, frame)
+            if frame.moves:
+                acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat'))
+            elif any(frame.arm):
+                acting.append(Acting(f'{__name__}:shaped_moment', (*values, *frame.arm),
+                                     'torque', 'heat'))
+        for matrix, square in ((self.angular, 0.0), (self.angular_quadratic, 1.0)):
+            if any(map(any, matrix)):
+                values = square, *_flat(matrix, frame)
+                acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat'))
+        return tuple(acting)
+
+
+@compiled
+def shaped(square, a, b, c, d, e, f, g, h, i, v):
+    """Return -C v, or -|v| C v where square is 1, for a vector along the axes of C."""
+    pace = hypot3(v[0], v[1], v[2]) if square == 1.0 else 1.0
+    return scaled(-pace, apply(((a, b, c), (d, e, f), (g, h, i)), v))
+
+
+@compiled
+def shaped_force(square, a, b, c, d, e, f, g, h, i, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the force, N, world components."""
+    v = rotate_back(qx, qy, qz, qw, vx, vy, vz)
+    return rotate(qx, qy, qz, qw, *shaped(square, a, b, c, d, e, f, g, h, i, v))
+
+
+@compiled
+def shaped_couple(square, a, b, c, d, e, f, g, h, i, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the couple, N m."""
+    return shaped(square, a, b, c, d, e, f, g, h, i, (wx, wy, wz))
+
+
+@compiled
+def shaped_moment(square, a, b, c, d, e, f, g, h, i, rx, ry, rz,
+                  qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return r x F for the velocity omega x r, N m."""
+    v = cross((wx, wy, wz), (rx, ry, rz))
+    return cross((rx, ry, rz), shaped(square, a, b, c, d, e, f, g, h, i, v))
 
 
 @compiled

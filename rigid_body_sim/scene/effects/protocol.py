@@ -42,6 +42,11 @@ class Acting:
         True if it depends on time, place, or the velocity of a free body that no force moves.
         The kernel then has four more arguments ``t, x, y, z``: the time (s) and the place of the
         point of reference (world, m).
+    of_motion : bool
+        True if it depends on velocities and does not book heat, which says so by itself.
+    inner : bool
+        True of a torque against a part inside the body, whose momentum the view `momentum` has:
+        the ledger's angular impulse is without it.
     """
 
     kernel: str
@@ -49,6 +54,8 @@ class Acting:
     gives: str
     books: str
     in_field: bool = False
+    of_motion: bool = False
+    inner: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,6 +94,22 @@ class Potential:
         ``'package.module:function'``. The compiled function has the signature ``(value, ...,
         value, qx, qy, qz, qw, x, y, z)``: the attitude of the frame and the place of the centre of
         mass (world, m). It returns the energy in J.
+    values : tuple of floats
+    """
+
+    kernel: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Momentum:
+    """Angular momentum that a part carries inside the body, beside that of the body itself.
+
+    Attributes
+    ----------
+    kernel : str
+        ``'package.module:function'``. The compiled function has the signature ``(value, ...,
+        value, t)``: the time, s. It returns three components in the frame, kg m^2/s.
     values : tuple of floats
     """
 
@@ -201,6 +224,16 @@ class Effect(Protocol):
     @property
     def potential(self) -> Callable[[Frame], Potential] | None:
         """``potential(frame)``: its energy. An effect needs it if it books its power there."""
+        return None
+
+    @property
+    def momentum(self) -> Callable[[Frame], Momentum | None] | None:
+        """``momentum(frame)``: what it carries inside the body, or None in this frame."""
+        return None
+
+    @property
+    def field(self) -> Vector | None:
+        """The acceleration of a free fall in it, world components, m/s^2; of gravity alone."""
         return None
 
     @property

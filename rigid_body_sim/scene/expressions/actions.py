@@ -13,8 +13,10 @@ from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import (
     ATTITUDE,
     PLACE,
+    RATES,
     TIME,
     VELOCITY,
+    WORLD_RATES,
     Lines,
     kernel,
     prelude,
@@ -22,6 +24,7 @@ from rigid_body_sim.scene.expressions.source import (
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
 IN_FIELD = {*TIME, *PLACE, *VELOCITY}
+OF_MOTION = {*VELOCITY, *RATES, *WORLD_RATES}
 
 
 def _acting(lines, trees, frame, result, gives, books):
@@ -30,7 +33,8 @@ def _acting(lines, trees, frame, result, gives, books):
     in_field = bool(used & IN_FIELD)
     begin = prelude(lines, used, frame)
     made = kernel(gives, STATE + ', t, x, y, z' * in_field, lines, begin, result)
-    return Acting(made.name, made.values, gives, books, in_field)
+    moving = books != 'heat' and bool(used & OF_MOTION)
+    return Acting(made.name, made.values, gives, books, in_field, moving)
 
 
 @functools.lru_cache(maxsize=256)
