@@ -15,6 +15,7 @@ P (body axes), n unit vector along a hinge.
     plane     that of a free body under the force of the contact (contact/standing.py)
 """
 
+import dataclasses
 import functools
 import importlib
 from typing import NamedTuple
@@ -132,7 +133,8 @@ class Dynamics:
         self._effects = [effect for effect in scene.effects if effect.acting is not None]
         self._scene = scene_parameters(scene)
         # effects are asked as if the body were free: only then do they name their forces
-        self._frame = Free().frame(body)
+        hinge = constraint.frame(body).hinge
+        self._frame = dataclasses.replace(Free().frame(body), hinge=hinge)
         balances = {Mechanism.FREE: self._free, Mechanism.POINT: self._pivot,
                     Mechanism.AXIS: self._hinge, Mechanism.TABLE: self._table,
                     Mechanism.PLANE: self._plane}

@@ -3,9 +3,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.scene.bodies import IDENTITY
+
+
+class Hinging(NamedTuple):
+    """The axis of a hinge, and where its angle is zero.
+
+    Attributes
+    ----------
+    axis : tuple of 3 floats
+        Unit vector, body axes.
+    zero : tuple of 4 floats
+        The orientation of the body, body to world, at the angle 0.
+    """
+
+    axis: tuple[float, float, float]
+    zero: tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -30,6 +46,8 @@ class Frame:
         From the body's origin to the reference point, body components, m.
     arm : tuple of 3 floats
         From the reference point to the centre of mass, frame components, m.
+    hinge : Hinging, optional
+        Of a body that turns about one axis only.
     """
 
     moves: bool
@@ -38,6 +56,7 @@ class Frame:
     axes: tuple[float, float, float, float]
     point: tuple[float, float, float]
     arm: tuple[float, float, float]
+    hinge: Hinging | None = None
 
     def from_body(self, vector: Sequence[float]) -> tuple[float, float, float]:
         """Return the frame components of a vector given in body components."""

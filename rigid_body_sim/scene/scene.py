@@ -206,10 +206,12 @@ def _scene(mapping, where):
     check(mapping, scene_schema(), where)
     body = _body(mapping['body'], f'{where}: body')
     constraint = _constraint(mapping['constraint'], body, f'{where}: constraint')
+    start = _start(mapping['initial'], body, constraint, f'{where}: initial')
+    constraint = constraint.begun(start)
     parameters = checked_parameters(mapping.get('parameters', {}), f'{where}: parameters')
     effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
                              f'{where}: effects'))
-    initial = _initial(mapping['initial'], body, constraint, f'{where}: initial')
+    initial = constraint.initial(start, body, f'{where}: initial')
     text = yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)
     about = printable(' '.join(mapping.get('about', '').split()))
     return Scene(mapping['scene'], about, body, constraint, effects, initial,
@@ -368,10 +370,9 @@ def _named(entry):
     return name, {} if settings is None else settings
 
 
-def _initial(mapping, body, constraint, where):
+def _start(mapping, body, constraint, where):
     for key in mapping:
         if key not in constraint.INITIAL:
             raise BadInput(f'{where}.{key}', f'has no meaning on constraint {constraint.kind!r}',
                            f'the keys there are {", ".join(constraint.INITIAL)}')
-    start = Start.of(mapping, constraint.inertia(body), where)
-    return constraint.initial(start, body, where)
+    return Start.of(mapping, constraint.inertia(body), where)

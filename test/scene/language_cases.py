@@ -70,6 +70,12 @@ CASES = {
     'reaction wheel': (
         DISK, 'free', '', 'rotor: {axis: [0, 0, 1], inertia: 0.01, rate: 30, torque: 0.1}',
         '{angular_velocity: [0.3, 0.1, 1.5]}', 2.0),
+    'torsion spring': (
+        DISK, '{hinge: {axis: [0, 0, 2]}}', '', 'spring: {stiffness: 50, angle: 0.4, damping: 3}',
+        '{orientation: [0, 0, 1, 1], angle: 0.5}', 0.2),
+    'torque of time on a hinge': (
+        DISK, '{hinge: {axis: [0, 0, 1]}}', 'Gamma: 0.1, w0: 12.0',
+        "torque: {value: [0, 0, 'Gamma*sin(w0*t)']}", '{rate: 3.0}', 2.0),
     # what has none: the ledger balances, potential and force fit together
     'body axes': (SKEW, 'free', 'k: 0.02, w0: 12.0',
                   "torque: {value: ['-k*wx', 0, '0.1*sin(w0*t)']}", TURNING, 1.0),
@@ -105,6 +111,12 @@ CASES = {
     'reaction wheels on a tip': (
         SKEW, 'pivot', '', 'gravity: {g: [0, 1, -9]}}, {rotor: {axis: [1, 2, 3], momentum: 0.4}}, '
         '{rotor: {axis: [1, 0, 0], inertia: 0.01, rate: 30, torque: 0.1}', TURNING, 1.0),
+    'everything on a hinge': (
+        SKEW, '{hinge: {axis: [1, 2, 0.5]}}', '',
+        "gravity: {g: 9.8}}, {torque: {value: ['0.1*sin(3*t)', '0.1*x', '-0.02*rate'], "
+        "frame: world}}, {potential: {energy: '0.1*angle^2 + 0.03*x*y'}}, {spring: {at: "
+        '[0.1, 0.2, 0.3], anchor: [1, 0, 0], stiffness: 2, length: 0.3, damping: 0.1}',
+        '{orientation: [0.1, -0.4, 0.2, 0.888], angle: 1.0, rate: 2.0}', 1.0),
     'four at once': (
         SKEW, 'free', '', 'gravity: {g: 9.81}}, {spring: {at: [0.1, 0, 0.3], anchor: [0, 0, 1], '
         'stiffness: 4.0}}, {drag: {linear: 0.1, angular: 0.01}}, '
@@ -127,7 +139,8 @@ def run(name, method='dop8'):
     return {'state': simulation.vector.tolist(), 'ledger': simulation.ledger()}
 
 
-BY_TWO = 'four at once', 'body axes', 'reaction wheels on a tip', 'all of drag'
+BY_TWO = ('four at once', 'body axes', 'reaction wheels on a tip', 'all of drag',
+          'everything on a hinge')
 BY_SERIES = 'gyrostat on a tip', 'top in a world that is turned'
 
 if __name__ == '__main__':

@@ -59,6 +59,9 @@ CLOSED = {
     'disk by the key angular_quadratic': (7, 3.0 / (1 + 0.7 * 3.0 * 2.0 / 0.5)),
     'drag by a matrix': (7, 3.0 * math.exp(-0.3 / 0.5 * 2.0)),
     'thrown aslant': (8, 4.0 * 2.0 + 1.0 * 2.0 ** 2 / 2),
+    'torsion spring': (3, math.sin(0.25 * math.pi + 0.5 * (
+        0.4 + approach(0.2, 0.5, 50.0, 3.0, 0.1)))),
+    'torque of time on a hinge': (7, 3.0 + 0.1 * (1 - math.cos(24.0)) / (12.0 * 0.5)),
     # omega1 + i omega2 turns with ((C - A) omega3 + h)/A
     'gyrostat': (5, 0.3 * math.cos(2 * (0.2 * 1.5 + 0.4) / 0.3)
                  - 0.1 * math.sin(2 * (0.2 * 1.5 + 0.4) / 0.3)),
@@ -152,16 +155,19 @@ def scene_of(effect, constraint='free', parameters=''):
     ('drag: {quadratic: -1}', '', 'needs a number of at least 0'),
     ('rotor: {axis: [0, 0, 1], momentum: 1, rate: 2}', '', 'give momentum alone, or inertia and'),
     ('rotor: {axis: [0, 0, 0], momentum: 1}', '', 'a direction: three numbers, not all zero'),
-    ('spring: {at: [0, 0, 0], anchor: [0, 0, 1]}', '', "the key 'stiffness' is missing")])
+    ('spring: {at: [0, 0, 0], anchor: [0, 0, 1]}', '', "the key 'stiffness' is missing"),
+    ('spring: {anchor: [0, 0, 1], stiffness: 1}', '', "the key 'at' is missing")])
 def test_what_does_not_fit_gets_one_line(effect, parameters, words):
     with pytest.raises(BadInput, match=re.escape(words)) as refusal:
         scene_of(effect, parameters=parameters)
     assert str(refusal.value).isprintable()
 
 
-def test_on_a_hinge_time_and_place_are_refused():
-    with pytest.raises(BadInput, match='depends on t; on a hinge expressions know'):
-        scene_of("torque: {value: ['t', 0, 0]}", '{hinge: {axis: [0, 0, 1]}}')
+def test_the_angle_of_a_hinge_is_known_on_hinges_only():
+    with pytest.raises(BadInput, match="depends on angle; on constraint 'free' there is no hinge"):
+        scene_of("torque: {value: ['angle', 0, 0]}")
+    with pytest.raises(BadInput, match="angle: has no meaning on constraint 'pivot'"):
+        scene_of('spring: {stiffness: 1, angle: 0.2}', 'pivot')
 
 
 def test_only_methods_with_a_clock_run_what_depends_on_time():

@@ -10,7 +10,14 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.equations import euler, field, flying, hinged, turning
+from rigid_body_sim.integrators.equations import (
+    euler,
+    field,
+    flying,
+    hinged,
+    hinged_field,
+    turning,
+)
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.scene.state import TIME
 
@@ -31,7 +38,7 @@ class Equations:
     Attributes
     ----------
     kind : module
-        turning, flying, field or hinged: which unknowns there are.
+        turning, flying, field, hinged or hinged_field: which unknowns there are.
     kernels : module
         `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, point,
         at)``, ``write(p, time, y, out)``.
@@ -59,21 +66,23 @@ class Equations:
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         acting = self._acting(-np.inf)
-        if self._axis is not None:
-            self.kind, self._moment = hinged, moment_on_hinge(scene)
+        in_field, on_hinge = any(one.in_field for one in acting), self._axis is not None
+        if on_hinge:
+            self.kind = hinged_field if in_field else hinged
+            self._moment = moment_on_hinge(scene)
         else:
-            self.kind = (field if any(one.in_field for one in acting) else
+            self.kind = (field if in_field else
                          flying if any(one.gives == 'force' for one in acting) else turning)
-        fixed = hinged.PARAMETERS.size if self.kind is hinged else euler.FIXED
+        fixed = hinged.PARAMETERS.size if on_hinge else euler.FIXED
         self.groups = self.kind.GROUPS
         if self.kind is turning and any(one.gives == 'turning' for one in acting):
             self.groups = turning.APART
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
         self.makes_heat = any(one.books == 'heat' or one.of_motion for one in acting)
-        state = STATE + FIELD if self.kind is field else STATE
-        if self.kind is hinged:
-            sources = {'torque': torque_source(calls)}
+        state = STATE + FIELD if in_field else STATE
+        if on_hinge:
+            sources = {'torque': torque_source(calls, state)}
         else:
             sources = {'omega_rate': _omega_rate(calls, state),
                        'axes_rate': _axes_rate(calls, state)}
@@ -89,7 +98,7 @@ class Equations:
 
     def _constants(self):
         """Return the fixed parameters, without those that a start decides."""
-        frame, hinge = self.frame, self.kind is hinged
+        frame, hinge = self.frame, self.kind in (hinged, hinged_field)
         moments = np.zeros(3) if hinge else np.array(frame.moments)
         inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
         if hinge:
@@ -200,10 +209,10 @@ def _sums(calls):
     return [' + '.join(getattr(call, axis) for call in calls) or '0.0' for axis in 'xyz']
 
 
-def torque_source(calls):
+def torque_source(calls, state=STATE):
     """Return the source of ``torque(p, q, omega, v)``, the sum of all torques."""
     calls = [call for call in calls if call.gives != 'force']
-    return _kernel('torque', calls, _sums(calls))
+    return _kernel('torque', calls, _sums(calls), state)
 
 
 def force_source(calls, state=STATE):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hinge: the body turns about an axis through a point, both fixed in the body and in the world."""
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
@@ -12,7 +13,7 @@ from rigid_body_sim.numerics.vectors import across, apply, cross, dot, minus, pl
 from rigid_body_sim.scene import initial
 from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia, refuse_beyond, square_of
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
-from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.frame import Frame, Hinging
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
 from rigid_body_sim.scene.state import State
@@ -24,11 +25,13 @@ class Hinge(Constraint):
 
     `axis` is a direction in body axes. `through` is a point of the axis in body axes (m, default
     the origin). Instead of it, `distance` hangs the body that far from its centre of mass along
-    body axis z, measured square to the axis. The reference point is `through`.
+    body axis z, measured square to the axis. The reference point is `through`. `zero` is the
+    orientation at the angle 0, the one that `initial` gives beside `angle`.
     """
 
     axis: Vector = (0.0, 0.0, 1.0)    # overrides the view `axis` of Constraint
     through: Vector = (0.0, 0.0, 0.0)
+    zero: tuple[float, float, float, float] = IDENTITY
     kind: ClassVar[str] = 'hinge'
     usage: ClassVar[str] = 'hinge: {axis: [x, y, z], through: [x, y, z]}'
     SCHEMA: ClassVar[dict | None] = mapping_of(['axis'], axis=VECTOR, through=VECTOR,
@@ -59,6 +62,11 @@ class Hinge(Constraint):
                            'moment of inertia', 'an axis that a rod does not lie along')
         return cls(axis, through)
 
+    def begun(self, start: Start) -> Self:
+        """Return the hinge whose angle counts from the orientation of a start."""
+        x, y, z, w = start.orientation
+        return dataclasses.replace(self, zero=(x, y, z, w))
+
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state at an angle (rad) and rate (rad/s) about the axis.
 
@@ -84,7 +92,7 @@ class Hinge(Constraint):
     def frame(self, body: Body) -> Frame:
         """Return the body's axes through the point `through`."""
         return Frame(False, body.mass, body.about_center.moments, IDENTITY, self.through,
-                     self.arm(body))
+                     self.arm(body), Hinging(self.axis, self.zero))
 
 
 def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) -> Vector:

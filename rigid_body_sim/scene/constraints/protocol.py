@@ -80,6 +80,10 @@ class Constraint(Protocol):
         """
         ...
 
+    def begun(self, start: Start) -> Self:
+        """Return the constraint with what it takes from the initial conditions."""
+        return self
+
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state at time 0.
 

@@ -10,7 +10,7 @@ from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
-from rigid_body_sim.scene.expressions.source import ATTITUDE, PLACE, STATE_NAMES
+from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import mapping_of
 
@@ -20,12 +20,14 @@ def trees_of(value: list[Expression], where: str) -> tuple[tree.Node, ...]:
     return tuple(one.tree(f'{where}.{place}') for place, one in enumerate(value))
 
 
-def refuse_on_hinge(trees: tuple[tree.Node, ...], constraint: Constraint, where: str) -> None:
-    """Refuse what depends on time or place where the body turns about an axis."""
-    known = tree.names(*trees) & actions.IN_FIELD
-    if constraint.mechanism is Mechanism.AXIS and known:
+def refuse_beside_hinge(trees: tuple[tree.Node, ...], constraint: Constraint,
+                        where: str) -> None:
+    """Refuse the angle of a hinge and its rate where there is no hinge."""
+    known = tree.names(*trees) & {*HINGE}
+    if constraint.mechanism is not Mechanism.AXIS and known:
         raise BadInput(where, f'depends on {", ".join(sorted(known))}',
-                       'on a hinge expressions know attitude and angular velocity only')
+                       f'on constraint {constraint.kind!r} there is no hinge: '
+                       'write attitude and angular velocity')
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class ExpressedTorque(Effect):
         """Return the effect of its settings in a scene file."""
         value = settings['value']
         trees = trees_of(value, f'{where}.value')
-        refuse_on_hinge(trees, constraint, f'{where}.value')
+        refuse_beside_hinge(trees, constraint, f'{where}.value')
         return cls(trees, settings.get('frame', 'body'), settings.get('books', 'work'),
                    value[0].parameters)
 
@@ -86,12 +88,12 @@ class PotentialEnergy(Effect):
         """Return the effect of its settings in a scene file."""
         where = f'{where}.energy'
         energy = settings['energy'].tree(where)
-        known = sorted(tree.names(energy) & {*STATE_NAMES} - {*PLACE, *ATTITUDE})
+        known = sorted(tree.names(energy) & {*STATE_NAMES} - {*PLACE, *ATTITUDE, 'angle'})
         if known:
             raise BadInput(where, f'depends on {", ".join(known)}',
-                           f'a potential is a function of {", ".join((*PLACE, *ATTITUDE))}: '
+                           f'a potential is a function of {", ".join((*PLACE, *ATTITUDE))}, angle: '
                            'write what depends on time or velocity as a force or a torque')
-        refuse_on_hinge((energy,), constraint, where)
+        refuse_beside_hinge((energy,), constraint, where)
         return cls(energy, settings['energy'].parameters)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.expressed import refuse_on_hinge, trees_of
+from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.expressions import actions, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
@@ -42,7 +42,7 @@ class Force(Effect):
         """Return the effect of its settings in a scene file."""
         value = settings['value']
         trees = trees_of(value, f'{where}.value')
-        refuse_on_hinge(trees, constraint, f'{where}.value')
+        refuse_beside_hinge(trees, constraint, f'{where}.value')
         x, y, z = map(float, settings.get('at', body.center_of_mass))
         return cls(trees, (x, y, z), settings.get('frame', 'body'),
                    settings.get('books', 'work'), value[0].parameters)

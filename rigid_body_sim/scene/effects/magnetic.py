@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.expressed import refuse_on_hinge, trees_of
+from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
@@ -43,7 +43,7 @@ class Magnetic(Effect):
         if known:
             raise BadInput(where, f'depends on {", ".join(known)}',
                            'a field of the place x, y, z')
-        refuse_on_hinge(trees, constraint, where)
+        refuse_beside_hinge(trees, constraint, where)
         moment = vectors.to_world(vectors.constant(settings['moment']))
         most = 0.0
         if is_constant(field):

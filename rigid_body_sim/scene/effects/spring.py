@@ -4,13 +4,14 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
 
@@ -26,16 +27,19 @@ class Spring(Effect):
 
     where v is the velocity of the point; U is booked as potential, what c takes as heat. Without
     a `length` U = k d^2/2, and c damps all of v. A scene may list several.
+
+    ``spring: {stiffness: k, angle: phi, damping: c}`` on a hinge is a torsion spring, k in N m/rad
+    and c in N m s: U = k (angle - phi)^2/2, and the torque -c rate about the axis.
     """
 
     energy: tree.Node
     damper: tuple[tree.Node, ...]
-    at: tuple[float, float, float]
+    at: tuple[float, float, float] | None    # None of a torsion spring
     name: ClassVar[str] = 'spring'
     SCHEMA: ClassVar[dict] = mapping_of(
-        ['at', 'anchor', 'stiffness'], at=VECTOR, anchor=VECTOR, stiffness=COEFFICIENT,
-        damping=COEFFICIENT, length=COEFFICIENT)
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT)
+        ['stiffness'], at=VECTOR, anchor=VECTOR, stiffness=COEFFICIENT,
+        damping=COEFFICIENT, length=COEFFICIENT, angle=NUMBER)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 
     @classmethod
@@ -43,6 +47,17 @@ class Spring(Effect):
                    where: str) -> Self:
         """Return the effect of its settings in a scene file."""
         k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
+        if constraint.axis is not None and not {'at', 'anchor', 'length'} & set(settings):
+            return cls(*_torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis),
+                       None)
+        if 'angle' in settings:
+            raise BadInput(f'{where}.angle', 'stands beside at, anchor or length'
+                           if constraint.axis is not None
+                           else f'has no meaning on constraint {constraint.kind!r}',
+                           'a torsion spring on a hinge has stiffness, angle and damping')
+        for key in ('at', 'anchor'):
+            if key not in settings:
+                raise BadInput(where, f'the key {key!r} is missing', 'needed: at, anchor, stiffness')
         x, y, z = map(float, settings['at'])
         body_at = vectors.constant((x, y, z))
         d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(body_at)),
@@ -63,8 +78,18 @@ class Spring(Effect):
         pulls = actions.pulls(self.energy, (), frame)
         if not self.damper:
             return pulls
+        if self.at is None:
+            return *pulls, actions.torque(self.damper, 'body', (), frame, 'heat')
         return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""
         return actions.potential(self.energy, (), frame)
+
+
+def _torsion(k, c, angle, axis):
+    """Return the energy of a torsion spring, and the torque of its damping."""
+    turned = tree.minus(tree.node('name', 'angle'), tree.number(angle))
+    energy = tree.times(tree.number(0.5 * k), tree.times(turned, turned))
+    rate = tree.node('name', 'rate')
+    return energy, tuple(tree.times(tree.number(-c * part), rate) for part in axis) if c else ()

@@ -24,7 +24,7 @@ from rigid_body_sim.scene.expressions.source import (
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
 IN_FIELD = {*TIME, *PLACE, *VELOCITY}
-OF_MOTION = {*VELOCITY, *RATES, *WORLD_RATES}
+OF_MOTION = {*VELOCITY, *RATES, *WORLD_RATES, 'rate'}
 
 
 def _acting(lines, trees, frame, result, gives, books):
@@ -104,7 +104,8 @@ def pulls(energy, parameters, frame):
 
         F = -dU/do,    torque about o: Gamma_i = -dU/dq . (q e_i)/2
 
-    (a turn by the small angle a about body axis i changes q by q e_i a/2). The force acts at o; so
+    (a turn by the small angle a about body axis i changes q by q e_i a/2, and the angle of a hinge
+    about n by a n_i, which adds -dU/d(angle) n). The force acts at o; so
     about the point of reference P the torque is Gamma + (o - P) x F.
 
     Parameters
@@ -123,6 +124,10 @@ def pulls(energy, parameters, frame):
     half = tree.number(-0.5)
     turn = [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
             for column in columns]
+    if frame.hinge is not None:
+        along, = tree.derivatives(energy, ['angle'])
+        turn = [tree.minus(one, tree.times(tree.number(part), along))
+                for one, part in zip(turn, frame.hinge.axis, strict=True)]
     found, moved = [], any(one is not tree.ZERO for one in place)
     if frame.moves and moved:
         lines = Lines(dict(parameters))
@@ -149,8 +154,8 @@ def potential(energy, parameters, frame):
     result, = lines.of(energy)
     point = plus(frame.from_body(frame.point), frame.arm)
     before, used = [], tree.names(energy)
-    if used & {*ATTITUDE}:
-        before += prelude(lines, {*ATTITUDE}, frame)
+    if used & {*ATTITUDE, 'angle'}:
+        before += prelude(lines, {*ATTITUDE, 'angle'} & used, frame)
     if used & {*PLACE}:
         r = ', '.join(lines.value(f'back{k}', part) for k, part in enumerate(point))
         before.append('    the_x, the_y, the_z = '

@@ -12,9 +12,11 @@ from rigid_body_sim.scene.expressions import tree
 
 TIME, PLACE, VELOCITY = ('t',), ('x', 'y', 'z'), ('vx', 'vy', 'vz')
 ATTITUDE, RATES, WORLD_RATES = (('qx', 'qy', 'qz', 'qw'), ('wx', 'wy', 'wz'), ('Wx', 'Wy', 'Wz'))
-STATE_NAMES = (*TIME, *PLACE, *VELOCITY, *ATTITUDE, *RATES, *WORLD_RATES)
+HINGE = ('angle', 'rate')
+STATE_NAMES = (*TIME, *PLACE, *VELOCITY, *ATTITUDE, *RATES, *WORLD_RATES, *HINGE)
 """What expressions know of the state: time (s); place (m) and velocity (m/s) of the body's origin,
-world axes; the quaternion body -> world; angular velocity (rad/s) in body and in world axes."""
+world axes; the quaternion body -> world; angular velocity (rad/s) in body and in world axes; the
+angle of a hinge (rad, within two turns) and its rate (rad/s)."""
 PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
@@ -22,7 +24,7 @@ CALLS = {'/': 'divided', 'sqrt': 'root', 'log': 'logarithm', 'tan': 'tangent',
          'tanh': 'hyperbolic_tangent', 'min': 'smaller', 'max': 'larger', 'less': 'less',
          '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp', 'abs': 'abs'}
 HEAD = """from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.numerics.functions import cos, exp, sin
+from rigid_body_sim.numerics.functions import atan2, cos, exp, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
@@ -123,11 +125,21 @@ def prelude(lines, used, frame):
     if used & {*PLACE, *VELOCITY}:
         point = ', '.join(lines.value(f'point{k}', part)
                           for k, part in enumerate(frame.from_body(frame.point)))
-    if used & {*ATTITUDE}:
+    if used & {*ATTITUDE, 'angle'}:
         found.append(
             f'    {_names(ATTITUDE)} = multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})')
-    if used & {*RATES}:
+    if used & {*RATES, 'rate'}:
         found.append(f'    {_names(RATES)} = rotate({", ".join(axes)}, wx, wy, wz)')
+    if used & {*HINGE}:
+        n = [lines.value(f'hinge{k}', part) for k, part in enumerate(frame.hinge.axis)]
+    if 'rate' in used:
+        terms = zip(n, RATES, strict=True)
+        found.append(f'    the_rate = {" + ".join(f"{one} * the_{name}" for one, name in terms)}')
+    if 'angle' in used:
+        zx, zy, zz, zw = (lines.value(f'zero{k}', part)
+                          for k, part in enumerate(frame.hinge.zero))
+        found += [f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, {_names(ATTITUDE)})',
+                  f'    the_angle = 2.0 * atan2({n[0]} * ux + {n[1]} * uy + {n[2]} * uz, uw)']
     if used & {*WORLD_RATES}:
         found.append(f'    {_names(WORLD_RATES)} = rotate(qx, qy, qz, qw, wx, wy, wz)')
     if used & {*TIME}:
