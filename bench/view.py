@@ -6,8 +6,8 @@
 A client on the page's websocket takes what a browser would take, and draws nothing. CPU is in
 percent of one core, of the process that serves the page and of the one that simulates; pictures
 are the messages that bring one, a second; growth is that of the resident memory of both from ten
-seconds after the first picture (or a tenth of the time) on. The goals are 60 pictures a second, 20 %
-of a core, and no growth in an hour (--seconds 3600).
+seconds after the first picture (or a tenth of the time) on. The goals are 60 pictures a second,
+20 % of a core, and no growth in an hour (--seconds 3600).
 """
 
 import argparse

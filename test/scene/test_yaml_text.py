@@ -88,7 +88,7 @@ def test_a_stray_key_is_named_though_another_is_missing(changed, line):
     assert line in refusal(changed)
 
 
-@pytest.mark.parametrize('effect', ['rotor', 'dry_friction', 'spinning_friction', 'buoyancy'])
+@pytest.mark.parametrize('effect', ['thruster', 'adhesion', 'buoyancy', 'solar_sail'])
 def test_an_effect_that_does_not_exist_is_not_taken_for_a_misspelling(effect):
     line = refusal(SCENE.replace('[]', f'[{effect}: {{}}]'))
     assert 'did you mean' not in line

@@ -53,7 +53,8 @@ def page():
 def test_a_drag_in_a_browser_moves_the_body_and_nothing_outside_is_asked(
         tmp_path, open_tab, address_of):
     (tmp_path / 'ball.yaml').write_text(BALL)
-    command = [sys.executable, '-m', 'rigid_body_sim', 'view', tmp_path / 'ball.yaml', '--port', '0',
+    command = [sys.executable, '-m', 'rigid_body_sim', 'view', tmp_path / 'ball.yaml',
+               '--port', '0',
                '--output', tmp_path / 'pushed']
     with subprocess.Popen(command, cwd=ros.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as process:

@@ -52,8 +52,8 @@ PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
-HELD = (': dry rolling friction holds a body there that still slides or spins, which is not solved; '
-        'viscous rolling friction is')
+HELD = (': dry rolling friction holds a body there that still slides or spins, which is not '
+        'solved; viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
 DRY = CONTACT.part('rolling').first
 MU, INCLINED = CONTACT.part('mu').first, CONTACT.part('inclined').first

@@ -48,8 +48,7 @@ class Drag(Effect):
                            'quadratic (N s^2/m^2), angular_quadratic (N m s^2), or some of them')
         if set(settings) - {'linear', 'angular'} or any(
                 isinstance(value, list) for value in settings.values()):
-            return ShapedDrag(*(_matrix(settings.get(key, 0.0), f'{where}.{key}')
-                                for key in KEYS))
+            return ShapedDrag.from_scene(settings, body, constraint, where)
         return cls(float(settings.get('linear', 0.0)), float(settings.get('angular', 0.0)))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
@@ -89,7 +88,7 @@ def _matrix(value, where: str) -> Matrix:
     if np.abs(rows - rows.T).max() > SYMMETRY * size:
         raise BadInput(where, f'got {value}, which is not symmetric',
                        'a symmetric matrix, or a force in expressions for the rest')
-    a, b, c, d, e, f = *rows[0], *rows[1, 1:], rows[2, 2]
+    (a, b, c), (_, d, e), (_, _, f) = rows
     minors = a * d - b * b, a * f - c * c, d * f - e * e
     third = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
     slack = SYMMETRY * size
@@ -124,7 +123,14 @@ class ShapedDrag(Effect):
     quadratic: Matrix
     angular_quadratic: Matrix
     name: ClassVar[str] = 'drag'
+    SCHEMA: ClassVar[dict] = Drag.SCHEMA
     mechanisms: ClassVar = Drag.mechanisms
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Effect:
+        """Return the effect of its settings in a scene file."""
+        return cls(*(_matrix(settings.get(key, 0.0), f'{where}.{key}') for key in KEYS))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and couple; what is zero does not act."""

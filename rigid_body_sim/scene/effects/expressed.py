@@ -91,8 +91,8 @@ class PotentialEnergy(Effect):
         known = sorted(tree.names(energy) & {*STATE_NAMES} - {*PLACE, *ATTITUDE, 'angle'})
         if known:
             raise BadInput(where, f'depends on {", ".join(known)}',
-                           f'a potential is a function of {", ".join((*PLACE, *ATTITUDE))}, angle: '
-                           'write what depends on time or velocity as a force or a torque')
+                           f'a potential is a function of {", ".join((*PLACE, *ATTITUDE))}, '
+                           'angle: write what depends on time or velocity as a force or a torque')
         refuse_beside_hinge((energy,), constraint, where)
         return cls(energy, settings['energy'].parameters)
 

@@ -52,11 +52,7 @@ class Gravity(Effect):
         x, y, z = map(float, settings['g'])
         if x == 0.0 and y == 0.0 and z <= 0.0:
             return cls(abs(z))
-        if constraint.mechanism is Mechanism.PLANE:
-            raise BadInput(f'{where}.g', f'got {settings["g"]}',
-                           'above a plane gravity is along -z: incline the plane, '
-                           'table: {normal: [x, y, z]}')
-        return GravityVector((x, y, z))
+        return GravityVector.from_scene(settings, body, constraint, where)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the weight, or its torque about the constraint; nothing without either."""
@@ -110,7 +106,19 @@ class GravityVector(Effect):
 
     g: Vector
     name: ClassVar[str] = 'gravity_vector'
+    SCHEMA: ClassVar[dict] = Gravity.SCHEMA
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
+                   where: str) -> Effect:
+        """Return the effect of its settings in a scene file; a plane has a normal instead."""
+        if constraint.mechanism is Mechanism.PLANE:
+            raise BadInput(f'{where}.g', f'got {settings["g"]}',
+                           'above a plane gravity is along -z: incline the plane, '
+                           'table: {normal: [x, y, z]}')
+        x, y, z = map(float, settings['g'])
+        return cls((x, y, z))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the weight, or its torque about the constraint."""

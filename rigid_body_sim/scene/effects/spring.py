@@ -48,8 +48,8 @@ class Spring(Effect):
         """Return the effect of its settings in a scene file."""
         k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
         if constraint.axis is not None and not {'at', 'anchor', 'length'} & set(settings):
-            return cls(*_torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis),
-                       None)
+            energy, damper = _torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis)
+            return cls(energy, damper, None)
         if 'angle' in settings:
             raise BadInput(f'{where}.angle', 'stands beside at, anchor or length'
                            if constraint.axis is not None
@@ -57,7 +57,8 @@ class Spring(Effect):
                            'a torsion spring on a hinge has stiffness, angle and damping')
         for key in ('at', 'anchor'):
             if key not in settings:
-                raise BadInput(where, f'the key {key!r} is missing', 'needed: at, anchor, stiffness')
+                raise BadInput(where, f'the key {key!r} is missing',
+                               'needed: at, anchor, stiffness')
         x, y, z = map(float, settings['at'])
         body_at = vectors.constant((x, y, z))
         d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(body_at)),
