@@ -13,7 +13,7 @@ def draw():
     """Return the figure."""
     figure, axes = panels(2)
     Omega = theory.frequency(5.0, 1.0, 2.0, 3.0)
-    sizes = np.geomspace(1e-3, 0.3, 9)
+    sizes = np.array([2e-4, *np.geomspace(1e-3, 0.3, 9)])    # the first one is the scene's
     found = np.array([_frequency(_run(size), Omega) for size in sizes])
     axes[0].axhline(Omega, label='ω$_0$√((I$_3$−I$_1$)(I$_3$−I$_2$)/(I$_1$I$_2$))', **THEORY)
     axes[0].axhline(np.sqrt(theory.frequency_squared_as_written(5.0, 1.0, 2.0, 3.0)),

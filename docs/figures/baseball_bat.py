@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from figures.style import GREY, MEASURED, THEORY, WRONG, label, panels, run
+from figures.style import BLACK, GREY, MEASURED, THEORY, WRONG, label, panels, run
 from rigid_body_sim.theory import baseball_bat as theory
 
 LENGTH, A, M, J = 0.55, 0.2, 0.9, 2.0
@@ -23,5 +23,8 @@ def draw():
         run('baseball_bat', f'strike.distance={one}').states([0.0]).angular_velocity[0, 2]
         for one in some])
     axes.plot(some, 1.0 - M * LENGTH * rates / J, label='measured', **MEASURED)
+    rate = run('baseball_bat').states([0.0]).angular_velocity[0, 2]
+    axes.plot(LENGTH + A**2 / LENGTH, 1.0 - M * LENGTH * rate / J, 's', color=BLACK,
+              markerfacecolor='none', label='the blow of the table')
     label(axes, 'distance d of the blow from the hand (m)', 'reaction of the hand F$_R$/F')
     return figure

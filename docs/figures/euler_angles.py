@@ -11,8 +11,8 @@ from rigid_body_sim.theory import euler_angles
 def draw():
     """Return the figure."""
     figure, axes = panels(2)
-    times = np.linspace(0.0, 1.0, 2001)
-    states = run('heavy_top', 'initial.spin=30').states(times)
+    times = np.linspace(0.0, 0.5, 2001)
+    states = run('heavy_top').states(times)
     angles = [np.unwrap(angle(states))
               for angle in (instruments.alpha, instruments.beta, instruments.gamma)]
     for angle, name, line in zip(
@@ -24,6 +24,6 @@ def draw():
     axes[1].plot(times, states.angular_velocity[:, 0], label='ω$_1$ of the body', **LINES[0])
     axes[1].plot(times[1:-1:60], omega[0, 1:-1:60], label='−α′ sin β cos γ + β′ sin γ',
                  **MEASURED | {'color': LINES[1]['color']})
-    axes[1].set_ylim(-10.0, 14.0)
+    axes[1].set_ylim(-2.5, 4.5)
     label(axes[1], 'time (s)', 'ω$_1$ (rad/s)', loc='upper right')
     return figure

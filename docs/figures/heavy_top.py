@@ -7,7 +7,7 @@ from figures.style import BLACK, GREY, LINES, label, panels, run
 from rigid_body_sim.study.scenes import instruments
 from rigid_body_sim.theory import heavy_top as theory
 
-I1, I3, MGL, SPIN, TILT = 0.03, 0.01, 0.981, 30.0, 0.5
+I1, I3, MGL, SPIN, TILT = 0.03, 0.01, 0.981, 60.0, 0.5
 STARTS = (('cusps: α′ = 0', 0.0), ('loops: α′ < 0', -3.0), ('waves: α′ > 0', 1.5))
 
 
@@ -16,7 +16,7 @@ def draw():
     figure, axes = panels(2, height=3.6, width_ratios=(1.3, 1.0))
     P_gamma = I3 * SPIN
     P_alpha = theory.p_alpha(0.0, TILT, P_gamma, I1)
-    tilts = np.linspace(0.4, 1.3, 300)
+    tilts = np.linspace(0.43, 0.7, 300)
     E = theory.energy(TILT, 0.0, P_alpha, P_gamma, I1, I3, MGL)
     axes[0].plot(tilts, theory.effective_potential(tilts, P_alpha, P_gamma, I1, I3, MGL),
                  label='V$_{eff}$', **LINES[0])
@@ -30,7 +30,7 @@ def draw():
     beta, rate = instruments.beta(states), instruments.beta_rate(states)
     axes[0].plot(beta, E - 0.5 * I1 * rate**2, '.', color=LINES[2]['color'],
                  label='E − I$_1$β′²/2 of the motion')
-    axes[0].set_ylim(top=E + 0.35)
+    axes[0].set_ylim(top=E + 0.1)
     label(axes[0], 'tilt β (rad)', 'energy (J)')
     for (name, start), line in zip(STARTS, LINES, strict=False):
         omega = [float(-start * np.sin(TILT)), 0.0, SPIN]

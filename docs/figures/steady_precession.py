@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from figures.style import LINES, MEASURED, THEORY, label, panels, run
+from figures.style import BLACK, LINES, MEASURED, THEORY, label, panels, run
 from rigid_body_sim.study.scenes import instruments
 from rigid_body_sim.theory import heavy_top as theory
 
@@ -20,10 +20,13 @@ def draw():
     fast[np.abs(fast) > 90.0] = np.nan
     axes[0].plot(tilts, slow, label='slow', **LINES[0])
     axes[0].plot(tilts, fast, label='fast', **LINES[1])
-    for tilt in (0.3, 0.6, 0.9, 2.3, 2.7):
+    for tilt in (0.3, 0.5, 0.9, 2.3, 2.7):
         for rate, line in zip(
                 theory.steady_precession_rates(tilt, SPIN, I1, I3, MGL), LINES, strict=False):
             axes[0].plot(tilt, _measured(tilt, rate), 'o', color=line['color'], markersize=4)
+    slow_rate = theory.steady_precession_rates(0.5, SPIN, I1, I3, MGL)[0]
+    axes[0].plot(0.5, slow_rate, 's', color=BLACK, markerfacecolor='none', markersize=8,
+                 label='the top of the table')
     label(axes[0], 'tilt β$_0$ (rad)', 'precession α′ (rad/s)')
     tilts = np.linspace(0.15, 3.0, 100)
     axes[1].plot(tilts, [_nutation(tilt) for tilt in tilts], label='√(V$_{eff}$″/I$_1$)', **THEORY)
