@@ -28,7 +28,7 @@ EXTRAS = {
     'view': ['viser>=1.0'],
     'test': ['hypothesis', 'mcap-ros2-support', 'pytest', 'pytest-timeout', 'pytest-xdist',
              'rosbags', *TABLES, *PLOTS],
-    'docs': [*PLOTS, 'rosdoc2'],
+    'docs': [*PLOTS, 'furo', 'latex2mathml', 'myst-nb', 'numpydoc', 'rosdoc2', 'sphinx'],
 }
 
 

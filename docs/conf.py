@@ -12,22 +12,23 @@ import xml.etree.ElementTree
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-manifest = xml.etree.ElementTree.parse(HERE.parent / 'package.xml').getroot()
+manifest = HERE.parent / 'package.xml'
+own = manifest.exists()         # rosdoc2 builds a copy of this folder; it knows the package, and
+if own:                         # brings a Markdown parser that does not stand beside myst_nb
+    package = xml.etree.ElementTree.parse(manifest).getroot()
+    project = package.findtext('name')
+    author = copyright = package.findtext('author')  # noqa: A001  (Sphinx reads the name)
+    release = version = package.findtext('version')
 
-project = manifest.findtext('name')
-author = manifest.findtext('author')
-copyright = author  # noqa: A001  (Sphinx reads the name)
-release = version = manifest.findtext('version')
-
-extensions = ['myst_nb', 'sphinx.ext.autodoc', 'sphinx.ext.autosummary', 'numpydoc',
-              'sphinx_mathml']
+extensions = ['myst_nb' if own else 'myst_parser', 'sphinx.ext.autodoc',
+              'sphinx.ext.autosummary', 'numpydoc', 'sphinx_mathml']
 html_math_renderer = 'mathml'
 myst_enable_extensions = ['dollarmath', 'deflist']
 myst_heading_anchors = 3
 # a file of the tree (a scene, a script) is a download; pages of folders outside of docs are not
 suppress_warnings = ['misc.highlighting_failure']
 nb_execution_mode = 'off'
-exclude_patterns = ['_build', 'figures', 'images']
+exclude_patterns = ['_build', 'figures', 'images', *([] if own else ['notebooks'])]
 
 autosummary_generate = True
 autodoc_typehints = 'none'           # numpydoc shows the types that the docstrings say
@@ -36,7 +37,7 @@ numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 
 html_theme = 'furo'
-html_title = f'{project} {release}'
+html_title = 'rigid_body_sim'
 html_static_path = []
 html_show_sourcelink = False
 html_copy_source = False

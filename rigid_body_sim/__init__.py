@@ -12,6 +12,7 @@ import importlib
 import typing
 
 if typing.TYPE_CHECKING:  # what type checkers and editors read
+    __version__: str
     from rigid_body_sim.errors import BadInput, NotConverged
     from rigid_body_sim.recording.reader import Recording
     from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene, scene_names
@@ -37,6 +38,8 @@ _HOMES = {
 
 
 def __getattr__(name):
+    if name == '__version__':
+        return importlib.import_module(f'{__name__}.recording.about').version()
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
@@ -58,4 +61,4 @@ def _view(self, duration: float = 10.0):
 
 
 def __dir__():
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, '__version__'})

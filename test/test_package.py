@@ -165,3 +165,9 @@ def test_the_test_pins_are_the_run_pins_and_more():
     run, test = (set((ROOT / 'requirements' / f'{name}.txt').read_text().splitlines()[1:])
                  for name in ('run', 'test'))
     assert run < test
+
+
+def test_the_version_is_that_of_the_manifest():
+    import rigid_body_sim
+    manifest = xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot()
+    assert rigid_body_sim.__version__ == manifest.findtext('version')
