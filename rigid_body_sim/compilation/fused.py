@@ -37,17 +37,14 @@ def exact_fma(a, b, c):
         return math.inf if numerator > 0 else -math.inf
 
 
-def emulated_fma(a, b, c):
-    """Return a b + c, rounded once, from sums and products of doubles where these suffice.
+def _rounded(a, b, c, p):
+    """Return r, q and h: a b + c is r + q + h exactly, for doubles or arrays with a b = p rounded.
 
     Exactly, a b = p + e, p + c = s + f and e + f = g + h, so a b + c = s + g + h. For h = 0 the
     sum s + g rounds once. Otherwise let s + g = r + q, r rounded: h is less than an ulp of g,
     of which both q and the distance d from r to where rounding changes are multiples; so r is
     right unless |q| = d, and d is a power of two.
     """
-    p = a * b
-    if not (LEAST <= abs(p) <= MOST and abs(a) <= MOST and abs(b) <= MOST and abs(c) <= MOST):
-        return exact_fma(a, b, c)
     upper = SPLITTER * a
     ah = upper - (upper - a)
     al = a - ah
@@ -62,7 +59,16 @@ def emulated_fma(a, b, c):
     part = g - e
     h = (e - (g - part)) + (f - part)
     r = s + g
-    if h != 0.0 and abs(math.frexp(g - (r - s))[0]) == 0.5:
+    return r, g - (r - s), h
+
+
+def emulated_fma(a, b, c):
+    """Return a b + c, rounded once, from sums and products of doubles where these suffice."""
+    p = a * b
+    if not (LEAST <= abs(p) <= MOST and abs(a) <= MOST and abs(b) <= MOST and abs(c) <= MOST):
+        return exact_fma(a, b, c)
+    r, q, h = _rounded(a, b, c, p)
+    if h != 0.0 and abs(math.frexp(q)[0]) == 0.5:
         return exact_fma(a, b, c)
     return r
 
@@ -91,24 +97,11 @@ def _fma_array(a, b, c):
     """Return a b + c as emulated_fma does, but for whole arrays."""
     with np.errstate(all='ignore'):
         p = a * b
-        upper = SPLITTER * a
-        ah = upper - (upper - a)
-        al = a - ah
-        upper = SPLITTER * b
-        bh = upper - (upper - b)
-        bl = b - bh
-        e = al * bl - (((p - ah * bh) - al * bh) - ah * bl)
-        s = p + c
-        part = s - p
-        f = (p - (s - part)) + (c - part)
-        g = e + f
-        part = g - e
-        h = (e - (g - part)) + (f - part)
-        r = s + g
+        r, q, h = _rounded(a, b, c, p)
         size = np.abs(p)
         safe = (size >= LEAST) & (size <= MOST) & (np.abs(a) <= MOST) & (np.abs(b) <= MOST)
         safe &= np.abs(c) <= MOST
-        safe &= (h == 0.0) | (np.abs(np.frexp(g - (r - s))[0]) != 0.5)
+        safe &= (h == 0.0) | (np.abs(np.frexp(q)[0]) != 0.5)
     if not safe.all():
         for at in zip(*np.nonzero(~safe), strict=True):
             r[at] = exact_fma(float(a[at]), float(b[at]), float(c[at]))

@@ -11,7 +11,7 @@ from rigid_body_sim.numerics import rotations
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import across, apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene import initial
-from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia, refuse_beyond, square_of
+from rigid_body_sim.scene.bodies import IDENTITY, Body, refuse_beyond, square_of
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.frame import Frame, Hinging
 from rigid_body_sim.scene.initial import Start
@@ -84,10 +84,6 @@ class Hinge(Constraint):
     def point(self, body: Body) -> Vector:
         """Return the point `through`."""
         return self.through
-
-    def inertia(self, body: Body) -> Inertia:
-        """Return the tensor about the centre of mass."""
-        return body.about_center
 
     def frame(self, body: Body) -> Frame:
         """Return the body's axes through the point `through`."""

@@ -10,7 +10,7 @@ from rigid_body_sim.numerics import rotations
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import cross, dot, minus, scaled
 from rigid_body_sim.scene import initial
-from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia
+from rigid_body_sim.scene.bodies import IDENTITY, Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
@@ -106,14 +106,6 @@ class Plane(Constraint):
     def height(self, q, body: Body) -> float:
         """Return how high the lowest point is above the body's origin, along the normal, m."""
         return dot(self.normal, rotations.rotate(*q, *self.touching(q, body)))
-
-    def point(self, body: Body) -> Vector:
-        """Return the centre of mass."""
-        return body.center_of_mass
-
-    def inertia(self, body: Body) -> Inertia:
-        """Return the tensor about the centre of mass."""
-        return body.about_center
 
     def frame(self, body: Body) -> Frame:
         """Return the body's own axes about the centre of mass."""

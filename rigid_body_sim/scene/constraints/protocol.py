@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol, Self
 
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body, Inertia
-from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.frame import Frame, turned_back
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
 
@@ -78,7 +78,7 @@ class Constraint(Protocol):
         BadInput
             For a body that it cannot hold, and for what SCHEMA cannot say.
         """
-        ...
+        return cls()
 
     def begun(self, start: Start) -> Self:
         """Return the constraint with what it takes from the initial conditions."""
@@ -103,19 +103,28 @@ class Constraint(Protocol):
         ...
 
     def point(self, body: Body) -> Vector:
-        """Return the reference point of the equations of motion, body axes, m."""
-        ...
+        """Return the reference point of the equations of motion, body axes, m.
+
+        It is the centre of mass unless the constraint holds a point.
+        """
+        return body.center_of_mass
 
     def inertia(self, body: Body) -> Inertia:
         """Return the tensor that the kernels take.
 
         It is about the held point where the mechanism is POINT, else about the centre of mass.
         """
-        ...
+        return body.about_center
 
     def frame(self, body: Body) -> Frame:
-        """Return the frame in which the equations of motion of a body are written."""
-        ...
+        """Return the frame in which the equations of motion of a body are written.
+
+        Its axes are the principal axes of the tensor.
+        """
+        inertia = self.inertia(body)
+        arm = turned_back(inertia.axes, self.arm(body)) if self.holds_a_point else (0.0, 0.0, 0.0)
+        return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.axes,
+                     self.point(body), arm)
 
     @property
     def axis(self) -> Vector | None:

@@ -10,10 +10,9 @@ from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene import initial
-from rigid_body_sim.scene.bodies import Body, Inertia
+from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.plane import Plane
-from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
-from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
 
@@ -59,17 +58,3 @@ class Table(Constraint):
                            'vertical velocity 0')
         start.refuse_spin_without_moment(body.about_center, where)
         return start.state()
-
-    def point(self, body: Body) -> Vector:
-        """Return the centre of mass."""
-        return body.center_of_mass
-
-    def inertia(self, body: Body) -> Inertia:
-        """Return the tensor about the centre of mass."""
-        return body.about_center
-
-    def frame(self, body: Body) -> Frame:
-        """Return the principal axes about the centre of mass."""
-        inertia = body.about_center
-        return Frame(True, body.mass, inertia.moments, inertia.axes, body.center_of_mass,
-                     (0.0, 0.0, 0.0))

@@ -72,6 +72,14 @@ class Body:
         arm = np.array(rotate_back(*self.axes, *scene.body.center_of_mass))
         return np.diag(self.moments) - mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)), arm
 
+    def refuse_what_joints_lack(self):
+        """Raise RefusedError for what the joints of an engine cannot do."""
+        if self.inner:
+            raise RefusedError('internal dissipation: it has no such effect')
+        if np.abs(self.damping - self.damping[0, 0] * np.eye(3)).max() > 0.0:
+            raise RefusedError(
+                'drag on the centre of mass of a pivoted body: its joints damp all axes alike')
+
     def numbers(self):
         """Return all but the start as one flat array for compiled right-hand sides."""
         i = self.moments

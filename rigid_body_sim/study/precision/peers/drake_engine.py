@@ -33,11 +33,7 @@ def runners(problem, reference):
                      lambda step: _run(problem.scene, numbers, step, None, None), True)
         return
     if isinstance(numbers, body.Body):
-        if numbers.inner:
-            raise RefusedError('internal dissipation: it has no such effect')
-        if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
-            raise RefusedError(
-                'drag on the centre of mass of a pivoted body: its joints damp all axes alike')
+        numbers.refuse_what_joints_lack()
     for label, scheme in (('RK5', 'runge_kutta5'), ('RK3', 'runge_kutta3')):
         yield Runner(
             f'{NAME} {label}', 'accuracy', ACCURACIES,

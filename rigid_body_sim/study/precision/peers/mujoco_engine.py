@@ -32,11 +32,7 @@ def runners(problem, reference):
     """Yield MuJoCo with both of its methods."""
     numbers = given.of(problem)
     if isinstance(numbers, body.Body):
-        if numbers.inner:
-            raise RefusedError('internal dissipation: it has no such effect')
-        if np.abs(numbers.damping - numbers.damping[0, 0] * np.eye(3)).max() > 0.0:
-            raise RefusedError(
-                'drag on the centre of mass of a pivoted body: its joints damp all axes alike')
+        numbers.refuse_what_joints_lack()
     steps = steps_for(problem, reference)
     for label, integrator in (('RK4', 'RK4'), ('default (Euler)', 'Euler')):
         yield Runner(
