@@ -98,7 +98,7 @@ def _pendulum(scene, g):
     """
     body, constraint = scene.body, scene.constraint
     attitude, n = Rotation.from_quat(scene.initial.orientation), np.array(constraint.axis)
-    arm = np.subtract(body.center_of_mass, constraint.through)
+    arm = np.array(constraint.arm(body))
     across = arm - (arm @ n) * n
     Mgl = body.mass * g * np.linalg.norm(across) * np.linalg.norm(attitude.apply(n)[:2])
     moment, rate = (

@@ -12,11 +12,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 def middle_of(scene):
     """Return the point of reference in body axes, m: the point held, else the centre of mass."""
-    if scene is None or scene.constraint.mechanism is Mechanism.POINT:
-        return np.zeros(3)
-    if scene.constraint.mechanism is Mechanism.AXIS:
-        return np.array(scene.constraint.through)
-    return np.array(scene.body.center_of_mass)
+    return np.zeros(3) if scene is None else np.array(scene.constraint.point(scene.body))
 
 
 def reach_of(scene, drawing):
@@ -47,13 +43,13 @@ def ground_of(scene, reach):
 
 def holder_of(scene, reach):
     """Return the surfaces of what holds the body, in the world: a column or an axle."""
-    kind = scene.constraint.kind if scene else 'free'
+    mechanism = scene.constraint.mechanism if scene else Mechanism.FREE
     start = start_of(scene)
-    if kind == 'pivot':
+    if mechanism is Mechanism.POINT:
         height = float(start[2]) - ground_of(scene, reach)
         column = surfaces.cone(0.12 * reach, height)
         return [column.placed(Rotation.identity(), start - (0.0, 0.0, 0.75 * height))]
-    if kind == 'hinge':
+    if mechanism is Mechanism.AXIS:
         to_axis = Rotation.align_vectors([scene.constraint.axis], [[0.0, 0.0, 1.0]])[0]
         turn = Rotation.from_quat(scene.initial.orientation) * to_axis
         return [surfaces.cylinder(0.025 * reach, reach).placed(turn, start)]

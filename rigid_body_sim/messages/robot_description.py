@@ -60,8 +60,9 @@ def _solids(scene):
 
 
 def _hinge(robot, scene, frames):
-    """Add the hinge: a joint at `through`, and the body's origin at a fixed place from there."""
-    axis, through = np.array(scene.constraint.axis), np.array(scene.constraint.through)
+    """Add the hinge: a joint at the held point, and the origin at a fixed place from there."""
+    axis = np.array(scene.constraint.axis)
+    through = np.array(scene.constraint.point(scene.body))
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
     attitude = Rotation.from_quat(scene.initial.orientation)
     place = scene.initial.position + attitude.apply(through)

@@ -116,7 +116,7 @@ def _after_a_blow(scene, state):
     """Return the expected rate of a hinged body that was hit at rest at time 0."""
     strikes = [effect for effect in scene.effects if effect.name == 'strike']
     n, body = np.array(scene.constraint.axis), scene.body
-    arm = np.subtract(body.center_of_mass, scene.constraint.through)
+    arm = np.array(scene.constraint.arm(body))
     length = np.linalg.norm(arm - n * (n @ arm))
     if (len(strikes) != 1 or strikes[0].time or strikes[0].point is None or state.time
             or scene.initial.angular_velocity.any() or not length):
@@ -124,7 +124,7 @@ def _after_a_blow(scene, state):
     impulse = np.array(
         strikes[0].impulse if strikes[0].frame == 'body'
         else rotate_back(*scene.initial.orientation, *strikes[0].impulse))
-    lever = np.subtract(strikes[0].point, scene.constraint.through)
+    lever = np.subtract(strikes[0].point, scene.constraint.point(body))
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
     # the moment of the blow about the hinge, F d, found from its lever
     return Steady(float(baseball_bat.angular_acceleration(
@@ -137,7 +137,7 @@ def _swing(scene, state):
     It is None for a pendulum that turns over or stands still.
     """
     n, body = np.array(scene.constraint.axis), scene.body
-    arm = np.subtract(body.center_of_mass, scene.constraint.through)
+    arm = np.array(scene.constraint.arm(body))
     across = arm - n * (n @ arm)
     moment = n @ body.about_center.matrix @ n + body.mass * (across @ across)
     down = -np.array(rotate_back(*state.orientation, 0.0, 0.0, 1.0))

@@ -93,7 +93,7 @@ class Mechanics:
         torque = turn.apply(inertia @ growth + np.cross(omega, inertia @ omega))
         if constraint.mechanism is Mechanism.AXIS:
             axis = turn.apply(constraint.axis)
-            arm = turn.apply(center - np.array(constraint.through))
+            arm = turn.apply(constraint.arm(body))
             torque = axis * (axis @ (torque + np.cross(arm, force)))
         return Arrows(turn.apply(omega), diagnosis[energy.MOMENTUM:].copy(), force, torque)
 

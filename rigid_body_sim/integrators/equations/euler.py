@@ -120,6 +120,13 @@ def unit(qx, qy, qz, qw, cx, cy, cz, cw):
 
 
 @compiled
+def settled(y, c):
+    """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
+    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
+    return (*q, *y[4:]), (*lost, *c[4:])
+
+
+@compiled
 def read_state(p, vector):
     """Set the parameters that a start decides.
 

@@ -17,9 +17,9 @@ from rigid_body_sim.integrators.equations.euler import (
     attitude_rate,
     load_start,
     read_state,
-    unit,
-    write_state,
+    settled,  # noqa: F401 - one of the template's kernels
 )
+from rigid_body_sim.integrators.equations.flying import write  # noqa: F401 - another one
 
 omega_rate = UNBOUND
 axes_rate = UNBOUND
@@ -54,16 +54,3 @@ def rate(p, y):
         free * fx, free * fy, free * fz,
         1.0,
     )
-
-
-@compiled
-def settled(y, c):
-    """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
-    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
-    return (*q, *y[4:]), (*lost, *c[4:])
-
-
-@compiled
-def write(p, time, y, out):
-    """Fill `out`, the state vector."""
-    write_state(p, time, y[:4], y[4:7], y[7:10], y[10:13], out)

@@ -18,7 +18,7 @@ sums it has lost 3e-13 (bench/energy.py).
 Caveats: drag and internal dissipation need kicks that depend on omega; they are solved to order 2
 only, and cannot run backward, as the negative steps of the higher compositions ask: split2 alone
 runs such scenes. A drift costs about as much as two steps of dop8: compositions are for their
-long-time behaviour, not for speed.
+long-time behaviour, not for speed. They take fixed steps only, so they need `step`.
 """
 
 from rigid_body_sim.compilation.templates import specialise
@@ -41,6 +41,16 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     march,
 )
 from rigid_body_sim.integrators.marching import composed
+
+# what every composition declares as a method (integrators/protocols.py), for its page to import;
+# HEAT is that of the higher orders
+PRESERVES = ('symplectic form', 'reversal of time')
+NEEDS = 'acting'
+HEAT = False
+FIELD = False
+STIFF = ()
+TABLE = False
+TAKES = ('step',)
 
 TAKES_WRENCH = True
 LANES = False

@@ -3,21 +3,23 @@
 
 For kicks that depend on the attitude alone.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
-composition.py. Fixed steps only: it needs `step`.
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it, which composition.py
+explains.
 """
 
 from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
+from rigid_body_sim.integrators.families.composition import (  # noqa: F401
+    FIELD,
+    HEAT,
+    NEEDS,
+    PRESERVES,
+    STIFF,
+    TABLE,
+    TAKES,
+)
 
 NAME = 'split4'
 ORDER = 4
-PRESERVES = ('symplectic form', 'reversal of time')
-NEEDS = 'acting'
-HEAT = False
-FIELD = False
-STIFF = ()
-TABLE = False
-TAKES = ('step',)
 SOURCE = 'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S6 of order 4 (b)'
 
 _A1, _A2 = 0.245298957184271, 0.604872665711080

@@ -3,23 +3,25 @@
 
 For kicks that depend on the attitude alone.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
-composition.py. Fixed steps only: it needs `step`.
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it, which composition.py
+explains.
 """
 
 import math
 
 from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
+from rigid_body_sim.integrators.families.composition import (  # noqa: F401
+    FIELD,
+    HEAT,
+    NEEDS,
+    PRESERVES,
+    STIFF,
+    TABLE,
+    TAKES,
+)
 
 NAME = 'split6'
 ORDER = 6
-PRESERVES = ('symplectic form', 'reversal of time')
-NEEDS = 'acting'
-HEAT = False
-FIELD = False
-STIFF = ()
-TABLE = False
-TAKES = ('step',)
 SOURCE = (
     'S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, S14 of order 6 (a)'
 )

@@ -3,24 +3,26 @@
 
 For kicks that depend on the attitude alone.
 
-One step is kick and drift in turn by the fractions KICKS and DRIFTS of it; what these are says
-composition.py. Fixed steps only: it needs `step`.
+One step is kick and drift in turn by the fractions KICKS and DRIFTS of it, which composition.py
+explains.
 """
 
 import math
 from itertools import pairwise
 
 from rigid_body_sim.integrators.families import composition as FAMILY  # noqa: F401, N812
+from rigid_body_sim.integrators.families.composition import (  # noqa: F401
+    FIELD,
+    HEAT,
+    NEEDS,
+    PRESERVES,
+    STIFF,
+    TABLE,
+    TAKES,
+)
 
 NAME = 'split8'
 ORDER = 8
-PRESERVES = ('symplectic form', 'reversal of time')
-NEEDS = 'acting'
-HEAT = False
-FIELD = False
-STIFF = ()
-TABLE = False
-TAKES = ('step',)
 SOURCE = 'R. I. McLachlan, SIAM J. Sci. Comput. 16 (1995) 151, table 2, SS 17 stages of order 8'
 
 _W = (

@@ -116,17 +116,17 @@ class Axle(NamedTuple):
 
 
 def axle(scene):
-    """Return the Axle of a scene with a hinge."""
+    """Return the Axle of a scene whose constraint holds an axis."""
     body = scene.body
-    axis, through = _exact(scene.constraint.axis), _exact(scene.constraint.through)
-    r = [c - t for c, t in zip(_exact(body.center_of_mass), through, strict=True)]
+    axis, point = _exact(scene.constraint.axis), scene.constraint.point(body)
+    r = [c - t for c, t in zip(_exact(body.center_of_mass), _exact(point), strict=True)]
     n = [component / _root(_dot(axis, axis)) for component in axis]
     side, mass = _cross(n, r), Fraction(body.mass)
     swung = _cross(r, _cross(r, n))
     spun = _tensor_times(body.about_center, n)
     momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
     d = _root(_dot(side, side))
-    size = hypot3(*body.center_of_mass) + hypot3(*scene.constraint.through)
+    size = hypot3(*body.center_of_mass) + hypot3(*point)
     if d <= bodies.ULPS * size:
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
     return Axle(n, r, d, momentum, _dot(n, momentum))
@@ -148,7 +148,7 @@ def parameters(scene):
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         [pair_of(component) for component in n], over_d(side), over_d(down),
-        pair_of(mass * g * d / moment), n, scene.constraint.through, body.mass, g, r,
+        pair_of(mass * g * d / moment), n, scene.constraint.point(body), body.mass, g, r,
         held.momentum, mass * g / moment))
     return numbers
 
