@@ -10,22 +10,34 @@ import math
 import pathlib
 import re
 import sys
+from typing import ClassVar
 
 import numpy as np
 import pytest
 
+from rigid_body_sim.analysis.lines import predicted_lines
 from rigid_body_sim.choice.choose import methods_for
+from rigid_body_sim.drawing import setting
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.protocols import Method
+from rigid_body_sim.messages import robot_description
+from rigid_body_sim.messages.state_topics import Frames
 from rigid_body_sim.motions import MOTIONS
 from rigid_body_sim.motions.protocol import Motion
 from rigid_body_sim.numerics.rotations import angle_between, rotate
+from rigid_body_sim.scene import initial
 from rigid_body_sim.scene.constraints import CONSTRAINTS
-from rigid_body_sim.scene.effects.protocol import Acting
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects import EFFECTS as KNOWN
+from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.state import State
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.testing import check_effect
+from rigid_body_sim.theory.prediction import expectation
 
 PAGE = pathlib.Path(__file__).resolve().parent.parent / 'docs' / 'extending.md'
 FILES = dict(re.findall(r'^```\w+\n# (more_bodies/\S+)\n(.*?)^```$', PAGE.read_text(),
@@ -173,6 +185,77 @@ initial: {euler_zyz: [0.3, 1.2, 0.4], angular_velocity: [3, -2, 20]}
     assert state.position + arm == pytest.approx(np.zeros(3), abs=1e-12)
     spin = np.array(rotate(*turn, *state.angular_velocity))
     assert state.velocity == pytest.approx(np.cross(spin, -arm), abs=1e-9)
+
+
+@dataclasses.dataclass(frozen=True)
+class Axle(Constraint):
+    """An axle along body axis y: what the contract asks for, and nothing of a hinge's own."""
+
+    at: tuple
+    kind: ClassVar[str] = 'axle'
+    usage: ClassVar[str] = 'axle: {at: [x, y, z]}'
+    SCHEMA: ClassVar[dict] = mapping_of(['at'], at=VECTOR)
+    INITIAL: ClassVar[dict] = {**initial.ORIENTATION, **initial.PLACE, 'rate': {'type': 'number'}}
+    mechanism: ClassVar[Mechanism] = Mechanism.AXIS
+    axis: ClassVar = (0.0, 1.0, 0.0)
+
+    @classmethod
+    def from_scene(cls, settings, body, where):
+        return cls(tuple(map(float, settings['at'])))
+
+    def initial(self, start, body, where):
+        omega = (0.0, float(start.mapping.get('rate', 0.0)), 0.0)
+        arm = rotate(*start.orientation, *self.at)
+        velocity = np.cross(arm, rotate(*start.orientation, *omega))
+        return State.of(0.0, start.orientation, omega, np.subtract(start.position, arm), velocity)
+
+    def point(self, body):
+        return self.at
+
+
+@dataclasses.dataclass(frozen=True)
+class Moon(Gravity):
+    """A uniform field by another name."""
+
+    name: ClassVar[str] = 'moon'
+
+
+@pytest.mark.without_numba
+def test_an_axle_and_a_field_of_ones_own_get_the_closed_form_and_all_that_is_shown(monkeypatch):
+    """Nothing asks for a constraint or an effect by its name."""
+    monkeypatch.setitem(CONSTRAINTS, 'axle', Axle)
+    monkeypatch.setitem(KNOWN, 'moon', Moon)
+    body = 'body: {mass: 1.0, inertia: [0.03, 0.05, 0.04], center_of_mass: [0, 0.01, 0.1]}\n'
+    mine = parse_scene(f"""scene: mine
+{body}constraint: {{axle: {{at: [0, 0, -0.2]}}}}
+effects: [moon: {{g: 1.62}}]
+initial: {{euler_zyz: [0, 2.6, 0], rate: 1.0}}
+""")
+    known = parse_scene(f"""scene: known
+{body}constraint: {{hinge: {{axis: [0, 1, 0], through: [0, 0, -0.2]}}}}
+effects: [gravity: {{g: 1.62}}]
+initial: {{euler_zyz: [0, 2.6, 0], rate: 1.0}}
+""")
+    one, other = Simulation(mine, rate=10.0), Simulation(known, rate=10.0)
+    for simulation in (one, other):
+        simulation.advance(5)
+        simulation.impulse(torque=(0.0, 1e-3, 0.0))
+        simulation.advance(5)
+    assert one.choice.method == other.choice.method == 'exact'
+    assert np.array_equal(one.state.vector, other.state.vector)
+    assert np.array_equal(one.reactions([0.9])[1], other.reactions([0.9])[1])
+    frames = Frames()
+    assert robot_description.urdf(mine, frames) == robot_description.urdf(known, frames).replace(
+        'known', 'mine')
+    assert len(setting.holder_of(mine, 1.0)) == 1
+    seen = [expectation(scene, scene.initial) for scene in (mine, known)]
+    assert type(seen[0]) is type(seen[1]) and seen[0] is not None
+    assert predicted_lines(mine) == predicted_lines(known) != ()
+
+
+def test_a_setting_with_the_name_of_a_view_is_refused():
+    with pytest.raises(TypeError, match='is a setting with the name of a view'):
+        type('Wind', (Effect,), {'__annotations__': {'uniform_field': tuple}})
 
 
 SPHERE = """scene: slowing

@@ -13,9 +13,6 @@ from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import Scene, parse_scene
 
-KEEP_ENERGY = {'gravity', 'strike'}
-KEEP_MOMENTUM = {'gravity', 'strike', 'internal_dissipation'}
-
 
 @dataclass(frozen=True)
 class Mark:
@@ -60,19 +57,21 @@ class Segment:
     @property
     def keeps_energy(self):
         """Whether energy is constant here."""
-        return self._keeps(KEEP_ENERGY)
+        return self._keeps(lambda one: one.books == 'potential')
 
     @property
     def keeps_momentum(self):
         """Whether L^2 about the centre of mass is constant here."""
-        return self._keeps(KEEP_MOMENTUM) and self.scene.constraint.mechanism is Mechanism.FREE
+        return self._keeps(lambda one: one.gives in ('force', 'turning')) and (
+            self.scene.constraint.mechanism is Mechanism.FREE)
 
-    def _keeps(self, effects):
-        return (
-            self.scene is not None
-            and not self.held
-            and all(effect.name in effects for effect in self.scene.effects)
-        )
+    def _keeps(self, harmless):
+        """Return whether all that acts between impulses is harmless, a function of an Acting."""
+        if self.scene is None or self.held or self.scene.constraint.mechanism is Mechanism.PLANE:
+            return False
+        frame = self.scene.constraint.frame(self.scene.body)
+        return all(effect.contact is None and all(map(harmless, effect.acting(frame, 0.0)))
+                   for effect in self.scene.acting)
 
 
 @dataclass(frozen=True)

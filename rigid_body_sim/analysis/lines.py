@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics import parameters
 from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.theory import asymmetric_top, heavy_top, kater_pendulum, symmetric_top
 
 
@@ -28,18 +29,19 @@ class SpectralLine:
 
 def predicted_lines(scene):
     """Return the SpectralLines of a scene; () where theory has none in closed form."""
-    if scene is None or any(effect.name != 'gravity' for effect in scene.effects):
+    if scene is None or scene.weight is None or any(
+            effect.as_impulse is not None for effect in scene.effects):
         return ()
-    kind, gravity = scene.constraint.kind, scene.effect('gravity')
+    mechanism, g = scene.constraint.mechanism, scene.weight
     omega = scene.initial.angular_velocity
-    if kind == 'free':
+    if mechanism is Mechanism.FREE:
         return tuple(_free(scene.body.about_center, omega))
-    if kind == 'pivot' and not gravity:
-        return tuple(_free(scene.body.about_origin, omega))
-    if kind == 'pivot':
-        return tuple(_heavy_top(scene, gravity.g, omega))
-    if kind == 'hinge' and gravity:
-        return tuple(_pendulum(scene, gravity.g))
+    if mechanism is Mechanism.POINT and not g:
+        return tuple(_free(scene.constraint.inertia(scene.body), omega))
+    if mechanism is Mechanism.POINT:
+        return tuple(_heavy_top(scene, g, omega))
+    if mechanism is Mechanism.AXIS and g:
+        return tuple(_pendulum(scene, g))
     return ()
 
 
@@ -77,9 +79,10 @@ def _heavy_top(scene, g, omega):
     Nutation shows in the vertical part of omega, precession in the horizontal one.
     """
     body = scene.body
-    I1, I2, I3 = body.about_origin.moments
-    x, y, l = body.center_of_mass
-    if I1 != I2 or x or y or not l or body.about_origin.axes != IDENTITY:
+    inertia = scene.constraint.inertia(body)
+    I1, I2, I3 = inertia.moments
+    x, y, l = scene.constraint.arm(body)
+    if I1 != I2 or x or y or not l or inertia.axes != IDENTITY:
         return
     up = Rotation.from_quat(scene.initial.orientation).inv().apply([0.0, 0.0, 1.0])
     top = (omega, up, I1, I3, body.mass * g * l)

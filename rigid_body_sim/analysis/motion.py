@@ -150,7 +150,7 @@ class Conserved:
 def conserved(scene):
     """Return the Conserved of a scene, or None if there is none.
 
-    It is L of a free body, L or its vertical part about a fixed point.
+    It is L of a free body, L or its vertical part about a fixed point under nothing but weight.
     """
     if scene is None or scene.constraint.mechanism not in (Mechanism.FREE, Mechanism.POINT):
         return None
@@ -159,8 +159,10 @@ def conserved(scene):
         return Conserved(
             'L', scene, scene.body.about_center, lambda segment: segment.keeps_momentum
         )
+    if scene.weight is None:
+        return None
     return Conserved(
-        'L_z' if scene.effect('gravity') else 'L',
+        'L_z' if scene.weight else 'L',
         scene,
         scene.constraint.inertia(scene.body),
         lambda segment: segment.keeps_energy,

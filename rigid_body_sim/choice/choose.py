@@ -156,11 +156,11 @@ def _stiff(scene):
 
     The rate of internal dissipation, c L^2/I, is c L times that of the rotation, L/I.
     """
-    found, inner = set(), scene.effect('internal_dissipation')
-    if inner is not None:
+    found = set()
+    if scene.inner_dissipation != 0.0:
         inertia = scene.body.about_center.matrix.tolist()
         momentum = apply(inertia, scene.initial.angular_velocity.tolist())
-        if inner.coefficient * hypot3(*momentum) > STIFF:
+        if scene.inner_dissipation * hypot3(*momentum) > STIFF:
             found.add('dissipation')
     if stiff_relaxations(scene, OFTEN):
         found.add('drag')

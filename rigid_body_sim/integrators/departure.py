@@ -31,7 +31,7 @@ def applies(scene, wrench):
     """Return whether internal dissipation is all that acts on a scene's body."""
     acting = [effect for effect in scene.effects if effect.acting is not None]
     return (not wrench and scene.constraint.mechanism is Mechanism.FREE
-            and [effect.name for effect in acting] == ['internal_dissipation'])
+            and len(acting) == 1 and acting[0].inner_dissipation != 0.0)
 
 
 def departure(scene, vector):
@@ -60,7 +60,7 @@ class Departure:
         moments, spin = frame.moments, omega[k]
         self._places, self._spin, self._frame = (i, j, k), spin, frame
         self._moments, self._small = moments, (omega[i], omega[j])
-        c = scene.effect('internal_dissipation').coefficient * moments[k] * spin * spin
+        c = scene.inner_dissipation * moments[k] * spin * spin
         Ii, Ij, Ik = moments[i], moments[j], moments[k]
         fall_i, fall_j = c * ((Ik - Ii) / Ii), c * ((Ik - Ij) / Ij)
         self._mean, self._half = -0.5 * (fall_i + fall_j), 0.5 * (fall_j - fall_i)

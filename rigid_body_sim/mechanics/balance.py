@@ -140,8 +140,7 @@ class Dynamics:
                     Mechanism.PLANE: self._plane}
         self._of = balances[constraint.mechanism]
         if constraint.mechanism is Mechanism.TABLE:
-            contacts = [effect.contact for effect in scene.effects if effect.contact]
-            self._mu, self._g = contacts[0][:2] if contacts else (0.0, 0.0)
+            self._mu, self._g = scene.contact.mu, scene.contact.g
             self._radius = body.radius
         if constraint.mechanism is Mechanism.PLANE:
             self._standing = Standing(scene)

@@ -102,9 +102,8 @@ def _velocity_in_body(scene):
 
 def _proper_acceleration(scene):
     """Derive the proper acceleration a - g of the body's origin (REP 145), exact at the tick."""
-    dynamics, friction = Dynamics(scene), scene.effect('sliding_friction')
-    fields = [effect.field for effect in scene.effects if effect.field is not None]
-    g = -np.array(fields[0]) if fields else np.array([0.0, 0.0, friction.g if friction else 0.0])
+    dynamics, (x, y, z) = Dynamics(scene), scene.field
+    g = np.array([0.0 - x, 0.0 - y, scene.contact.g - z])
 
     def derive(samples, wrench):
         for sample in samples:

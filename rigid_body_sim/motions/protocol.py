@@ -85,8 +85,7 @@ class Motion(Protocol):
     def exchanged(self) -> Callable[[np.ndarray, float, np.ndarray], Any] | None:
         """``exchanged(anchor, time, out)``: fill `out`, shape (5,), with the ledger's entries.
 
-        They are what effects exchanged with the body since the anchor (mechanics/ledger.py). None
-        if no effect does work or makes heat; the angular impulse of the weight is then a
-        quadrature over the motion.
+        They are what effects exchanged with the body since the anchor (mechanics/ledger.py). If
+        this is None, the ledger integrates them along the states, under error control.
         """
         ...

@@ -36,8 +36,7 @@ from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import cos, hypot, sin
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
-from rigid_body_sim.scene.constraints import Table
-from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 ROUNDING = 2.0 ** -49    # 8 ulp; body axes and back left at most 2.9 in 200,000 random states
@@ -120,16 +119,16 @@ load_quaternion, store_quaternion = QUATERNION.load, QUATERNION.store
 
 def absorbs(scene):
     """Return whether the scene is a balanced sphere on a table, with friction or without."""
-    return (isinstance(scene.constraint, Table) and scene.acts_only(SlidingFriction)
+    return (scene.constraint.mechanism is Mechanism.TABLE
+            and all(effect.contact is not None for effect in scene.acting)
             and scene.body.about_center.moments[0] > 0.0)
 
 
 def parameters(scene):
     """Return the numbers of the scene, :class:`Parameters` as an array."""
-    body, friction = scene.body, scene.effect('sliding_friction')
+    body, touch = scene.body, scene.contact
     ratio = body.about_center.moments[0] / (body.mass * body.radius * body.radius)
-    mu, g = (friction.mu, friction.g) if friction else (0.0, 0.0)
-    return np.array([body.radius, ratio, body.mass, mu, g])
+    return np.array([body.radius, ratio, body.mass, touch.mu, touch.g])
 
 
 @compiled

@@ -7,6 +7,8 @@ path, the value and what would be right.
 """
 
 import dataclasses
+import functools
+import operator
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +22,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
 from rigid_body_sim.scene.constraints.protocol import Constraint
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
-from rigid_body_sim.scene.effects.protocol import Effect
+from rigid_body_sim.scene.effects.protocol import Contact, Effect, Vector
 from rigid_body_sim.scene.expressions.expression import (
     PARAMETERS,
     checked_parameters,
@@ -115,6 +117,38 @@ class Scene:
             effect.acting is not None
             and any(effect.acting(frame, time) for time in (0.0, *effect.breakpoints))))
 
+    @property
+    def field(self) -> Vector:
+        """The acceleration of a free fall, world components, m/s^2: the sum of uniform fields."""
+        x, y, z = _summed((0.0, 0.0, 0.0), [
+            effect.uniform_field for effect in self.effects
+            if effect.uniform_field is not None])
+        return x, y, z
+
+    @property
+    def weight(self) -> float | None:
+        """The g of a uniform field along -z, m/s^2, if that is all that acts; else None.
+
+        It is 0 where nothing acts.
+        """
+        x, y, z = self.field
+        if x != 0.0 or y != 0.0 or z > 0.0:
+            return None
+        falls = all(effect.uniform_field is not None for effect in self.acting)
+        return 0.0 - z if falls else None
+
+    @property
+    def inner_dissipation(self) -> float:
+        """The sum of the effects' coefficients of inner dissipation, 1/(kg m^2/s)."""
+        total, = _summed((0.0,), [(effect.inner_dissipation,) for effect in self.effects])
+        return total
+
+    @property
+    def contact(self) -> Contact:
+        """How body and table touch: the sums of what the effects declare."""
+        return Contact(*_summed(Contact(), [
+            effect.contact for effect in self.effects if effect.contact is not None]))
+
     def acts_only(self, *classes: type[Effect]) -> bool:
         """Return whether all effects that act are of these classes."""
         return all(isinstance(effect, classes) for effect in self.acting)
@@ -122,6 +156,11 @@ class Scene:
     def effect(self, name: str) -> Effect | None:
         """Return the effect of that name, or None if the scene does not list it."""
         return next((effect for effect in self.effects if effect.name == name), None)
+
+
+def _summed(zero: tuple[float, ...], rows: Sequence[tuple[float, ...]]) -> list[float]:
+    """Return the sums of the columns; sum() of floats rounds otherwise from Python 3.12 on."""
+    return [functools.reduce(operator.add, column) for column in zip(zero, *rows)]
 
 
 def scene_folder() -> pathlib.Path:

@@ -198,14 +198,14 @@ def starts_alone_differ(scene, integrator):
     spin, or the choice of a method looks at the start.
     """
     constraint = scene.constraint
-    if constraint.kind not in ('free', 'pivot') or \
+    if not constraint.starts_as_given or \
             min(constraint.inertia(scene.body).moments) <= 0.0:
         return False
     if integrator in ('auto', 'exact'):
         motion = absorbing_motion(scene)
         return motion is not None and motion.takes is None
     # whether internal dissipation is stiff, the start decides
-    return scene.effect('internal_dissipation') is None
+    return scene.inner_dissipation == 0.0
 
 
 def _plain(value):

@@ -148,7 +148,7 @@ class Rolling:
     """The time when a ball stops slipping (s after its first state), and its speed then (m/s)."""
 
     def __init__(self, scene, state):
-        body, friction = scene.body, scene.effect('sliding_friction')
+        body, friction = scene.body, scene.contact
         self._start = state.time
         share = body.about_center.moments[0] / (body.mass * body.radius**2)
         slip, ahead = _slip(body.radius, state)

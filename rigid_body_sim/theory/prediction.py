@@ -24,9 +24,10 @@ import threading
 
 import numpy as np
 
+from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.scene.effects.expressed import ExpressedTorque
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.theory import (
     asymmetric_top,
     baseball_bat,
@@ -43,23 +44,23 @@ def expectation(scene, state):
 
     The object has ``note``, ``look`` and ``compared`` (expectations.py).
     """
-    names = {effect.name for effect in scene.effects if effect.name != 'strike'}
-    if any(effect.name == 'strike' and effect.time > state.time for effect in scene.effects):
+    blows = [effect for effect in scene.effects if effect.as_impulse is not None]
+    if any(blow.time > state.time for blow in blows):
         return None
-    if any(isinstance(effect, ExpressedTorque) for effect in scene.effects):
-        return None    # theory knows constant torques only
-    kind = scene.constraint.kind
-    if kind == 'free' and not names - {'gravity'}:
+    mechanism, acting = scene.constraint.mechanism, scene.acting
+    if mechanism is Mechanism.FREE and scene.weight is not None:
         return _flips(scene, state) or _round_the_axis(scene, state)
-    if kind == 'free' and names == {'torque'}:
-        return _round_the_axis(scene, state)
-    if kind == 'free' and names == {'internal_dissipation'}:
+    if mechanism is Mechanism.FREE and all(one.inner_dissipation for one in acting):
         return Relaxing(scene, state)
-    if kind == 'hinge' and not names:
-        return _after_a_blow(scene, state)
-    if names == {'gravity'} and kind in ('hinge', 'pivot'):
-        return _swing(scene, state) if kind == 'hinge' else _nutation(scene, state)
-    if kind == 'table' and names == {'sliding_friction'}:
+    if mechanism is Mechanism.FREE:
+        return _round_the_axis(scene, state)
+    if mechanism is Mechanism.AXIS and not acting and blows:
+        return _after_a_blow(scene, state, blows)
+    if mechanism is Mechanism.AXIS and scene.weight:
+        return _swing(scene, state)
+    if mechanism is Mechanism.POINT and scene.weight:
+        return _nutation(scene, state)
+    if mechanism is Mechanism.TABLE and acting:
         return Rolling(scene, state)
     return None
 
@@ -101,34 +102,27 @@ def _round_the_axis(scene, state):
 
 def _axial_torque(scene, inertia, axis):
     """Return the constant torque about a principal axis, N m; None for any other torque."""
-    torques = [effect for effect in scene.effects if effect.name == 'torque']
-    along = 0.0
-    for torque in torques:
-        value = rotate_back(*inertia.axes, *torque.values[0])
-        if (torque.frame != 'body' or torque.times != (0.0,)
-                or any(value[k] for k in range(3) if k != axis)):
-            return None
-        along += value[axis]
-    return along
+    total = total_pull(scene)
+    if total is None or any(total.couple) or any(map(any, total.drag)) or total.slowing:
+        return None
+    across = (total.torque[k] for k in range(3) if k != axis)
+    return None if any(across) else total.torque[axis]
 
 
-def _after_a_blow(scene, state):
-    """Return the expected rate of a hinged body that was hit at rest at time 0."""
-    strikes = [effect for effect in scene.effects if effect.name == 'strike']
+def _after_a_blow(scene, state, blows):
+    """Return the expected rate of a hinged body that was hit once, at rest at time 0."""
     n, body = np.array(scene.constraint.axis), scene.body
     arm = np.array(scene.constraint.arm(body))
     length = np.linalg.norm(arm - n * (n @ arm))
-    if (len(strikes) != 1 or strikes[0].time or strikes[0].point is None or state.time
+    if (len(blows) != 1 or blows[0].time or state.time
             or scene.initial.angular_velocity.any() or not length):
         return None
-    impulse = np.array(
-        strikes[0].impulse if strikes[0].frame == 'body'
-        else rotate_back(*scene.initial.orientation, *strikes[0].impulse))
-    lever = np.subtract(strikes[0].point, scene.constraint.point(body))
+    impulse, turn = (np.array(rotate_back(*scene.initial.orientation, *vector)) for vector in
+                     blows[0].as_impulse(body, scene.initial.vector))
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
-    # the moment of the blow about the hinge, F d, found from its lever
+    # F d, the moment of the blow about the hinge
     return Steady(float(baseball_bat.angular_acceleration(
-        n @ np.cross(lever, impulse), 1.0, body.mass, length, a)), n)
+        n @ (turn + np.cross(arm, impulse)), 1.0, body.mass, length, a)), n)
 
 
 def _swing(scene, state):
@@ -143,9 +137,9 @@ def _swing(scene, state):
     down = -np.array(rotate_back(*state.orientation, 0.0, 0.0, 1.0))
     down -= n * (n @ down)
     slope, length = np.linalg.norm(down), np.linalg.norm(across)
-    if not slope * length * scene.effect('gravity').g > 0.0:
+    if not slope * length * scene.weight > 0.0:
         return None
-    frequency = math.sqrt(body.mass * scene.effect('gravity').g * length * slope / moment)
+    frequency = math.sqrt(body.mass * scene.weight * length * slope / moment)
     # sin(phi/2)^2 without forming phi
     half_sine_squared = np.sum((across / length - down / slope) ** 2) / 4.0
     reach = half_sine_squared + (n @ state.angular_velocity / (2.0 * frequency)) ** 2
@@ -158,13 +152,14 @@ def _swing(scene, state):
 def _nutation(scene, state):
     """Return the expected half period of nutation of a top with body axis 3 as symmetry axis."""
     body = scene.body
-    I1, I2, I3 = body.about_origin.moments
-    x, y, length = body.center_of_mass
-    if I1 != I2 or x or y or body.about_origin.axes != IDENTITY:
+    inertia = scene.constraint.inertia(body)
+    I1, I2, I3 = inertia.moments
+    x, y, length = scene.constraint.arm(body)
+    if I1 != I2 or x or y or inertia.axes != IDENTITY:
         return None
     up = rotate_back(*state.orientation, 0.0, 0.0, 1.0)
     seconds = heavy_top.time_between_turning_points(
-        state.angular_velocity, up, I1, I3, body.mass * scene.effect('gravity').g * length)
+        state.angular_velocity, up, I1, I3, body.mass * scene.weight * length)
     return Interval('turning point', seconds) if seconds else None
 
 

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, ContactParameters
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.painleve import inverse_of
@@ -16,25 +17,19 @@ def contact_parameters(scene):
     """Return the ContactParameters of a scene, an array."""
     body, plane = scene.body, scene.constraint
     surface, inertia = body.surface, tuple(map(tuple, body.about_center.matrix.tolist()))
-    frictions = [effect.contact for effect in scene.effects if effect.contact is not None]
-    laws = {'mu': 0.0, 'rolling': 0.0, 'rolling_viscous': 0.0, 'film': 0.0}
-    for contact in frictions:
-        for law, value in contact._asdict().items():
-            if law in laws:
-                laws[law] += value
+    laws = scene.contact
     p = np.zeros(CONTACT.size)
     CONTACT.store(p, ContactParameters(
         mode=0.0, mass=body.mass, center=body.center_of_mass,
         middle=minus(surface.center, body.center_of_mass), kind=KINDS[surface.kind],
         size=surface.size, inertia=inertia, inverse=inverse_of(inertia),
         inclined=float(plane.axes != IDENTITY), plane=plane.axes,
-        mu=laws['mu'], restitution=plane.restitution, rolling=laws['rolling'],
-        rolling_viscous=laws['rolling_viscous'], film=laws['film'],
+        mu=laws.mu, restitution=plane.restitution, rolling=laws.rolling,
+        rolling_viscous=laws.rolling_viscous, film=laws.film,
         swift=0.0, creep=0.0, until=math.inf))
     return p
 
 
 def weight(scene):
     """Return the gravity of a scene (m/s^2), by which its speeds are judged."""
-    gravity = scene.effect('gravity')
-    return gravity.g if gravity else 0.0
+    return hypot3(*scene.field)

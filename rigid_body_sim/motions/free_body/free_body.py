@@ -42,8 +42,7 @@ from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.numerics.vectors import cross, minus, plus
-from rigid_body_sim.scene.constraints import Free
-from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('flip',)
@@ -86,15 +85,13 @@ load_row, store_row = COLUMNS.load, COLUMNS.store
 
 def absorbs(scene):
     """Return whether this motion solves the whole scene."""
-    return isinstance(scene.constraint, Free) and scene.acts_only(Gravity)
+    return scene.constraint.mechanism is Mechanism.FREE and scene.weight is not None
 
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    gravity = scene.effect('gravity')
-    g = gravity.g if gravity else 0.0
     inertia = rotation_parameters(scene.body.about_center)
-    return np.concatenate([inertia, scene.body.center_of_mass, [g]])
+    return np.concatenate([inertia, scene.body.center_of_mass, [scene.weight]])
 
 
 @compiled

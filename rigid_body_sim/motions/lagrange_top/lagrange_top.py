@@ -56,7 +56,6 @@ from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints import Pivot
-from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
@@ -105,7 +104,7 @@ def absorbs(scene):
 
     Symmetric means exactly so (:func:`symmetry_axis`).
     """
-    return (isinstance(scene.constraint, Pivot) and scene.acts_only(Gravity)
+    return (isinstance(scene.constraint, Pivot) and scene.weight is not None
             and symmetry_axis(scene.body) is not None)
 
 
@@ -151,11 +150,10 @@ def _turn_to(x, y, z):
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    body, gravity = scene.body, scene.effect('gravity')
+    body, g, arm = scene.body, scene.weight, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(body)
     I1 = Fraction(body.about_origin.moments[(axis + 1) % 3])
     I3 = Fraction(body.about_origin.moments[axis])
-    g, arm = gravity.g if gravity else 0.0, hypot3(*body.center_of_mass)
     pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(

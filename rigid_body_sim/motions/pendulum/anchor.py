@@ -137,11 +137,11 @@ def parameters(scene):
 
     They come from the exact rationals that the doubles of the scene are.
     """
-    body, gravity, held = scene.body, scene.effect('gravity'), axle(scene)
+    body, weight, held = scene.body, scene.weight, axle(scene)
     n, r, d, moment = held.axis, held.arm, held.distance, held.moment
     side, along = _cross(n, r), _dot(n, r)
     down = [along * a - b for a, b in zip(n, r, strict=True)]
-    mass, g = Fraction(body.mass), Fraction(gravity.g if gravity else 0.0)
+    mass, g = Fraction(body.mass), Fraction(weight)
 
     def over_d(vector):
         return [pair_of(component / d) if d else NOTHING for component in vector]

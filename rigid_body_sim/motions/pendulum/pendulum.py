@@ -57,7 +57,6 @@ from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
@@ -71,7 +70,7 @@ load_state, store_state, store_row = STATE.load, STATE.store, COLUMNS.store
 
 def absorbs(scene):
     """Return whether the scene is a body on a hinge under its weight alone, or under nothing."""
-    return scene.constraint.mechanism is Mechanism.AXIS and scene.acts_only(Gravity)
+    return scene.constraint.mechanism is Mechanism.AXIS and scene.weight is not None
 
 
 @compiled

@@ -20,6 +20,7 @@ class Free(Constraint):
     INITIAL: ClassVar[dict] = {**initial.ORIENTATION, **initial.TILT, **initial.TURNING,
                                **initial.PLACE, **initial.MOTION}
     mechanism: ClassVar[Mechanism] = Mechanism.FREE
+    starts_as_given: ClassVar[bool] = True
 
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state as it is given, the velocity being that of the body's origin."""

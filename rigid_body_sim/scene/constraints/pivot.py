@@ -20,6 +20,7 @@ class Pivot(Constraint):
     INITIAL: ClassVar[dict] = {**initial.ORIENTATION, **initial.TILT, **initial.TURNING,
                                **initial.PLACE}
     mechanism: ClassVar[Mechanism] = Mechanism.POINT
+    starts_as_given: ClassVar[bool] = True
 
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state as it is given; the origin is at rest."""

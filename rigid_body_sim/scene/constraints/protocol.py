@@ -48,6 +48,9 @@ class Constraint(Protocol):
         JSON schemas of the keys that `initial` may have under it.
     mechanism : Mechanism
         Which directions are free.
+    starts_as_given : bool
+        Whether `initial` takes the orientation, velocities and place of the scene file as they
+        are, for any body. Sweeps then make starts without the scene file.
     """
 
     kind: ClassVar[str]
@@ -55,6 +58,7 @@ class Constraint(Protocol):
     SCHEMA: ClassVar[dict[str, Any] | None] = None
     INITIAL: ClassVar[dict[str, dict[str, Any]]]
     mechanism: ClassVar[Mechanism]
+    starts_as_given: ClassVar[bool] = False
 
     @classmethod
     def variant(cls, body: Body, settings: Any) -> 'type[Constraint]':

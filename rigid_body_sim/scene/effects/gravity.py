@@ -71,7 +71,7 @@ class Gravity(Effect):
         return Pull(force=(0.0, 0.0, -frame.mass * self.g))
 
     @property
-    def field(self) -> Vector:
+    def uniform_field(self) -> Vector:
         """The acceleration, m/s^2."""
         return 0.0, 0.0, -self.g
 
@@ -135,7 +135,7 @@ class GravityVector(Effect):
         return Pull(force=scaled(frame.mass, self.g))
 
     @property
-    def field(self) -> Vector:
+    def uniform_field(self) -> Vector:
         """The acceleration, m/s^2."""
         return self.g
 

@@ -44,6 +44,11 @@ class InternalDissipation(Effect):
         """Return the effect of its settings in a scene file."""
         return cls(float(settings['coefficient']))
 
+    @property
+    def inner_dissipation(self) -> float:
+        """The coefficient."""
+        return self.coefficient
+
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the extra rate at which the axes turn; nothing for a sphere."""
         if len(set(frame.moments)) == 1:

@@ -6,6 +6,7 @@ a view that it does not override is None, and whoever needs that view says so. d
 adds an effect step by step.
 """
 
+import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Protocol
@@ -180,6 +181,14 @@ class Effect(Protocol):
     mechanisms: ClassVar[tuple[Mechanism, ...]]
     repeatable: ClassVar[bool] = False
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Refuse a setting that has the name of a view: it would hide the view."""
+        super().__init_subclass__(**options)
+        for name, kind in inspect.get_annotations(cls).items():
+            if isinstance(Effect.__dict__.get(name), property) and 'ClassVar' not in str(kind):
+                raise TypeError(f'{cls.__name__}.{name} is a setting with the name of a view of '
+                                'the contract Effect: give it another name')
+
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
                    where: str) -> 'Effect':
@@ -232,9 +241,22 @@ class Effect(Protocol):
         return None
 
     @property
-    def field(self) -> Vector | None:
-        """The acceleration of a free fall in it, world components, m/s^2; of gravity alone."""
+    def uniform_field(self) -> Vector | None:
+        """The acceleration that it gives to all parts of a body alike, world components, m/s^2.
+
+        It is that of a free fall in a uniform field, which an accelerometer does not feel; None
+        for an effect of any other kind. Closed forms, theory and analysis know the weight by it.
+        """
         return None
+
+    @property
+    def inner_dissipation(self) -> float:
+        """The c of an extra turning c m x omega that makes heat at constant L, 1/(kg m^2/s).
+
+        It is 0 for an effect that does not do this. Its rate c |m| relative to the rotation says
+        whether a scene is stiff.
+        """
+        return 0.0
 
     @property
     def as_impulse(self) -> Callable[[Body, np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
