@@ -33,7 +33,7 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE
-from rigid_body_sim.numerics.functions import cos, hypot, sin
+from rigid_body_sim.numerics.functions import hypot, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -73,6 +73,7 @@ class Rolling(NamedTuple):
     orientation: Quaternion
     velocity: Pair
     position: Pair
+    spin: Pair             # horizontal part of omega, rad/s
     axis: Vector           # of omega
     rate: float            # |omega|, rad/s
 
@@ -189,7 +190,7 @@ def _roll(anchor, a, wz, velocity, position, orientation):
     wx, wy = -velocity[1] / a, velocity[0] / a
     rate = hypot(hypot(wx, wy), wz)
     axis = (wx / rate, wy / rate, wz / rate) if rate > 0.0 else (0.0, 0.0, 0.0)
-    store_rolling(anchor, Rolling(orientation, velocity, position, axis, rate))
+    store_rolling(anchor, Rolling(orientation, velocity, position, (wx, wy), axis, rate))
 
 
 @compiled
@@ -238,12 +239,11 @@ def state(anchor, time, out):
     if _rolls(load_slide(anchor).u, duration, elapsed):
         rolled = elapsed - duration
         half = 0.5 * load_rate(anchor) * rolled
-        sine, cosine = sin(half), cos(half)
-        # only now: what is loaded before these calls would wait for their end on the stack
+        sine, cosine = sin_cos(half)
         rolling = load_rolling(anchor)
         vx, vy = rolling.velocity
         x, y = rolling.position[0] + rolled * vx, rolling.position[1] + rolled * vy
-        wx, wy = -vy / load_ball(anchor).a, vx / load_ball(anchor).a
+        wx, wy = rolling.spin
         nx, ny, nz = rolling.axis
         q = multiply(sine * nx, sine * ny, sine * nz, cosine, *rolling.orientation)
         # an ulp in the norm of (axis sin, cos) would be the same at every tick, and the spin would

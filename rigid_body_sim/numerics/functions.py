@@ -279,7 +279,7 @@ def cos(x):
     return _sine_of(n + 1, r, low)
 
 
-@compiled
+@compiled_inline
 def sin_cos(x):
     """Return sine and cosine of an angle (rad): the same bits as sin and cos, in less time."""
     if not TINY <= abs(x) < math.inf:
