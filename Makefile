@@ -23,7 +23,7 @@ NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 f
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels
 PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
-.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-processor bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
+.PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-target bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 20
@@ -96,7 +96,7 @@ bench: .venv/run.stamp ## cost of one state in closed form; energy over a millio
 	.venv/bin/python bench/ensembles.py
 	.venv/bin/python bench/sweeps.py --only overhead dask
 
-bench-processor: .venv/run.stamp ## closed forms, ensembles and stepped scenes as on a processor with AVX2, beside this one; bench/beside.py OTHER_TREE: beside another version
+bench-target: .venv/run.stamp ## closed forms, ensembles and stepped scenes as on a processor with AVX2, beside this one; bench/beside.py OTHER_TREE: beside another version
 	.venv/bin/python bench/beside.py avx2
 
 bench-node: .venv/run.stamp ## cost of the node beside the floor: the same bytes published, and nothing else; cost of commands; parts of a tick at each accuracy
