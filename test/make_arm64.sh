@@ -7,7 +7,7 @@ folder=$1
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 here=$(cd "$(dirname "$0")/.." && pwd)
-needed='attrs jsonschema jsonschema-specifications lz4 numpy PyYAML referencing rpds-py scipy tqdm
+needed='attrs jsonschema jsonschema-specifications lz4 mcap numpy PyYAML referencing rpds-py scipy tqdm
     typing_extensions zstandard'
 
 fail() {
@@ -19,7 +19,8 @@ for tool in apt-get dpkg-deb; do
     command -v $tool > /dev/null || fail "needs $tool, of Debian or Ubuntu"
 done
 command -v qemu-aarch64-static > /dev/null || fail 'needs the package qemu-user-static'
-[ -e "$folder/made" ] && cmp -s "$folder/made" "$here/requirements/run.txt" && exit 0
+made=$(cat "$here/requirements/run.txt" "$0")
+[ -e "$folder/made" ] && [ "$(cat "$folder/made")" = "$made" ] && exit 0
 
 state=$folder/apt
 mkdir -p "$state/lists/partial" "$state/cache/archives/partial"
@@ -47,4 +48,4 @@ grep -E "^($pattern)==" "$here/requirements/run.txt" > "$folder/pins.txt"
     --platform manylinux_2_28_aarch64 --platform manylinux_2_27_aarch64 \
     --platform manylinux_2_17_aarch64 --platform manylinux2014_aarch64 \
     --target "$folder/packages" -r "$folder/pins.txt" || fail 'pip found no wheels for arm64'
-cp "$here/requirements/run.txt" "$folder/made"
+echo "$made" > "$folder/made"

@@ -54,6 +54,7 @@ SUMS = {
     'integrators/families/one_step.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/marching/gauss_nodes.py: '
     'sum((coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m))',
+    'mechanics/potential.py: sum((len(one.values) for one in parts))',
     'motions/fixed_axis.py: sum((x * y for x, y in zip(a, b, strict=True)))',
     'motions/pendulum/anchor.py: sum((x * y for x, y in zip(a, b, strict=True)))',
     'motions/pendulum/anchor.py: '
@@ -99,8 +100,6 @@ def found(text):
             module = part.value.id if isinstance(part.value, ast.Name) else ''
             if module in CORRECT and part.attr not in CORRECT[module]:
                 yield part.lineno, f'{module}.{part.attr}'
-            elif part.attr in REDUCTIONS and module not in ('vectors', 'tree'):
-                yield part.lineno, f'.{part.attr}'
         elif isinstance(part, ast.Import | ast.ImportFrom):
             names = ([part.module or ''] if isinstance(part, ast.ImportFrom)
                      else [alias.name for alias in part.names])
@@ -115,6 +114,10 @@ def found(text):
         elif isinstance(part, ast.Call) and isinstance(part.func, ast.Name):
             if part.func.id == 'pow':
                 yield part.lineno, 'pow()'
+        elif isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
+            module = part.func.value.id if isinstance(part.func.value, ast.Name) else ''
+            if part.func.attr in REDUCTIONS and module not in ('vectors', 'tree'):
+                yield part.lineno, f'.{part.func.attr}()'
         elif isinstance(part, ast.Constant) and isinstance(part.value, str) and (
                 id(part) not in quiet):
             # sources that are made for a scene
