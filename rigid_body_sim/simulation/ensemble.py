@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ensembles: many bodies of one scene, from many starts or with other parameters, on all cores."""
 
+import contextlib
 import re
 from collections.abc import Mapping, Sequence
 
@@ -20,6 +21,8 @@ BLOCK_BYTES = 2**25
 taken from them."""
 SHARE = 0.8
 """Part of the free memory that a result may take."""
+UNLOOKED = 2**26
+"""Bytes of a result for which the free memory is not looked up."""
 DOUBLE = 8    # bytes
 
 
@@ -135,15 +138,18 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     groups = [(integrator if isinstance(integrator, Choice) else
                choose(one, integrator, accuracy, horizon=horizon), bodies)
               for one, bodies in _alike(scenes, starts)]
-    with tqdm(total=len(starts), unit=' bodies', disable=not progress, leave=False) as bar:
+    # a bar that is not shown would take as long as the states of a hundred bodies
+    bar = tqdm(total=len(starts), unit=' bodies', leave=False) if progress else None
+    report = _silent if bar is None else bar.update
+    with contextlib.nullcontext() if bar is None else bar:
         if len(groups) == 1:
-            _fill(groups[0][0], starts, times, names, out, bar.update)
+            _fill(groups[0][0], starts, times, names, out, report)
         else:
             def fill(part):
                 for choice, bodies in groups[part]:
                     block = np.empty((len(bodies), len(times), shape[2]))
                     try:
-                        _fill(choice, starts[bodies], times, names, block, bar.update)
+                        _fill(choice, starts[bodies], times, names, block, report)
                     except NotConverged as error:
                         raise _of_body(error, bodies) from None
                     out[bodies] = block
@@ -155,6 +161,10 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
             for body in bodies:
                 found[body] = _events(choice, starts[body], times)
     return Ensemble(out, names, found, groups)
+
+
+def _silent(bodies):
+    """Report nothing."""
 
 
 def _scenes(scene, overrides):
@@ -233,7 +243,9 @@ def _result(shape, out, memory):
                            f'an array of doubles of shape {shape}')
         return out
     needed = float(np.prod(shape, dtype=float)) * DOUBLE
-    limit = SHARE * free_memory() if memory is None else memory
+    limit = memory
+    if limit is None:
+        limit = SHARE * free_memory() if needed > UNLOOKED else needed
     if needed > limit:
         raise BadInput('ensemble', f'{shape[0]} bodies at {shape[1]} times need '
                        f'{needed / 1e9:.3g} GB, and {limit / 1e9:.3g} GB may be taken',
