@@ -13,6 +13,7 @@ import numpy as np
 
 from rigid_body_sim.analysis.history import History, Segment, history
 from rigid_body_sim.analysis.replayed import stamps_of
+from rigid_body_sim.choice import forecast
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.recording.about import UNPACED
@@ -186,18 +187,9 @@ def missed(runs):
     runs : sequence of dict
         What each simulation was asked for and chose, see recording.about.run_of.
     """
-    found = []
-    for run in runs:
-        expected = run.get('expected_error')
-        if expected is None or expected <= run['accuracy']:
-            continue
-        until = run.get('met_until')
-        met = ''
-        if until is not None:
-            met = f'; it is met until {until:.3g} s' if until > 0.0 else '; it is met at no time'
-        found.append(f'the accuracy asked, {run["accuracy"]:g} rad, is missed: the error expected '
-                     f'within {run["horizon"]:g} s is {expected:.1e} rad{met}')
-    return list(dict.fromkeys(found))
+    lines = (forecast.missed(run['accuracy'], run['horizon'], run.get('expected_error'),
+                             run.get('met_until')) for run in runs)
+    return list(dict.fromkeys(line for line in lines if line))
 
 
 def _first_time(recording, topic):

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigid_body_sim.choice import measured, trial
-from rigid_body_sim.choice.forecast import Forecast, of_exact
+from rigid_body_sim.choice.forecast import Forecast, missed, of_exact
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
@@ -101,14 +101,7 @@ class Choice:
     @property
     def missed(self):
         """One line that says that the accuracy is missed and until when it is met; else None."""
-        if self.expected_error is None or self.expected_error <= self.accuracy:
-            return None
-        if self.met_until > 0.0:
-            until = f'it is met until {self.met_until:.3g} s'
-        else:
-            until = 'it is met at no time'
-        return (f'the accuracy asked, {self.accuracy:g} rad, is missed: the error expected within '
-                f'{self.horizon:g} s is {self.expected_error:.1e} rad; {until}')
+        return missed(self.accuracy, self.horizon, self.expected_error, self.met_until)
 
     def solver(self, start, wrench):
         """Return a Solver from a state on, shape (14,), under a held wrench.

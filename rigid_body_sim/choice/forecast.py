@@ -20,8 +20,10 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.mechanics import impulse
 from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, MOMENTUM
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import angle_between, normalised
 from rigid_body_sim.scene.bodies import IDENTITY
@@ -49,6 +51,30 @@ class Forecast(NamedTuple):
 
     error: float
     met_until: float
+
+
+def missed(accuracy, horizon, expected, met_until):
+    """Return one line that says that an accuracy is missed, and until when it is met; else None.
+
+    Parameters
+    ----------
+    accuracy : float
+        Asked for, rad.
+    horizon : float
+        s.
+    expected : float or None
+        Error within the horizon, rad, where it is known.
+    met_until : float or None
+        s, where it is known.
+    """
+    if expected is None or expected <= accuracy:
+        return None
+    until = ''
+    if met_until is not None:
+        until = (f'; it is met until {met_until:.3g} s' if met_until > 0.0
+                 else '; it is met at no time')
+    return (f'the accuracy asked, {accuracy:g} rad, is missed: the error expected within '
+            f'{horizon:g} s is {expected:.1e} rad{until}')
 
 
 def looks(time):
@@ -123,6 +149,23 @@ def apart(states, others):
     angles = [angle_between(*one, *other) for one, other in zip(
         states[:, ORIENTATION].tolist(), others[:, ORIENTATION].tolist(), strict=True)]
     return np.array([math.inf if math.isnan(angle) else angle for angle in angles])
+
+
+def momenta_apart(scene, states, others):
+    """Return the differences of the angular momenta of two runs, shape (n,); infinite for NaN.
+
+    They are relative to the largest momentum so far.
+    """
+    found = []
+    for vectors in (states, others):
+        out = np.empty((len(vectors), DIAGNOSIS_SIZE))
+        energies(scene).diagnose_many(parameters(scene), vectors, out)
+        found.append(out[:, MOMENTUM:MOMENTUM + 3])
+    one, other = found
+    sizes = np.maximum.accumulate([hypot3(*row) for row in one.tolist()])
+    apart = np.array([hypot3(*row) for row in (one - other).tolist()])
+    shares = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
+    return np.where(np.isnan(apart) | np.isnan(sizes), math.inf, shares)
 
 
 def rounding(scene, states, times):

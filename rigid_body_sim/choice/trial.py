@@ -3,7 +3,9 @@
 
 The chosen method runs from the scene's start, strikes included, and again with a tolerance a
 thousand times finer; the difference is the error of the choice. Where the error is too large, the
-tolerance is made finer by as much, until that helps no more. Both runs lose the same digits of the
+tolerance is made finer by as much, until that helps no more. The angular momentum of a slim body
+errs more than its attitude, by the quotient of its moments: it counts too, so that the ledger
+balances. Both runs lose the same digits of the
 start: what that does to the attitude is added (forecast.py).
 """
 
@@ -25,6 +27,7 @@ STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times wha
 FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
 FINER_ONES = FINER, 0.03, 0.3    # where a run that much finer takes too much work
 TRIES = 5       # largest number of tolerances
+MOMENTA = 0.1   # share at which relative errors of the angular momentum count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
@@ -62,7 +65,8 @@ def settle(scene, able, accuracy, horizon):
     NotConverged
         No method follows the scene.
     """
-    left, failed = list(able), None
+    # a method that was not measured on such scenes is for those who name it
+    left, failed = [name for name in able if measured.rows(scene).get(name)], None
     while left:
         method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
         try:
@@ -70,7 +74,7 @@ def settle(scene, able, accuracy, horizon):
         except TooMuchWork as error:
             left.remove(method)
             failed = error
-    raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
+    raise NotConverged(f'no method follows the scene; the last one tried was {failed or "none"}')
 
 
 def _settled(scene, accuracy, horizon, method, tolerance, promised):
@@ -116,13 +120,14 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
             errors = before[1] if before else None
             break
         errors, finest = forecast.apart(here, states(finer)), finer
-        error = float(errors.max()) / part
+        momenta = forecast.momenta_apart(scene, here, states(finer))
+        error = max(float(errors.max()), MOMENTA * float(momenta.max())) / part
         if error <= accuracy:
             break
-        if before and error > HELPS * float(before[1].max()) / part:
-            tolerance, errors = before    # the motion magnifies round-off
+        if before and error > HELPS * before[2]:
+            tolerance, errors, _ = before    # the motion magnifies round-off
             break
-        before = tolerance, errors
+        before = tolerance, errors, error
         tolerance = at_most(tolerance * max(FINER, 0.5 * accuracy / error))
     if errors is None or not float(errors[0]) < math.inf:
         return Settled(method, tolerance, promised, horizon if promised <= accuracy else 0.0)

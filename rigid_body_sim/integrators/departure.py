@@ -10,20 +10,22 @@ obey linear equations, whose solution holds for 1e-300 as for 1e-9: i, j, k in t
 
 The momentum stays in the world, so the attitude is the turn about it by omega_k t, and the small
 tilt of the axis against it. A march takes over where the two are no longer so small; near an axis
-that attracts, where they never are, it is not needed.
+that attracts, where they never are, it is not needed. So a march ends where it has come near the
+axis that attracts: how fast and how long the body then turns costs nothing.
 """
 
 import math
 
 import numpy as np
 
-from rigid_body_sim.numerics.functions import cos, exp, hypot, log, sin
+from rigid_body_sim.numerics.functions import cos, exp, hypot, hypot3, log, sin
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, TIME
 
 NEAR = 1e-9      # of omega, the other components: their products are below half an ulp
+FOLDS = 20.0     # by e, until the other components of omega are that small
 HALVES = 350.0   # of an exponent that a double holds twice
 
 
@@ -34,13 +36,36 @@ def applies(scene, wrench):
             and len(acting) == 1 and acting[0].inner_dissipation != 0.0)
 
 
-def departure(scene, vector):
-    """Return the Departure of a state (14 doubles), or None if it is not near an axis."""
+def arrival(scene, vector):
+    """Return the Departure of a state that has arrived near an axis that attracts, or None."""
+    found = departure(scene, vector, least=-1.0)
+    return found if found is not None and found.end == math.inf else None
+
+
+def relaxing(scene, vector):
+    """Return the time (s) in which dissipation takes the body from a state to its last axis.
+
+    About, and infinite where it has no such axis.
+    """
+    inner, moments = scene.effect('internal_dissipation'), scene.body.about_center.moments
+    frame = scene.constraint.frame(scene.body)
+    omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
+    L = hypot3(*(I * w for I, w in zip(frame.moments, omega, strict=True)))
+    low, high = min(moments), max(moments)
+    rate = inner.coefficient * (L * L / high) * ((high - low) / low) if low > 0.0 else 0.0
+    return FOLDS / rate if rate > 0.0 else math.inf
+
+
+def departure(scene, vector, least=0.0):
+    """Return the Departure of a state (14 doubles), or None if it is not near an axis.
+
+    A state whose other two components of omega are not above `least` (rad/s) has none.
+    """
     frame = scene.constraint.frame(scene.body)
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     k = max(range(3), key=lambda axis: abs(omega[axis]))
     small = hypot(omega[k - 2], omega[k - 1])
-    if not 0.0 < small < NEAR * abs(omega[k]) or min(frame.moments) <= 0.0:
+    if not least < small < NEAR * abs(omega[k]) or min(frame.moments) <= 0.0:
         return None
     found = Departure(scene, frame, vector, omega, k)
     return found if found.end > float(vector[TIME]) else None
@@ -182,3 +207,56 @@ class Departing:
             part = np.empty((len(late), STATE.size))
             self._later().states(times[late], part)
             out[late] = part
+
+
+class Arriving:
+    """A course that goes on without steps once the body turns about the axis that attracts.
+
+    Whether it has arrived is looked at after fixed times, each twice the one before: what it finds
+    does not depend on the times that are asked for.
+
+    Parameters
+    ----------
+    scene : Scene
+    march : object
+        The course that marches.
+    vector : array (14,)
+        The start.
+    """
+
+    TELLS_EVENTS = False
+
+    def __init__(self, scene, march, vector):
+        self._scene, self._march, self._rest = scene, march, None
+        self._begin, self._ahead = float(vector[TIME]), relaxing(scene, vector)
+
+    @property
+    def _look(self):
+        return self._begin + self._ahead
+
+    def _reach(self, time):
+        """Look for the arrival at all the fixed times up to one."""
+        while self._rest is None and self._look <= time:
+            vector = np.empty(STATE.size)
+            self._march.state(self._look, vector)
+            self._rest = arrival(self._scene, vector)
+            if self._rest is None:
+                self._ahead *= 2.0
+
+    def state(self, time, out):
+        """Fill `out` with the state at a time (s) not before the start."""
+        self._reach(time)
+        course = self._march if time < self._look or self._rest is None else self._rest
+        course.state(time, out)
+
+    def states(self, times, out):
+        """Fill the rows of `out` with the states at times (s) not before the start."""
+        self._reach(float(times.max()))
+        late = times >= self._look if self._rest is not None else np.zeros(len(times), bool)
+        for row in np.flatnonzero(late):
+            self._rest.state(float(times[row]), out[row])
+        early = np.flatnonzero(~late)
+        if len(early):
+            part = np.empty((len(early), STATE.size))
+            self._march.states(times[early], part)
+            out[early] = part

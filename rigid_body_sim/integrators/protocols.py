@@ -22,6 +22,10 @@ class Solver(Protocol):
     vectors are those of scene/state.py (14 doubles) and times are simulated seconds.
     """
 
+    @property
+    def name(self) -> str:
+        """``exact``, or the name of the method."""
+
     def start(self, vector: np.ndarray) -> 'Solver':
         """Return a solver from a state on; this one stays as it is.
 

@@ -21,7 +21,7 @@ from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
-from rigid_body_sim.integrators.departure import Departing, applies, departure
+from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.events import Watcher, watches
@@ -78,6 +78,11 @@ class Stepped:
         self._actors = None if self._bound.EXCHANGES else Actors(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
 
+    @property
+    def name(self):
+        """The name of the method."""
+        return self.method.NAME
+
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
         started = object.__new__(Stepped)
@@ -88,7 +93,7 @@ class Stepped:
         started._exchange, started._watcher = None, None
         near = departure(self.scene, vector) if self._departs else None
         if near is None:
-            started._course = self._bound.course(started)
+            started._course = self._marching(started)
         else:
             started._course = Departing(near, started._march_from)
         return started
@@ -98,7 +103,12 @@ class Stepped:
         later = object.__new__(Stepped)
         later.__dict__.update(self.__dict__)
         later.vector, later.begin = vector, float(vector[TIME])
-        return self._bound.course(later)
+        return self._marching(later)
+
+    def _marching(self, started):
+        """Return the course that marches from the vector of a started solver."""
+        course = self._bound.course(started)
+        return Arriving(self.scene, course, started.vector) if self._departs else course
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s); raises what `states` raises."""

@@ -25,6 +25,14 @@ def swing_rate(scene):
     return 2.0 * math.sqrt(energy / across)
 
 
+def swing_momentum(scene):
+    """Return the angular momentum (kg m^2/s) that potentials can give a held body, at most."""
+    body, constraint = scene.body, scene.constraint
+    moment = (max(constraint.inertia(body).moments) if constraint.axis is None
+              else moment_about_hinge(body, constraint))
+    return swing_rate(scene) * moment
+
+
 def drive(scene, wrench):
     """Return a bound of the angular acceleration (rad/s^2) by drives and a held wrench.
 

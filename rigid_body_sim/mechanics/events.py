@@ -21,6 +21,9 @@ from rigid_body_sim.scene.state import STATE_SIZE
 RADIANS_BETWEEN_LOOKS = 0.2
 RADIANS_BLIND = 3.0
 MOST_LOOKS = 2 ** 22
+FLIP, TURNING_POINT = 'flip', 'turning point'
+WATCHED = FLIP, TURNING_POINT
+"""Names of what `watches` decides on, whatever solves a scene."""
 LOOKS_A_TICK = 20000    # at most
 
 
@@ -57,12 +60,12 @@ def watches(scene):
     """
     mechanism, body = scene.constraint.mechanism, scene.body
     if mechanism is Mechanism.FREE and len(set(body.about_center.moments)) == 3:
-        return (Watch('flip', *_momentum_along_middle_axis(body.about_center)),)
+        return (Watch(FLIP, *_momentum_along_middle_axis(body.about_center)),)
     if mechanism is Mechanism.POINT:
-        return (Watch('turning point', _rise_of_third_axis, 1e-9, _rise_of_third_axis),)
+        return (Watch(TURNING_POINT, _rise_of_third_axis, 1e-9, _rise_of_third_axis),)
     if mechanism is Mechanism.AXIS:
         rate = _rate_about(scene.constraint.axis)
-        return (Watch('turning point', rate, 0.0, rate),)
+        return (Watch(TURNING_POINT, rate, 0.0, rate),)
     return ()
 
 

@@ -15,9 +15,6 @@ from axes that turn in the body with it, the angular velocity is t0 + (I/I1) w a
 straight line at constant speed. The turn of these axes is that of numerics/ramped_rotation.py
 (parabolic-cylinder functions; the Landau-Zener problem), and the body lags behind them by the same
 angle. A torque that is fixed in the world lets omega of a sphere run along a line in world axes.
-
-The event is `flip`: the momentum along the axis of the middle moment changes its sign, after it
-was at least L/2 (as in free_body.py).
 """
 
 import math
@@ -31,9 +28,9 @@ from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
 from rigid_body_sim.numerics.double_double import two_sum
-from rigid_body_sim.numerics.functions import atan2, hypot3
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import TURN, pair_of, scaled, times
-from rigid_body_sim.numerics.phase import COUNTABLE, fraction, nearest, sin_cos
+from rigid_body_sim.numerics.phase import fraction, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import across, cross, dot
@@ -43,8 +40,8 @@ from rigid_body_sim.scene.bodies import ULPS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE
 
-EVENTS = ('flip',)
-exchanged = takes = None
+EVENTS = ()
+exchanged = takes = next_event = None
 fill_columns = None
 
 IN_BODY, IN_WORLD = 0.0, 1.0    # axes in which the torque is constant
@@ -58,7 +55,6 @@ class Drive(NamedTuple):
     growth: Pair         # N/I, rad/s^2
     ratio: Pair          # I/I1
     excess: Pair         # (I - I1)/I1
-    middle: Vector       # axis of the middle moment, across a, body axes; 0 for a sphere
 
 
 class Parameters(NamedTuple):
@@ -116,20 +112,18 @@ def drive(scene, total):
         a = direction if in_world else rotate(*inertia.axes, *direction)
         growth = Fraction(size) / Fraction(moments[0])
         return Drive(IN_WORLD if in_world else IN_BODY, a, pair_of(growth), (1.0, 0.0),
-                     (0.0, 0.0), (0.0, 0.0, 0.0))
+                     (0.0, 0.0))
     if in_world:
         return None
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         if moments[i] == moments[j] and max(abs(torque[i]), abs(torque[j])) <= ULPS * size:
-            unit, middle = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+            unit = [0.0, 0.0, 0.0]
             unit[k] = math.copysign(1.0, torque[k])
-            # the middle one of the three as free_body/anchor.py orders them
-            middle[sorted(range(3), key=moments.__getitem__)[1]] = 1.0
             I, I1 = Fraction(moments[k]), Fraction(moments[i])
             return Drive(IN_BODY, rotate(*inertia.axes, *unit),
                          pair_of(Fraction(abs(torque[k])) / I), pair_of(I / I1),
-                         pair_of((I - I1) / I1), rotate(*inertia.axes, *middle))
+                         pair_of((I - I1) / I1))
     return None
 
 
@@ -201,107 +195,3 @@ def state(anchor, time, out):
                 stretched(2.0 * sine * cosine, cross(drive.a, rest))))
         q = normalised(*q)
     store_state(out, flown(held.flight, t, time, q, omega))
-
-
-@compiled
-def next_event(anchor, after):
-    """Return the time of the first flip later than `after`, infinite if there is none, and 0.
-
-    The momentum across the axis turns in the body by quarter turns between its greatest size along
-    the middle axis and the next change of sign; where the spin runs through zero it turns back.
-    """
-    held = load_anchor(anchor)
-    middle, k, growth = held.drive.middle, held.drive.excess[0], held.drive.growth[0]
-    if held.across == 0.0 or k == 0.0:
-        return math.inf, 0
-    rest = stretched(-held.across, held.e2)
-    # the angle from the middle axis to the momentum across a, turns, at the start
-    begin = TURN[0] * atan2(dot(cross(middle, rest), held.drive.a), dot(middle, rest))
-    back = -held.along / growth             # the spin is zero then, s after the start
-    # before and after this the spin is so large that no flip comes
-    spun = 2.0 * held.across / (held.drive.ratio[0] * growth)
-    at = max(after - held.start, back - spun)
-    while at <= back + spun:
-        before, at = at, _next_crossing(begin, k, held.along, growth, back, at)
-        if held.start + at > after and _was_strong(held, _crossing_before(
-                begin, k, held.along, growth, back, at), at):
-            return held.start + at, 0
-        if not at > before:
-            break
-    return math.inf, 0
-
-
-@compiled_inline
-def _phase_at(begin, k, along, growth, at):
-    """Return the angle from the middle axis to the momentum across a, turns."""
-    return begin + TURN[0] * k * (along * at + 0.5 * growth * at * at)
-
-
-@compiled
-def _next_crossing(begin, k, along, growth, back, at):
-    """Return when the angle next is an odd number of quarter turns, s after the start."""
-    now = _phase_at(begin, k, along, growth, at)
-    if not abs(now) < COUNTABLE:
-        return math.inf
-    way = -math.copysign(1.0, k)            # of the angle, before the spin runs through zero
-    if at < back:
-        # the next place on the way, if it lies before the place where the angle turns back
-        turn = begin - TURN[0] * k * (0.5 * along * (along / growth))
-        place = _place_beyond(now, way)
-        while (turn - place) * way > 0.0:
-            time = _time_at((place - begin) / (TURN[0] * k), along, growth, -1.0)
-            if time > at:
-                return time
-            place += 0.5 * way
-        now, at = turn, back
-    place = _place_beyond(now, -way)
-    time = _time_at((place - begin) / (TURN[0] * k), along, growth, 1.0)
-    while not time > at:
-        place -= 0.5 * way
-        time = _time_at((place - begin) / (TURN[0] * k), along, growth, 1.0)
-    return time
-
-
-@compiled_inline
-def _crossing_before(begin, k, along, growth, back, at):
-    """Return when the angle was an odd number of quarter turns before a crossing."""
-    # time runs back: the same motion with the spin reversed
-    return -_next_crossing(begin, k, -along, growth, -back, -at)
-
-
-@compiled_inline
-def _place_beyond(now, way):
-    """Return the first odd number of quarter turns not before an angle, on a way of +1 or -1."""
-    return way * (math.ceil(2.0 * way * now - 0.5) * 0.5 + 0.25)
-
-
-@compiled_inline
-def _time_at(Phi, along, growth, side):
-    """Return t with along t + growth t^2/2 = Phi, where the spin has the sign of `side`.
-
-    Of the two forms of the root, the one whose terms do not cancel.
-    """
-    spin = math.sqrt(max(along * along + 2.0 * growth * Phi, 0.0))
-    if side * along >= 0.0 and (along != 0.0 or spin != 0.0):
-        return 2.0 * Phi / (along + side * spin)
-    return (side * spin - along) / growth
-
-
-@compiled
-def _was_strong(held, begin, end):
-    """Return whether the momentum along the middle axis was L/2 or more between two crossings.
-
-    Sixteen looks suffice: it is like a sine there, over a size that changes little.
-    """
-    ratio, growth = held.drive.ratio[0], held.drive.growth[0]
-    middle, a = held.drive.middle, held.drive.a
-    rest = stretched(-held.across, held.e2)
-    other = cross(a, rest)
-    for n in range(1, 16):
-        t = begin + (end - begin) * (n / 16.0)
-        turns = held.drive.excess[0] * TURN[0] * (held.along * t + 0.5 * growth * t * t)
-        sine, cosine = sin_cos(turns - nearest(turns), 0.0)
-        along = cosine * dot(middle, rest) + sine * dot(middle, other)
-        if abs(along) >= 0.5 * hypot3(held.across, ratio * (held.along + growth * t), 0.0):
-            return True
-    return False

@@ -9,7 +9,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import look, on_all_cores
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
-from rigid_body_sim.mechanics.events import Watcher, watches
+from rigid_body_sim.mechanics.events import WATCHED, Watcher, watches
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
@@ -54,8 +54,9 @@ class Exact:
         self._parameters = motion.parameters(self._solved)
         self._loops, self._actors = loops(motion), None if motion.exchanged else Actors(scene)
         self._watched = watches(scene)
-        self._tells = motion.next_event is not None and all(
-            watch.name in motion.EVENTS for watch in self._watched)
+        watched = {watch.name for watch in self._watched}
+        self._tells = motion.next_event is not None and (
+            watched == {*motion.EVENTS} & {*WATCHED})
 
     def takes(self, vector):
         """Return whether the motion holds from a state (14 doubles)."""

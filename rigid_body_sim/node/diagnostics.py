@@ -112,7 +112,7 @@ class Diagnostics:
             name: value
             for name, value in about.method_of(choice).items()
             if value is not None
-        }
+        } | {'method': self._session.simulation.method}
         return self._status(
             'ledger',
             level,

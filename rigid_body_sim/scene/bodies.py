@@ -8,7 +8,7 @@ section 32.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from functools import cached_property, reduce
 from itertools import permutations, product
@@ -245,7 +245,16 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     else:
         body = Body(M, center, given, moved(given, M, center, 1.0), radius)
     _check_moments(body, given, where)
-    return body
+    # what is below zero there is rounding
+    return replace(body, about_center=_not_negative(body.about_center),
+                   about_origin=_not_negative(body.about_origin))
+
+
+def _not_negative(inertia):
+    """Return an Inertia without negative moments."""
+    if min(inertia.moments) >= 0.0:
+        return inertia
+    return Inertia(tuple(max(moment, 0.0) for moment in inertia.moments), inertia.axes)
 
 
 def square_of(arm):

@@ -23,6 +23,7 @@ from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.mechanics.bounds import swing_momentum
 from rigid_body_sim.mechanics.ledger import balance, entries_size
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -213,6 +214,15 @@ class Simulation:
     def state(self) -> State:
         """The present State."""
         return State(self.vector.copy())
+
+    @property
+    def method(self) -> str:
+        """Name of the method that solves the present motion.
+
+        It is the one of `choice`, unless a command or a strike has led to a motion or a held
+        wrench that another method solves.
+        """
+        return self._spans[-1].solver.name
 
     def advance(self, ticks: int = 1) -> None:
         """Go on by a number of ticks; events on the way are appended to `events`.
@@ -507,7 +517,7 @@ class Simulation:
         """
         span = self._spans[-1]
         given = span.given + span.solver.exchanged(self.time)
-        return balance(self._initial, self._diagnose(), given)
+        return balance(self._initial, self._diagnose(), given, swing_momentum(self.scene))
 
     def _diagnose(self):
         if self._diagnosed_tick != (self.tick, len(self._spans)):
@@ -578,7 +588,7 @@ class Simulation:
 
     def __repr__(self):
         return (
-            f'<Simulation of {self.scene.name} by {self.choice.method}: tick {self.tick}, '
+            f'<Simulation of {self.scene.name} by {self.method}: tick {self.tick}, '
             f't = {self.time!r} s>'
         )
 
@@ -587,7 +597,7 @@ class Simulation:
         rows = {
             'scene': self.scene.name,
             'about': self.scene.about,
-            'method': self.choice.method,
+            'method': self.method,
             'tick': f'{self.tick}, t = {self.time!r} s',
             'energy': f'{self.energy!r} J',
             'energy residual': f'{ledger["energy_residual"]:.2e}',

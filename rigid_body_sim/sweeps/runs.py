@@ -16,7 +16,7 @@ import numpy as np
 from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.compilation.threads import one_core
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.bounds import drive, swing_momentum, swing_rate
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
@@ -438,7 +438,8 @@ def _residuals(scene, choice, starts, ends, time):
     kernels, p = energies(scene), parameters(scene)
     before, after = (diagnosis(kernels, p, np.ascontiguousarray(states))
                      for states in (starts, ends))
-    return [balance(before[k], after[k], choice.solver(start, Wrench()).exchanged(time))
+    swing = swing_momentum(scene)
+    return [balance(before[k], after[k], choice.solver(start, Wrench()).exchanged(time), swing)
             for k, start in enumerate(starts)]
 
 

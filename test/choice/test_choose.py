@@ -16,7 +16,7 @@ from rigid_body_sim.choice import choose as choose_module
 from rigid_body_sim.choice import measured, trial
 from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.cli import simulate
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -29,6 +29,12 @@ REFERENCE = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
 
 def scene_of(name):
     return parse_scene(choice_cases.text(name))
+
+
+def test_where_no_measured_method_is_left_the_choice_gives_up():
+    """Only measured methods are tried: the last of them left an empty table, and a traceback."""
+    with pytest.raises(NotConverged, match='no method follows'):
+        trial.settle(scene_of(next(iter(choice_cases.CASES))), ['rk4'], 1e-6, 1.0)
 
 
 # the other cases need kernels that no other test compiles: bench/choice.py has them all

@@ -3,19 +3,21 @@
 
 ``python fuzzed_scenes.py FIRST END`` prints a line for each seed: refused, gave up, or runs and
 the method. Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to
-a hundredth of their work. Every scene is given SECONDS, after which an alarm interrupts it: a run
-that goes on then hears no interrupt and has no bound.
+a hundredth of their work. Every scene is given SECONDS of the processor, after which an alarm
+interrupts it: a run that goes on then hears no interrupt and has no bound.
 """
 
 import json
+import math
 import random
 import signal
 import sys
+import time
 import warnings
 
 import numpy as np
 
-from rigid_body_sim.choice import trial
+from rigid_body_sim.choice import forecast, trial
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.marching import work
 from rigid_body_sim.mechanics import events
@@ -24,7 +26,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 EXTREMES = (0.0, 1e-310, 1e-160, 1e-30, 1e-9, 1e-3, 1.0, 1e3, 1e6, 1e15, 1e40, 1e74, 1e160, 1e308)
 SHARE = 0.1      # of the numbers that are extremes
-SECONDS = 60
+SECONDS = 30
 
 
 class Slow(Exception):
@@ -53,46 +55,163 @@ def moments(source):
         [a, b, abs(a - b) + source.random() * (a + b - abs(a - b))]))
 
 
-def effects(source, constraint):
+EXPRESSIONS = ('-k*wx', '0.1*sin(w0*t)', 'k*tanh(Wz/w0)', 'exp(-t)*qx', 'k/(1 + x^2)', '-k*vy^3',
+               'sqrt(k*k + y*y)', 'log(k)*qw', 'k*cos(z)', 'max(wx, wy) - k', 'abs(Wx)', 'k^0.5',
+               'w0/(x - k)', 'tan(k*t)')
+ENERGIES = ('0.5*k*(z - 1)^2', 'k*qx^2*qw', '-k/sqrt(x^2 + y^2 + z^2)', 'k*cos(x*w0)', 'k*log(z)',
+            'exp(k*y)', 'w0*(qx*qz - qy*qw)')
+
+
+def positive(source):
+    """Return a number that is not negative."""
+    return number(source, signed=False)
+
+
+def expressions(source):
+    """Return three numbers or expressions."""
+    return [source.choice(EXPRESSIONS) if source.random() < 0.5 else number(source)
+            for _ in range(3)]
+
+
+def torque(source):
+    """Return a torque that stays, comes in pieces, or is an expression."""
+    frame = source.choice(('body', 'world'))
+    return {'torque': source.choice((
+        {'value': vector(source)}, {'value': expressions(source)},
+        {'times': [0.001, 0.5], 'values': [vector(source), vector(source)]})) | {'frame': frame}}
+
+
+def force(source):
+    """Return a force, at the centre of mass or at a point."""
+    at = {'at': vector(source)} if source.random() < 0.5 else {}
+    return {'force': {'value': expressions(source), 'frame': source.choice(('body', 'world')),
+                      'books': source.choice(('work', 'heat'))} | at}
+
+
+def spring(source):
+    """Return a spring with or without length and damping."""
+    more = {key: positive(source) for key in ('damping', 'length') if source.random() < 0.5}
+    return {'spring': {'at': vector(source), 'anchor': vector(source),
+                       'stiffness': positive(source)} | more}
+
+
+def magnetic(source):
+    """Return a moment in a field."""
+    field = source.choice((vector(source), [0, 'k*z', 'w0 - k*y^2']))
+    return {'magnetic': {'moment': vector(source), 'field': field}}
+
+
+def strike(source):
+    """Return a strike in the third tick."""
+    return {'strike': {'point': vector(source), 'impulse': vector(source), 'time': 0.002}}
+
+
+def gravity(source):
+    """Return a weight."""
+    return {'gravity': {'g': positive(source)}}
+
+
+def drag(source):
+    """Return a drag."""
+    return {'drag': {'linear': positive(source), 'angular': positive(source)}}
+
+
+HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, force: 0.15, magnetic: 0.15,
+        lambda source: {'potential': {'energy': source.choice(ENERGIES)}}: 0.15}
+"""What acts under every constraint but the table: what makes it, and how often."""
+PIVOTED = HELD | {spring: 0.15}
+FREE = PIVOTED | {
+    lambda source: {'internal_dissipation': {'coefficient': positive(source)}}: 0.3,
+    lambda source: {'gravity_gradient': {'mu': positive(source),
+                                         'position': vector(source)}}: 0.15}
+ON_PLANE = {
+    gravity: 0.9, drag: 0.2, strike: 0.2,
+    lambda source: {'sliding_friction': {
+        'mu': source.choice((positive(source), math.inf))}}: 0.7,
+    lambda source: {'rolling_friction': {'dry': positive(source),
+                                         'viscous': positive(source)}}: 0.2,
+    lambda source: {'air_film': {'viscosity': positive(source)}}: 0.1}
+ACTING = {'free': FREE, 'pivot': PIVOTED, 'hinge': HELD, 'plane': ON_PLANE}
+
+
+def effects(source, kind):
     """Return a list of effects that the constraint can have, several torques at once too."""
-    def positive():
-        return number(source, signed=False)
-    if constraint == 'table':
-        return [{'sliding_friction': {'mu': positive(), 'g': positive()}}]
-    found = [{'gravity': {'g': positive()}},
-             {'drag': {'linear': positive(), 'angular': positive()}},
-             {'strike': {'point': vector(source), 'impulse': vector(source), 'time': 0.002}},
-             {'internal_dissipation': {'coefficient': positive()}}][:4 if constraint == 'free'
-                                                                    else 3]
-    found = [one for one in found if source.random() < 0.4]
-    for _ in range(source.choice((0, 0, 1, 2))):
-        frame = source.choice(('body', 'world'))
-        found.append({'torque': source.choice((
-            {'value': vector(source), 'frame': frame},
-            {'times': [0.001, 0.5], 'values': [vector(source), vector(source)],
-             'frame': frame}))})
-    return found
+    if kind == 'table':
+        return [{'sliding_friction': {'mu': positive(source), 'g': positive(source)}}]
+    found = [make(source) for make, often in ACTING[kind].items() if source.random() < often]
+    if kind == 'plane':
+        return found
+    return found + [torque(source) for _ in range(source.choice((0, 0, 1, 2)))]
+
+
+def surface(source):
+    """Return the body of one that has a surface, on a table."""
+    a, b, c = (10.0 ** source.uniform(-2.0, 0.0) for _ in range(3))
+    if source.random() < 0.2:
+        a = positive(source)
+    mass = positive(source)
+    return source.choice((
+        {'mass': mass, 'shape': {'ellipsoid': {'semi_axes': [a, b, c]}}},
+        {'density': mass, 'shape': {'ellipsoid': {'semi_axes': [a, a, c]}}},
+        {'mass': mass, 'shape': {'disk': {'radius': a}}},
+        {'mass': mass, 'shape': {'hoop': {'radius': a}}},
+        {'mass': mass, 'shape': {'torus': {'radius': a, 'tube': b}}},
+        {'mass': mass, 'inertia': moments(source), 'center_of_mass': [0, 0, 0.1 * number(source)],
+         'surface': {'sphere': {'radius': a}}},
+        {'mass': mass, 'inertia': moments(source), 'center_of_mass': vector(source),
+         'surface': {'ellipsoid': {'semi_axes': [a, b, c], 'center': [0, 0, 0.1 * c]}}}))
+
+
+def orientation(source):
+    """Return a way to say the orientation."""
+    def turn():
+        return [source.uniform(-4.0, 4.0) for _ in range(3)]
+    return source.choice((
+        {'orientation': [source.uniform(-1.0, 1.0) for _ in range(4)]}, {'euler_zyz': turn()},
+        {'euler': turn()}, {'rotation_vector': source.choice((turn(), vector(source)))},
+        {'tilt': number(source)}, {}))
+
+
+def turning(source):
+    """Return a way to say the angular velocity."""
+    return source.choice((
+        {'angular_velocity': vector(source)}, {'angular_velocity': vector(source)},
+        {'angular_velocity_world': vector(source)}, {'angular_momentum': vector(source)},
+        {'spin': number(source)}, {}))
 
 
 def scene(seed):
     """Return the scene of a seed as plain data."""
     source = random.Random(seed)
-    constraint = source.choice(('free', 'pivot', 'hinge', 'table'))
-    found = {'scene': 'fuzzed', 'constraint': constraint, 'effects': effects(source, constraint)}
-    mass, omega = number(source, signed=False), vector(source)
-    if constraint == 'table':
-        radius = number(source, signed=False)
-        return found | {'body': {'mass': mass, 'shape': {'solid_sphere': {'radius': radius}}},
-                        'initial': {'angular_velocity': omega,
+    kind = source.choices(('free', 'pivot', 'hinge', 'table', 'plane'), (4, 4, 3, 1, 1))[0]
+    found = {'scene': 'fuzzed', 'constraint': kind, 'effects': effects(source, kind),
+             'parameters': {'k': number(source), 'w0': number(source)}}
+    if kind == 'table':
+        return found | {'body': {'mass': positive(source),
+                                 'shape': {'solid_sphere': {'radius': positive(source)}}},
+                        'initial': {'angular_velocity': vector(source),
                                     'velocity': [number(source), number(source), 0.0]}}
+    start = orientation(source) | turning(source)
+    if kind == 'plane':
+        plane = source.choice(({}, {'restitution': source.random()},
+                               {'normal': [number(source), 0.1, 1.0]}))
+        moving = source.choice(({'rolling': True}, {'velocity': vector(source)},
+                                {'position': [0, 0, 10.0 * positive(source)]}))
+        return found | {'constraint': {'table': plane}, 'body': surface(source),
+                        'initial': start | moving}
     center = source.choice(([0, 0, 0], [0, 0, number(source)], vector(source)))
-    found['body'] = {'mass': mass, 'inertia': moments(source), 'center_of_mass': center}
-    turn = [source.uniform(-1.0, 1.0) for _ in range(4)]
-    if constraint == 'hinge':
-        return found | {'constraint': {'hinge': {'axis': turn[:3]}},
+    found['body'] = source.choice((
+        {'mass': positive(source), 'inertia': moments(source), 'center_of_mass': center},
+        {'mass': positive(source), 'inertia': moments(source), 'center_of_mass': center},
+        {'parts': [{'mass': positive(source), 'point': vector(source)},
+                   {'mass': positive(source), 'inertia': moments(source), 'at': vector(source)},
+                   {'density': positive(source), 'shape': {'box': {'size': [0.1, 1.0, 0.02]}},
+                    'orientation': [0.1, 0.2, 0.3, 1.0]}]}))
+    if kind == 'hinge':
+        axis = [source.uniform(-1.0, 1.0) for _ in range(3)]
+        return found | {'constraint': {'hinge': {'axis': axis, 'through': vector(source)}},
                         'initial': {'rate': number(source), 'angle': number(source)}}
-    start = {'angular_velocity': omega, 'orientation': turn}
-    if constraint == 'free':
+    if kind == 'free':
         start |= {'velocity': vector(source), 'position': vector(source)}
     return found | {'initial': start}
 
@@ -101,7 +220,7 @@ def outcome(seed):
     """Return what becomes of a scene: refused, gave up, or runs and the method."""
     read = None
     try:
-        read = parse_scene(json.dumps(scene(seed)))
+        read = parse_scene(json.dumps(scene(seed)).replace('Infinity', '.inf'))
         simulation = Simulation(read)
         for _ in range(3):
             simulation.advance()
@@ -123,18 +242,20 @@ def alarm(*_):
 def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
-    work.FIRST_LOOK, work.MOST, work.PATIENCE = 32, 100.0, 1e5
-    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 50, 5, 2.0, 20
-    signal.signal(signal.SIGALRM, alarm)
+    work.FIRST_LOOK, work.MOST, work.PATIENCE = 16, 50.0, 1e4
+    trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 20, 5, 0.5, 20
+    forecast.SIGNS, forecast.MOVED, forecast.LOOKS = forecast.SIGNS[:1], forecast.MOVED[:1], 3
+    signal.signal(signal.SIGVTALRM, alarm)
     bad = 0
     for seed in range(first, end):
-        signal.alarm(SECONDS)
+        signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)
+        began = time.process_time()
         try:
             found = outcome(seed)
         except Exception as error:
             found, bad = f'{type(error).__name__}: {error}', bad + 1
-        signal.alarm(0)
-        print(seed, found.replace('\n', ' '), flush=True)
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        print(seed, f'{time.process_time() - began:.2f} s', found.replace('\n', ' '), flush=True)
     return min(bad, 1)
 
 

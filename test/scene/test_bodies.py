@@ -154,3 +154,15 @@ def test_graded_tensors_are_solved_to_round_off():
         moments, vectors = bodies.eigenvectors(((tensor + tensor.T) / 2.0).tolist())
         assert np.abs(np.matmul(vectors, np.transpose(vectors)) - np.eye(3)).max() < 1e-15
         assert np.trace(tensor) == near(sum(moments), 1e-14)
+
+
+def test_a_moment_that_rounding_makes_negative_is_zero():
+    """Points 1e74 m apart leave less than an ulp for the moment about the line through them."""
+    heavy = bodies.make_body(154.28331065338853, [0.27, 0.27, 6.8e-9])
+    light = bodies.make_body(0.016218724248853164, [1e-30, 1e-30, 1e-30])
+    for far in (1e74, 1e30, 3e15):
+        for across in np.random.default_rng(8).normal(size=20) * 200.0:
+            body = bodies.composite([(light, (across, 0.0, far), bodies.IDENTITY),
+                                     (heavy, (-0.025, 0.0, -1e-3 * far), bodies.IDENTITY)])
+            assert min(body.about_center.moments) >= 0.0
+            assert min(body.about_origin.moments) >= 0.0

@@ -8,7 +8,8 @@ Kernels besides those of every motion: `fill_columns`, the same operations as `s
 side by side, and `next_event`. The event is `flip`: the momentum along the axis of the middle
 moment changes its sign, in a motion that takes it to at least L/2. (That is the hysteresis: in one
 motion either every change of sign is a flip or none, so none is lost or counted twice when the
-motion is anchored anew on the way.)
+motion is anchored anew on the way.) Two equal moments have no middle axis: such a body does not
+flip (mechanics/events.py).
 """
 
 import math
