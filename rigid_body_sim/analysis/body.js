@@ -98,8 +98,10 @@ function bodyView(canvas, data) {
     const middle = rotate(q, data.middle).map((x, k) => x + position[k]);
     // the world moves against a free body; its grid repeats
     const origin = data.follow ? middle : [0, 0, 0];
-    const wrapped = origin.map(x => x - Math.floor(x / (cell * 5)) * cell * 5);
-    draw(ground, same, [-wrapped[0], -wrapped[1], data.floor - origin[2]], 0, gl.LINES);
+    const base = [0, 0, data.floor], [x, y, z, w] = data.slope;
+    const [u, v] = rotate([-x, -y, -z, w], sub(origin, base)).map(c => Math.floor(c / (cell * 5)) * cell * 5);
+    const near = rotate(data.slope, [u, v, 0]).map((c, k) => c + base[k] - origin[k]);
+    draw(ground, matrix(data.slope), near, 0, gl.LINES);
     draw(body, matrix(q), sub(position, origin), 1, gl.TRIANGLES);
     draw(holder, same, sub([0, 0, 0], origin), 1, gl.TRIANGLES);
     arrows.forEach(arrow => {

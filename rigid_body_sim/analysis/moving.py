@@ -52,13 +52,13 @@ class Moving:
         """Return what body.js takes, as plain data."""
         drawing, middle = self.drawing, middle_of(self.scene)
         unit = reach_of(self.scene, drawing)
-        turns = Rotation.from_quat(self.orientation)
+        turns, ground = Rotation.from_quat(self.orientation), ground_of(self.scene, unit)
         what, axis = traced_axis(self.scene)
         reach = max(1.15 * float(((drawing.vertices - middle) @ axis).max()) / unit, 0.7)
         return {
             'times': _round(self.times, 7), 'orientation': _round(self.orientation, 5),
             'position': _round(self.position / unit, 5), 'middle': _round(middle / unit, 6),
-            'floor': ground_of(self.scene, unit) / unit, 'cell': cell_of(unit) / unit,
+            'floor': ground.height / unit, 'slope': list(ground.axes), 'cell': cell_of(unit) / unit,
             'follow': follows(self.scene), 'axis': _round(reach * axis, 5), 'traced': what,
             'surfaces': [_mesh(one, unit) for one in drawing.surfaces],
             'holder': [_mesh(one, unit, 'holder') for one in holder_of(self.scene, unit)],

@@ -4,9 +4,15 @@
 import pathlib
 
 import numba
-from numba.core.caching import FunctionCache, NullCache, UserProvidedCacheLocator
+from numba.core.caching import FunctionCache, NullCache
 
 from rigid_body_sim.compilation.environment import PACKAGE, cache_folder
+
+try:
+    from numba.core.caching import UserProvidedCacheLocator
+except ImportError:
+    # numba before 0.61, as of the time of Ubuntu 24.04
+    from numba.core.caching import _UserProvidedCacheLocator as UserProvidedCacheLocator
 
 
 class Place(UserProvidedCacheLocator):

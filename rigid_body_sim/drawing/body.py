@@ -13,6 +13,8 @@ from rigid_body_sim.scene.bodies import IDENTITY
 
 THINNEST = 0.02
 """Thinnest edge of a box of equal inertia, relative to its longest."""
+OF_SURFACE = {'sphere': 'solid_sphere'}
+"""Shapes that are drawn for the surfaces of another name."""
 UNKNOWN = (1.0, 0.6, 0.2)
 """Edges of the box that stands for a body of unknown shape, m."""
 
@@ -42,6 +44,10 @@ def drawing_of(scene):
     if scene is None:
         return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown')
     mapping = yaml.safe_load(scene.text)['body']
+    if 'surface' in mapping:
+        return Drawing([_surface(scene.body.surface)],
+                       f'the surface that touches the plane, the true shape: '
+                       f'{article(scene.body.surface.kind)}')
     if 'parts' in mapping:
         shaped = [part for part in mapping['parts'] if 'shape' in part and not _is_hole(part)]
         if shaped:
@@ -49,7 +55,7 @@ def drawing_of(scene):
                            _about_parts(mapping['parts'], shaped))
     if 'shape' in mapping:
         return Drawing([_shape(mapping['shape'], scene.body.center_of_mass)],
-                       f'the true shape, a {next(iter(mapping["shape"])).replace("_", " ")}')
+                       f'the true shape, {article(next(iter(mapping["shape"])))}')
     if scene.body.radius is not None:
         return Drawing([surfaces.sphere(scene.body.radius).placed(
             Rotation.identity(), scene.body.center_of_mass)], 'the true shape, a sphere')
@@ -62,6 +68,19 @@ def box_of(body):
     a, b, c = body.about_center.moments
     return tuple(math.sqrt(max(6.0 * square / body.mass, 0.0))
                  for square in (b + c - a, a + c - b, a + b - c))
+
+
+def article(name):
+    """Return the name of a shape with its article: an ellipsoid, a solid sphere."""
+    return f'{"an" if name[0] in "aeiou" else "a"} {name.replace("_", " ")}'
+
+
+def _surface(surface):
+    """Return what is drawn of a scene.surfaces.Surface."""
+    size = {'ellipsoid': [surface.size], 'torus': surface.size[:2]}
+    drawn = surfaces.SURFACES[OF_SURFACE.get(surface.kind, surface.kind)](
+        *size.get(surface.kind, surface.size[:1]))
+    return drawn.placed(Rotation.identity(), surface.center)
 
 
 def _shape(mapping, at, orientation=IDENTITY):

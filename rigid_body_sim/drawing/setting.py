@@ -2,11 +2,13 @@
 """The surroundings of a drawn body: point of reference, ground, and what holds it."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing import surfaces
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 
@@ -33,12 +35,25 @@ def start_of(scene):
     return scene.initial.position + turn.apply(middle_of(scene))
 
 
+class Ground(NamedTuple):
+    """The ground: its height above the world's origin (m), and the quaternion of its axes.
+
+    Its z axis is its normal.
+    """
+
+    height: float
+    axes: tuple = IDENTITY
+
+
 def ground_of(scene, reach):
-    """Return the height of the ground, m: that of the table, or just below all that turns."""
+    """Return the Ground: the table or plane, or else a level just below all that turns."""
     start = float(start_of(scene)[2])
-    if scene is not None and scene.constraint.mechanism is Mechanism.TABLE:
-        return start - scene.body.radius
-    return start - 1.1 * reach
+    mechanism = scene.constraint.mechanism if scene else None
+    if mechanism is Mechanism.PLANE:
+        return Ground(0.0, scene.constraint.axes)
+    if mechanism is Mechanism.TABLE:
+        return Ground(start - scene.body.radius)
+    return Ground(start - 1.1 * reach)
 
 
 def holder_of(scene, reach):
@@ -46,7 +61,7 @@ def holder_of(scene, reach):
     mechanism = scene.constraint.mechanism if scene else Mechanism.FREE
     start = start_of(scene)
     if mechanism is Mechanism.POINT:
-        height = float(start[2]) - ground_of(scene, reach)
+        height = float(start[2]) - ground_of(scene, reach).height
         column = surfaces.cone(0.12 * reach, height)
         return [column.placed(Rotation.identity(), start - (0.0, 0.0, 0.75 * height))]
     if mechanism is Mechanism.AXIS:

@@ -55,7 +55,9 @@ SOLIDS: dict[str, Callable] = {
 def solids_of(scene) -> list[Solid] | None:
     """Return the solids of a scene's body, or None if solids cannot show its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
-    if 'parts' in mapping:
+    if 'surface' in mapping:
+        found = [_solid_surface(scene.body.surface)]
+    elif 'parts' in mapping:
         found = [_solid(None if _is_hole(part) else part.get('shape'),
                         part.get('at', (0.0, 0.0, 0.0)), part.get('orientation', IDENTITY))
                  for part in mapping['parts']]
@@ -66,6 +68,14 @@ def solids_of(scene) -> list[Solid] | None:
     else:
         return None
     return found if all(found) else None
+
+
+def _solid_surface(surface):
+    """Return the solid of a scene.surfaces.Surface, None for a torus."""
+    made = {'sphere': lambda: _sphere(surface.size[0]),
+            'ellipsoid': lambda: SOLIDS['ellipsoid'](surface.size),
+            'disk': lambda: SOLIDS['disk'](surface.size[0])}
+    return Solid(*made[surface.kind](), surface.center) if surface.kind in made else None
 
 
 def _is_hole(part):

@@ -123,12 +123,13 @@ class Stage:
             shaft_radius=0.008, head_radius=0.022, head_length=0.06)
 
     def _add_ground(self):
+        ground = ground_of(self.scene, self.unit)
         self._server.scene.add_grid(
             f'/{self._name}/ground', infinite_grid=True, plane='xy',
             cell_size=self.cell / self.unit, section_size=5.0 * self.cell / self.unit,
             cell_color=(165, 165, 170), section_color=(120, 120, 130), section_thickness=1.2,
             fade_distance=22.0, fade_strength=1.5, shadow_opacity=0.25,
-            position=(0.0, 0.0, ground_of(self.scene, self.unit) / self.unit))
+            position=(0.0, 0.0, ground.height / self.unit), wxyz=wxyz(ground.axes))
 
     def _add_holder(self):
         """Add what holds the body."""

@@ -7,9 +7,19 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing import surfaces
 from rigid_body_sim.drawing.body import box_of, drawing_of
+from rigid_body_sim.drawing.setting import ground_of, reach_of
+from rigid_body_sim.messages import marker
+from rigid_body_sim.messages.shapes import CYLINDER, SPHERE
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_names
 
+ROLLING = """
+scene: rolls
+body: {mass: 1.0, inertia: [1.0e-3, 1.2e-3, 1.6e-3], surface: {%s}}
+constraint: {table: {normal: [0.1, 0.3, 1]}}
+effects: [gravity: {g: 9.81}, sliding_friction: {mu: .inf}]
+initial: {euler_zyz: [0.2, 0.6, 0.1], angular_velocity: [1, 0, 3], rolling: true}
+"""
 SOLIDS = {
     'box': {'size': (0.3, 0.2, 0.1)}, 'cylinder': {'radius': 0.2, 'length': 0.5},
     'cone': {'radius': 0.2, 'height': 0.5}, 'ellipsoid': {'semi_axes': (0.3, 0.2, 0.1)},
@@ -61,7 +71,26 @@ def test_every_scene_that_ships_can_be_drawn(name):
     scene = load_scene(name)
     drawing = drawing_of(scene)
     assert np.isfinite(drawing.vertices).all() and np.ptp(drawing.vertices, axis=0).min() > 0.0
-    assert ('true shape' in drawing.about) == ('shape:' in scene.text or 'radius:' in scene.text)
+    assert ('true shape' in drawing.about) == any(
+        key in scene.text for key in ('shape:', 'radius:', 'surface:'))
+
+
+@pytest.mark.parametrize('surface', [
+    'sphere: {radius: 0.1, center: [0.01, 0, 0.02]}', 'ellipsoid: {semi_axes: [0.2, 0.03, 0.02]}',
+    'torus: {radius: 0.1, tube: 0.02}', 'disk: {radius: 0.1}'])
+def test_a_body_with_a_surface_is_that_surface_and_touches_the_drawn_plane(surface):
+    scene = parse_scene(ROLLING % surface)
+    drawing, marked = drawing_of(scene), marker.shape_fields(scene)
+    assert 'true shape' in drawing.about
+    assert marked['type'] == (marker.TRIANGLE_LIST if 'torus' in surface else
+                              marker.TYPES[CYLINDER if 'disk' in surface else SPHERE])
+    start = scene.initial
+    ground = ground_of(scene, reach_of(scene, drawing))
+    points = start.position + Rotation.from_quat(start.orientation).apply(drawing.vertices)
+    heights = Rotation.from_quat(ground.axes).inv().apply(points - [0.0, 0.0, ground.height])[:, 2]
+    size = np.ptp(drawing.vertices, axis=0).max()
+    # 24 chords along a meridian, and a disk is drawn with a thickness of 2 % of its radius
+    assert heights.min() == pytest.approx(0.0, abs=0.01 * size)
 
 
 def test_a_bare_tensor_is_the_box_of_equal_inertia_and_says_so():
