@@ -6,8 +6,8 @@
 A client on the page's websocket takes what a browser would take, and draws nothing. CPU is in
 percent of one core, of the process that serves the page and of the one that simulates; pictures
 are the messages that bring one, a second; growth is that of the resident memory of both from ten
-seconds after the first picture (or a tenth of the time) on, and in the second half. The goals are 60 pictures a second,
-20 % of a core, and no growth in an hour (--seconds 3600).
+seconds after the first picture (or a tenth of the time) on, and in the second half. The goals are
+60 pictures a second, 20 % of a core, and no growth in an hour (--seconds 3600).
 """
 
 import argparse
@@ -68,9 +68,10 @@ async def watch(address, pid, seconds):
             if now - began_at > seconds:
                 break
         took = now - began_at
+        end = sum(map(memory, pids))
         page, *rest = (100.0 * (cpu_seconds(one) - before[one]) / took for one in pids)
         return {'pictures': len(marks) / took, 'cpu_page': page, 'cpu_simulation': sum(rest),
-                'kilobytes': size / took / 1e3, 'memory_mib': (end := sum(map(memory, pids))) / 2**20,
+                'kilobytes': size / took / 1e3, 'memory_mib': end / 2**20,
                 'growth_mib': (end - start) / 2**20, 'growth_late_mib': (end - half) / 2**20}
 
 

@@ -46,8 +46,7 @@ def drawing_of(scene):
     mapping = yaml.safe_load(scene.text)['body']
     if 'surface' in mapping:
         return Drawing([_surface(scene.body.surface)],
-                       f'the surface that touches the plane, the true shape: '
-                       f'{article(scene.body.surface.kind)}')
+                       f'the true shape, {article(scene.body.surface.kind)}')
     if 'parts' in mapping:
         shaped = [part for part in mapping['parts'] if 'shape' in part and not _is_hole(part)]
         if shaped:

@@ -13,7 +13,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.view import hand, mouse
 from rigid_body_sim.view.access import Access
-from rigid_body_sim.view.panel import PRESETS, Panel, look
+from rigid_body_sim.view.panel import PRESETS, Panel, aim
 from rigid_body_sim.view.stage import Stage
 
 PERIOD = 1.0 / 60.0
@@ -58,7 +58,7 @@ class Page:
         self.server.initial_camera.position = PRESETS['3/4']
         self.server.initial_camera.look_at = (0.0, 0.0, 0.0)
         self.server.initial_camera.fov = FIELD_OF_VIEW
-        self.server.on_client_connect(lambda client: look(client, '3/4'))
+        self.server.on_client_connect(aim)
         self.server.gui.main_panel.dock_right()
         self.panel = Panel(self.server, source, self._shown)
         self.mouse = mouse.Mouse()

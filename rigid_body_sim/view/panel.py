@@ -29,9 +29,33 @@ EDIT_AFTER = 0.4
 def look(client, preset):
     """Put the camera of a client to a preset, farther off where its window is narrow."""
     with client.atomic():
-        client.camera.position = np.array(PRESETS[preset]) / min(1.0, client.camera.aspect)
+        client.camera.position = place_of(client, preset)
         client.camera.look_at = (0.0, 0.0, 0.0)
         client.camera.up_direction = (0.0, 0.0, 1.0)
+
+
+def place_of(client, preset):
+    """Return the place of a client's camera for a preset."""
+    return np.array(PRESETS[preset]) / min(1.0, client.camera.aspect)
+
+
+def aim(client, preset='3/4'):
+    """Put the camera of a new client to a preset, and keep all in sight as its window is resized.
+
+    The panel narrows the picture only after a client has connected. Once the person has moved the
+    camera, it stays where it is.
+    """
+    look(client, preset)
+    aimed = [place_of(client, preset)]
+
+    def resized(_):
+        place = place_of(client, preset)
+        if np.allclose(place, aimed[0], rtol=1e-3):
+            return
+        if np.allclose(client.camera.position, aimed[0], atol=1e-3):
+            aimed[0] = place
+            look(client, preset)
+    client.camera.on_update(resized)
 
 
 class Panel:
