@@ -72,13 +72,7 @@ WIDER = {
     'errors': ('test/test_command_line.py', 'test/scene'),
     'testing': ('test/test_extending.py',),
 }
-"""Room -> what else runs: first the digests, the rest when its own tests have found nothing."""
-SLOW = ('test/choice/test_choose.py', 'test/integrators/test_convex_body.py',
-        'test/integrators/test_methods.py', 'test/integrators/test_gauss16.py',
-        'test/integrators/test_dop8.py', 'test/integrators/test_smooth_scenes.py',
-        'test/recording/test_recover.py', 'test/recording/test_flips.py',
-        'test/motions/test_relaxing.py', 'test/study/test_check_scenes.py')
-"""They take minutes in plain Python: they come after what takes seconds."""
+"""Room -> what runs when its own tests have found nothing."""
 
 
 # ---------------------------------------------------------------------------- what is mutated
@@ -306,15 +300,10 @@ def stages(file):
                  if path not in named and words.search(path.read_text())
                  and (path.parent.name not in ('node', 'hard_cases') or room == 'node')]
     nearest = [*named, *sorted(importing, key=lambda path: path not in of_room)]
-    nearest, rest = ([str(path.relative_to(ROOT)) for path in paths] for paths in (
-        nearest, [path for path in of_room if path not in nearest]))
-    wider = WIDER.get(room, ())
-    found = [[path for path in nearest if path not in SLOW],
-             *([test] for test in wider if test == DIGESTS),
-             [path for path in nearest if path in SLOW],
-             [path for path in rest if path not in SLOW], [path for path in rest if path in SLOW],
-             *([test] for test in wider if test != DIGESTS)]
-    return [stage for stage in found if stage]
+    found = [nearest, [path for path in of_room if path not in nearest],
+             *([test] for test in WIDER.get(room, ()))]
+    return [[str(path.relative_to(ROOT)) if isinstance(path, pathlib.Path) else path
+             for path in stage] for stage in found if stage]
 
 
 class Tree:
@@ -357,8 +346,8 @@ class Tree:
 class Trial:
     """Tests mutants, each in one of a few trees."""
 
-    def __init__(self, folder, most):
-        self._trees, self._sound, self._most = queue.Queue(), {}, most
+    def __init__(self, folder, stages):
+        self._trees, self._sound, self._stages = queue.Queue(), {}, stages
         for number in range(PROCESSES):
             self._trees.put(Tree(pathlib.Path(folder) / str(number)))
 
@@ -368,7 +357,7 @@ class Trial:
         path = tree.folder / mutant.file
         original = path.read_text()
         try:
-            left = stages(mutant.file)[:self._most]
+            left = stages(mutant.file)[:self._stages]
             while left:
                 path.write_text(mutant.source)
                 unsound = [test for test, sound in self._sound.items() if not sound]
@@ -400,7 +389,7 @@ def main():
     parser.add_argument('--seed', default='1', help='default: 1')
     parser.add_argument('--count', type=int, default=100, help='default: 100')
     parser.add_argument('--near', action='store_true',
-                        help='run the nearest tests only, for a lower bound of the rate')
+                        help='run the nearest tests only: minutes, and a lower bound of the rate')
     parser.add_argument('folders', nargs='*', default=[PACKAGE], help='default: all')
     options = parser.parse_args()
     table = yaml.safe_load(EQUIVALENT.read_text()) or []
@@ -412,7 +401,7 @@ def main():
             print(f'equivalent: {mutant}\n    {why_equivalent(mutant, table)}', flush=True)
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool):
-        trial = Trial(folder, 2 if options.near else None)
+        trial = Trial(folder, 1 if options.near else None)
         waiting = {pool.submit(trial.found_by, mutant): mutant for mutant in counted}
         for done in concurrent.futures.as_completed(waiting):
             mutant, (test, took) = waiting[done], done.result()
