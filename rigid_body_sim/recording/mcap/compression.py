@@ -61,16 +61,43 @@ def records_of(chunk):
     return raw
 
 
+def zstd_length(data):
+    """Return the bytes of the zstd frame that begins some data; 0 where it does not end in it.
+
+    Raises zstandard.ZstdError where no frame begins.
+    """
+    parameters = zstandard.get_frame_parameters(data)
+    at = zstandard.frame_header_size(data)
+    while at + 3 <= len(data):
+        block = int.from_bytes(data[at:at + 3], 'little')
+        at += 3 + (1 if block >> 1 & 3 == 1 else block >> 3)
+        if block & 1:
+            at += 4 * parameters.has_checksum
+            return at if at <= len(data) else 0
+    return 0
+
+
 def _unzstd(data, size):
     try:
         with zstandard.ZstdDecompressor(max_window_size=2**28).stream_reader(data) as stream:
-            return stream.read(size + 1)
+            raw = stream.read(size + 1)
+        ended = zstd_length(data) > 0
     except zstandard.ZstdError as error:
         raise Damaged(f'a damaged chunk ({error})') from error
+    return _whole(raw, size, ended)
 
 
 def _unlz4(data, size):
+    decompressor = lz4.frame.LZ4FrameDecompressor()
     try:
-        return lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=size + 1)
+        raw = decompressor.decompress(data, max_length=size + 1)
     except RuntimeError as error:
         raise Damaged(f'a damaged chunk ({error})') from error
+    return _whole(raw, size, decompressor.eof)
+
+
+def _whole(raw, size, ended):
+    """Return what was decompressed; Damaged where its frame has no end: others refuse that."""
+    if len(raw) == size and not ended:
+        raise Damaged('a chunk whose compressed data does not end')
+    return raw

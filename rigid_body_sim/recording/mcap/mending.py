@@ -21,7 +21,7 @@ from mcap.writer import MCAP0_MAGIC
 from rigid_body_sim.recording.mcap import chunks
 from rigid_body_sim.recording.mcap.bytes import FileBytes
 from rigid_body_sim.recording.mcap.compression import compressor, records_of
-from rigid_body_sim.recording.mcap.contents import Contents
+from rigid_body_sim.recording.mcap.contents import DESCRIPTIONS, Contents
 from rigid_body_sim.recording.mcap.records import HEAD, Damaged, of_bytes, to_bytes
 from rigid_body_sim.recording.mcap.rescue import rescue
 from rigid_body_sim.recording.mcap.scan import (
@@ -204,6 +204,12 @@ def _hole(damage, scan, last):
     return max(0, end - begin) if begin and end - begin < 10**14 else 0
 
 
+def _messages(records, offsets):
+    """Return the messages of some records alone."""
+    ends = (offsets + HEAD.size + heads(records, offsets)['length'].astype(np.int64)).tolist()
+    return b''.join(records[begin:end] for begin, end in zip(offsets.tolist(), ends, strict=True))
+
+
 class _Composer:
     """Writes at the end of a file, and notes what in its Contents."""
 
@@ -268,10 +274,13 @@ class _Composer:
     def _rescued(self, found, doubtful):
         """Write what was rescued of a chunk as a chunk."""
         if len(found.offsets):
-            data = found.compressed
+            data, records, offsets = found.compressed, found.records, found.offsets
+            if not found.sure and any(opcode in DESCRIPTIONS for opcode, _, _ in found.others):
+                data, records = None, _messages(records, offsets)
+                offsets, _ = walk(records)
             if data is None:
-                data = compressor(found.compression)(found.records)
-            self._chunk(found.compression, data, found.records, found.offsets, not doubtful)
+                data = compressor(found.compression)(records)
+            self._chunk(found.compression, data, records, offsets, not doubtful)
 
     def _loose(self, records):
         """Write messages without a chunk as one."""

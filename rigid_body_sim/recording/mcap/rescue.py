@@ -17,7 +17,7 @@ import zstandard
 from mcap.opcode import Opcode
 
 from rigid_body_sim.recording.mcap.bytes import MemoryBytes
-from rigid_body_sim.recording.mcap.compression import LARGEST_CHUNK
+from rigid_body_sim.recording.mcap.compression import LARGEST_CHUNK, zstd_length
 from rigid_body_sim.recording.mcap.contents import DESCRIPTIONS
 from rigid_body_sim.recording.mcap.forms import (
     CHUNK_FIXED,
@@ -94,7 +94,7 @@ def decompress(name, data, limit):
     records, pieces = 0, []
     try:
         if name == 'zstd':
-            length = _zstd_length(data)
+            length = zstd_length(data)
             stream = zstandard.ZstdDecompressor(max_window_size=2**28).stream_reader(
                 data[:length] if length else data)
             while records <= limit and (piece := stream.read(_STEP)):
@@ -115,19 +115,6 @@ def decompress(name, data, limit):
     except (zstandard.ZstdError, RuntimeError):
         return b''.join(pieces), 0
     return b''.join(pieces), length if records <= limit else 0
-
-
-def _zstd_length(data):
-    """Return the bytes of the zstd frame that begins some data; 0 where it does not end in it."""
-    parameters = zstandard.get_frame_parameters(data)
-    at = zstandard.frame_header_size(data)
-    while at + 3 <= len(data):
-        block = int.from_bytes(data[at:at + 3], 'little')
-        at += 3 + (1 if block >> 1 & 3 == 1 else block >> 3)
-        if block & 1:
-            at += 4 * parameters.has_checksum
-            return at if at <= len(data) else 0
-    return 0
 
 
 def rescue(source, offset, hint=None, cut=False):

@@ -536,7 +536,12 @@ class Scan:
         numbers, counts = np.unique(found['channel'], return_counts=True)
         kept = dict(zip(numbers.tolist(), counts.tolist(), strict=True))
         for opcode, begin, end in rescued.others:
-            self.contents.describe(opcode, rescued.records[begin:end])
+            if opcode in DESCRIPTIONS:
+                record, size = parsed(DESCRIPTIONS[opcode], rescued.records[begin:end])
+                # the chunk is written without those of which bytes may be wrong
+                self._bad_descriptions |= not rescued.sure
+                if record and size == end - begin:
+                    self.contents.note(record)
         if kept:
             self.contents.add_messages(kept, int(found['log_time'].min()),
                                        int(found['log_time'].max()))

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One wrong byte anywhere in a small file of the library's: what it costs, and what is said.
+
+The files are a few kB, so that every byte can be tried: all of them with `make soak`, one of
+eleven here. Their schemas and channels stand inside of the first chunk.
+"""
+
+import contextlib
+import io
+import random
+import struct
+import tempfile
+
+import pytest
+import zstandard
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import make_reader
+from mcap.records import Channel, Message
+from mcap.stream_reader import StreamReader
+from mcap.writer import CompressionType, Writer
+from recording.conftest import SOAK
+
+from rigid_body_sim.recording.mcap.compression import compressor, zstd_length
+from rigid_body_sim.recording.mcap.mending import Losses, mend
+from rigid_body_sim.recording.mcap.records import HEAD
+
+COUNT = 24
+ERRORS = (McapError, zstandard.ZstdError, EOFError, ValueError, LookupError, RuntimeError,
+          MemoryError, OverflowError, struct.error, OSError)
+FORMS = {'uncompressed': CompressionType.NONE, 'lz4': CompressionType.LZ4,
+         'zstd': CompressionType.ZSTD, 'no chunks': None}
+
+
+def small(form):
+    """Return the bytes of a file with 24 messages on two channels, eight in a chunk."""
+    stream, draw = io.BytesIO(), random.Random(1)
+    writer = Writer(stream, chunk_size=300, compression=FORMS[form] or CompressionType.NONE,
+                    use_chunking=FORMS[form] is not None)
+    writer.start('ros2', 'theirs')
+    schema = writer.register_schema('a/B', 'ros2msg', b'float64 data')
+    channels = [writer.register_channel(f'/{name}', 'cdr', schema) for name in 'xy']
+    for k in range(COUNT):
+        writer.add_message(channels[k % 2], 1000 + 10 * k, draw.randbytes(8 + k % 3),
+                           2000 + 10 * k, k // 2)
+    writer.finish()
+    return stream.getvalue()
+
+
+def messages(content):
+    return [(channel.topic, message.log_time, message.publish_time, message.sequence,
+             message.data) for _, channel, message in
+            make_reader(io.BytesIO(content)).iter_messages(log_time_order=False)]
+
+
+def readable(content):
+    """Return how many messages the library reads, by the summary or record by record."""
+    counts, channels = [0, 0], set()
+    with contextlib.suppress(*ERRORS):
+        counts[0] = len(messages(content))
+    with contextlib.suppress(*ERRORS):
+        for record in StreamReader(io.BytesIO(content), record_size_limit=2**20).records:
+            if isinstance(record, Channel):
+                channels.add(record.id)
+            counts[1] += isinstance(record, Message) and record.channel_id in channels
+    return max(counts)
+
+
+def mended(content):
+    """Return what the library reads of a mended file, and the Losses."""
+    with tempfile.TemporaryFile() as stream, tempfile.TemporaryFile() as beside:
+        stream.write(content)
+        stream.flush()
+        losses = mend(stream, lambda *_: {'about': 'it'}, lambda: beside).losses
+        out = beside if beside.seek(0, 2) else stream
+        out.seek(0)
+        return messages(out.read()), losses
+
+
+def payload(content):
+    """Return the places of the bytes that are data of a chunk, or a message without a chunk."""
+    places, at = set(), 8
+    while at < len(content) - 8:
+        opcode, length = HEAD.unpack_from(content, at)
+        end = at + HEAD.size + length
+        if opcode == Opcode.CHUNK:
+            places.update(range(at + 49 + int.from_bytes(content[at + 37:at + 41], 'little'), end))
+        elif opcode == Opcode.MESSAGE:
+            places.update(range(at, end))
+        at = end
+    return places
+
+
+@pytest.mark.parametrize('wrong', [0x55, 0x80, 0x01])
+@pytest.mark.parametrize('form', FORMS)
+def test_a_wrong_byte_costs_what_it_must_and_all_of_it_is_told(form, wrong):
+    content = small(form)
+    truth, inside = messages(content), payload(content)
+    assert len(truth) == COUNT
+    for at in range(8 + wrong % 11, len(content) - 8, 1 if SOAK else 11):
+        flipped = bytearray(content)
+        flipped[at] ^= wrong
+        found, losses = mended(flipped)
+        told = losses or Losses()
+        assert told.certainty == 'counted', at
+        assert len(found) + told.messages == COUNT, at
+        assert len(found) >= readable(flipped), at
+        other = len(set(found) - set(truth))
+        if at not in inside:
+            assert found == truth, at
+        elif form == 'uncompressed':
+            assert len(found) == COUNT, at
+            assert other <= 1, at
+        elif form == 'no chunks':
+            # no checksum tells of a wrong byte in the data of such a message
+            assert len(found) >= COUNT - 1, at
+            assert other <= 1, at
+        else:
+            assert len(found) >= COUNT - 8, at
+        if other and form != 'no chunks':
+            assert told.doubtful >= other, at
+            assert told.doubtful <= 8, at
+
+
+@pytest.mark.parametrize('form', FORMS)
+def test_a_file_cut_anywhere_keeps_what_was_there(form):
+    content = small(form)
+    truth, kept = messages(content), 0
+    for size in range(60, len(content), 1 if SOAK else 23):
+        found, losses = mended(content[:size])
+        assert found == truth[:len(found)], size
+        assert len(found) >= kept, size
+        kept = len(found)
+        assert losses is not None
+        assert losses.doubtful == 0
+    assert kept == COUNT
+
+
+def test_a_whole_file_is_left_alone():
+    for form in FORMS:
+        found, losses = mended(small(form))
+        assert len(found) == COUNT
+        assert losses is None
+
+
+@pytest.mark.parametrize('size', [0, 1, 100, 2 ** 17, 2 ** 17 + 1, 300_000])
+@pytest.mark.parametrize('kind', ['random', 'zeros'])
+def test_the_end_of_a_zstd_frame_is_found_from_its_blocks(size, kind):
+    data = bytes(size) if kind == 'zeros' else random.Random(size).randbytes(size)
+    frame = compressor('zstd')(data)
+    assert zstd_length(frame) == len(frame)
+    assert zstd_length(frame + b'more') == len(frame)
+    assert zstd_length(frame[:-1]) == 0
