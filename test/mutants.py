@@ -65,7 +65,7 @@ WIDER = {
     'drawing': ('test/messages', 'test/view'),
     'messages': ('test/recording', 'test/simulation'),
     'recording': ('test/analysis',),
-    'study': (DIGESTS, 'test/hard_cases/test_command.py'),
+    'study': ('test/hard_cases/test_command.py', 'test/test_digests.py'),
     'realtime': ('test/node',),
     'cli': ('test/test_command_line.py',),
     'command_line': ('test/test_command_line.py',),
