@@ -52,6 +52,16 @@ LONGEST = 1800      # s, all tests of a stage
 PROCESSES = 2
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
+FIRST_DIGEST = '''
+import sys
+from rigid_body_sim.simulation import arithmetic
+from rigid_body_sim.study.machines import cases, digests
+table, kept = cases.cases(), arithmetic.digests()
+names = sorted(table, key=lambda name: hash(tuple(map(ord, name))))
+sys.exit(any({part: digests.digest(of) for part, of in table[name].run().items()} != kept[name]
+             for name in names))
+'''
+"""The same as the test DIGESTS, but that the first digest that differs ends it."""
 WIDER = {
     'compilation': (DIGESTS, 'test/numerics', 'test/motions'),
     'numerics': (DIGESTS, 'test/motions', 'test/theory'),
@@ -72,7 +82,13 @@ WIDER = {
     'errors': ('test/test_command_line.py', 'test/scene'),
     'testing': ('test/test_extending.py',),
 }
-"""Room -> what runs when its own tests have found nothing."""
+"""Room -> what else runs: first the digests, the rest when its own tests have found nothing."""
+SLOW = ('test/choice/test_choose.py', 'test/integrators/test_convex_body.py',
+        'test/integrators/test_methods.py', 'test/integrators/test_gauss16.py',
+        'test/integrators/test_dop8.py', 'test/integrators/test_smooth_scenes.py',
+        'test/recording/test_recover.py', 'test/recording/test_flips.py',
+        'test/motions/test_relaxing.py', 'test/study/test_check_scenes.py')
+"""They take minutes in plain Python: they come after what takes seconds."""
 
 
 # ---------------------------------------------------------------------------- what is mutated
@@ -299,18 +315,23 @@ def stages(file):
     importing = [path for path in sorted(tests.rglob('test_*.py'))
                  if path not in named and words.search(path.read_text())
                  and (path.parent.name not in ('node', 'hard_cases') or room == 'node')]
-    nearest = [*named, *sorted(importing, key=lambda path: path not in of_room)]
-    found = [nearest, [path for path in of_room if path not in nearest],
-             *([test] for test in WIDER.get(room, ()))]
-    return [[str(path.relative_to(ROOT)) if isinstance(path, pathlib.Path) else path
-             for path in stage] for stage in found if stage]
+    wider, lists = WIDER.get(room, ()), [
+        named, [path for path in importing if path in of_room],
+        [path for path in of_room if path not in (*named, *importing)],
+        [path for path in importing if path not in of_room]]
+    lists = [[str(path.relative_to(ROOT)) for path in paths] for paths in lists]
+    quick = [[path for path in paths if path not in SLOW] for paths in lists]
+    found = [quick[0], [test for test in wider if test == DIGESTS], *quick[1:],
+             [path for paths in lists for path in paths if path in SLOW],
+             *([test] for test in wider if test != DIGESTS)]
+    return [stage for stage in found if stage]
 
 
 class Tree:
     """A copy of the repository in which a mutant can be tested."""
 
     def __init__(self, folder):
-        self.folder = pathlib.Path(folder) / 'tree'
+        self.folder, self._run = pathlib.Path(folder) / 'tree', None
         shutil.copytree(ROOT, self.folder, symlinks=True, ignore=shutil.ignore_patterns(
             '.venv*', '.git', '.cache', '__pycache__', '.*_cache'))
         (self.folder / '.venv').symlink_to(ROOT / '.venv')
@@ -320,25 +341,33 @@ class Tree:
             'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(self.folder), 'OMP_NUM_THREADS': '1',
             'PYTHONDONTWRITEBYTECODE': '1', 'XDG_CACHE_HOME': str(pathlib.Path(folder) / 'cache')}
 
+    def end(self):
+        """Kill the processes that run."""
+        if self._run:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._run.pid, signal.SIGKILL)
+
     def failing(self, tests, without=()):
         """Return the first test that fails, None if all pass, or 'a hang'."""
         left_out = [part for test in without for part in ('--deselect', test)]
-        run = subprocess.Popen(
-            [sys.executable, '-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', '--timeout',
-             str(PATIENCE), '--tb', 'no', '-rfE', *left_out, *tests], cwd=self.folder,
-            env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            start_new_session=True)
+        command = ['-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', '--timeout',
+                   str(PATIENCE), '--tb', 'no', '-rfE', *left_out, *tests]
+        self._run = run = subprocess.Popen(
+            [sys.executable, *(['-c', FIRST_DIGEST] if tests == [DIGESTS] else command)],
+            cwd=self.folder, env=self.environment, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, start_new_session=True)
         try:
             output, _ = run.communicate(timeout=LONGEST)
         except subprocess.TimeoutExpired:
-            os.killpg(run.pid, signal.SIGKILL)
+            self.end()
             run.communicate()
             return 'a hang'
         finally:
-            with contextlib.suppress(ProcessLookupError):    # what a failed test left behind
-                os.killpg(run.pid, signal.SIGKILL)
+            self.end()    # what a failed test left behind
         if run.returncode in (0, 5):
             return None
+        if tests == [DIGESTS]:
+            return DIGESTS
         found = re.search(r'^(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*)', output, re.MULTILINE)
         return found[1] if found else f'pytest itself (status {run.returncode})'
 
@@ -346,10 +375,17 @@ class Tree:
 class Trial:
     """Tests mutants, each in one of a few trees."""
 
-    def __init__(self, folder, stages):
-        self._trees, self._sound, self._stages = queue.Queue(), {}, stages
-        for number in range(PROCESSES):
-            self._trees.put(Tree(pathlib.Path(folder) / str(number)))
+    def __init__(self, folder, most):
+        self._trees, self._sound, self._most, self._ended = queue.Queue(), {}, most, False
+        self._all = [Tree(pathlib.Path(folder) / str(number)) for number in range(PROCESSES)]
+        for tree in self._all:
+            self._trees.put(tree)
+
+    def end(self):
+        """End what runs, and begin no more."""
+        self._ended = True
+        for tree in self._all:
+            tree.end()
 
     def found_by(self, mutant):
         """Return (the test that finds a mutant, or None; the s that this took)."""
@@ -357,8 +393,8 @@ class Trial:
         path = tree.folder / mutant.file
         original = path.read_text()
         try:
-            left = stages(mutant.file)[:self._stages]
-            while left:
+            left = stages(mutant.file)[:self._most]
+            while left and not self._ended:
                 path.write_text(mutant.source)
                 unsound = [test for test, sound in self._sound.items() if not sound]
                 failing = tree.failing(left[0], unsound)
@@ -389,7 +425,7 @@ def main():
     parser.add_argument('--seed', default='1', help='default: 1')
     parser.add_argument('--count', type=int, default=100, help='default: 100')
     parser.add_argument('--near', action='store_true',
-                        help='run the nearest tests only: minutes, and a lower bound of the rate')
+                        help='run the nearest tests only, for a lower bound of the rate')
     parser.add_argument('folders', nargs='*', default=[PACKAGE], help='default: all')
     options = parser.parse_args()
     table = yaml.safe_load(EQUIVALENT.read_text()) or []
@@ -401,13 +437,19 @@ def main():
             print(f'equivalent: {mutant}\n    {why_equivalent(mutant, table)}', flush=True)
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool):
-        trial = Trial(folder, 1 if options.near else None)
+        trial = Trial(folder, 3 if options.near else None)
         waiting = {pool.submit(trial.found_by, mutant): mutant for mutant in counted}
-        for done in concurrent.futures.as_completed(waiting):
-            mutant, (test, took) = waiting[done], done.result()
-            if test is None:
-                survivors.append(mutant)
-            print(f'{test or "SURVIVES"} ({took:.0f} s): {mutant}', flush=True)
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+        try:
+            for done in concurrent.futures.as_completed(waiting):
+                mutant, (test, took) = waiting[done], done.result()
+                if test is None:
+                    survivors.append(mutant)
+                print(f'{test or "SURVIVES"} ({took:.0f} s): {mutant}', flush=True)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            trial.end()
+            raise
     rate = 1.0 - len(survivors) / len(counted) if counted else 1.0
     for mutant in survivors:
         print(f'survivor: {mutant}')
