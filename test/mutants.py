@@ -52,7 +52,7 @@ LONGEST = 1800      # s, all tests of a stage
 PROCESSES = 2
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
-FIRST_DIGEST = '''
+FIRST_DIGEST = """
 import sys
 from rigid_body_sim.simulation import arithmetic
 from rigid_body_sim.study.machines import cases, digests
@@ -60,7 +60,7 @@ table, kept = cases.cases(), arithmetic.digests()
 names = sorted(table, key=lambda name: hash(tuple(map(ord, name))))
 sys.exit(any({part: digests.digest(of) for part, of in table[name].run().items()} != kept[name]
              for name in names))
-'''
+"""
 """The same as the test DIGESTS, but that the first digest that differs ends it."""
 WIDER = {
     'compilation': (DIGESTS, 'test/numerics', 'test/motions'),
