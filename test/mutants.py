@@ -49,7 +49,6 @@ ELSEWHERE = ('study/precision/peers/', 'numerics/make_functions.py', 'study/prec
 WANTED = 0.95
 PATIENCE = 120      # s, a test; the tests next to a change take seconds
 LONGEST = 1800      # s, all tests of a stage
-PROCESSES = 2
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
 FIRST_DIGEST = """
@@ -375,9 +374,9 @@ class Tree:
 class Trial:
     """Tests mutants, each in one of a few trees."""
 
-    def __init__(self, folder, most):
+    def __init__(self, folder, most, processes):
         self._trees, self._sound, self._most, self._ended = queue.Queue(), {}, most, False
-        self._all = [Tree(pathlib.Path(folder) / str(number)) for number in range(PROCESSES)]
+        self._all = [Tree(pathlib.Path(folder) / str(number)) for number in range(processes)]
         for tree in self._all:
             self._trees.put(tree)
 
@@ -424,6 +423,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
     parser.add_argument('--seed', default='1', help='default: 1')
     parser.add_argument('--count', type=int, default=100, help='default: 100')
+    parser.add_argument('--processes', type=int, default=2, help='default: 2')
     parser.add_argument('--near', action='store_true',
                         help='run the nearest tests only, for a lower bound of the rate')
     parser.add_argument('folders', nargs='*', default=[PACKAGE], help='default: all')
@@ -436,8 +436,8 @@ def main():
         if mutant not in counted:
             print(f'equivalent: {mutant}\n    {why_equivalent(mutant, table)}', flush=True)
     with (tempfile.TemporaryDirectory() as folder,
-          concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool):
-        trial = Trial(folder, 3 if options.near else None)
+          concurrent.futures.ThreadPoolExecutor(options.processes) as pool):
+        trial = Trial(folder, 2 if options.near else None, options.processes)
         waiting = {pool.submit(trial.found_by, mutant): mutant for mutant in counted}
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
         try:

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is drawn of a body, and what is said of it."""
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.drawing.body import UNKNOWN, box_of, drawing_of
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+
+
+def scene(body):
+    return parse_scene(f'scene: s\nbody: {{{body}}}\nconstraint: free\neffects: []\ninitial: {{}}')
+
+
+def extent(drawing):
+    return np.ptp(drawing.vertices, axis=0)
+
+
+def test_the_box_of_equal_inertia_has_its_edges_and_its_place():
+    one = scene('mass: 12, inertia: [5, 10, 13], center_of_mass: [1, 2, 3]')
+    assert box_of(one.body) == pytest.approx((3.0, 2.0, 1.0))
+    drawing = drawing_of(one)
+    assert extent(drawing) == pytest.approx([3.0, 2.0, 1.0])
+    assert drawing.vertices.mean(axis=0) == pytest.approx([1.0, 2.0, 3.0])
+    assert drawing.about.startswith('a box with the same mass and moments')
+
+
+@pytest.mark.parametrize(('inertia', 'edges'), [
+    ([4, 9, 13], (3.0, 2.0, 0.06)), ([25, 0, 25], (0.1, 5.0, 0.1))])
+def test_a_thin_body_is_drawn_two_hundredths_thick(inertia, edges):
+    assert extent(drawing_of(scene(f'mass: 12, inertia: {inertia}'))) == pytest.approx(edges)
+
+
+def test_a_point_is_a_small_cube_and_an_unknown_body_a_box():
+    assert extent(drawing_of(load_scene('spherical_pendulum'))) == pytest.approx([0.1] * 3)
+    assert extent(drawing_of(None)) == pytest.approx(UNKNOWN)
+    assert 'unknown' in drawing_of(None).about
+
+
+@pytest.mark.parametrize(('parts', 'about', 'drawn'), [
+    ('{mass: 1, shape: {box: {size: [1, 1, 1]}}}', 'the true shape, 1 part', 1),
+    ('{mass: 1, shape: {box: {size: [1, 1, 1]}}}, {mass: 1, shape: {disk: {radius: 1}}}',
+     'the true shape, 2 parts', 2),
+    ('{mass: 4, shape: {box: {size: [1, 1, 1]}}}, '
+     '{mass: -1, shape: {solid_sphere: {radius: 0.2}}}', '1 of 2 parts; not drawn: 1 hole', 1),
+    ('{mass: 4, shape: {box: {size: [1, 1, 1]}}}, {mass: 1, point: [1, 0, 0]}, '
+     '{mass: -1, shape: {solid_sphere: {radius: 0.2}}}, {mass: -1, shape: {solid_sphere: '
+     '{radius: 0.1}}, at: [0.3, 0, 0]}', '1 of 4 parts; not drawn: 2 holes, 1 shapeless part', 1)])
+def test_of_a_composite_it_is_said_what_is_not_drawn(parts, about, drawn):
+    drawing = drawing_of(scene(f'parts: [{parts}]'))
+    assert drawing.about == about
+    assert len(drawing.surfaces) == drawn
+
+
+def test_a_shape_is_drawn_where_its_centre_of_mass_is():
+    drawing = drawing_of(scene('mass: 1, shape: {solid_sphere: {radius: 2}}, '
+                               'center_of_mass: [1, 2, 3]'))
+    assert drawing.about == 'the true shape, a solid sphere'
+    assert drawing.vertices.max(axis=0) == pytest.approx([3.0, 4.0, 5.0], rel=1e-2)

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The arrows of a picture beside the motion that follows: omega, L, force and torque."""
+
+import types
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.analysis.drift import FLOOR
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.view.curves import POINTS, Curves
+from rigid_body_sim.view.frames import Frame, Mechanics
+
+TENSOR = [[0.3, 0.01, 0.02], [0.01, 0.4, -0.03], [0.02, -0.03, 0.5]]
+START = 'orientation: [0.1, 0.2, 0.3, 0.9]'
+CASES = {
+    'free': ('free', f'{START}, angular_velocity: [1, 2, 3], velocity: [4, 5, 6]'),
+    'pivot': ('pivot', f'{START}, angular_velocity: [1, 2, 3]'),
+    'hinge': ('{hinge: {axis: [1, 2, 2], through: [0.1, 0, 0.2]}}', f'{START}, rate: 3')}
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_arrows_are_the_slopes_of_momentum(name):
+    """Force = m dv/dt of the centre of mass, torque = dL/dt, by differences of the states."""
+    constraint, initial = CASES[name]
+    scene = parse_scene(f'scene: s\nbody: {{mass: 2, inertia: {TENSOR}, center_of_mass: '
+                        f'[0.1, -0.2, 0.3]}}\nconstraint: {constraint}\n'
+                        f'effects: [gravity: {{g: 9.81}}]\ninitial: {{{initial}}}\n')
+    mechanics, h = Mechanics(scene), 1e-4
+    simulation = Simulation(scene, 'dop8', accuracy=1e-10, horizon=0.3)
+    before, now, after = simulation.states([0.1 - h, 0.1, 0.1 + h]).vector
+    found = mechanics.arrows(now, Wrench())
+
+    def momentum(vector):
+        return mechanics.arrows(vector, Wrench()).momentum
+
+    def velocity(vector):
+        return mechanics.velocity_at(vector, mechanics.center(vector))
+    slope = 2.0 * (velocity(after) - velocity(before)) / (2.0 * h)
+    assert found.force == pytest.approx(slope, rel=1e-5, abs=1e-5)
+    turn = Rotation.from_quat(now[1:5])
+    assert found.omega == pytest.approx(turn.apply(now[5:8]))
+    spin = turn.apply(np.array(TENSOR) @ now[5:8])
+    if name == 'free':
+        assert found.momentum == pytest.approx(spin)
+    if name == 'hinge':
+        axis = turn.apply(np.array([1.0, 2.0, 2.0]) / 3.0)
+        slope = axis * (axis @ (momentum(after) - momentum(before))) / (2.0 * h)
+    else:
+        slope = (momentum(after) - momentum(before)) / (2.0 * h)
+    assert found.torque == pytest.approx(slope, rel=1e-5, abs=1e-5)
+    center = now[8:11] + turn.apply([0.1, -0.2, 0.3])
+    assert mechanics.center(now) == pytest.approx(center)
+
+
+class Gui:
+    """What is asked of viser for a chart."""
+
+    def add_uplot(self, data, *series, **settings):
+        self.chart = types.SimpleNamespace(data=data)
+        return self.chart
+
+
+def frame(time, energy=0.0, momentum=0.0, restarted=False):
+    return Frame(time, None, None, None, 0.0, energy, momentum, (), restarted)
+
+
+def test_curves_hold_the_last_residuals_in_units_of_their_scale():
+    gui = Gui()
+    curves = Curves(gui)
+    assert [part.tolist() for part in gui.chart.data[:3]] == [[0.0], [0.0], [0.0]]
+    for one in (frame(1.0, 2e-16, -3e-16), frame(2.0, np.nan), frame(2.0, 1e-16, 0.0),
+                frame(2.0, 9e-16), frame(1.5, 9e-16), frame(3.0, 4e-16, 5e-16)):
+        curves.take(one)
+    curves.draw()
+    times, energy, momentum, upper, lower = gui.chart.data
+    assert times.tolist() == [1.0, 2.0, 3.0]
+    assert energy == pytest.approx([2.0, 1.0, 4.0])
+    assert momentum == pytest.approx([-3.0, 0.0, 5.0])
+    assert upper == pytest.approx([FLOOR / 1e-16] * 3)
+    assert (lower == -upper).all()
+    curves.take(frame(0.5, 7e-16, 0.0, restarted=True))
+    curves.draw()
+    assert gui.chart.data[0].tolist() == [0.5]
+    for k in range(2 * POINTS):
+        curves.take(frame(1.0 + k))
+    curves.draw()
+    assert len(gui.chart.data[0]) == POINTS
+    assert gui.chart.data[0][-1] == 2.0 * POINTS
