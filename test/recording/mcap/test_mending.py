@@ -151,3 +151,46 @@ def test_the_end_of_a_zstd_frame_is_found_from_its_blocks(size, kind):
     assert zstd_length(frame) == len(frame)
     assert zstd_length(frame + b'more') == len(frame)
     assert zstd_length(frame[:-1]) == 0
+
+
+def records(content):
+    """Return (opcode, begin, end) of the records of a whole file."""
+    found, at = [], 8
+    while at < len(content) - 8:
+        opcode, length = HEAD.unpack_from(content, at)
+        found.append((opcode, at, at + HEAD.size + length))
+        at += HEAD.size + length
+    return found
+
+
+@pytest.mark.parametrize('form', ['uncompressed', 'lz4', 'zstd'])
+@pytest.mark.parametrize('lost', [0, 1])
+def test_a_damaged_chunk_behind_one_that_is_gone_is_found_by_the_index(form, lost):
+    """Of the first one, and the records behind it, nothing is left; of the second no head."""
+    content = small(form)
+    chunks = [(begin, end) for opcode, begin, end in records(content) if opcode == Opcode.CHUNK]
+    truth, counts = messages(content), [5, 8, 8, 3]
+    assert len(chunks) == 4
+    gone, headless = chunks[lost], chunks[lost + 1]
+    damaged = bytearray(content)
+    damaged[gone[0]:headless[0] + 9] = bytes(headless[0] + 9 - gone[0])
+    found, losses = mended(damaged)
+    first = sum(counts[:lost])
+    assert found == truth[:first] + truth[first + counts[lost]:]
+    assert (losses.messages, losses.certainty, losses.doubtful) == (counts[lost], 'counted', 0)
+
+
+@pytest.mark.parametrize('form', ['uncompressed', 'lz4', 'zstd'])
+def test_without_a_tail_what_is_behind_a_chunk_that_is_gone_is_found_by_its_form(form):
+    content = small(form)
+    kinds = records(content)
+    chunks = [(begin, end) for opcode, begin, end in kinds if opcode == Opcode.CHUNK]
+    end = next(begin for opcode, begin, _ in kinds if opcode == Opcode.DATA_END)
+    truth = messages(content)
+    damaged = bytearray(content[:end])
+    damaged[chunks[1][0]:chunks[1][1]] = bytes(chunks[1][1] - chunks[1][0])
+    found, losses = mended(damaged)
+    assert found == truth[:5] + truth[13:]
+    # the sequence numbers of the chunks around it count what is missing
+    assert losses.messages == 8
+    assert losses.seconds == pytest.approx((1130 - 1040) * 1e-9)
