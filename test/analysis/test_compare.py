@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording beside its rerun, on messages that are made by hand: where bits part, by how much."""
+"""A recording beside its rerun, on messages made by hand: where bits part, and by how much."""
 
 import types
 

@@ -57,7 +57,8 @@ def test_a_drag_lasts_until_it_ends_and_clicks_wait_in_their_order():
 
     def event(**values):
         return types.SimpleNamespace(**values)
-    asyncio.run(mouse._drag(event(phase='update', start_position=(1, 2, 3), end_position=(4, 5, 6))))
+    asyncio.run(mouse._drag(event(phase='update', start_position=(1, 2, 3),
+                                  end_position=(4, 5, 6))))
     assert (mouse.pull.grabbed.tolist(), mouse.pull.cursor.tolist()) == ([1, 2, 3], [4, 5, 6])
     asyncio.run(mouse._drag(event(phase='end')))
     assert mouse.pull is None
