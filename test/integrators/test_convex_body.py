@@ -390,6 +390,16 @@ def test_euler_disk_ends_with_the_exponent_of_its_friction(effect, a, left):
         assert left(tilt, m, R) == pytest.approx(rest - time, rel=3e-2)
 
 
+def test_dry_rolling_friction_that_holds_a_sliding_disk_ends_in_one_line():
+    sim = simulation('{mass: 0.0075, shape: {disk: {radius: 0.012}}}',
+                     'sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.01}',
+                     '{euler_zyz: [0, 0.2, 0], position: [0, 0, 0.3], velocity: [0.1, 0, 1.5], '
+                     'angular_velocity: [35, 0, 8]}', accuracy=1e-9)
+    with pytest.raises(NotConverged, match='dry rolling friction') as error:
+        sim.advance(4000)
+    assert '\n' not in str(error.value)
+
+
 # -- limits -----------------------------------------------------------------------------------
 
 
@@ -444,7 +454,9 @@ def test_painleve_bound_is_told_and_the_paradox_ends_the_run_in_one_line():
 # -- shipped scenes ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize('name', ['rolling_disk', 'euler_disk', 'rattleback'])
+@pytest.mark.parametrize('name', ['rolling_disk', 'euler_disk', 'rattleback', 'tippe_top',
+                                  'rising_egg', 'routh_sphere', 'chaplygin_sphere',
+                                  'tossed_coin'])
 def test_shipped_scene_is_confirmed(name):
     rows = confirm(load_scene(name))
     assert len(rows) >= 4

@@ -28,9 +28,10 @@ class Experiment:
         self.simulation = Simulation(scene, method, accuracy)
         self._accuracy = accuracy
 
-    def variant(self, changes):
-        """Return the same experiment with changes to the scene, {key.path: numbers}."""
+    def variant(self, changes, texts=()):
+        """Return the same experiment with changes to the scene, {key.path: numbers or text}."""
         overrides = [f'{key}={np.asarray(value).tolist()}' for key, value in changes.items()]
+        overrides += [f'{key}={text}' for key, text in dict(texts).items()]
         return Experiment(
             parse_scene(self.scene.text, overrides, self.scene.name), self.method, self._accuracy)
 

@@ -68,7 +68,8 @@ SYSTEMS = {
     **dict.fromkeys(('sleeping_top', 'falling_top'), System(sleeping_top.check, 40.0)),
     **{
         name: System(getattr(convex_body, name), 10.0)
-        for name in ('rolling_disk', 'euler_disk', 'rattleback')
+        for name in ('rolling_disk', 'euler_disk', 'rattleback', 'tippe_top', 'rising_egg',
+                     'routh_sphere', 'chaplygin_sphere', 'tossed_coin')
     },
     **{
         name: System(getattr(degenerate, name), 20.0)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Balls that roll without slip: Routh's, with its centre of mass off the middle, and Chaplygin's.
+
+Symbols: m mass, A moment across the axis of symmetry, C along it, R radius, a from the middle down
+to the centre of mass, theta from the vertical to the axis, s and w3 the parts of omega along the
+horizontal line's normal in the body and along the axis, r from the centre of mass to the contact.
+
+Routh's sphere keeps its energy, Jellett's A R s sin(theta) + C w3 (R cos(theta) - a), and Routh's
+w3 sqrt(A C + m r.I r). So s and w3 are functions of theta, and theta(t) is one quadrature.
+Chaplygin's sphere has its centre of mass in the middle and any moments: it keeps its energy,
+and M = I omega + m r x (omega x r) as a vector in the world.
+
+Sources: C. G. Gray and B. G. Nickel, Am. J. Phys. 68 (2000) 821; A. V. Borisov, Y. N. Fedorov,
+I. S. Mamaev, Regul. Chaotic Dyn. 13 (2008) 443.
+"""
+
+import math
+
+
+def routh_constant(w3, theta, A, C, m, R, a):
+    """Return w3 sqrt(A C + m r.I r), kg m^2/s."""
+    arm = A * (R * math.sin(theta)) ** 2 + C * (R * math.cos(theta) - a) ** 2
+    return w3 * math.sqrt(A * C + m * arm)
+
+
+def swing(theta, s, w3, A, C, m, R, a, g):
+    """Return how a Routh sphere swings from a turning point of theta.
+
+    Returns
+    -------
+    other : float
+        The other turning point, rad.
+    time : float
+        From one to the other, s.
+    """
+    from scipy.integrate import quad
+    from scipy.optimize import brentq
+    jellett = A * R * s * math.sin(theta) + C * w3 * (R * math.cos(theta) - a)
+    routh = routh_constant(w3, theta, A, C, m, R, a)
+
+    def parts(x):
+        """Return twice the energy without theta', and what theta'^2 is multiplied by."""
+        along, across = a - R * math.cos(x), R * math.sin(x)
+        square = along * along + across * across
+        w3 = routh / routh_constant(1.0, x, A, C, m, R, a)
+        s = (jellett + C * w3 * along) / (A * across)
+        still = (A * s * s + C * w3 * w3 + m * (
+            (s * s + w3 * w3) * square - (w3 * along - s * across) ** 2)
+            + 2.0 * m * g * (R - a * math.cos(x)))
+        return still, A + m * square
+
+    energy = parts(theta)[0]
+
+    def left(x):
+        return energy - parts(x)[0]
+
+    side = 1.0 if left(theta + 1e-4) > 0.0 else -1.0
+    far = theta + 1e-4 * side
+    while left(far) > 0.0:
+        far += 0.01 * side
+    other = brentq(left, far - 0.01 * side, far, xtol=1e-15)
+    middle, half = 0.5 * (theta + other), 0.5 * abs(other - theta)
+
+    def share(angle):
+        # theta = middle + half sin(angle): the roots at both ends are taken out
+        x = middle + half * math.sin(angle)
+        speed = left(x) / parts(x)[1]
+        return half * math.cos(angle) / math.sqrt(speed)
+
+    edge = 0.5 * math.pi
+    return other, quad(share, -edge, edge, epsabs=1e-12, epsrel=1e-12)[0]
