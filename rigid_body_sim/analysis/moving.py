@@ -58,8 +58,9 @@ class Moving:
         return {
             'times': _round(self.times, 7), 'orientation': _round(self.orientation, 5),
             'position': _round(self.position / unit, 5), 'middle': _round(middle / unit, 6),
-            'floor': ground.height / unit, 'slope': list(ground.axes), 'cell': cell_of(unit) / unit,
-            'follow': follows(self.scene), 'axis': _round(reach * axis, 5), 'traced': what,
+            'floor': ground.height / unit, 'slope': list(ground.axes),
+            'cell': cell_of(unit) / unit, 'follow': follows(self.scene),
+            'axis': _round(reach * axis, 5), 'traced': what,
             'surfaces': [_mesh(one, unit) for one in drawing.surfaces],
             'holder': [_mesh(one, unit, 'holder') for one in holder_of(self.scene, unit)],
             'arrow': _mesh(_arrow(), 1.0), 'arrows': self._arrows(turns)}
