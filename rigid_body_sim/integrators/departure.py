@@ -47,12 +47,13 @@ def relaxing(scene, vector):
 
     About, and infinite where it has no such axis.
     """
-    inner, moments = scene.effect('internal_dissipation'), scene.body.about_center.moments
+    moments = scene.body.about_center.moments
     frame = scene.constraint.frame(scene.body)
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     L = hypot3(*(I * w for I, w in zip(frame.moments, omega, strict=True)))
     low, high = min(moments), max(moments)
-    rate = inner.coefficient * (L * L / high) * ((high - low) / low) if low > 0.0 else 0.0
+    rate = (scene.inner_dissipation * (L * L / high) * ((high - low) / low) if low > 0.0
+            else 0.0)
     return FOLDS / rate if rate > 0.0 else math.inf
 
 
@@ -76,6 +77,8 @@ class Departure:
 
     Attributes
     ----------
+    begin : float
+        The time of the state, s.
     end : float
         The time until which it holds, s; infinite near an axis that attracts.
     """
@@ -99,7 +102,7 @@ class Departure:
         if self._mean < 0.0:
             self._up, self._down = self._down, self._up
         state = STATE.load(vector.tolist())
-        self._begin = state.time
+        self.begin = state.time
         q, point = multiply(*state.orientation, *frame.axes), frame.from_body(frame.point)
         self._point, carried = point, rotate(*q, *cross(omega, point))
         self._place = plus(state.position, rotate(*q, *point))
@@ -114,7 +117,7 @@ class Departure:
         self.end = math.inf
         if growth > 0.0:
             room = log(NEAR * abs(spin)) - log(size) if size > 0.0 else math.inf
-            self.end = self._begin + max(room, 0.0) / growth
+            self.end = self.begin + max(room, 0.0) / growth
 
     def _tilt(self, small_i, small_j):
         """Return the turn from the body to axes whose k is along the momentum."""
@@ -143,7 +146,7 @@ class Departure:
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time before the end."""
-        elapsed = time - self._begin
+        elapsed = time - self.begin
         i, j, k = self._places
         small = self._components(elapsed)
         omega = [0.0, 0.0, 0.0]
@@ -190,6 +193,12 @@ class Departing:
             self._march = self._march_from(start)
         return self._march
 
+    def exchanges_until(self, time):
+        """Return the part of a time (s) in which dissipation still takes energy from the body."""
+        if self._near.end == math.inf:    # the square of what is NEAR
+            return self._near.begin
+        return time if time < self._near.end else self._later().exchanges_until(time)
+
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""
         if time < self._near.end:
@@ -233,6 +242,11 @@ class Arriving:
     @property
     def _look(self):
         return self._begin + self._ahead
+
+    def exchanges_until(self, time):
+        """Return the part of a time (s) in which dissipation still takes energy from the body."""
+        self._reach(time)
+        return time if self._rest is None else min(time, self._look)
 
     def _reach(self, time):
         """Look for the arrival at all the fixed times up to one."""

@@ -210,7 +210,7 @@ class Stepped:
         if self._exchange is None:
             slack = SLACK * self.accuracy if self.step is None else 0.0
             self._exchange = Exchange(self._actors, self._course.states, self.vector, slack)
-        return self._exchange.until(time)
+        return self._exchange.until(self._course.exchanges_until(time) if self._departs else time)
 
 
 def _check_control(method, accuracy, step):

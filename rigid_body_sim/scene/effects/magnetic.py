@@ -26,6 +26,7 @@ class Magnetic(Effect):
     """
 
     energy: tree.Node
+    turn: tuple[tree.Node, ...]
     most: float
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'magnetic'
@@ -44,15 +45,17 @@ class Magnetic(Effect):
             raise BadInput(where, f'depends on {", ".join(known)}',
                            'a field of the place x, y, z')
         refuse_beside_hinge(trees, constraint, where)
-        moment = vectors.to_world(vectors.constant(settings['moment']))
+        fixed = vectors.constant(settings['moment'])
+        moment = vectors.to_world(fixed)
         most = 0.0
         if is_constant(field):
             most = _size(settings['moment']) * _size([one.text for one in field])
-        return cls(tree.negative(vectors.dot(moment, trees)), most, field[0].parameters)
+        return cls(tree.negative(vectors.dot(moment, trees)),
+                   vectors.cross(fixed, vectors.to_body(trees)), most, field[0].parameters)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return torque and force."""
-        return actions.pulls(self.energy, self.parameters, frame)
+        return actions.pulls(self.energy, self.parameters, frame, self.turn)
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""

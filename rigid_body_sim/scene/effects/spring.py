@@ -33,6 +33,7 @@ class Spring(Effect):
     """
 
     energy: tree.Node
+    pull: tuple[tree.Node, ...]
     damper: tuple[tree.Node, ...]
     at: tuple[float, float, float] | None    # None of a torsion spring
     name: ClassVar[str] = 'spring'
@@ -49,7 +50,7 @@ class Spring(Effect):
         k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
         if constraint.axis is not None and not {'at', 'anchor', 'length'} & set(settings):
             energy, damper = _torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis)
-            return cls(energy, damper, None)
+            return cls(energy, (), damper, None)
         if 'angle' in settings:
             raise BadInput(f'{where}.angle', 'stands beside at, anchor or length'
                            if constraint.axis is not None
@@ -65,22 +66,29 @@ class Spring(Effect):
                                vectors.constant(settings['anchor']))
         carried = vectors.to_world(vectors.cross(vectors.named(RATES), body_at))
         v = vectors.total(vectors.named(VELOCITY), carried)
-        square = vectors.dot(d, d)
+        square, pull = vectors.dot(d, d), tree.number(-k)
         if l:
+            pull = tree.times(pull, tree.minus(
+                tree.number(1.0), tree.over(tree.number(l), tree.node('sqrt', square))))
             stretch = tree.minus(tree.node('sqrt', square), tree.number(l))
             square = tree.times(stretch, stretch)
             along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
             v = tuple(tree.times(along, part) for part in d)
         damper = tuple(tree.times(tree.number(-c), part) for part in v) if c else ()
-        return cls(tree.times(tree.number(0.5 * k), square), damper, (x, y, z))
+        return cls(tree.times(tree.number(0.5 * k), square),
+                   tuple(tree.times(pull, part) for part in d), damper, (x, y, z))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the pull and the damping."""
-        pulls = actions.pulls(self.energy, (), frame)
+        if self.at is None:
+            pulls = actions.pulls(self.energy, (), frame)
+            if not self.damper:
+                return pulls
+            return *pulls, actions.torque(self.damper, 'body', (), frame, 'heat')
+        # the moment of the force, not a derivative by the attitude, whose terms cancel
+        pulls = actions.force(self.pull, 'world', (), self.at, frame, 'potential')
         if not self.damper:
             return pulls
-        if self.at is None:
-            return *pulls, actions.torque(self.damper, 'body', (), frame, 'heat')
         return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
 
     def potential(self, frame: Frame) -> Potential:

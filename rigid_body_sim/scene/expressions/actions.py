@@ -99,7 +99,7 @@ def _to_world(lines, components, axes, frame):
 
 
 @functools.lru_cache(maxsize=256)
-def pulls(energy, parameters, frame):
+def pulls(energy, parameters, frame, turn=None):
     """Return the Actings of a potential: force and torque by differentiation.
 
         F = -dU/do,    torque about o: Gamma_i = -dU/dq . (q e_i)/2
@@ -114,6 +114,9 @@ def pulls(energy, parameters, frame):
         U in J, of place and attitude.
     parameters : tuple of (str, float)
     frame : Frame
+    turn : tuple of 3 Nodes, optional
+        Gamma, body axes, for an effect that knows it without terms that cancel: what these leave
+        over spins a slim body about its axis.
     """
     x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
     place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
@@ -122,8 +125,8 @@ def pulls(energy, parameters, frame):
                (tree.negative(z), w, x, tree.negative(y)),
                (y, tree.negative(x), w, tree.negative(z)))
     half = tree.number(-0.5)
-    turn = [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
-            for column in columns]
+    turn = turn or [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
+                    for column in columns]
     if frame.hinge is not None:
         along, = tree.derivatives(energy, ['angle'])
         turn = [tree.minus(one, tree.times(tree.number(part), along))

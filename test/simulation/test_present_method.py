@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What solves the present motion is said, and a body that turns back is at rest in its ledger."""
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+pytestmark = pytest.mark.without_numba
+
+ABOUT_ITS_AXIS = """
+scene: fixed_axis
+body: {mass: 1.0, inertia: [0.2, 0.3, 0.4]}
+constraint: free
+effects: [torque: {value: [0, 0, 0.1]}]
+initial: {angular_velocity: [0, 0, 1.0]}
+"""
+LET_GO = """
+scene: pendulum
+body: {mass: 1.0, inertia: [0.2, 0.2, 0.2], center_of_mass: [0, 0, -0.5]}
+constraint: {hinge: {axis: [1, 0, 0]}}
+effects: [gravity: {g: 9.81}]
+initial: {angle: 1.5707963267948966}
+"""
+
+
+def test_after_an_impulse_off_its_axis_the_method_is_the_one_that_goes_on():
+    simulation = Simulation(parse_scene(ABOUT_ITS_AXIS), accuracy=1e-6, horizon=1.0)
+    simulation.advance(1)
+    assert simulation.method == simulation.choice.method == 'exact'
+    simulation.impulse(torque=(0.01, 0.0, 0.0))
+    assert simulation.method == 'dop8'
+    assert 'by dop8' in repr(simulation)
+    simulation.reset()
+    assert simulation.method == 'exact'
+
+
+def test_the_momentum_residual_of_a_body_at_rest_is_relative_to_its_swing():
+    """Let go at rest it comes back to rest: beside the present momentum all is rounding."""
+    simulation = Simulation(parse_scene(LET_GO), rate=1000.0, horizon=10.0)
+    states = simulation.states(np.linspace(1.0, 3.0, 200_001))
+    rates = np.abs(states.angular_velocity[:, 0])
+    back = float(states.time[len(rates) // 4 + np.argmin(rates[len(rates) // 4:])])
+    simulation = Simulation(parse_scene(LET_GO), rate=1.0 / back, horizon=10.0)
+    simulation.advance(1)
+    assert abs(simulation.state.angular_velocity[0]) < 1e-3
+    assert simulation.ledger()['momentum_residual'] < 1e-14
