@@ -1,1 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
+"""The free rotation by theta functions, and the free flight."""

@@ -22,16 +22,10 @@ from rigid_body_sim.recording.mcap import chunks
 from rigid_body_sim.recording.mcap.bytes import FileBytes
 from rigid_body_sim.recording.mcap.compression import compressor, records_of
 from rigid_body_sim.recording.mcap.contents import DESCRIPTIONS, Contents
+from rigid_body_sim.recording.mcap.found import Broken, FoundChunk, Loose, Unindexed, Whole
 from rigid_body_sim.recording.mcap.records import HEAD, Damaged, of_bytes, to_bytes
 from rigid_body_sim.recording.mcap.rescue import rescue
-from rigid_body_sim.recording.mcap.scan import (
-    Broken,
-    FoundChunk,
-    Loose,
-    Scan,
-    Unindexed,
-    Whole,
-)
+from rigid_body_sim.recording.mcap.scan import Scan
 from rigid_body_sim.recording.mcap.summary import read_metadata, read_told
 from rigid_body_sim.recording.mcap.walk import HEADS, MESSAGE, heads, walk
 from rigid_body_sim.recording.mcap.writing import HEADER

@@ -1,1 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
+"""Expressions of a scene file: reader, tree, derivatives, and source for kernels."""
