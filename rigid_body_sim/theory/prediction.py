@@ -24,7 +24,6 @@ import threading
 
 import numpy as np
 
-from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -102,11 +101,18 @@ def _round_the_axis(scene, state):
 
 def _axial_torque(scene, inertia, axis):
     """Return the constant torque about a principal axis, N m; None for any other torque."""
-    total = total_pull(scene)
-    if total is None or any(total.couple) or any(map(any, total.drag)) or total.slowing:
-        return None
-    across = (total.torque[k] for k in range(3) if k != axis)
-    return None if any(across) else total.torque[axis]
+    frame, along = scene.constraint.frame(scene.body), 0.0
+    for effect in scene.acting:
+        if effect.series is None:
+            return None
+        pull = effect.series(frame, 0.0)
+        changes = any(effect.series(frame, time) != pull for time in effect.breakpoints)
+        if changes or pull.couple or pull.drag or pull.slowing:
+            return None
+        if any(pull.constant[k] for k in range(3) if k != axis):
+            return None
+        along += pull.constant[axis]
+    return along
 
 
 def _after_a_blow(scene, state, blows):
