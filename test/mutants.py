@@ -310,7 +310,8 @@ def stages(file):
     words = re.compile(rf'{re.escape(module)}\b|from {re.escape(module.rpartition(".")[0])} import'
                        rf'[^\n]*(\([^)]*)?\b{stem}\b')
     of_room = sorted(tests.joinpath(room).rglob('test_*.py'))
-    named = [path for path in of_room if f'{path.stem}_'.startswith(f'test_{stem}_')]
+    named = [path for path in (of_room if parts[1:] else sorted(tests.glob('test_*.py')))
+             if f'{path.stem}_'.startswith(f'test_{stem}_')]
     importing = [path for path in sorted(tests.rglob('test_*.py'))
                  if path not in named and words.search(path.read_text())
                  and (path.parent.name not in ('node', 'hard_cases') or room == 'node')]

@@ -74,20 +74,61 @@ def mended(content):
         losses = mend(stream, lambda *_: {'about': 'it'}, lambda: beside).losses
         out = beside if beside.seek(0, 2) else stream
         out.seek(0)
-        return messages(out.read()), losses
+        made = out.read()
+    if losses:
+        check_summary(made)
+    return messages(made), losses
+
+
+def check_summary(content):
+    """Check that the summary tells what the file holds, and where."""
+    reader = make_reader(io.BytesIO(content), validate_crcs=False)
+    found, told = messages(content), reader.get_summary()
+    totals = told.statistics
+    assert totals.message_count == len(found)
+    times = [message[1] for message in found]
+    assert (totals.message_start_time, totals.message_end_time) == (
+        (min(times), max(times)) if times else (0, 0))
+    for topic in {channel.topic for channel in told.channels.values()}:
+        count = sum(totals.channel_message_counts[number]
+                    for number, channel in told.channels.items() if channel.topic == topic)
+        assert count == sum(message[0] == topic for message in found)
+    kinds = [content[begin] for _, begin, _ in records(content)]
+    assert totals.chunk_count == len(told.chunk_indexes) == kinds.count(Opcode.CHUNK)
+    assert totals.metadata_count == len(told.metadata_indexes) == kinds.count(Opcode.METADATA)
+    for index in told.chunk_indexes:
+        begin, end = index.chunk_start_offset, index.chunk_start_offset + index.chunk_length
+        assert content[begin] == Opcode.CHUNK
+        assert begin + HEAD.size + HEAD.unpack_from(content, begin)[1] == end
+        for number, place in index.message_index_offsets.items():
+            assert end <= place < end + index.message_index_length
+            assert content[place] == Opcode.MESSAGE_INDEX
+            assert int.from_bytes(content[place + 9:place + 11], 'little') == number
+        assert index.message_start_time <= index.message_end_time
+    for index in told.metadata_indexes:
+        assert content[index.offset] == Opcode.METADATA
+        assert index.length == HEAD.size + HEAD.unpack_from(content, index.offset)[1]
+
+
+def records(content):
+    """Return (opcode, begin, end) of the records of a whole file."""
+    found, at = [], 8
+    while at < len(content) - 8:
+        opcode, length = HEAD.unpack_from(content, at)
+        found.append((opcode, at, at + HEAD.size + length))
+        at += HEAD.size + length
+    return found
 
 
 def payload(content):
     """Return the places of the bytes that are data of a chunk, or a message without a chunk."""
-    places, at = set(), 8
-    while at < len(content) - 8:
-        opcode, length = HEAD.unpack_from(content, at)
-        end = at + HEAD.size + length
+    places = set()
+    for opcode, begin, end in records(content):
         if opcode == Opcode.CHUNK:
-            places.update(range(at + 49 + int.from_bytes(content[at + 37:at + 41], 'little'), end))
+            name = int.from_bytes(content[begin + 37:begin + 41], 'little')
+            places.update(range(begin + 49 + name, end))
         elif opcode == Opcode.MESSAGE:
-            places.update(range(at, end))
-        at = end
+            places.update(range(begin, end))
     return places
 
 
@@ -151,16 +192,6 @@ def test_the_end_of_a_zstd_frame_is_found_from_its_blocks(size, kind):
     assert zstd_length(frame) == len(frame)
     assert zstd_length(frame + b'more') == len(frame)
     assert zstd_length(frame[:-1]) == 0
-
-
-def records(content):
-    """Return (opcode, begin, end) of the records of a whole file."""
-    found, at = [], 8
-    while at < len(content) - 8:
-        opcode, length = HEAD.unpack_from(content, at)
-        found.append((opcode, at, at + HEAD.size + length))
-        at += HEAD.size + length
-    return found
 
 
 @pytest.mark.parametrize('form', ['uncompressed', 'lz4', 'zstd'])
