@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""taylor on many bodies beside taylor one by one: more bodies than lanes, stretches, any starts."""
+"""taylor on many bodies beside taylor one by one: stretches, late starts, more than the lanes."""
 
 import numpy as np
 import pytest
