@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The check that changes the code at random: what it draws, and what it takes for equivalent."""
+
+import ast
+import random
+import types
+
+import mutants
+import pytest
+import yaml
+
+TABLE = yaml.safe_load(mutants.EQUIVALENT.read_text())
+SOURCE = '''
+"""A text with - and < in it."""
+MOST = 3
+
+
+def f(x1, x2, limit: int = -1):
+    """Return 1 + 1."""
+    if x1 < limit and not x2:
+        return f'{x1 + 1}'
+    for k in range(2):
+        x1 += min(x1, x2) * k
+    return x1 - x2
+'''
+
+
+def all_of(path, root):
+    """Return every mutant of a file."""
+    found = []
+    for makers in mutants.mutants_of(path, root).values():
+        for make in makers:
+            for place in range(3):
+                one = make(types.SimpleNamespace(
+                    choice=lambda others, place=place: others[min(place, len(others) - 1)]))
+                found.append(one)
+    return {one.source: one for one in found}.values()
+
+
+def test_each_kind_of_change_is_made_once_at_its_place(tmp_path):
+    path = tmp_path / 'a.py'
+    path.write_text(SOURCE)
+    found = sorted(all_of(path, tmp_path), key=lambda one: (one.line, one.after))
+    assert [(one.line, one.function, one.after) for one in found] == [
+        (3, '', 'MOST = 2'), (3, '', 'MOST = 4'),
+        (6, 'f', 'def f(x1, x2, limit: int=-0):'), (6, 'f', 'def f(x1, x2, limit: int=-2):'),
+        (6, 'f', 'def f(x1, x2, limit: int=1):'), (8, 'f', 'if x1 < limit and (not x1):'),
+        (8, 'f', 'if x1 < limit and x2:'), (8, 'f', 'if x1 < limit or not x2:'),
+        (8, 'f', 'if x1 <= limit and (not x2):'), (8, 'f', 'if x1 > limit and (not x2):'),
+        (8, 'f', 'if x2 < limit and (not x2):'), (10, 'f', 'for k in range(1):'),
+        (10, 'f', 'for k in range(3):'), (11, 'f', 'x1 += max(x1, x2) * k'),
+        (11, 'f', 'x1 += min(x1, x1) * k'), (11, 'f', 'x1 += min(x1, x2) / k'),
+        (11, 'f', 'x1 += min(x2, x2) * k'), (11, 'f', 'x1 -= min(x1, x2) * k'),
+        (12, 'f', 'return x1 + x2'), (12, 'f', 'return x1 - x1'), (12, 'f', 'return x2 - x2')]
+    for one in found:
+        tree = ast.unparse(ast.parse(one.source))
+        assert tree != ast.unparse(ast.parse(SOURCE))
+        assert one.after.rstrip(':') in tree.replace(' = ', ' = ')
+        assert one.source.count('\n') == SOURCE.count('\n')
+
+
+def test_a_seed_draws_the_same_mutants_and_another_one_others():
+    folder = ['rigid_body_sim/mechanics']
+    first, again, other = (mutants.drawn(seed, 20, folder) for seed in ('1', '1', '2'))
+    assert first == again
+    assert len({one.source for one in first}) == 20
+    assert not {str(one) for one in first} >= {str(one) for one in other}
+    assert len({one.kind for one in first}) == 7
+    for one in first:
+        ast.parse(one.source)
+
+
+@pytest.mark.parametrize('entry', TABLE, ids=lambda entry: f'{entry["file"]}: {entry["because"]}')
+def test_each_equivalent_mutant_is_still_one(entry):
+    path = mutants.ROOT / entry['file']
+    found = [one for one in all_of(path, mutants.ROOT) if mutants.why_equivalent(one, [entry])]
+    assert found, 'the statement is gone: remove the entry'
+
+
+def test_what_bears_on_a_file_begins_with_its_own_test():
+    for file, first in (('mechanics/panels.py', 'test/mechanics/test_panels.py'),
+                        ('errors.py', 'test/test_errors.py'),
+                        ('scene/effects/strike.py', 'test/scene/effects/test_strike.py')):
+        assert mutants.stages(f'rigid_body_sim/{file}')[0] == [first]
+    chance = random.Random(3)
+    for path in chance.sample(sorted((mutants.ROOT / 'rigid_body_sim').rglob('*.py')), 20):
+        for stage in mutants.stages(str(path.relative_to(mutants.ROOT))):
+            assert stage
