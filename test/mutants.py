@@ -303,10 +303,10 @@ def why_equivalent(mutant, table):
 
 # ---------------------------------------------------------------------------- what is run
 
-def stages(file):
+def stages(file, root=ROOT):
     """Return lists of tests that bear on a file of the package, the nearest first."""
     parts = pathlib.PurePath(file).with_suffix('').parts[1:]
-    room, stem, tests = parts[0], parts[-1], ROOT / 'test'
+    room, stem, tests = parts[0], parts[-1], root / 'test'
     module = '.'.join((PACKAGE, *parts)).removesuffix('.__init__')
     words = re.compile(rf'{re.escape(module)}\b|from {re.escape(module.rpartition(".")[0])} import'
                        rf'[^\n]*(\([^)]*)?\b{stem}\b')
@@ -320,7 +320,7 @@ def stages(file):
         named, [path for path in importing if path in of_room],
         [path for path in of_room if path not in (*named, *importing)],
         [path for path in importing if path not in of_room]]
-    lists = [[str(path.relative_to(ROOT)) for path in paths] for paths in lists]
+    lists = [[str(path.relative_to(root)) for path in paths] for paths in lists]
     quick = [[path for path in paths if path not in SLOW] for paths in lists]
     found = [quick[0], [test for test in wider if test == DIGESTS], *quick[1:],
              [path for paths in lists for path in paths if path in SLOW],
@@ -394,7 +394,7 @@ class Trial:
         path = tree.folder / mutant.file
         original = path.read_text()
         try:
-            left = stages(mutant.file)[:self._most]
+            left = stages(mutant.file, tree.folder)[:self._most]
             while left and not self._ended:
                 path.write_text(mutant.source)
                 unsound = [test for test, sound in self._sound.items() if not sound]
@@ -402,19 +402,19 @@ class Trial:
                 path.write_text(original)
                 if failing is None:
                     left.pop(0)
-                elif self._passes(failing, tree):
+                elif self._passes(failing if '.py' in failing else '\n'.join(left[0]), tree):
                     return failing, time.monotonic() - begin
+                elif left[0] == [failing] or '.py' not in failing:
+                    left.pop(0)    # what is left out next time is all of it
             return None, time.monotonic() - begin
         finally:
             path.write_text(original)
             self._trees.put(tree)
 
     def _passes(self, test, tree):
-        """Return whether a test passes on what is not mutated."""
-        if '.py' not in test:
-            return True
+        """Return whether a test, or some on lines, pass on what is not mutated."""
         if test not in self._sound:
-            self._sound[test] = tree.failing([test]) is None
+            self._sound[test] = tree.failing(test.split('\n')) is None
             if not self._sound[test]:
                 print(f'{test} fails on what is not mutated', flush=True)
         return self._sound[test]
