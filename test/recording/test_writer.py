@@ -30,6 +30,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import definition
+from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic
 from rigid_body_sim.recording.writer import CHUNK_SIZE, Writer
@@ -314,6 +315,9 @@ def test_empty_recording_is_whole(tmp_path):
     with Reader(tmp_path / 'bag') as reader:
         assert reader.message_count == 0
         assert len(reader.connections) == 5
+    recording = Recording(tmp_path / 'bag')
+    assert (recording.start_time, recording.end_time) == (0, 0)
+    assert {topic.count for topic in recording.topics.values()} == {0}
 
 
 def test_real_racket_takes_at_most_095_of_its_payload(tmp_path):
