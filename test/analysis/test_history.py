@@ -35,7 +35,8 @@ ENDED = ('timeout', (1, 0, 0), 0)
     ('gravity: {g: 1}', 'pivot', True, False),
     ('strike: {impulse: [1, 0, 0], time: 1}', 'free', True, True),
     ('internal_dissipation: {coefficient: 1}', 'free', False, True),
-    ('drag: {linear: 1}', 'free', False, False), ('torque: {value: [0, 0, 1]}', 'free', False,
+    ('drag: {linear: 1}', 'free', False, True),
+    ('drag: {angular: 1}', 'free', False, False), ('torque: {value: [0, 0, 1]}', 'free', False,
                                                   False)])
 def test_what_is_constant_follows_from_the_effects(effects, constraint, energy, momentum):
     one = segment(scene=scene(effects, constraint))
