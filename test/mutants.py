@@ -332,7 +332,7 @@ class Tree:
     """A copy of the repository in which a mutant can be tested."""
 
     def __init__(self, folder):
-        self.folder, self._run = pathlib.Path(folder) / 'tree', None
+        self.folder, self._run, self.closed = pathlib.Path(folder) / 'tree', None, False
         shutil.copytree(ROOT, self.folder, symlinks=True, ignore=shutil.ignore_patterns(
             '.venv*', '.git', '.cache', '__pycache__', '.*_cache'))
         (self.folder / '.venv').symlink_to(ROOT / '.venv')
@@ -350,6 +350,8 @@ class Tree:
 
     def failing(self, tests, without=()):
         """Return the first test that fails, None if all pass, or 'a hang'."""
+        if self.closed:
+            return None
         left_out = [part for test in without for part in ('--deselect', test)]
         command = ['-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', '--timeout',
                    str(PATIENCE), '--tb', 'no', '-rfE', *left_out, *tests]
@@ -386,6 +388,7 @@ class Trial:
         """End what runs, and begin no more."""
         self._ended = True
         for tree in self._all:
+            tree.closed = True
             tree.end()
 
     def found_by(self, mutant):
