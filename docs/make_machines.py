@@ -18,17 +18,18 @@ HEAD = ('this machine stands for', 'digests', 'numeric tests', 'seconds', 'proce
 
 def section(rows, version):
     """Return the last section of the page."""
-    old = sum(row['arithmetic'] != version for row in rows)
-    about = ('A row is what `make test-machines` found when it last visited a machine. Visits '
-             'share the processor with each other, so their times are upper bounds.')
-    about += f' The arithmetic is `{version}`' + (
-        f' but for {old} rows, which are of the version that they name.' if old else '.')
+    old = sum(row.get('arithmetic', version) != version for row in rows)
+    about = ('A row is what `make test-machines` found when it last visited a machine.\n'
+             'Visits share the processor with other work, so their times are upper bounds.')
+    about += f'\nThe arithmetic is `{version}`' + (
+        f' but for {old} rows, which are of the version that they\nname.' if old else '.')
     lines = [BEGIN, about + '\n']
     cells = [HEAD, ('---',) * len(HEAD)]
     for row in rows:
-        verdict = row['verdict'] + f' (`{row["arithmetic"]}`)' * (row['arithmetic'] != version)
-        cells.append((row['name'], verdict, row['tests'] or '-', str(row['seconds']),
-                      row['processor'], row['date']))
+        made = row.get('arithmetic', version)
+        verdict = row['verdict'] + f' (`{made}`)' * (made != version)
+        cells.append((row['name'], verdict, row.get('tests') or '-', str(row.get('seconds', '-')),
+                      row.get('processor', '-'), row.get('date', '-')))
     return '\n'.join([*lines, *(f'| {" | ".join(row)} |' for row in cells)]) + '\n'
 
 

@@ -207,8 +207,10 @@ def main(words):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         rows += pool.map(lambda one: _visited(one, recording), wanted[1:])
     kept = {row['name']: row for row in json.loads(KEPT.read_text())} if KEPT.exists() else {}
-    kept |= {row['name']: row for row in rows if 'digests' in row or row['name'] not in kept}
-    table = [kept[one.name] for one in machines() if one.name in kept]
+    kept |= {row['name']: row for row in rows
+             if 'digests' in row or 'digests' not in kept.get(row['name'], {})}
+    table = [kept.get(one.name, {'name': one.name, 'verdict': 'not visited'})
+             for one in machines()]
     KEPT.write_text(json.dumps(table, indent=1) + '\n')
     return int(any(row['differ'] for row in rows))
 
