@@ -26,8 +26,8 @@ CORRECT = {
           'broadcast_arrays concatenate count_nonzero cumsum diag diagonal diff divide empty '
           'empty_like errstate eye finfo flatnonzero float64 frexp frombuffer full inf int64 intp '
           'isfinite isnan maximum minimum nan ndarray newaxis nonzero ones ones_like outer prod '
-          'random repeat reshape roll searchsorted sort sqrt square stack tile uint8 uint32 uint64 '
-          'where zeros'}
+          'random repeat reshape roll searchsorted sort sqrt square stack tile uint8 uint32 '
+          'uint64 where zeros'}
 CORRECT = {module: set(names.split()) for module, names in CORRECT.items()}
 LIBRARIES = ('scipy', 'mpmath', 'cmath', 'statistics', 'sympy')
 REDUCTIONS = ('dot', 'mean', 'std', 'var', 'trace')
