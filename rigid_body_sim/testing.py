@@ -70,7 +70,7 @@ def check_effect(effect: Effect, body: Body = BODY, constraint: Constraint | Non
     assert booked <= {'potential', 'work', 'heat'}, f'{name}: books {sorted(booked)}'
     assert ('potential' in booked) <= (effect.potential is not None), \
         f'{name}: books its power as potential, but the view potential is None'
-    scene = Scene(name, '', body, constraint, (effect,), START, True, '')
+    scene = Scene(name, '', body, constraint, (effect,), START, True, {})
     if effect.potential is not None:
         out = np.empty(DIAGNOSIS_SIZE)
         energies(scene).diagnose(parameters(scene), START.vector, out)

@@ -34,6 +34,7 @@ FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
 OFTEN = 13      # unknowns of the equations that have most
+KEPT = 64       # choices
 HORIZON = 100.0
 """Time over which an accuracy holds where no duration is given, s."""
 
@@ -110,7 +111,7 @@ class Choice:
         general method solves the hold. It also goes on where a command has brought the body to a
         state from which the motion does not hold.
         """
-        if not wrench and self._holds(start):
+        if not wrench and (not self._asks or self._prototype.takes(start)):
             return self._prototype.start(start)
         return self._general(wrench).start(start)
 
@@ -128,9 +129,14 @@ class Choice:
             solver.many(starts[chosen], times, part)
             out[chosen] = part
 
-    @property
+    @functools.cached_property
     def _asks(self):
         return self.method == 'exact' and self._prototype.motion.takes is not None
+
+    @functools.cached_property
+    def rests_on_start(self):
+        """Whether it is a closed form that another start of the scene may not have."""
+        return self._asks or (self.method == 'exact' and self._prototype.is_nearly)
 
     def _holds(self, start):
         """Return whether the prototype goes on from a state."""
@@ -185,6 +191,32 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     """
     _say_what_is_slow()
     _check(integrator, accuracy, step, horizon)
+    same = _Same(scene, scene.initial.vector.tobytes())
+    return _chosen(same, integrator, accuracy, step, horizon, settled)
+
+
+class _Same:
+    """A scene as the key of a cache: the same object, with the same start."""
+
+    __slots__ = 'scene', 'start'
+
+    def __init__(self, scene, start):
+        self.scene, self.start = scene, start
+
+    def __hash__(self):
+        return id(self.scene)
+
+    def __eq__(self, other):
+        return self.scene is other.scene and self.start == other.start
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _chosen(same, integrator, accuracy, step, horizon, settled):
+    """Return what `choose` returns, for settings that a scene could have.
+
+    A Choice never changes: whoever runs the same scene again gets the same one.
+    """
+    scene = same.scene
     by_motion = not settled or settled.method == 'exact'
     if integrator in ('auto', 'exact') and step is None and by_motion:
         found = _closed_form(scene, horizon)
@@ -225,7 +257,10 @@ def _known(settled):
 
 
 class _Closed(NamedTuple):
-    """A closed form for a scene: the scene it solves, its error but for rounding, and rounding."""
+    """A closed form for a scene: the scene it solves, and its error but for rounding.
+
+    `floor` is the rounding beside which an error does not show; 0 where there is no error.
+    """
 
     motion: Any
     scene: Scene
@@ -235,14 +270,16 @@ class _Closed(NamedTuple):
 
 def _closed_form(scene, horizon):
     """Return the _Closed of a scene, or None."""
+    motion = absorbing_motion(scene)
+    if motion:
+        return _Closed(motion, scene, 0.0, 0.0)
+    nearly = nearly_absorbing(scene, horizon)
+    if nearly is None:
+        return None
     # a torque adds to the angle that the body turns over
     floor = (measured.floor(scene, horizon)
              + 0.5 * measured.HALF_ULP * drive(scene, None) * horizon * horizon)
-    motion = absorbing_motion(scene)
-    if motion:
-        return _Closed(motion, scene, 0.0, floor)
-    nearly = nearly_absorbing(scene, horizon)
-    return nearly and _Closed(*nearly, floor)
+    return _Closed(*nearly, floor)
 
 
 def _check(integrator, accuracy, step, horizon):

@@ -86,7 +86,7 @@ class Stepped:
     def start(self, vector):
         """Return a solver from a state vector (14 doubles, its time included)."""
         started = object.__new__(Stepped)
-        started.__dict__.update(self.__dict__)
+        started.__dict__ = self.__dict__.copy()
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))

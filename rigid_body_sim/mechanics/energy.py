@@ -45,6 +45,9 @@ KINETIC, POTENTIAL, MOMENTUM_SQUARED, MOMENTUM = (
     DIAGNOSIS.part(name).first for name in Diagnosis._fields)
 load_scene, load_state, store_diagnosis = SCENE.load, STATE.load, DIAGNOSIS.store
 
+GOOD, NOT_FINITE, NOT_UNIT, BEYOND = range(4)
+UNIT = 1e-9    # largest error of the square of a quaternion that is given as an orientation
+
 potential = UNBOUND    # (p, scene, q, position) -> J
 # (p, scene, time, momentum) -> momentum with that of parts inside, body axes
 with_parts = UNBOUND
@@ -88,6 +91,29 @@ def diagnose(p, state, out):
     # L^2 of the body components: the rotation to the world would only add its rounding
     store_diagnosis(out, Diagnosis(kinetic, potential(p, scene, q, now.position),
                                    dot(momentum, momentum), rotate(*q, *momentum)))
+
+
+@compiled
+def diagnose_start(p, state, out):
+    """Fill `out` as `diagnose` does, and say whether a motion can begin at the state.
+
+    Returns
+    -------
+    int
+        GOOD, or what is wrong: NOT_FINITE, NOT_UNIT (the orientation), BEYOND (energy or momentum
+        are more than a double holds).
+    """
+    for number in state:
+        if number - number != 0.0:
+            return NOT_FINITE
+    x, y, z, w = load_state(state).orientation
+    if not abs(x * x + y * y + z * z + w * w - 1.0) <= UNIT:
+        return NOT_UNIT
+    diagnose(p, state, out)
+    for number in out:
+        if number - number != 0.0:
+            return BEYOND
+    return GOOD
 
 
 @compiled

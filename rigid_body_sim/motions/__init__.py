@@ -6,6 +6,7 @@ protocol.py says what a motion offers. docs/extending.md adds one step by step.
 It may import ``mechanics`` and what lies below.
 """
 
+import functools
 import importlib
 
 MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
@@ -21,7 +22,12 @@ MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
 def absorbing_motion(scene):
     """Return the motion module that solves the whole scene in closed form, or None."""
     for name in MOTIONS:
-        motion = importlib.import_module(name)
+        motion = _module(name)
         if motion.absorbs(scene):
             return motion
     return None
+
+
+@functools.cache
+def _module(name):
+    return importlib.import_module(name)

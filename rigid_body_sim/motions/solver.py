@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exact solver: a motion in closed form, evaluated at any time from its anchor."""
 
+import functools
 import math
 
 import numpy as np
@@ -21,6 +22,7 @@ LEAST = 512      # states of many bodies that a thread takes, at least
 AT_ONCE = 32768  # states of one call of a kernel: a tenth of a second at most
 
 
+@functools.cache
 def loops(motion):
     """Return the module of bulk loops bound to a motion (rigid_body_sim/motions/loops.py)."""
     bindings = {name: f'{motion.__name__}:{name}' for name in template.BINDINGS}
@@ -28,6 +30,29 @@ def loops(motion):
     for name, binding in bulk.items():
         bindings[name] = binding.format(motion.__name__)
     return specialise(template, **bindings)
+
+
+class _Asked:
+    """What only the ledger and events of a scene need: made when one of them is asked for."""
+
+    def __init__(self, scene, motion):
+        self.scene, self.motion = scene, motion
+
+    @functools.cached_property
+    def actors(self):
+        """The Actors of the scene."""
+        return Actors(self.scene)
+
+    @functools.cached_property
+    def watched(self):
+        """What is watched in the scene."""
+        return watches(self.scene)
+
+    @functools.cached_property
+    def tells(self):
+        """Whether the motion knows the times of all events that are watched."""
+        return self.motion.next_event is not None and (
+            {watch.name for watch in self.watched} == {*self.motion.EVENTS} & {*WATCHED})
 
 
 class Exact:
@@ -52,11 +77,14 @@ class Exact:
         self.motion = motion
         self._scene, self._solved = scene, solved or scene
         self._parameters = motion.parameters(self._solved)
-        self._loops, self._actors = loops(motion), None if motion.exchanged else Actors(scene)
-        self._watched = watches(scene)
-        watched = {watch.name for watch in self._watched}
-        self._tells = motion.next_event is not None and (
-            watched == {*motion.EVENTS} & {*WATCHED})
+        self._loops, self._asked = loops(motion), _Asked(scene, motion)
+        self._next_event, self._exchange, self._watcher = None, None, None
+        self._last_events = NONE_YET
+
+    @property
+    def is_nearly(self):
+        """Whether the scene that the motion absorbs differs from the one that is published."""
+        return self._solved is not self._scene
 
     def takes(self, vector):
         """Return whether the motion holds from a state (14 doubles)."""
@@ -65,11 +93,9 @@ class Exact:
     def start(self, vector):
         """Anchor the motion at a state (14 doubles, with its time); return a solver from it."""
         started = object.__new__(Exact)
-        started.__dict__.update(self.__dict__)
+        started.__dict__ = self.__dict__.copy()
         started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
         self.motion.anchor(self._parameters, vector, started.anchor)
-        started._next_event, started._exchange, started._last_events = None, None, NONE_YET
-        started._watcher = None
         return started
 
     def state(self, time, out):
@@ -121,9 +147,9 @@ class Exact:
         out = np.zeros(ENTRIES_SIZE)
         if self.motion.exchanged is not None:
             self.motion.exchanged(self.anchor, time, out)
-        elif self._actors.acts:
+        elif self._asked.actors.acts:
             if self._exchange is None:
-                self._exchange = Exchange(self._actors, self.states, self._start, 0.0)
+                self._exchange = Exchange(self._asked.actors, self.states, self._start, 0.0)
             out[:] = self._exchange.until(time)
         return out
 
@@ -134,9 +160,9 @@ class Exact:
         the rest of that time is passed over. Events that the motion does not tell are looked for
         on its states, going forward in time.
         """
-        if not self._tells:
+        if not self._asked.tells:
             if self._watcher is None:
-                self._watcher = Watcher(self, self._watched, float(self._start[TIME]),
+                self._watcher = Watcher(self, self._asked.watched, float(self._start[TIME]),
                                         swing_rate(self._scene), drive(self._scene, None))
             found = self._watcher.events(until, tick)
             return [event for event in found if event[0] > after]

@@ -4,8 +4,6 @@
 Sums and differences are exact to 2 u^2 of their larger term, u = 2^-53.
 """
 
-from fractions import Fraction
-
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.double_double import add_alike, divide, multiply, root, two_product
 
@@ -13,9 +11,15 @@ TURN = 0.15915494309189535, -9.839338337591243e-18        # 1/(2 pi), turns per 
 
 
 def pair_of(number):
-    """Return an exact number (Fraction) as a pair."""
-    high = float(number)
-    return high, float(number - Fraction(high))
+    """Return an exact number (int, float, Fraction) as a pair."""
+    return quotient(*number.as_integer_ratio())
+
+
+def quotient(a, b):
+    """Return a/b of two integers, b > 0, as a pair: each part is rounded once."""
+    high = a / b
+    over, under = high.as_integer_ratio()
+    return high, (a * under - over * b) / (b * under)
 
 
 @compiled

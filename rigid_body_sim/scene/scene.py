@@ -86,8 +86,8 @@ class Scene:
     initial : State
         At time 0.
     accepts_commands : bool
-    text : str
-        YAML of the scene as it runs, overrides included: enough to make it again.
+    mapping : dict
+        The scene as it runs, overrides included, as YAML would have it.
     """
 
     name: str
@@ -97,7 +97,15 @@ class Scene:
     effects: tuple[Effect, ...]
     initial: State
     accepts_commands: bool
-    text: str
+    mapping: dict[str, Any] = dataclasses.field(repr=False, hash=False)
+
+    def __getstate__(self):
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+    @functools.cached_property
+    def text(self) -> str:
+        """YAML of the scene as it runs, overrides included: enough to make it again."""
+        return yaml.safe_dump(self.mapping, sort_keys=False, allow_unicode=True)
 
     @property
     def notes(self) -> list[str]:
@@ -105,7 +113,7 @@ class Scene:
         return [line for effect in self.effects
                 for line in effect.notes(self.body, self.constraint)]
 
-    @property
+    @functools.cached_property
     def acting(self) -> tuple[Effect, ...]:
         """The effects that do something to this body under this constraint, impulses apart.
 
@@ -222,14 +230,27 @@ def load_scene(name_or_path: str | pathlib.Path,
 def parse_scene(text: str, overrides: Overrides = (), where: str = 'scene') -> Scene:
     """Return the validated scene of a YAML text; `where` names it in error lines."""
     mapping = yaml_text.parse(text, where)
-    overrides = yaml_text.assignments(overrides)
-    for assignment in overrides:
-        yaml_text.override(mapping, assignment, where)
+    if overrides:
+        return _overridden(mapping, overrides, where)
     try:
         return _scene(mapping, where)
     except BadInput as error:
-        # what an override set stands in no line, nor need a fault be where it shows
-        raise error if overrides else _with_line(error, text, where) from None
+        raise _with_line(error, text, where) from None
+
+
+def changed_scene(scene: Scene, overrides: Overrides) -> Scene:
+    """Return a validated scene with changes; it raises what :func:`parse_scene` raises."""
+    return _overridden(yaml_text.copied(scene.mapping), overrides, scene.name)
+
+
+def _overridden(mapping, overrides, where):
+    """Return the validated scene of a mapping, which is changed, with overrides.
+
+    What an override set stands in no line of a text, nor need a fault be where it shows.
+    """
+    for assignment in yaml_text.assignments(overrides):
+        yaml_text.override(mapping, assignment, where)
+    return _scene(mapping, where)
 
 
 def _with_line(error, text, where):
@@ -251,10 +272,9 @@ def _scene(mapping, where):
     effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
                              f'{where}: effects'))
     initial = constraint.initial(start, body, f'{where}: initial')
-    text = yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)
     about = printable(' '.join(mapping.get('about', '').split()))
     return Scene(mapping['scene'], about, body, constraint, effects, initial,
-                 mapping.get('commands', 'accept') == 'accept', text)
+                 mapping.get('commands', 'accept') == 'accept', mapping)
 
 
 def _body(mapping, where):

@@ -2,6 +2,7 @@
 """Scene text -> plain mapping: YAML as data only, of bounded size and depth, with overrides."""
 
 import collections.abc
+import functools
 import json
 import re
 
@@ -11,6 +12,8 @@ from rigid_body_sim.errors import BadInput
 
 MAXIMUM_BYTES = 256 * 1024
 MAXIMUM_DEPTH = 12
+KEPT = 16    # texts
+NUMBERS = re.compile(r' *\[?[-+0-9.eE, ]*\]? *')
 ALTERNATIVES = (
     ('orientation', 'euler_zyz', 'euler', 'rotation_vector', 'tilt'),
     ('angular_velocity', 'angular_velocity_world', 'angular_momentum', 'spin'),
@@ -98,6 +101,19 @@ def _number(text):
 
 def parse(text, where):
     """Return the mapping that a scene text holds; BadInput with the line where it is not one."""
+    return copied(_parsed(text, where))
+
+
+def copied(value):
+    """Return a copy of a mapping, list or plain value that shares no mapping or list with it."""
+    if isinstance(value, dict):
+        return {key: copied(entry) for key, entry in value.items()}
+    return [copied(entry) for entry in value] if isinstance(value, list) else value
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _parsed(text, where):
+    """Return what `parse` returns, to be copied: loops read one text many times."""
     if len(text.encode()) > MAXIMUM_BYTES:
         raise BadInput(
             where, f'{len(text.encode())} bytes', f'a scene has at most {MAXIMUM_BYTES} bytes'
@@ -237,6 +253,11 @@ def override(mapping, assignment, where):
 
 
 def _value(text, where):
+    if NUMBERS.fullmatch(text):
+        try:
+            return json.loads(text)    # JSON says the same of numbers and lists of them, sooner
+        except ValueError:
+            pass    # as 1. or +1
     return parse(f'value: {text}', where)['value']
 
 

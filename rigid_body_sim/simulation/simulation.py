@@ -11,6 +11,8 @@
 """
 
 import copy
+import dataclasses
+import functools
 import html
 import math
 import numbers
@@ -19,17 +21,18 @@ import typing
 
 import numpy as np
 
-from rigid_body_sim.choice.choose import HORIZON, choose
+from rigid_body_sim.choice.choose import HORIZON, choose, methods_for
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.bounds import swing_momentum
 from rigid_body_sim.mechanics.ledger import balance, entries_size
 from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.scene import yaml_text
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
-from rigid_body_sim.scene.state import STATE_SIZE, State, States
+from rigid_body_sim.scene.scene import Overrides, Scene, changed_scene, load_scene
+from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, TIME, State, States
 from rigid_body_sim.simulation.admission import (
     LARGEST_WORK,
     Given,
@@ -50,8 +53,11 @@ from rigid_body_sim.simulation.spans import Event, Span
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
 LAST_TICK = 2**53
 """Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
-KEPT = ('tick', 'events', 'vector', '_origin', '_origin_time', '_initial', '_commands')
+KEPT = (
+    'tick', 'events', 'vector', '_origin', '_origin_time', '_beginning', '_initial', '_commands'
+)
 """What a copy or a pickle takes over as it is."""
+NOTHING_HELD = Wrench()
 
 
 class Simulation:
@@ -110,7 +116,7 @@ class Simulation:
         if not isinstance(scene, Scene):
             scene = load_scene(scene, overrides)
         elif overrides:
-            scene = parse_scene(scene.text, overrides, scene.name)
+            scene = changed_scene(scene, overrides)
         self.scene = scene
         given = {'accuracy': accuracy, 'rate': rate, 'horizon': horizon}
         for name, value in (given if step is None else {**given, 'step': step}).items():
@@ -119,19 +125,89 @@ class Simulation:
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
         self.integrator, self.accuracy = integrator, accuracy
-        self.choice = choose(self.scene, integrator, accuracy, step, horizon, settled)
+        self._chosen = choose(self.scene, integrator, accuracy, step, horizon, settled)
+        self.choice = self._chosen
         self.tick = 0
         self.events, self.watching = [], True
         self.vector = np.empty(STATE_SIZE)
         self._mechanics = parameters.parameters(self.scene)
-        self._dynamics = Dynamics(self.scene)
         self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
+        self._entries_size = entries_size(self.scene)
         self._strikes = sorted(
             (effect for effect in self.scene.effects if effect.as_impulse is not None),
             key=lambda effect: effect.time,
         )
-        self._restart()
+        self._begin(self.choice, self.scene.initial.vector, 0)
+
+    @functools.cached_property
+    def _dynamics(self):
+        return Dynamics(self.scene)
+
+    def restart(self, initial) -> 'Simulation':
+        """Begin anew at tick 0 from another state, for loops over starts; return this simulation.
+
+        Commands, held wrench and events are forgotten; the scene's strikes come again. In closed
+        form what follows has the bits of a new Simulation of the scene with that start. Otherwise
+        the method and the tolerance stay that were chosen, without a new trial.
+
+        Parameters
+        ----------
+        initial : State or array (14,)
+            It is taken as it is, as the starts of :func:`ensemble` are: what the constraint asks
+            of a state it must have. Its time is not taken.
+
+        Raises
+        ------
+        BadInput
+            Another shape, numbers that are not finite, an orientation that is no unit quaternion,
+            more energy than a double holds. The simulation stays as it was.
+        """
+        start = np.array(getattr(initial, 'vector', initial), dtype=float)
+        if start.shape != (STATE_SIZE,):
+            raise BadInput('restart', f'got a shape of {start.shape}', 'a State, or 14 numbers')
+        start[TIME] = 0.0
+        choice = self._choice_from(start) if self._chosen.rests_on_start else self.choice
+        self._begin(choice, start, 0)
+        self.events = []
+        return self
+
+    def _choice_from(self, start):
+        """Return the Choice for the scene from a state (14 doubles) on."""
+        first = self._chosen
+        if not first.rests_on_start or np.array_equal(start, self.scene.initial.vector):
+            return first
+        scene = dataclasses.replace(self.scene, initial=State(start.copy()))
+        return choose(scene, self.integrator, self.accuracy, first.step, first.horizon)
+
+    def with_(self, changes: Overrides = (), /, **more) -> 'Simulation':
+        """Return a simulation of this scene with other values, at tick 0, for loops over scenes.
+
+        Settings stay. Where `auto` chose a method that can run the changed scene, and no closed
+        form does, its choice stays too: no trial is made, and `choice.expected_error` is that of
+        this scene.
+
+        Parameters
+        ----------
+        changes : mapping of str to value, or sequence of str
+            As the `overrides` of a Simulation: ``simulation.with_({'body.mass': 2.0})``.
+        **more
+            Keys without a dot: ``simulation.with_(constraint='free')``.
+
+        Raises
+        ------
+        BadInput
+            What a Simulation of the changed scene raises.
+        """
+        lines = (*yaml_text.assignments(changes), *yaml_text.assignments(more))
+        scene, choice, settled = changed_scene(self.scene, lines), self._chosen, None
+        if self.integrator == 'auto' and choice.method != 'exact':
+            methods = methods_for(scene)
+            if choice.method in methods and 'exact' not in methods:
+                settled = choice.settled
+        return Simulation(
+            scene, self.integrator, self.accuracy, self.rate, choice.step, choice.horizon, settled
+        )
 
     def follow(self, previous, keep_state):
         """Begin at the present tick of another simulation instead of at 0, before anything else.
@@ -155,21 +231,38 @@ class Simulation:
         self._arrive()
 
     def _restart(self):
-        self._origin, self._origin_time = self.tick, 0.0
-        start = self.scene.initial.vector
-        self._energies.diagnose(self._mechanics, start, self._diagnosis)
-        if not np.isfinite(self._diagnosis).all():
-            raise BadInput(
-                f'{self.scene.name}: initial',
-                'energy or momentum is beyond what a double holds '
-                f'({float(self._diagnosis[0])!r} J)',
-                'a smaller angular velocity, velocity or height',
-            )
-        self._initial = self._diagnosis.copy()
-        self._spans = [self._span(0.0, start, Wrench(), 0, np.zeros(entries_size(self.scene)))]
-        self._commands = None
-        self._foreseen = _Foreseen(None, 0, ())
-        self._arrive()
+        self._begin(self.choice, self._beginning, self.tick)
+
+    def _begin(self, choice, start, tick):
+        """Begin at a tick and time 0 from a state (14 doubles), or raise and change nothing."""
+        diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
+        fault = self._energies.diagnose_start(self._mechanics, start, diagnosis)
+        if fault:
+            self._refuse_start(fault, start, diagnosis)
+        solver, given = choice.solver(start, NOTHING_HELD), np.zeros(self._entries_size)
+        spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
+        if self._strikes:
+            spans = self._with_strikes(spans, 0.0, choice)
+        spans[-1].solver.state(0.0, self.vector)
+        self._diagnosed_tick = None
+        self.choice, self.tick, self._beginning = choice, tick, start
+        self._origin, self._origin_time = tick, 0.0
+        self._initial = diagnosis
+        self._spans, self._commands, self._foreseen = spans, None, NOTHING_FORESEEN
+
+    def _refuse_start(self, fault, start, diagnosis):
+        where = f'{self.scene.name}: initial'
+        if fault == energy.NOT_FINITE:
+            raise BadInput(where, 'got numbers that are not finite', 'a finite state')
+        if fault == energy.NOT_UNIT:
+            q = start[ORIENTATION].tolist()
+            raise BadInput(where, f'got the orientation {q}', 'a unit quaternion')
+        raise BadInput(
+            where,
+            'energy or momentum is beyond what a double holds '
+            f'({float(diagnosis[0])!r} J)',
+            'a smaller angular velocity, velocity or height',
+        )
 
     def _span(self, time, start, wrench, strikes, given):
         """Return a Span from a state (14 doubles) on."""
@@ -186,7 +279,7 @@ class Simulation:
     __copy__ = copy
 
     def __reduce__(self):
-        choice = self.choice
+        choice = self._chosen
         made = (
             self.scene,
             self.integrator,
@@ -449,7 +542,7 @@ class Simulation:
         return self._spans[-1].wrench
 
     def reset(self) -> None:
-        """Put the state back to the scene's initial one, without commands; ticks go on."""
+        """Put the state back to the one at the start, without commands; ticks go on."""
         self._restart()
         self.events.append(Event(self.tick, self.time, 'reset', {}))
 
@@ -544,7 +637,10 @@ class Simulation:
 
     def _spans_until(self, time):
         """Return the spans up to a time, with the scene's strikes on the way."""
-        spans = self._spans
+        return self._with_strikes(self._spans, time, self.choice)
+
+    def _with_strikes(self, spans, time, choice):
+        """Return spans and those that the scene's strikes up to a time begin."""
         last = spans[-1]
         while last.strikes < len(self._strikes) and self._strikes[last.strikes].time <= time:
             strike = self._strikes[last.strikes]
@@ -566,7 +662,8 @@ class Simulation:
                     f'at {at:g} s it has a torque about an axis of zero moment',
                     'a point and an impulse without: such an axis takes no angular momentum',
                 )
-            last = self._span(at, struck, last.wrench, last.strikes + 1, given)
+            solver = choice.solver(struck, last.wrench)
+            last = Span(at, solver, last.wrench, last.strikes + 1, given, struck)
             spans = [*spans, last]
         return spans
 
@@ -611,6 +708,8 @@ class Simulation:
 
 def _refuse_no_number(name, value):
     """Refuse what a comparison with a number would fail on."""
+    if type(value) is float:
+        return
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise BadInput(name, f'got {value!r}', 'a number')
 
@@ -619,6 +718,7 @@ def _restored(made, spans, kept):
     """Return the Simulation that :meth:`Simulation.__reduce__` took apart."""
     simulation = Simulation(*made)
     vars(simulation).update(kept)
+    simulation.choice = simulation._choice_from(simulation._beginning)
     simulation._spans = [simulation._span(time, start, *rest) for time, start, *rest in spans]
     return simulation
 
@@ -643,6 +743,9 @@ class _Foreseen(typing.NamedTuple):
     spans: list
     tick: int
     vectors: object
+
+
+NOTHING_FORESEEN = _Foreseen(None, 0, ())
 
 
 def _places(spans, times):

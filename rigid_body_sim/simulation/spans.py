@@ -22,6 +22,8 @@ class Span:
     (J). `start` is the state (14 doubles) from which the solver was started.
     """
 
+    __slots__ = ('_looked_until', '_told', 'given', 'solver', 'start', 'strikes', 'time', 'wrench')
+
     def __init__(self, time, solver, wrench, strikes, given, start):
         self.time, self.solver, self.wrench, self.strikes = time, solver, wrench, strikes
         self.given, self.start = given, start

@@ -22,7 +22,7 @@ HANGING, UPRIGHT = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)
 def scene_of(body, axis, through=(0.0, 0.0, 0.0), g=9.81, initial=None):
     effects = (Gravity(g),) if g else ()
     return Scene('pendulum', '', body, Hinge(tuple(axis), tuple(through)), effects,
-                 initial or State.of(), True, '')
+                 initial or State.of(), True, {})
 
 
 def unit_scene(g=13.5, axis=(1.0, 0.0, 0.0)):

@@ -27,7 +27,7 @@ def parameters_of(moments, axes=IDENTITY, center_of_mass=(0.0, 0.0, 0.0), g=0.0)
     inertia = Inertia(tuple(moments), tuple(axes))
     body = Body(1.0, tuple(center_of_mass), inertia, inertia)
     effects = (Gravity(g),) if g else ()
-    return motion.parameters(Scene('test', '', body, Free(), effects, State.of(), True, ''))
+    return motion.parameters(Scene('test', '', body, Free(), effects, State.of(), True, {}))
 
 
 def anchored(parameters, start):

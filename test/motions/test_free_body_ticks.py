@@ -38,7 +38,7 @@ MOTIONS = {'circular': ((2.0, 3.0, 4.0), (0.7, -0.4, 1.1)),
 def parameters_of(moments, center_of_mass=(0.0, 0.0, 0.0)):
     inertia = Inertia(tuple(float(moment) for moment in moments))
     return motion.parameters(Scene(
-        'test', '', Body(1.0, center_of_mass, inertia, inertia), Free(), (), State.of(), True, ''))
+        'test', '', Body(1.0, center_of_mass, inertia, inertia), Free(), (), State.of(), True, {}))
 
 
 def start_of(omega, time=0.0):

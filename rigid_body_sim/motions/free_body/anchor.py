@@ -17,7 +17,6 @@ chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
 """
 
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +39,7 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.numerics.double_double import add, multiply_double, two_product
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete_k
-from rigid_body_sim.numerics.pairs import TURN, over, pair_of, plus, root_of, scaled, times
+from rigid_body_sim.numerics.pairs import TURN, over, plus, quotient, root_of, scaled, times
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import apply, minus, product, transposed
 from rigid_body_sim.numerics.vectors import plus as plus_vectors
@@ -48,6 +47,7 @@ from rigid_body_sim.numerics.vectors import scaled as stretched
 from rigid_body_sim.scene.state import STATE
 
 LEAST_RATIO = 1e-130            # of a needle's moments
+UNIT_VECTORS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
 
 
@@ -123,35 +123,46 @@ def rotation_parameters(inertia):
             f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
             f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
     unit = math.frexp(inertia.moments[large])[1]
-    moments = [Fraction(math.ldexp(inertia.moments[k], -unit)) for k in order]
+    one, moments = _in_integers([math.ldexp(inertia.moments[k], -unit) for k in order])
     a, b, c = moments
-    axes = [rotate(*inertia.axes, *unit_vector) for unit_vector in np.eye(3)]
+    axes = [rotate(*inertia.axes, *unit_vector) for unit_vector in UNIT_VECTORS]
     upward = 1.0 if (middle - small) % 3 == 1 else -1.0
     downward = 1.0 if (middle - large) % 3 == 1 else -1.0
     parameters = np.zeros(INERTIA.size)
     INERTIA.store(parameters, Inertia(
-        pair_of(c * (c - b)), pair_of(a * (b - a)), pair_of(_quotient(c - a, a * b * c)),
-        _axes(moments, [axes[k] for k in order], -1.0, upward),
-        _axes(moments[::-1], [axes[k] for k in order[::-1]], 1.0, downward)))
+        quotient(c * (c - b), one * one), quotient(a * (b - a), one * one),
+        _quotient((c - a) * one * one, a * b * c),
+        _axes(one, moments, [axes[k] for k in order], -1.0, upward),
+        _axes(one, moments[::-1], [axes[k] for k in order[::-1]], 1.0, downward)))
     return parameters
 
 
-def _axes(moments, to_frame, side, hand):
-    """Return the :class:`Axes` for exact moments and directions of the axes."""
+def _in_integers(numbers):
+    """Return an integer and doubles times it, which are integers too."""
+    ratios = [number.as_integer_ratio() for number in numbers]
+    one = max(under for _, under in ratios)
+    return one, [over * (one // under) for over, under in ratios]
+
+
+def _axes(one, moments, to_frame, side, hand):
+    """Return the :class:`Axes` for moments, integers in the unit 1/one, and directions of the axes.
+
+    Integers keep them exact, as fractions would at ten times the cost.
+    """
     I1, I2, I3 = moments
-    # Euler's coefficients
-    e1, e2, e3 = (_quotient(abs(difference), moment) for difference, moment in
-                  ((I2 - I3, I1), (I3 - I1, I2), (I1 - I2, I3)))
+    d1, d2, d3 = abs(I2 - I3), abs(I3 - I1), abs(I1 - I2)
+    # Euler's coefficients are d1/I1, d2/I2, d3/I3
     return Axes(
-        tuple(map(float, moments)), to_frame, side, hand,
-        pair_of(e1 * e2), pair_of(e1 * e3), float(e2 * e3), pair_of(_quotient(e3, e2)),
-        math.sqrt(_quotient(e1, e2)), [pair_of(moment * moment) for moment in moments],
-        float(I1 * abs(I3 - I2)), float(I3 * abs(I2 - I1)))
+        (I1 / one, I2 / one, I3 / one), to_frame, side, hand,
+        _quotient(d1 * d2, I1 * I2), _quotient(d1 * d3, I1 * I3), _quotient(d2 * d3, I2 * I3)[0],
+        _quotient(d3 * I2, I3 * d2), math.sqrt(_quotient(d1 * I2, I1 * d2)[0]),
+        [quotient(moment * moment, one * one) for moment in moments],
+        I1 * d1 / (one * one), I3 * d3 / (one * one))
 
 
 def _quotient(a, b):
-    """Return a/b, or 0 for b = 0: for rods and spheres, where omega does not change."""
-    return a / b if b else Fraction(0)
+    """Return a/b as a pair, or 0 for b = 0: for rods and spheres, where omega does not change."""
+    return quotient(a, b) if b else (0.0, 0.0)
 
 
 @compiled

@@ -28,7 +28,6 @@ nutation too slight to be seen in doubles (NOTICED in anchor.py) is no event.
 """
 
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -51,7 +50,7 @@ from rigid_body_sim.motions.lagrange_top.theta import Klein
 from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import multiply_double, two_sum
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.pairs import pair_of
+from rigid_body_sim.numerics.pairs import quotient
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies
@@ -152,12 +151,15 @@ def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     body, g, arm = scene.body, scene.weight, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(body)
-    I1 = Fraction(body.about_origin.moments[(axis + 1) % 3])
-    I3 = Fraction(body.about_origin.moments[axis])
-    pull = Fraction(body.mass) * Fraction(g) * Fraction(arm) / I1
+    # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
+    (I1, of_I1), (I3, of_I3) = (body.about_origin.moments[k].as_integer_ratio()
+                                for k in ((axis + 1) % 3, axis))
+    factors = [number.as_integer_ratio() for number in (body.mass, float(g), arm)]
+    weight, of_weight = (math.prod(part) for part in zip(*factors, strict=True))
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        body.mass, g, arm, pair_of(pull), pair_of(I3 / I1), pair_of((I1 - I3) / I1), frame))
+        body.mass, g, arm, quotient(weight * of_I1, of_weight * I1),
+        quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1), frame))
     return numbers
 
 
