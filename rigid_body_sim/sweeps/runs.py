@@ -149,12 +149,12 @@ def compute(plan, first, stop, into=None, values=False):
 _OWN = threading.local()
 
 
-def _scratch(shape):
+def _scratch(name, shape):
     """Return an array that the next call in this thread takes again: fresh memory is slow."""
     size = math.prod(shape)
-    kept = getattr(_OWN, 'array', None)
+    kept = vars(_OWN).get(name)
     if kept is None or len(kept) < size:
-        _OWN.array = kept = np.empty(size)
+        vars(_OWN)[name] = kept = np.empty(size)
     return kept[:size].reshape(shape)
 
 
@@ -212,8 +212,9 @@ class _Work:
         if not self.starts_alone_differ(scene):
             self.one_by_one(where)
             return
-        starts = np.tile(scene.initial.vector, (count, 1))
-        good = np.ones(count, dtype=bool)
+        starts = _scratch('starts', (count, STATE_SIZE))
+        starts[:] = scene.initial.vector
+        good = True
         for key, part in self.plan.direct.items():
             values = self.values[key]
             values = values[where] if isinstance(values, np.ndarray) else \
@@ -223,10 +224,12 @@ class _Work:
                 values = values * (0.0, 0.0, 1.0)
             elif part == ORIENTATION:
                 values, unit = _units(values)
-                good &= unit
+                good = good & unit
+            finite = np.isfinite(values)
+            if not finite.all():
+                good = good & finite.all(axis=1)
             starts[:, part] = values
-        good &= np.isfinite(starts).all(axis=1)
-        if not good.all():
+        if not np.all(good):
             places = np.arange(self.size)[where]
             self.one_by_one(places[~good])
             where, starts = places[good], starts[good]
@@ -262,7 +265,7 @@ class _Work:
             return
         in_place = self.states is not None and isinstance(where, slice)
         out = self.states[where] if in_place else \
-            _scratch((len(starts), len(spec.times), STATE_SIZE))
+            _scratch('states', (len(starts), len(spec.times), STATE_SIZE))
         try:
             method = self.plan.choice if scene is self.plan.template else spec.integrator
             found = ensemble(scene, starts, spec.times, method, spec.accuracy, out=out,
