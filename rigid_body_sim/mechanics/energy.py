@@ -9,6 +9,7 @@ axes), I inertia tensor and L angular momentum about the point of reference (par
 rotation from body to world, V velocity of the centre of mass (world axes).
 """
 
+import math
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
@@ -104,14 +105,14 @@ def diagnose_start(p, state, out):
         are more than a double holds).
     """
     for number in state:
-        if number - number != 0.0:
+        if not abs(number) < math.inf:
             return NOT_FINITE
     x, y, z, w = load_state(state).orientation
     if not abs(x * x + y * y + z * z + w * w - 1.0) <= UNIT:
         return NOT_UNIT
     diagnose(p, state, out)
     for number in out:
-        if number - number != 0.0:
+        if not abs(number) < math.inf:
             return BEYOND
     return GOOD
 

@@ -145,7 +145,7 @@ def _in_integers(numbers):
 
 
 def _axes(one, moments, to_frame, side, hand):
-    """Return the :class:`Axes` for moments, integers in the unit 1/one, and directions of the axes.
+    """Return the :class:`Axes` for moments (integers, unit 1/one) and directions of the axes.
 
     Integers keep them exact, as fractions would at ten times the cost.
     """
