@@ -24,7 +24,8 @@ def counting(times):
         return later[0] if later else (math.inf, 0)
     one = object.__new__(Exact)
     one.motion = types.SimpleNamespace(next_event=next_event, EVENTS=('even', 'odd'))
-    one._tells, one.anchor, one._next_event, one._last_events = True, None, None, NONE_YET
+    one._asked = types.SimpleNamespace(tells=True)
+    one.anchor, one._next_event, one._last_events = None, None, NONE_YET
     return one, asked
 
 
