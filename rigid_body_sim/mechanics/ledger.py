@@ -37,7 +37,8 @@ ENTRIES_SIZE = ENTRIES.size
 WORK, DISSIPATED = ENTRIES.part('work').first, ENTRIES.part('dissipated').first
 ANGULAR_IMPULSE = ENTRIES.part('angular_impulse').places
 
-HEATS = ('dissipated_sliding', 'dissipated_rolling', 'dissipated_air_film', 'dissipated_impacts')
+HEATS = ('dissipated_sliding', 'dissipated_rolling', 'dissipated_air_film', 'dissipated_impacts',
+         'dissipated_spinning')
 """Causes of heat at a plane (J): they stand behind the entries of a body on it."""
 
 

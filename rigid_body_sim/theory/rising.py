@@ -48,13 +48,6 @@ def inclination_of_least_energy(jellett, A, C, m, g, R, a):
                                  method='bounded', options={'xatol': 1e-10}).x)
 
 
-def spin_that_leaves_the_heavy_end(A, C, m, g, R, a):
-    """Return the spin (rad/s) above which a top does not stay on its heavy end, or infinity."""
-    e = a / R
-    beyond = A / C - (1.0 - e)
-    return (1.0 - e) * math.sqrt(m * g * a / (C * beyond)) if beyond > 0.0 else math.inf
-
-
 def time_to_rise(J, push, height, begin, end):
     """Return the time (s) in which a fast top passes from one inclination to another.
 

@@ -12,12 +12,16 @@ import pickle
 import mpmath
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.marching.contact import CHATTER
+from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.scenes.confirm import confirm
+from rigid_body_sim.theory import rising
 
 REFERENCES = json.loads((pathlib.Path(__file__).parents[1] / 'data/convex_body.json').read_text())
 FINEST = 1e-15
@@ -55,7 +59,7 @@ def balanced(sim):
     """Return whether energy and momentum are accounted for to round-off."""
     ledger = sim.ledger()
     heats = sum(ledger[f'dissipated_{cause}'] for cause in
-                ('sliding', 'rolling', 'air_film', 'impacts'))
+                ('sliding', 'rolling', 'spinning', 'air_film', 'impacts'))
     assert heats == pytest.approx(ledger['dissipated'], rel=1e-12, abs=1e-300)
     return abs(ledger['energy_residual']) < 2e-13 and ledger['momentum_residual'] < 2e-13
 
@@ -127,9 +131,10 @@ def test_disk_and_routh_sphere_turn_when_their_quadratures_say(name):
         assert abs(across) < 3e-13 * turns
 
 
+@pytest.mark.parametrize('name', ['disk', 'hoop', 'routh_sphere'])
 @pytest.mark.parametrize('accuracy', [1e-3, 1e-5, 1e-7, 1e-9, 1e-11])
-def test_disk_meets_the_accuracy_that_is_asked(accuracy):
-    sim, half, theta = _turning('disk')
+def test_disk_and_routh_sphere_meet_the_accuracy_that_is_asked(name, accuracy):
+    sim, half, theta = _turning(name)
     rough = Simulation(sim.scene, 'dop8', accuracy)
     state = rough.states([21 * half])[0]
     gamma = rotate_back(*state.orientation, 0.0, 0.0, 1.0)
@@ -243,11 +248,18 @@ def test_bouncing_ball_comes_to_rest_at_its_zeno_point():
     impacts = [event for event in sim.events if event.name == 'impact']
     first, e = math.sqrt(2.0 / G), 0.9
     assert impacts[0].time == pytest.approx(first, abs=1e-15)
-    for k, impact in enumerate(impacts[:100]):
+    # the weights of a step are doubles of a size up to 5.8, of either sign: a flight changes the
+    # speed by up to sum |b| 2^-53 of it (measured 1.7e-15), and with it all flights to come, which
+    # take 2 e^j first e/(1 - e). Measured 7.8e-14
+    rounding = sum(map(abs, dop8.B.values())) * 2.0**-53 * 2.0 * first * e / (1.0 - e) ** 2
+    for k, impact in enumerate(impacts):
         end = first * (1.0 + 2.0 * e * (1.0 - e ** k) / (1.0 - e))
-        # an ulp of the speed after an impact moves all later ones; measured 2.3e-14
-        assert impact.time == pytest.approx(end, abs=1e-13)
-    assert impacts[-1].time == pytest.approx(first * (1.0 + e) / (1.0 - e), abs=1e-12)
+        assert impact.time == pytest.approx(end, abs=rounding)
+    # the last flights are left out: those slower than CHATTER beside the speed of a fall by 5 cm,
+    # about, each way
+    left_out = 2.0 * CHATTER * 2.0 * math.sqrt(G * 0.05) / G / (1.0 - e)
+    assert impacts[-1].time == pytest.approx(first * (1.0 + e) / (1.0 - e),
+                                             abs=left_out + rounding)
     assert sim.state.position[2] == pytest.approx(0.05, abs=1e-15)
     assert balanced(sim)
 
@@ -382,22 +394,87 @@ def test_euler_disk_ends_with_the_exponent_of_its_friction(effect, a, left):
                      'rolling: true}', accuracy=1e-10)
     end = left(a, m, R)
     rest = sim.at_event('rest', 2.0 * end).time
-    assert rest == pytest.approx(end, rel=1e-2)
-    # theory holds as a goes to 0, until the fall of the disk is no longer slow
-    late = sim.states([0.8 * rest, 0.85 * rest])
-    tilts = np.hypot(*normals(late).T[:2])
-    for time, tilt in zip(late.time, tilts, strict=True):
-        assert left(tilt, m, R) == pytest.approx(rest - time, rel=3e-2)
+    lower = Simulation(sim.scene, 'dop8', 1e-10, overrides={
+        'initial.euler_zyz': [0.0, 0.5 * a, 0.0],
+        'initial.angular_velocity': [-math.sqrt(8.0 * G / (R * a)) * math.sin(0.5 * a), 0.0, 0.0]})
+    # the law errs by a share of about a^2/2, and at the very end the disk falls freely, which takes
+    # the same time for each start
+    half = left(0.5 * a, m, R)
+    late, later = rest - end, lower.at_event('rest', 2.0 * end).time - half
+    assert rest - half - later == pytest.approx(end - half, rel=a * a)
+    weight = 0.25 * half / end
+    free = (later - weight * late) / (1.0 - weight)
+    assert 0.0 < free < 2e-3 * end
+    for share in (0.8, 0.85, 0.95):
+        tilt = math.hypot(*normals(sim.states([share * rest]))[0, :2])
+        assert left(tilt, m, R) == pytest.approx((1.0 - share) * rest - free, rel=1e-2)
 
 
-def test_dry_rolling_friction_that_holds_a_sliding_disk_ends_in_one_line():
-    sim = simulation('{mass: 0.0075, shape: {disk: {radius: 0.012}}}',
-                     'sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.01}',
-                     '{euler_zyz: [0, 0.2, 0], position: [0, 0, 0.3], velocity: [0.1, 0, 1.5], '
-                     'angular_velocity: [35, 0, 8]}', accuracy=1e-9)
-    with pytest.raises(NotConverged, match='dry rolling friction') as error:
-        sim.advance(4000)
-    assert '\n' not in str(error.value)
+# -- a patch of contact -----------------------------------------------------------------------
+
+
+def test_patch_stops_a_spin_about_the_normal_where_it_says():
+    sim = simulation(BALL, 'sliding_friction: {mu: 0.3}, spinning_friction: {radius: 0.002}',
+                     '{angular_velocity: [0, 0, 50]}', accuracy=1e-9)
+    sim.advance(9000)
+    (stop,) = sim.events
+    assert stop.time == pytest.approx(50.0 * 0.001 / (0.3 * G * 0.002), rel=1e-14)
+    assert sim.ledger()['dissipated_spinning'] == pytest.approx(0.5 * 0.001 * 50.0**2, rel=1e-14)
+    assert balanced(sim)
+
+
+def test_patch_that_lets_go_slips_and_spins_along_one_direction():
+    # from rest a ball's slip v = (u, rho w) keeps its direction d: v' = b - mu N M d = growth d
+    mu, rho, force, torque = 0.3, 0.01, 8.0, 0.04
+    sim = simulation(BALL, f'sliding_friction: {{mu: {mu}}}, spinning_friction: {{radius: {rho}}}',
+                     '{}', accuracy=1e-12)
+    sim.advance(10)
+    sim.hold((force, 0.0, 0.0), (0.0, 0.0, torque))
+    sim.advance(100)
+    b, M = np.array([force, rho * torque / 0.001]), np.array([1.0 + 0.05**2 / 0.001, rho**2 / 0.001])
+    growth = brentq(lambda g: sum((b / (g + mu * G * M)) ** 2) - 1.0, 0.0, 1e3, xtol=1e-15)
+    d = b / (growth + mu * G * M)
+    v, omega = sim.state.velocity, sim.state.angular_velocity
+    assert v[0] - 0.05 * omega[1] == pytest.approx(0.1 * growth * d[0], rel=1e-12)
+    assert rho * omega[2] == pytest.approx(0.1 * growth * d[1], rel=1e-12)
+    held = sim.reactions([0.05])
+    assert np.hypot(*held.force[0, :2]) == pytest.approx(mu * G * abs(d[0]), rel=1e-12)
+    assert balanced(sim)
+
+
+def test_patch_that_holds_lets_go_and_holds_again_with_every_event_in_the_ledger():
+    parts = (EGG, 'sliding_friction: {mu: 0.15}, spinning_friction: {radius: 0.01}',
+             '{angular_velocity: [8, 5, 0], rolling: true}')
+    ends = {}
+    for accuracy in (1e-9, 1e-12):
+        sim = simulation(*parts, accuracy=accuracy)
+        sim.advance(300)
+        assert [event.name for event in sim.events] == ['sliding began', 'rolling began']
+        ends[accuracy] = sim.vector.copy(), [event.time for event in sim.events]
+    assert balanced(sim)
+    assert np.abs(ends[1e-9][0] - ends[1e-12][0]).max() < 1e-9
+    assert np.allclose(ends[1e-9][1], ends[1e-12][1], atol=1e-9)
+
+
+def test_tippe_top_on_a_patch_ends_at_the_inclination_of_least_energy():
+    A, C, m, R, a = 9.5e-7, 7.0e-7, 0.006, 0.015, 0.003
+    sim = simulation(f'{{mass: {m}, inertia: [{A}, {A}, {C}], center_of_mass: [0, 0, {-a}], '
+                     f'surface: {{sphere: {{radius: {R}}}}}}}',
+                     'sliding_friction: {mu: 0.3}, spinning_friction: {radius: 1.0e-4}',
+                     '{tilt: 0.1, angular_velocity_world: [0, 0, 180]}', accuracy=1e-9)
+    first, last = sim.states([0.0, 6.0])
+    constant = rising.jellett(first.angular_velocity, rotate_back(*first.orientation, 0, 0, 1.0),
+                              A, C, R, a)
+    rests = rising.inclination_of_least_energy(constant, A, C, m, G, R, a)
+    assert math.acos(rotate_back(*last.orientation, 0.0, 0.0, 1.0)[2]) == pytest.approx(
+        rests, abs=0.02)
+
+
+def test_patch_without_a_finite_friction_is_refused():
+    for mu in ('0', '.inf'):
+        with pytest.raises(BadInput, match='spinning_friction'):
+            simulation(BALL, f'sliding_friction: {{mu: {mu}}}, spinning_friction: {{radius: 0.01}}',
+                       '{}')
 
 
 # -- limits -----------------------------------------------------------------------------------

@@ -5,10 +5,12 @@ It is bound to the sum of what acts besides the contact. Symbols: mechanics/cont
 vectors but omega are along the axes of the plane.
 
     FLIGHT    no contact: x'' = F/m
-    SLIDING   u != 0: f = N (n - mu u/|u|). Where u dies its direction may turn ever faster, so
-              time is an unknown and the independent variable is s with dt = |u| ds: everything is
-              smooth in s, and |u| dies like an exponential
-    ROLLING   u = 0: f = -G^-1 b, as long as |F_t| <= mu N
+    SLIDING   u != 0 (with a patch of contact: or a spin about the normal): f = N (n - mu u/|u|).
+              Where u dies its direction may turn ever faster, so time is an unknown and the
+              independent variable is s with dt = |u| ds (|u| with the spin of a patch):
+              everything is smooth in s, and |u| dies like an exponential
+    ROLLING   u = 0: f = -G^-1 b, as long as |F_t| <= mu N. With a patch of contact nothing spins
+              about the normal, either, and its couple over rho is the third component of F_t
     GLIDING   no friction (mu = 0)
     RESTING   nothing moves any more
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
@@ -30,12 +32,17 @@ from rigid_body_sim.mechanics.contact.laws import (
     System,
     departure,
     impulse,
+    patch_departure,
+    patch_lagging,
+    patch_slipping,
+    patch_sticking,
+    patch_system,
     slipping,
     sticking,
     turning,
 )
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
-from rigid_body_sim.mechanics.contact.touch import couples, lever, response
+from rigid_body_sim.mechanics.contact.touch import couples, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import (
     matrix,
@@ -57,8 +64,8 @@ FLIGHT, SLIDING, ROLLING, GLIDING, CREEPING, RESTING = range(6)
 # the ledger
 Q, OMEGA, U, PLACE, GAP, TIME = 0, 4, 7, 10, 12, 13
 UNKNOWNS = 14
-SLID, ROLLED, FILMED, STRUCK, DAMPED, WORK, IMPULSE = 14, 15, 16, 17, 18, 19, 20
-SIZE = 23
+SLID, ROLLED, FILMED, STRUCK, DAMPED, WORK, IMPULSE, SPUN = 14, 15, 16, 17, 18, 19, 20, 23
+SIZE = 24
 WATCHED = SIZE           # gap or N, grip, A, time to what jumps, what stops
 WATCHES = 5
 FORCE = WATCHED + WATCHES      # N, axes of the plane
@@ -66,7 +73,8 @@ COUPLE = FORCE + 3       # N m, axes of the plane
 SLIP = COUPLE + 3        # u, m/s, along the plane
 VELOCITY = SLIP + 2      # of the centre of mass, m/s, axes of the plane
 LEVER = VELOCITY + 3     # r, m, axes of the plane
-ROW = LEVER + 3
+PACE = LEVER + 3         # of the slip, with the spin of a patch, m/s
+ROW = PACE + 1
 PARAMETER_COUNT = CONTACT.size
 ROUNDING = 2.0 ** -50    # of a normal velocity, beside the speeds
 FLAT = 1e-6              # rad: a disk that is inclined by less lies flat, where friction stops it
@@ -155,23 +163,25 @@ def _leaving(system, mu):
     return dx, dy
 
 
-@compiled
-def _lagging(p, c, y, system, viscous, wrung, dx, dy):
-    """Return the direction of a creep |u|: it lags behind the direction d, which turns.
+@compiled_inline
+def _short(c):
+    """Return the time of a difference, s."""
+    return SHORT * c.size[0] / c.swift
 
-    With the angle phi of u, |u| phi' is the part of u' across u. Where d turns at the rate phi', u
-    stands off d by |u| phi' over the slope of that part. phi' is a difference over a short time.
+
+@compiled
+def _ahead(p, c, y, axes, r, f, touch):
+    """Return the System a short time later under a force and a couple of the contact, body axes.
+
+    Behind it stand what `spinning` takes there: the axes of the plane, the lever, and torque and
+    couple that goes with N.
     """
     q, omega = (y[0], y[1], y[2], y[3]), (y[4], y[5], y[6])
-    axes = matrix(*q)
-    r = lever(c, axes[2])
-    _, _, N, _ = slipping(system, c.mu, dx, dy)
-    f = -c.mu * N * dx, -c.mu * N * dy, N
     F, T, _, _ = _applied(p, c, q, omega, scaled(-1.0, apply(axes, cross(omega, r))))
     pushed = plus(scaled(f[0], axes[0]), plus(scaled(f[1], axes[1]), scaled(f[2], axes[2])))
-    torque = plus(plus(T, viscous), plus(cross(r, pushed), scaled(N, wrung)))
+    torque = plus(plus(T, touch), cross(r, pushed))
     grown = apply(c.inverse, minus(torque, cross(omega, apply(c.inertia, omega))))
-    short = SHORT * c.size[0] / c.swift
+    short = _short(c)
     x, yy, z, w = multiply(*q, *omega, 0.0)
     half = 0.5 * short
     q = normalised(q[0] + half * x, q[1] + half * yy, q[2] + half * z, q[3] + half * w)
@@ -183,15 +193,65 @@ def _lagging(p, c, y, system, viscous, wrung, dx, dy):
     F, T, _, _ = _applied(p, c, q, omega, scaled(-1.0, apply(axes, carried)))
     viscous, wrung, _, _ = couples(c, axes[2], moved)
     torque = minus(plus(T, viscous), cross(omega, apply(c.inertia, omega)))
-    ahead = _system(c, axes, r, omega, carried, moved, torque, wrung, F)
+    return (_system(c, axes, r, omega, carried, moved, torque, wrung, F), axes, r,
+            (torque, wrung))
+
+
+@compiled
+def _lagging(p, c, y, system, viscous, wrung, dx, dy):
+    """Return the direction of a creep |u|: it lags behind the direction d, which turns.
+
+    With the angle phi of u, |u| phi' is the part of u' across u. Where d turns at the rate phi', u
+    stands off d by |u| phi' over the slope of that part. phi' is a difference over a short time.
+    """
+    axes = matrix(y[0], y[1], y[2], y[3])
+    r = lever(c, axes[2])
+    _, _, N, _ = slipping(system, c.mu, dx, dy)
+    f = -c.mu * N * dx, -c.mu * N * dy, N
+    ahead, _, _, _ = _ahead(p, c, y, axes, r, f, plus(viscous, scaled(N, wrung)))
     ex, ey, _ = departure(ahead, c.mu, dx, dy)
     _, _, slope, _ = turning(system, c.mu, dx, dy)
     if not slope < 0.0:
         return dx, dy
-    off = y[7] * (dx * ey - dy * ex) / (short * slope)
+    off = y[7] * (dx * ey - dy * ex) / (_short(c) * slope)
     off = max(-1e-2, min(1e-2, off))
     size = hypot(1.0, off)
     return (dx - off * dy) / size, (dy + off * dx) / size
+
+
+@compiled_inline
+def _patch_of(c, axes, r, omega, carried, moved, torque, wrung, F):
+    """Return the Patch of a body with a patch of contact."""
+    system = _system(c, axes, r, omega, carried, moved, torque, wrung, F)
+    turned, twisted, spun = spinning(c, axes, r, torque, wrung)
+    return patch_system(system, turned, twisted, spun, c.patch)
+
+
+@compiled
+def _held(c, axes, r, omega, carried, moved, torque, wrung, F):
+    """Return force (axes of the plane), couple about the normal and grip of a patch that holds."""
+    friction, N = patch_sticking(_patch_of(c, axes, r, omega, carried, moved, torque, wrung, F))
+    return ((friction[0], friction[1], N), c.patch * friction[2],
+            c.mu * N - math.sqrt(dot(friction, friction)))
+
+
+@compiled
+def _parting(p, c, y, axes, r, patch, viscous, wrung):
+    """Return the direction of a creep |w| of a patch that holds no more.
+
+    It lags behind the direction along which the slip begins, as in `_lagging`.
+    """
+    friction, _ = patch_sticking(patch)
+    size = math.sqrt(dot(friction, friction))
+    d, _ = patch_departure(patch, c.mu, scaled(-1.0 / size, friction))
+    _, N, _ = patch_slipping(patch, c.mu, d)
+    f = -c.mu * N * d[0], -c.mu * N * d[1], N
+    twist = scaled(-c.mu * N * c.patch * d[2], axes[2])
+    system, axes, r, (torque, couple) = _ahead(p, c, y, axes, r, f,
+                                               plus(plus(viscous, scaled(N, wrung)), twist))
+    turned, twisted, spun = spinning(c, axes, r, torque, couple)
+    ahead, _ = patch_departure(patch_system(system, turned, twisted, spun, c.patch), c.mu, d)
+    return patch_lagging(patch, c.mu, d, scaled(y[7] / _short(c), minus(ahead, d)))
 
 
 @compiled
@@ -217,7 +277,8 @@ def rate(p, y, k):
     moved = shifted(c.kind, c.size, e3, turned)
     k[WATCHED], k[WATCHED + 1], k[WATCHED + 2] = 1.0, 1.0, 1.0
     k[WATCHED + 3] = c.until - y[TIME]
-    k[ROLLED], k[FILMED], k[STRUCK], k[SLID] = 0.0, 0.0, 0.0, 0.0
+    k[ROLLED], k[FILMED], k[STRUCK], k[SLID], k[SPUN] = 0.0, 0.0, 0.0, 0.0, 0.0
+    k[PACE] = 1.0
     f, touch = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)    # plane axes, body axes
     f_body, slip, pace = f, f, 1.0
     torque = minus(T, cross(omega, apply(c.inertia, omega)))
@@ -243,15 +304,26 @@ def rate(p, y, k):
         k[FILMED] = film * speed * speed
         torque = plus(torque, viscous)
         if mode == ROLLING:
-            if c.rolling > 0.0:
+            if c.patch > 0.0:
+                f, twist, k[WATCHED + 1] = _held(c, axes, r, omega, carried, moved, torque, wrung,
+                                                 F)
+                viscous, torque = (plus(viscous, scaled(twist, e3)),
+                                   plus(torque, scaled(twist, e3)))
+            elif c.rolling > 0.0:
                 f = sticking(_system(c, axes, r, omega, carried, moved, torque, wrung, F))
             else:
                 f = _rolling_force(c, axes, r, omega, carried, moved, torque, F)
-            k[WATCHED + 1] = c.mu * f[2] - hypot(f[0], f[1]) if c.mu < 1e300 else 1.0
+            if c.patch == 0.0:
+                k[WATCHED + 1] = c.mu * f[2] - hypot(f[0], f[1]) if c.mu < 1e300 else 1.0
         elif mode in (GLIDING, SLIDING):
             dx, dy, mu = 1.0, 0.0, 0.0
             if mode == SLIDING:
                 pace, mu = hypot(y[7], y[8]), c.mu
+                if c.patch > 0.0:
+                    spin = c.patch * dot(e3, omega)
+                    pace = hypot(pace, spin)
+                    if pace > 0.0:
+                        wrung = minus(wrung, scaled(mu * c.patch * spin / pace, e3))
                 if pace > 0.0:
                     dx, dy = y[7] / pace, y[8] / pace
             b = plus(apply(axes, _driven(c, r, omega, carried, moved, torque)),
@@ -259,6 +331,26 @@ def rate(p, y, k):
             f, slip, A = _slipping_force(c, axes, r, wrung, b, mu, dx, dy)
             k[WATCHED + 2] = A * c.mass
             k[SLID] = mu * f[2] * pace
+            k[PACE] = pace
+            if c.patch > 0.0 and mode == SLIDING:
+                k[SPUN] = mu * f[2] * pace
+                k[SLID] = k[SPUN] * (dx * dx + dy * dy)
+                k[SPUN] -= k[SLID]
+        elif c.patch > 0.0:
+            patch = _patch_of(c, axes, r, omega, carried, moved, torque, wrung, F)
+            d = _parting(p, c, y, axes, r, patch, viscous, wrung)
+            slipped, N, A = patch_slipping(patch, c.mu, d)
+            growth = dot(d, slipped)
+            dx, dy, dz = d
+            wrung = minus(wrung, scaled(c.mu * c.patch * dz, e3))
+            f, slip = (-c.mu * N * dx, -c.mu * N * dy, N), (growth, 0.0, 0.0)
+            u = y[7] * dx, y[7] * dy, 0.0
+            v = plus(v, u)
+            k[WATCHED + 1] = c.creep - y[7]
+            k[WATCHED + 2] = A * c.mass
+            k[SPUN] = c.mu * N * y[7]
+            k[SLID] = k[SPUN] * (dx * dx + dy * dy)
+            k[SPUN] -= k[SLID]
         else:
             system = _system(c, axes, r, omega, carried, moved, torque, wrung, F)
             dx, dy = _leaving(system, c.mu)
@@ -352,6 +444,14 @@ def collide(p, y, restitution, out):
     sticks = c.mu > 0.0 and hypot(given[0], given[1]) < c.mu * given[2] * (1.0 - 1e-14)
     out[0], out[1] = (0.0, 0.0) if sticks else (after[0], after[1])
     out[2], out[3], out[4] = before[2], normal, given[2]
+
+
+@compiled
+def spins(p, y):
+    """Return the speed at which a patch of contact spins on the plane, m/s."""
+    c = load_contact(p)
+    gamma = matrix(y[0], y[1], y[2], y[3])[2]
+    return c.patch * abs(dot(gamma, (y[4], y[5], y[6])))
 
 
 @compiled
@@ -452,10 +552,11 @@ def write(p, y, row, time, x, yy, out):
     out[11], out[12], out[13] = minus(v, apply(axes, cross(omega, c.center)))
     if len(out) > 14:
         out[14] = y[WORK]
-        out[15] = y[SLID] + y[ROLLED] + y[FILMED] + y[STRUCK] + y[DAMPED]
+        out[15] = y[SLID] + y[ROLLED] + y[FILMED] + y[STRUCK] + y[DAMPED] + y[SPUN]
         out[16], out[17], out[18] = turn
     if len(out) > 19:
         out[19], out[20], out[21], out[22] = y[SLID], y[ROLLED], y[FILMED], y[STRUCK]
+        out[23] = y[SPUN]
 
 
 @compiled

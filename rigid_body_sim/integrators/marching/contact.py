@@ -161,7 +161,7 @@ class PlaneCourse:
         y[U], y[U + 1], y[U + 2] = *u, 0.0
         y[GAP] = 0.0
         mu, row, rates = p[MU], np.empty(ROW), self._bound.rates
-        slides = u[0] != 0.0 or u[1] != 0.0
+        slides = u[0] != 0.0 or u[1] != 0.0 or rates.spins(p, y) > ROUNDING * self._speed(y)
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
         rates.rate(p, y, row)
         if not row[WATCHED + 2] > 0.0:

@@ -24,6 +24,7 @@ from rigid_body_sim.integrators.equations.contact_rates import (
     FLIGHT,
     GAP,
     OMEGA,
+    PACE,
     PLACE,
     ROW,
     SIZE,
@@ -241,7 +242,7 @@ def begin(p, w, front, meta, y):
     for n in range(SIZE):
         front[n], front[LOST + n] = y[n], 0.0
     rate(p, y, w[0])
-    pace = hypot(y[U], y[U + 1]) if p[MODE] == SLIDING else 1.0
+    pace = w[0, PACE]
     size = math.sqrt(w[0, 4] * w[0, 4] + w[0, 5] * w[0, 5] + w[0, 6] * w[0, 6])
     fastest = meta[RATE] * pace + size / meta[RATE]
     if p[MODE] == SLIDING:
@@ -300,10 +301,8 @@ def march(p, w, phase, sizes, front, meta, target):
         _keep(phase, front, meta)
         sizes[int(meta[STEPS])] = part
         meta[STEPS] += 1.0
-        died = False
-        if mode == SLIDING:
-            slip = hypot(w[FRESH, U], w[FRESH, U + 1])
-            died = slip < hypot(y[U], y[U + 1]) and slip <= DEAD * p[SWIFT]
+        died = mode == SLIDING and w[END, PACE] < w[0, PACE] and (
+            w[END, PACE] <= DEAD * p[SWIFT])
         for n in range(SIZE):
             y[n], lost[n] = w[FRESH, n], w[TRIED, n]
         meta[PLANNED] = planned
@@ -404,7 +403,8 @@ def _step_to(p, w, values, lost, h, ended, time):
             high = part
         else:
             low = part
-        pace = hypot(w[FRESH, U], w[FRESH, U + 1])
+        rate(p, w[FRESH], w[END])
+        pace = w[END, PACE]
         better = part - late / pace if pace > 0.0 else low
         if not low <= better <= high:
             better = 0.5 * (low + high)

@@ -14,6 +14,10 @@ with F, T force and couple of all else. A couple N c of rolling friction adds N
 n . u' = 0. Stick: f = -G^-1 b. An impact is the same algebra on impulses, with (u_t, (1 + e) u_n)
 in place of b: Newton's restitution e, and Coulomb's law for the impulses.
 
+A patch of contact of radius rho resists a spin w about the normal: Coulomb's law then holds for
+(u, rho w) in three dimensions, and the couple about n over rho is the third component of friction
+(class Patch).
+
 Slip that begins leaves along a direction d that it keeps at first: u' is parallel to d.
 
 Sources: M. Antali and G. Stepan, Nonlinear Dynamics 97 (2019) 1799 (slip and stick in three
@@ -26,7 +30,7 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.functions import hypot
-from rigid_body_sim.numerics.vectors import cross, dot, scaled
+from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 
 NEWTON = 50         # largest number of its steps for a direction
 SECTORS = 32        # in which directions are looked for where it fails
@@ -145,6 +149,161 @@ def _refined(system, mu, dx, dy):
             break
         good = abs(step) <= 1e-12
     return dx, dy, growth, good and A > 0.0
+
+
+class Patch(NamedTuple):
+    """A System whose slip is v = (u_1, u_2, rho w), with N apart: v' = b + M f + N c.
+
+    Attributes
+    ----------
+    M : Matrix
+        How the three components of friction change v, 1/kg.
+    c, n : Vector
+        How N changes v, and how the components of friction change the normal velocity, 1/kg.
+    nn : float
+        How N changes the normal velocity, 1/kg.
+    b : Vector
+        v' without a force, m/s^2.
+    bn : float
+        The normal acceleration without a force, m/s^2.
+    """
+
+    M: Matrix
+    c: Vector
+    n: Vector
+    nn: float
+    b: Vector
+    bn: float
+
+
+@compiled
+def patch_system(system, turned, twisted, spun, rho):
+    """Return the Patch of a System.
+
+    Parameters
+    ----------
+    turned : Vector
+        How the components of the force change the spin w, 1/(kg m); N with its couple.
+    twisted : Vector
+        How a couple about the normal changes the velocity of P, axes of the plane; the rate of the
+        spin by it stands apart:
+    spun : tuple of 2 floats
+        w' without a force (rad/s^2), and by a couple (1/(kg m^2)).
+    """
+    a1, a2, a3 = system.G
+    M = ((a1[0], a1[1], rho * twisted[0]), (a2[0], a2[1], rho * twisted[1]),
+         (rho * turned[0], rho * turned[1], rho * rho * spun[1]))
+    return Patch(M, (a1[2], a2[2], rho * turned[2]), (a3[0], a3[1], rho * twisted[2]), a3[2],
+                 (system.b[0], system.b[1], rho * spun[0]), system.b[2])
+
+
+@compiled
+def patch_sticking(patch):
+    """Return (friction, N): v' = 0 and no normal acceleration. M is eliminated first."""
+    M, c, n, nn, b, bn = patch
+    by_b, by_c = sticking(System(M, scaled(-1.0, b))), sticking(System(M, scaled(-1.0, c)))
+    N = (dot(n, by_b) - bn) / (nn - dot(n, by_c))
+    return scaled(-1.0, plus(by_b, scaled(N, by_c))), N
+
+
+@compiled
+def patch_slipping(patch, mu, d):
+    """Return (v', N, A) for a slip of a patch along a unit vector d."""
+    push = scaled(-mu, d)
+    A = dot(patch.n, push) + patch.nn
+    N = -patch.bn / A
+    return plus(patch.b, scaled(N, plus(apply(patch.M, push), patch.c))), N, A
+
+
+@compiled
+def patch_departure(patch, mu, d):
+    """Return (d, growth): the direction along which the slip of a patch leaves, as `departure`."""
+    found, growth, good = _patch_refined(patch, mu, d)
+    if good and growth > 0.0:
+        return found, growth
+    best, most = found, growth if good else -math.inf
+    for k in range(27):
+        x, y, z = k // 9 - 1.0, k // 3 % 3 - 1.0, k % 3 - 1.0
+        size = math.sqrt(x * x + y * y + z * z)
+        if size > 0.0:
+            found, growth, good = _patch_refined(patch, mu, (x / size, y / size, z / size))
+            if good and growth > most:
+                best, most = found, growth
+    return best, most
+
+
+@compiled
+def _patch_across(patch, mu, d):
+    """Return how v' stands across d.
+
+    Returns
+    -------
+    first, second : Vector
+        Two unit vectors across d.
+    slopes : tuple of 4 floats
+        Derivative of the parts of v' across d, by a turn of d towards each, m/s^2.
+    parts : tuple of 2 floats
+        The parts, m/s^2.
+    growth, A : float
+        d . v', m/s^2; as in `turning`.
+    """
+    v, N, A = patch_slipping(patch, mu, d)
+    growth = dot(d, v)
+    first = cross(d, (1.0, 0.0, 0.0) if abs(d[0]) < 0.7 else (0.0, 1.0, 0.0))
+    first = scaled(1.0 / math.sqrt(dot(first, first)), first)
+    second = cross(d, first)
+    pushed = plus(apply(patch.M, scaled(-mu, d)), patch.c)
+    one = _patch_slope(patch, mu, first, pushed, N, A)
+    other = _patch_slope(patch, mu, second, pushed, N, A)
+    slopes = (dot(first, one) - growth, dot(first, other), dot(second, one),
+              dot(second, other) - growth)
+    return first, second, slopes, (dot(first, v), dot(second, v)), growth, A
+
+
+@compiled
+def _patch_turn(d, first, second, slopes, x, y, most):
+    """Turn d until the parts across it change by x and y; return it, and by how much it turned."""
+    a, b, c, e = slopes
+    det = a * e - b * c
+    share = 1.0 / det if det != 0.0 else 0.0
+    s, t = share * (e * x - b * y), share * (a * y - c * x)
+    size = math.sqrt(s * s + t * t)
+    if size > most:
+        s, t = most * s / size, most * t / size
+    d = plus(d, plus(scaled(s, first), scaled(t, second)))
+    return scaled(1.0 / math.sqrt(dot(d, d)), d), size
+
+
+@compiled
+def _patch_refined(patch, mu, d):
+    """Return (d, d . v', whether Newton's method converged to a v' parallel to d)."""
+    growth, good, A = 0.0, False, 0.0
+    for _ in range(NEWTON):
+        first, second, slopes, parts, growth, A = _patch_across(patch, mu, d)
+        d, size = _patch_turn(d, first, second, slopes, -parts[0], -parts[1], 0.5)
+        if size <= CLOSE:
+            good = True
+            break
+        good = size <= 1e-12
+    return d, growth, good and A > 0.0
+
+
+@compiled
+def patch_lagging(patch, mu, d, turned):
+    """Return the direction of a slip behind a direction d that turns.
+
+    `turned` is the velocity at which d turns, times the speed of the slip, m/s^2.
+    """
+    first, second, slopes, _, _, _ = _patch_across(patch, mu, d)
+    found, _ = _patch_turn(d, first, second, slopes, dot(first, turned), dot(second, turned), 1e-2)
+    return found
+
+
+@compiled
+def _patch_slope(patch, mu, along, pushed, N, A):
+    """Return the derivative of v' by d along a direction across it."""
+    push = scaled(-mu, along)
+    return plus(scaled(-N / A * dot(patch.n, push), pushed), scaled(N, apply(patch.M, push)))
 
 
 @compiled

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, ContactParameters
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import minus
@@ -18,6 +19,9 @@ def contact_parameters(scene):
     body, plane = scene.body, scene.constraint
     surface, inertia = body.surface, tuple(map(tuple, body.about_center.matrix.tolist()))
     laws = scene.contact
+    if laws.patch > 0.0 and not 0.0 < laws.mu < math.inf:
+        raise BadInput(f'{scene.name}: effects.spinning_friction', f'with mu = {laws.mu!r}',
+                       'sliding_friction with a finite mu above 0: its force is that of the patch')
     p = np.zeros(CONTACT.size)
     CONTACT.store(p, ContactParameters(
         mode=0.0, mass=body.mass, center=body.center_of_mass,
@@ -25,7 +29,7 @@ def contact_parameters(scene):
         size=surface.size, inertia=inertia, inverse=inverse_of(inertia),
         inclined=float(plane.axes != IDENTITY), plane=plane.axes,
         mu=laws.mu, restitution=plane.restitution, rolling=laws.rolling,
-        rolling_viscous=laws.rolling_viscous, film=laws.film,
+        rolling_viscous=laws.rolling_viscous, film=laws.film, patch=laws.patch,
         swift=0.0, creep=0.0, until=math.inf))
     return p
 

@@ -32,6 +32,8 @@ class ContactParameters(NamedTuple):
     rolling, rolling_viscous, film : float
         Coefficient C of dry rolling friction, c of viscous rolling friction (N s/m), pi eta R/4
         of a film of air (N s/m).
+    patch : float
+        Radius rho of the patch of contact, m; 0 for a point.
     swift : float
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
@@ -55,6 +57,7 @@ class ContactParameters(NamedTuple):
     rolling: float
     rolling_viscous: float
     film: float
+    patch: float
     swift: float
     creep: float
     until: float

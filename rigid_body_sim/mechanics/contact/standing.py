@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The balance of forces of a body above, or in contact with, a plane at one instant."""
 
-from rigid_body_sim.mechanics.contact.laws import System, departure, slipping, sticking
+from rigid_body_sim.mechanics.contact.laws import (
+    System,
+    departure,
+    patch_departure,
+    patch_slipping,
+    patch_sticking,
+    patch_system,
+    slipping,
+    sticking,
+)
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
-from rigid_body_sim.mechanics.contact.touch import couples, lever, response
+from rigid_body_sim.mechanics.contact.touch import couples, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
@@ -67,10 +76,33 @@ class Standing:
         b = plus(cross(apply(c.inverse, torque), r),
                  plus(cross(omega, carried), cross(omega, moved)))
         free = plus(apply(axes, b), scaled(1.0 / c.mass, rotate_back(*c.plane, *force)))
-        f = self._force(System(response(c, axes, r, wrung), free), u, speed)
+        system = System(response(c, axes, r, wrung), free)
+        if c.patch > 0.0:
+            patch = patch_system(system, *spinning(c, axes, r, torque, wrung), c.patch)
+            f, twist = self._patch_force(patch, u, dot(gamma, omega), speed)
+            viscous = plus(viscous, scaled(twist, gamma))
+        else:
+            f = self._force(system, u, speed)
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r
         return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
+
+    def _patch_force(self, patch, u, spin, speed):
+        """Return force (axes of the plane) and couple about the normal of a patch of contact."""
+        mu, rho = self._c.mu, self._c.patch
+        slip = hypot3(u[0], u[1], rho * spin)
+        if slip > TOUCHES * speed:
+            d = u[0] / slip, u[1] / slip, rho * spin / slip
+        else:
+            friction, N = patch_sticking(patch)
+            size = hypot3(*friction)
+            if size <= mu * N:
+                return (friction[0], friction[1], N), rho * friction[2]
+            if not N > 0.0:
+                return NOTHING, 0.0
+            d, _ = patch_departure(patch, mu, scaled(-1.0 / size, friction))
+        _, N, _ = patch_slipping(patch, mu, d)
+        return (-mu * N * d[0], -mu * N * d[1], N), -mu * N * rho * d[2]
 
     def _force(self, system, u, speed):
         """Return the force of the contact, axes of the plane."""

@@ -32,6 +32,19 @@ def response(c, axes, r, wrung):
 
 
 @inlined
+def spinning(c, axes, r, torque, wrung):
+    """Return what `patch_system` takes: how forces, and couples about the normal, spin a body.
+
+    `torque` is without that of the contact, body axes.
+    """
+    e1, e2, e3 = axes
+    along = apply(c.inverse, e3)
+    turned = (dot(along, cross(r, e1)), dot(along, cross(r, e2)),
+              dot(along, plus(cross(r, e3), wrung)))
+    return turned, apply(axes, cross(along, r)), (dot(along, torque), dot(along, e3))
+
+
+@inlined
 def couples(c, gamma, moved):
     """Return the couples of rolling friction and of the film of air, body axes.
 

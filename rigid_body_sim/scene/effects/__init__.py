@@ -20,6 +20,7 @@ from rigid_body_sim.scene.effects.protocol import Effect
 from rigid_body_sim.scene.effects.rolling_friction import RollingFriction
 from rigid_body_sim.scene.effects.rotor import Rotor
 from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
+from rigid_body_sim.scene.effects.spinning_friction import SpinningFriction
 from rigid_body_sim.scene.effects.spring import Spring
 from rigid_body_sim.scene.effects.strike import Strike
 from rigid_body_sim.scene.effects.torque import Torque
@@ -30,7 +31,8 @@ EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
     for effect in (
         Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation,
-        Drag, Spring, Magnetic, GravityGradient, Rotor, RollingFriction, AirFilm)}
+        Drag, Spring, Magnetic, GravityGradient, Rotor, RollingFriction, SpinningFriction,
+        AirFilm)}
 
 
 def effect_class(name: str) -> type[Effect] | None:

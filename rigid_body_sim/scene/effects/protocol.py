@@ -149,6 +149,8 @@ class Contact(NamedTuple):
         c of the force -c v against that velocity v, N s/m.
     film : float
         c of such a force -c v/sin(a) by the air under a disk that is inclined by a, N s/m.
+    patch : float
+        Radius rho of the patch of contact, m: the couple of friction about the normal is mu N rho.
     """
 
     mu: float = 0.0
@@ -156,6 +158,7 @@ class Contact(NamedTuple):
     rolling: float = 0.0
     rolling_viscous: float = 0.0
     film: float = 0.0
+    patch: float = 0.0
 
 
 class Effect(Protocol):

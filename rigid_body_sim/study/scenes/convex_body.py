@@ -86,12 +86,19 @@ def _steady(run, A, m, R, g):
 
 def euler_disk(run):
     """Yield the time to the end, and the exponent of the inclination."""
-    _, _, m, _, _ = _numbers(run)
+    _, _, m, R, g = _numbers(run)
     c = run.scene.effect('rolling_friction').viscous
     start = float(np.hypot(*normals(run.states([0.0]))[0, :2]))
     end = theory.time_to_end_viscous(start, m, c)
     rest = run.simulation.at_event('rest', 3.0 * end).time
-    yield Quantity('time to the end', end, rest, 1e-2, 's', detail='3 m a^2/(16 c), as a -> 0')
+    yield Quantity('time to the end', end, rest, 1e-3, 's', detail='3 m a^2/(16 c), as a -> 0')
+    spin = -2.0 * math.sqrt(0.5 * g * start / R)
+    half = run.variant({'initial.euler_zyz': [0.0, 0.5 * start, 0.0],
+                        'initial.angular_velocity': [spin, 0.0, 0.0]})
+    between = rest - half.simulation.at_event('rest', end).time
+    yield Quantity('time between two inclinations, a and a/2', 0.75 * end, between,
+                   start * start, 's', detail='the end itself, where the disk falls freely, '
+                   'drops out')
     left = np.array([0.5, 0.25, 0.1]) * rest
     tilts = np.hypot(*normals(run.states(rest - left)).T[:2])
     for share, tilt in zip((0.5, 0.25, 0.1), tilts, strict=True):
@@ -99,6 +106,12 @@ def euler_disk(run):
                        theory.time_to_end_viscous(tilt, m, c), 3e-2, 's')
     slope = np.polyfit(np.log(left), np.log(tilts), 1)[0]
     yield Quantity('exponent of the inclination', 0.5, slope, 2e-2)
+    state = run.at(0.5 * rest)
+    n = rotate_back(*state.orientation, 0.0, 0.0, 1.0)
+    flat = math.hypot(n[0], n[1])
+    rate = abs(float(state.angular_velocity[:2] @ n[:2])) / flat**2
+    yield Quantity('ringing: turns of the point of contact', math.sqrt(4.0 * g / (R * flat)), rate,
+                   1e-2, 'rad/s', detail='W^2 = 4 g/(R sin(a))')
 
 
 def rattleback(run):
@@ -110,12 +123,33 @@ def rattleback(run):
     for name, mode in zip(('slow', 'fast'), at_rest, strict=True):
         yield Quantity(f'frequency of the {name} mode without spin', mode.imag,
                        _frequency(run, mode.imag, name), 1e-5, 'rad/s')
+    for spin in (-0.5, 0.5):
+        modes = rattleback_theory.modes(given, surface.size, g, spin)
+        for name, mode in zip(('slow', 'fast'), modes, strict=True):
+            yield Quantity(f'growth of the {name} mode at {spin:g} rad/s', mode.real,
+                           _growth(run, spin, mode.imag, name), 2e-2, '1/s')
     yield Quantity('largest drift of the energy, 10 s', 1e-12, _energy_drift(run, 10.0), 0.0,
                    bound=True)
-    began = run.scene.initial.angular_velocity[2]
-    spins = run.states(np.linspace(0.0, 10.0, 1001)).angular_velocity[:, 2] / began
-    yield Quantity('the spin comes to rest and reverses: least of it over that at the start', -0.5,
-                   float(spins.min()), 0.0, bound=True)
+    began, times = run.scene.initial.angular_velocity[2], np.linspace(0.0, 10.0, 1001)
+    slips = run.variant({'effects.sliding_friction.mu': 0.3})
+    for one, name, least in ((run, '', -0.9), (slips, ' with mu = 0.3, where it slips', -0.3)):
+        spins = one.states(times).angular_velocity[:, 2] / began
+        yield Quantity(f'the spin reverses{name}: least of it over that at the start', least,
+                       float(spins.min()), 0.0, bound=True)
+
+
+def _growth(run, spin, frequency, name):
+    """Return the growth (1/s) of small rocking along a principal direction at a small spin."""
+    tilt = 1e-6
+    axis = [0.0, tilt, 0.0] if name == 'slow' else [0.5 * np.pi, tilt, -0.5 * np.pi]
+    rocking = run.variant({'initial.euler_zyz': axis,
+                           'initial.angular_velocity': [0.0, 0.0, spin]})
+    sizes = []
+    for middle in (2.0, 6.0):
+        times = middle + np.linspace(-2.0, 2.0, 4001)
+        signal = normals(rocking.states(times))[:, 0 if name == 'slow' else 1]
+        sizes.append(abs(np.sum(np.blackman(4001) * signal * np.exp(-1j * frequency * times))))
+    return math.log(sizes[1] / sizes[0]) / 4.0
 
 
 def _top(run):
@@ -153,19 +187,28 @@ def tippe_top(run):
                    float(np.abs(np.array(routh) / routh[0] - 1.0).max()), 0.0, bound=True)
     for share, group in ((0.75, 'I: it stays'), (1.0, 'II: it turns over'),
                          (1.35, 'III: it stops on the way')):
-        other = run.variant({'body.inertia': [share * C, share * C, C]})
-        theta = np.degrees(_inclinations(other.states(times)))
-        if share == 1.0:
-            yield Quantity(f'least cosine of the inclination, A/C = {share}, group {group}', -0.9,
-                           float(np.cos(np.radians(theta)).min()), 0.0, bound=True,
-                           detail='friction at a point lets it stick before it is -1')
-            continue
-        first = other.states([0.0])
-        constant = rising.jellett(first.angular_velocity[0], normals(first)[0], share * C, C, R, a)
-        bound = np.degrees(start) if share < 1.0 else np.degrees(
-            rising.inclination_of_least_energy(constant, share * C, C, m, g, R, a))
-        yield Quantity(f'largest inclination, A/C = {share}, group {group}', bound, theta.max(),
-                       1e-9, '°', bound=True)
+        yield from _group(run, share, group, times)
+
+
+def _group(run, share, group, times):
+    """Yield the inclination that a top of a group reaches, on a point and on a small patch."""
+    _, C, m, g, R, a = _top(run)
+    A = share * C
+    other = run.variant({'body.inertia': [A, A, C]})
+    first = other.states([0.0])
+    constant = rising.jellett(first.angular_velocity[0], normals(first)[0], A, C, R, a)
+    rests = (float(_inclinations(first)[0]) if share < 1.0 else
+             rising.inclination_of_least_energy(constant, A, C, m, g, R, a))
+    largest = np.degrees(_inclinations(other.states(times)).max())
+    name = f'largest inclination, A/C = {share}, group {group}'
+    yield Quantity(f'{name}; on a point', np.degrees(rests), largest, 1e-9, '°', bound=True,
+                   detail='friction at a point lets it stick before' if share >= 1.0 else '')
+    mu = run.scene.effect('sliding_friction').mu
+    patch = other.variant({}, {'effects': (
+        f'[gravity: {{g: {g!r}}}, sliding_friction: {{mu: {mu!r}}}, '
+        'spinning_friction: {radius: 1.0e-4}]')})
+    largest = np.degrees(_inclinations(patch.states(times)).max())
+    yield Quantity(f'{name}; on a patch of 0.1 mm', np.degrees(rests), largest, 1e-2, '°')
 
 
 def rising_egg(run):
