@@ -397,8 +397,8 @@ def test_euler_disk_ends_with_the_exponent_of_its_friction(effect, a, left):
     lower = Simulation(sim.scene, 'dop8', 1e-10, overrides={
         'initial.euler_zyz': [0.0, 0.5 * a, 0.0],
         'initial.angular_velocity': [-math.sqrt(8.0 * G / (R * a)) * math.sin(0.5 * a), 0.0, 0.0]})
-    # the law errs by a share of about a^2/2, and at the very end the disk falls freely, which takes
-    # the same time for each start
+    # the law errs by a share of about a^2/2, and at the very end the disk falls freely, which
+    # takes the same time for each start
     half = left(0.5 * a, m, R)
     late, later = rest - end, lower.at_event('rest', 2.0 * end).time - half
     assert rest - half - later == pytest.approx(end - half, rel=a * a)
@@ -431,7 +431,8 @@ def test_patch_that_lets_go_slips_and_spins_along_one_direction():
     sim.advance(10)
     sim.hold((force, 0.0, 0.0), (0.0, 0.0, torque))
     sim.advance(100)
-    b, M = np.array([force, rho * torque / 0.001]), np.array([1.0 + 0.05**2 / 0.001, rho**2 / 0.001])
+    b = np.array([force, rho * torque / 0.001])
+    M = np.array([1.0 + 0.05**2 / 0.001, rho**2 / 0.001])
     growth = brentq(lambda g: sum((b / (g + mu * G * M)) ** 2) - 1.0, 0.0, 1e3, xtol=1e-15)
     d = b / (growth + mu * G * M)
     v, omega = sim.state.velocity, sim.state.angular_velocity
@@ -473,8 +474,8 @@ def test_tippe_top_on_a_patch_ends_at_the_inclination_of_least_energy():
 def test_patch_without_a_finite_friction_is_refused():
     for mu in ('0', '.inf'):
         with pytest.raises(BadInput, match='spinning_friction'):
-            simulation(BALL, f'sliding_friction: {{mu: {mu}}}, spinning_friction: {{radius: 0.01}}',
-                       '{}')
+            simulation(BALL, f'sliding_friction: {{mu: {mu}}}, '
+                       'spinning_friction: {radius: 0.01}', '{}')
 
 
 # -- limits -----------------------------------------------------------------------------------
