@@ -34,8 +34,9 @@ whose family does not account for these, and for motions while a wrench is held.
 def runnable(scene):
     """Return the names of the methods that can run a scene.
 
-    These find the view they need in every effect, bear the heat that the effects make, and know
-    the time and place of their stages where an effect asks for them. No method sees an effect that
+    These find the view they need in every effect, bear the heat that the effects make, know the
+    time and place of their stages where an effect asks for them, and stop at kinks where an effect
+    has some. No method sees an effect that
     is an impulse and nothing else. On the table only methods that declare TABLE run.
     """
     if scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE):
@@ -46,7 +47,9 @@ def runnable(scene):
     acting = [one for effect in effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' or one.of_motion for one in acting)
+    kinked = any(one.modes for one in acting)
     in_field = any(one.in_field for one in acting)
     return [name for name, method in METHODS.items()
             if all(getattr(effect, method.NEEDS) is not None for effect in effects)
-            and (method.HEAT or not hot) and (method.FIELD or not in_field)]
+            and (method.HEAT or not hot) and (method.FIELD or not in_field)
+            and (method.FAMILY.KINKS or not kinked)]

@@ -186,6 +186,10 @@ class Departing:
     def __init__(self, near, march_from):
         self._near, self._march_from, self._march = near, march_from, None
 
+    def kinks(self, until):
+        """Return the times of kinks: none."""
+        return []
+
     def _later(self):
         if self._march is None:
             start = np.empty(STATE.size)

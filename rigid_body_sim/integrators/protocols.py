@@ -137,10 +137,13 @@ class Family(Protocol):
         in ``integrators/__init__.py``) solves the hold.
     LANES : bool
         Whether it has a function ``batch`` (LanesFamily).
+    KINKS : bool
+        Whether its marches stop at the kinks of what acts (marching/switched.py).
     """
 
     TAKES_WRENCH: bool
     LANES: bool
+    KINKS: bool
 
     def bind(self, method: Method, stepped: Any) -> 'Bound':
         """Return the method's kernels on a scene's equations.
@@ -206,6 +209,12 @@ class Course(Protocol):
 
     def states(self, times: np.ndarray, out: np.ndarray) -> None:
         """Fill the rows of `out` as `state` does, for times (s) in any order."""
+
+    def kinks(self, until: float) -> list[float]:
+        """Return the times before another at which marches stopped at a kink, s.
+
+        Only courses whose Bound does not exchange are asked.
+        """
 
 
 class Batch(Protocol):

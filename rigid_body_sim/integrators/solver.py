@@ -23,7 +23,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
 from rigid_body_sim.integrators.marching.course import lost
-from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
 from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
@@ -193,7 +193,8 @@ class Stepped:
             return self._course.events(after, until)
         if self._watcher is None:
             self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]),
-                                    swing_rate(self.scene), drive(self.scene, self.wrench))
+                                    swing_rate(self.scene), drive(self.scene, self.wrench),
+                                    unbounded(self.scene))
         return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
     def exchanged(self, time):
@@ -209,7 +210,8 @@ class Stepped:
             return np.zeros(ENTRIES_SIZE)
         if self._exchange is None:
             slack = SLACK * self.accuracy if self.step is None else 0.0
-            self._exchange = Exchange(self._actors, self._course.states, self.vector, slack)
+            self._exchange = Exchange(self._actors, self._course.states, self.vector, slack,
+                                      self._course.kinks)
         return self._exchange.until(self._course.exchanges_until(time) if self._departs else time)
 
 

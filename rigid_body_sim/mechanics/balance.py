@@ -212,7 +212,11 @@ class Dynamics:
         R, omega, force, scene = motion.R, motion.omega, acting.force, self._scene
         arm, n, through = minus(scene.center, scene.through), scene.hinge_axis, scene.through
         torque = plus(acting.couple, cross(arm, apply(transposed(R), force)))
-        growth = scaled(dot(n, torque) / scene.hinge_moment, n)
+        along = dot(n, torque)
+        if not any(omega):    # dry friction bears some of it, or all
+            borne = max(-scene.grip, min(along, scene.grip))
+            torque, along = minus(torque, scaled(borne, n)), along - borne
+        growth = scaled(along / scene.hinge_moment, n)
         along = _carried(omega, growth, arm)
         held = minus(scaled(scene.mass, apply(R, along)), force)
         # about P: the tensor about the centre of mass, and the mass there

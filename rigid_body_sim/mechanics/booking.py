@@ -42,19 +42,23 @@ def rates(p, states, out):
         work, heat, torque = acting(p, multiply(*q, *axes), rotate_back(*axes, *omega), of_center,
                                     rotate_back(*axes, *angular_momentum(scene, omega)), now.time,
                                     place)
-        taken = rotate(*q, *_taken(scene, rotate(*axes, *torque)))
+        taken = rotate(*q, *_taken(scene, omega, rotate(*axes, *torque)))
         store_entries(out[k], Entries(work, heat, taken))
         out[k, ENTRIES_SIZE] = hypot3(*omega)
 
 
 @compiled
-def _taken(scene, torque):
+def _taken(scene, omega, torque):
     """Return the part of a torque that turns the body, body axes.
 
-    Of a hinged body it is the one along the axis. There is none about an axis of zero moment.
+    Of a hinged body it is the one along the axis, less what dry friction bears of one at rest.
+    There is none about an axis of zero moment.
     """
     if scene.kind == HINGE:
-        return scaled(dot(scene.hinge_axis, torque), scene.hinge_axis)
+        along = dot(scene.hinge_axis, torque)
+        if scene.grip > 0.0 and dot(scene.hinge_axis, omega) == 0.0:
+            along -= max(-scene.grip, min(along, scene.grip))
+        return scaled(along, scene.hinge_axis)
     x, y, z = rotate_back(*scene.axes, *torque)
     I1, I2, I3 = scene.moments
     x, y, z = x if I1 > 0.0 else 0.0, y if I2 > 0.0 else 0.0, z if I3 > 0.0 else 0.0

@@ -50,6 +50,17 @@ def drive(scene, wrench):
     return torque / min(moment for moment in constraint.inertia(body).moments if moment > 0.0)
 
 
+def unbounded(scene):
+    """Return whether anything acts whose bounds are not known."""
+    return any(effect.acting is not None and effect.bounds is None for effect in scene.effects)
+
+
+def borne(scene):
+    """Return the angular acceleration that dry friction at a hinge bears, rad/s^2."""
+    grip = reduce(add, (effect.grip for effect in scene.effects), 0.0)
+    return grip / moment_about_hinge(scene.body, scene.constraint) if grip > 0.0 else 0.0
+
+
 def _bounds(scene):
     return [effect.bounds(scene.body, scene.constraint) for effect in scene.effects
             if effect.bounds is not None]

@@ -20,6 +20,7 @@ from rigid_body_sim.scene.state import STATE_SIZE
 
 RADIANS_BETWEEN_LOOKS = 0.2
 RADIANS_BLIND = 3.0
+BLINK = 0.0625    # s
 MOST_LOOKS = 2 ** 22
 FLIP, TURNING_POINT = 'flip', 'turning point'
 WATCHED = FLIP, TURNING_POINT
@@ -125,10 +126,13 @@ class Watcher:
         What may come to the rate at once, rad/s (mechanics/bounds.py): a body at rest soon is not.
     drive : float
         What may come to it in a second, rad/s^2 (mechanics/bounds.py).
+    unbounded : bool, optional
+        Whether more may come than these say: then looks are at most BLINK apart.
     """
 
-    def __init__(self, solver, watched, start, swing, drive):
+    def __init__(self, solver, watched, start, swing, drive, unbounded=False):
         self._swing, self._drive = swing, drive
+        self._longest = BLINK if unbounded else math.inf
         self._solver, self._watched = solver, watched
         self._vector = np.empty(STATE_SIZE)
         self._time = start
@@ -142,8 +146,8 @@ class Watcher:
         vector = self._vector.tolist()
         # the time s in which rate s + drive s^2/2 is that angle
         rate = hypot3(*vector[5:8]) + self._swing
-        self._spacing = 2.0 * RADIANS_BETWEEN_LOOKS / max(
-            rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300)
+        self._spacing = min(self._longest, 2.0 * RADIANS_BETWEEN_LOOKS / max(
+            rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300))
         return [watch.value(vector) for watch in self._watched]
 
     def events(self, until, tick=0.0):

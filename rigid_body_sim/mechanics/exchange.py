@@ -119,10 +119,13 @@ class Exchange:
     slack : float
         By how much the states between two steps of a method are uncertain, relative to 1: panels
         are not made shorter to resolve that.
+    kinks : callable
+        Time -> the times before it at which what acts has a kink, besides the breakpoints, s.
     """
 
-    def __init__(self, actors, states, start, slack):
+    def __init__(self, actors, states, start, slack, kinks=lambda until: ()):
         self._actors, self._states, self._start, self._slack = actors, states, start, slack
+        self._kinks = kinks
         self._rewind()
 
     def _rewind(self):
@@ -143,7 +146,8 @@ class Exchange:
         """Return the entries from the start to a time (s), array (5,)."""
         if time < self._time:
             self._rewind()
-        self._count, ends = 0, [*self._actors.breakpoints, math.inf]
+        self._count = 0
+        ends = [*sorted({*self._actors.breakpoints, *self._kinks(time)}), math.inf]
         ahead = time - self._time
         self._least = ahead / EVENLY if ahead > MOST * self._longest else 0.0
         for end in ends[bisect.bisect_right(ends, self._time):]:

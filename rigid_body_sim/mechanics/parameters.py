@@ -42,6 +42,8 @@ class SceneParameters(NamedTuple):
         The point that is held, body axes, m; 0 where there is none.
     hinge_moment : float
         Moment of inertia about the hinge, kg m^2; 0 where there is none.
+    grip : float
+        Torque that dry friction at the hinge bears, N m.
     """
 
     kind: float
@@ -53,6 +55,7 @@ class SceneParameters(NamedTuple):
     hinge_axis: Vector
     through: Vector
     hinge_moment: float
+    grip: float
 
 
 SCENE = layout(SceneParameters)
@@ -68,7 +71,8 @@ def scene_parameters(scene):
         moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
-        hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint))
+        hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint),
+        grip=sum(effect.grip for effect in scene.effects))
 
 
 def parameters(scene):

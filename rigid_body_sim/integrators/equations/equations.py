@@ -53,6 +53,14 @@ class Equations:
         What acts, as text for the ..._source functions.
     parameter_count, fixed_count : int
         Of the parameters, and of those at their beginning that do not change at breakpoints.
+    modes : list of int
+        Where among the parameters the sides of the switches are, one for each switch.
+    grip : float
+        Torque with which dry friction holds a body on a hinge at rest, N m.
+    gripping : list of int
+        The switches of that friction, places in `modes`.
+    in_field : bool
+        Whether anything depends on time or place.
     makes_heat : bool
         Whether anything depends on velocities: what is booked as heat, and what says so.
     """
@@ -79,6 +87,15 @@ class Equations:
             self.groups = turning.APART
         self.calls = calls = list(_calls(acting, fixed))
         self.parameter_count = fixed + sum(len(one.values) for one in acting)
+        self.in_field = in_field
+        self.modes, self.gripping, self.grip = [], [], 0.0
+        at = fixed
+        for one in acting:
+            if one.grip:
+                self.grip += one.grip
+                self.gripping += range(len(self.modes), len(self.modes) + len(one.modes))
+            self.modes += [at + place for place in one.modes]
+            at += len(one.values)
         self.makes_heat = any(one.books == 'heat' or one.of_motion for one in acting)
         state = STATE + FIELD if in_field else STATE
         if on_hinge:
@@ -92,6 +109,21 @@ class Equations:
         self.write = f'{self.kernels.__name__}:write'
         self._fixed, self._held = self._constants(), {}
         self.fixed_count = len(self._fixed)
+
+    def switching_source(self):
+        """Return the source of ``switching(p, q, omega, v, t, place)``: the switches, a tuple."""
+        lines, found, at = [], [], self.fixed_count
+        imports = []
+        for number, one in enumerate(self._acting(-np.inf)):
+            if one.switching:
+                name = f'switching_{number}'
+                imports.append(imported(one.switching, name))
+                values = ''.join(f'p[{at + k}], ' for k in range(len(one.values)))
+                lines.append(f'    found{number} = {name}({values}{STATE}{FIELD * one.in_field})')
+                found += [f'found{number}[{k}]' for k in range(len(one.modes))]
+            at += len(one.values)
+        return '\n'.join([*imports, '', '', '@compiled', f'def switching(p, {STATE}{FIELD}):',
+                          *lines, f'    return ({", ".join(found)},)', ''])
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self.frame, time)]

@@ -64,6 +64,7 @@ class Series(Equations):
         self.frame = _frame(scene)
         self.hinged = scene.constraint.axis is not None
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
+        self.modes = []    # nothing with kinks has a series
         self.breakpoints = tuple(
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )

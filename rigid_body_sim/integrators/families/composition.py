@@ -54,6 +54,7 @@ TAKES = ('step',)
 
 TAKES_WRENCH = True
 LANES = False
+KINKS = True
 
 
 def step_source(method, equations):

@@ -10,7 +10,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES
-from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.mechanics.bounds import borne, swing_rate
 
 ROUNDING = 2.0 ** -51    # of the largest term of an angular acceleration, in an error estimate
 
@@ -46,8 +46,8 @@ def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
     point = np.zeros(VALUES + 2 * march.SIZE)
     if stepped.step is None:
-        # what potentials do, undiminished: swing_rate^2 = 4 U/I
+        # what potentials do, undiminished: swing_rate^2 = 4 U/I; and what friction bears
         swing = swing_rate(stepped.scene)
-        rounding = ROUNDING * (swing * swing)
+        rounding = ROUNDING * (swing * swing + borne(stepped.scene))
         return np.array([stepped.accuracy / stepped.horizon, rounding]), point
     return np.array([stepped.step, 0.0]), point

@@ -12,6 +12,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 TAKES_WRENCH = True
 LANES = False
+KINKS = True
 
 
 def bind(method, stepped):

@@ -22,6 +22,7 @@ from rigid_body_sim.scene.state import TIME
 
 TAKES_WRENCH = True
 LANES = False
+KINKS = False
 FINEST = 100.0 * np.finfo(float).eps
 DEAR = 10    # steps of a compiled march that cost as much as one step here
 
@@ -66,6 +67,10 @@ class _Course:
         self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
         self._reached, self._steps, self._parameters = [], [], []
         self._solver = None
+
+    def kinks(self, until):
+        """Return the times of kinks: none."""
+        return []
 
     def _enter(self, begin, y):
         """Start the solver of the stretch that begins at a time."""

@@ -14,7 +14,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching import track
-from rigid_body_sim.integrators.marching.points import LOST, REACHED, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import LOST, REACHED, STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.work import Work
 
 FOR_EVER = (math.inf,)
@@ -47,7 +47,7 @@ class Bound:
         self._beginning, self._prototypes = np.concatenate((control, point)), {}
         sizes = [equations.parameter_count, len(control), len(point), len(point)]
         places = np.cumsum(sizes).tolist()
-        self.point = places[1]
+        self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
         self.track = self._track(places)
 
@@ -63,7 +63,23 @@ class Bound:
 
     def course(self, stepped):
         """Return the course of a started solver."""
+        if self.equations.modes:
+            # only now: it is made of the courses of this module
+            from rigid_body_sim.integrators.marching.switched import Switched
+            return Switched(stepped, self)
         return Course(stepped, self)
+
+    def set_head(self, piece, head):
+        """Give the first point of a piece the planned step and the scales of another march."""
+        _, point, following = self.parts_of(piece)
+        kept = piece[self._places[-1] + track.STORE:][:len(point)]
+        for one in (point, following, kept):
+            one[STEP:VALUES] = head
+
+    def parts_of(self, piece):
+        """Return control, point and following point of a piece, views of it."""
+        control, point, following, counts = self._places
+        return piece[control:point], piece[point:following], piece[following:counts]
 
     def prototype(self, time):
         """Return the beginning of a piece that starts at a time (s): parameters, control, point.
@@ -91,6 +107,10 @@ class Course:
         if bound.equations.breakpoints:
             later = [time for time in bound.equations.breakpoints if time > self._begin]
             self._ends = [*later, math.inf]
+
+    def kinks(self, until):
+        """Return the times of kinks: none."""
+        return []
 
     def _first_piece(self):
         """Append the piece at the start, not filled yet; return what track.first_piece takes."""

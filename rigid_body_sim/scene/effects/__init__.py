@@ -10,6 +10,7 @@ import importlib.metadata
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.effects.air_film import AirFilm
 from rigid_body_sim.scene.effects.drag import Drag
+from rigid_body_sim.scene.effects.dry_friction import DryFriction
 from rigid_body_sim.scene.effects.expressed import PotentialEnergy
 from rigid_body_sim.scene.effects.force import Force
 from rigid_body_sim.scene.effects.gravity import Gravity
@@ -31,8 +32,8 @@ EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
     for effect in (
         Gravity, Torque, Force, PotentialEnergy, Strike, SlidingFriction, InternalDissipation,
-        Drag, Spring, Magnetic, GravityGradient, Rotor, RollingFriction, SpinningFriction,
-        AirFilm)}
+        Drag, Spring, Magnetic, GravityGradient, Rotor, DryFriction, RollingFriction,
+        SpinningFriction, AirFilm)}
 
 
 def effect_class(name: str) -> type[Effect] | None:

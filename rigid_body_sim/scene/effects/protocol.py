@@ -48,6 +48,16 @@ class Acting:
     inner : bool
         True of a torque against a part inside the body, whose momentum the view `momentum` has:
         the ledger's angular impulse is without it.
+    switching : str
+        ``'package.module:function'``, of what has kinks, else empty. The compiled function has the
+        signature of `kernel` and returns its switches, a tuple of floats: a kink is where one of
+        them changes its sign.
+    modes : tuple of int
+        Places in `values`, one for each switch: 1 or -1 there says that the switch is on that
+        side, 0 (which an effect gives) that the kernel looks at the sign itself.
+    grip : float
+        Torque with which it holds a body on a hinge at rest, N m: that of dry friction, whose one
+        switch is the rate.
     """
 
     kernel: str
@@ -57,6 +67,9 @@ class Acting:
     in_field: bool = False
     of_motion: bool = False
     inner: bool = False
+    switching: str = ''
+    modes: tuple[int, ...] = ()
+    grip: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -274,6 +287,11 @@ class Effect(Protocol):
     def bounds(self) -> Callable[[Body, Constraint], Bounds] | None:
         """``bounds(body, constraint)``: what it can do at most; None counts as nothing."""
         return None
+
+    @property
+    def grip(self) -> float:
+        """The torque with which it holds a body on a hinge at rest, N m."""
+        return 0.0
 
     @property
     def contact(self) -> Contact | None:

@@ -32,9 +32,16 @@ def _acting(lines, trees, frame, result, gives, books):
     used = tree.names(*trees)
     in_field = bool(used & IN_FIELD)
     begin = prelude(lines, used, frame)
-    made = kernel(gives, STATE + ', t, x, y, z' * in_field, lines, begin, result)
+    arguments = STATE + ', t, x, y, z' * in_field
+    made, switching, modes = kernel(gives, arguments, lines, begin, result), '', ()
+    if lines.switches:
+        found = f'({", ".join(lines.switches.values())},)'
+        switching = kernel('switches', arguments, lines, begin, found).name
+        order = list(lines.values)
+        modes = tuple(order.index(mode) for mode in lines.switches)
     moving = books != 'heat' and bool(used & OF_MOTION)
-    return Acting(made.name, made.values, gives, books, in_field, moving)
+    return Acting(made.name, made.values, gives, books, in_field, moving,
+                  switching=switching, modes=modes)
 
 
 @functools.lru_cache(maxsize=256)

@@ -65,18 +65,8 @@ def hyperbolic_tangent(x):
 
 
 @compiled
-def smaller(a, b):
-    """Return the smaller of two numbers."""
-    return a if a < b else b
-
-
-@compiled
-def larger(a, b):
-    """Return the larger of two numbers."""
-    return a if a > b else b
-
-
-@compiled
-def less(a, b):
-    """Return 1 where a < b, else 0."""
-    return 1.0 if a < b else 0.0
+def side(mode, switch):
+    """Return the mode 1 or -1 if one is given, else the sign of the switch (0 at 0)."""
+    if mode != 0.0:
+        return mode
+    return 1.0 if switch > 0.0 else -1.0 if switch < 0.0 else 0.0

@@ -18,6 +18,7 @@ DEEPEST = 60
 LARGEST_POWER = 64.0
 """Of a number in an exponent: what is beyond is more likely a mistake than physics."""
 
+_ORDERS = {ast.Lt: True, ast.LtE: True, ast.Gt: False, ast.GtE: False}
 _OPERATORS = {ast.Add: tree.plus, ast.Sub: tree.minus, ast.Mult: tree.times, ast.Div: tree.over,
               ast.Pow: tree.power}
 
@@ -94,12 +95,18 @@ class _Reader:
                 if len(args) != tree.FUNCTIONS[name]:
                     self._refuse(f'{name} with {len(args)} arguments',
                                  f'{name} takes {tree.FUNCTIONS[name]}')
-                return tree.node(name, *(self.tree(one, depth + 1) for one in args))
+                found = [self.tree(one, depth + 1) for one in args]
+                if name == 'where' and found[0].op != 'less':
+                    self._refuse('where without a comparison', 'where(x < y, this, that)')
+                return tree.node(name, *found)
+            case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _ORDERS:
+                a, b = self.tree(left, depth + 1), self.tree(right, depth + 1)
+                return tree.node('less', *((a, b) if _ORDERS[type(op)] else (b, a)))
             case ast.Call(func=ast.Name(id=name)):
                 self._refuse(f'{name} is no function here',
                              f'the functions are {", ".join(tree.FUNCTIONS)}')
         self._refuse(f'{ast.unparse(parsed)[:40]!r} is not part of the language',
-                     'numbers, names, + - * / ^, parentheses and functions')
+                     'numbers, names, + - * / ^, < >, parentheses and functions')
         return None
 
     def _number(self, value):

@@ -21,14 +21,14 @@ PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
 CALLS = {'/': 'divided', 'sqrt': 'root', 'log': 'logarithm', 'tan': 'tangent',
-         'tanh': 'hyperbolic_tangent', 'min': 'smaller', 'max': 'larger', 'less': 'less',
-         '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp', 'abs': 'abs'}
+         'tanh': 'hyperbolic_tangent', '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp'}
+KINKED = {'abs', 'sign', 'min', 'max', 'less'}
 HEAD = """from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.functions import atan2, cos, exp, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
-    divided, hyperbolic_tangent, larger, less, logarithm, raised, root, smaller, tangent)
+    divided, hyperbolic_tangent, logarithm, raised, root, side, tangent)
 """
 
 
@@ -53,11 +53,19 @@ class Lines:
     Parameters
     ----------
     parameters : mapping of str to float
+
+    Attributes
+    ----------
+    lines : list of str
+    values : dict of str to float
+    switches : dict of str to str
+        Name of a value, the side of a switch -> what is positive on the one side of the kink and
+        negative on the other.
     """
 
     def __init__(self, parameters):
         self._parameters, self._names = parameters, {}
-        self.lines, self.values = [], {}
+        self.lines, self.values, self.switches = [], {}, {}
 
     def value(self, name, number):
         """Return the name of a value of the kernel."""
@@ -85,11 +93,39 @@ class Lines:
                           if value == number and name.startswith('number')), None)
             return known or self.value(f'number{len(self.values)}', number)
         args = [self._names[arg] for arg in one.args]
+        operation = self._operation(one, args)
         name = f'part{len(self.lines)}'
-        self.lines.append(f'    {name} = {self._operation(one, args)}')
+        self.lines.append(f'    {name} = {operation}')
         return name
 
+    def _side(self, switch):
+        """Add the line that says on which side of a kink a state is; return its name."""
+        for mode, known in self.switches.items():
+            if known == switch:
+                return f'side_{mode}'
+        mode = self.value(f'mode{len(self.switches)}', 0.0)
+        self.switches[mode] = switch
+        self.lines.append(f'    side_{mode} = side({mode}, {switch})')
+        return f'side_{mode}'
+
+    def _kinked(self, one, args):
+        match one.op:
+            case 'abs':
+                return f'{self._side(args[0])} * {args[0]}'
+            case 'sign':
+                return self._side(args[0])
+            case 'less':
+                return f'1.0 if {self._side(f"{args[1]} - {args[0]}")} > 0.0 else 0.0'
+            case 'min' | 'max':
+                a, b = args
+                switch = f'{b} - {a}' if one.op == 'min' else f'{a} - {b}'
+                return f'{a} if {self._side(switch)} > 0.0 else {b}'
+
     def _operation(self, one, args):
+        if one.op in KINKED:
+            return self._kinked(one, args)
+        if one.op == 'where':
+            return f'{args[1]} if {args[0]} > 0.5 else {args[2]}'
         if one.op in ('+', '-', '*'):
             return f'{args[0]} {one.op} {args[1]}'
         if one.op == 'negative':

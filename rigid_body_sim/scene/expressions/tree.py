@@ -10,7 +10,7 @@ import functools
 from dataclasses import dataclass
 
 FUNCTIONS = {'sqrt': 1, 'sin': 1, 'cos': 1, 'tan': 1, 'exp': 1, 'log': 1, 'tanh': 1, 'abs': 1,
-             'min': 2, 'max': 2}
+             'sign': 1, 'min': 2, 'max': 2, 'where': 3}
 """Function -> number of arguments."""
 
 
@@ -22,7 +22,8 @@ class Node:
     ----------
     op : str
         ``number``, ``name``, ``+ - * / ^``, ``negative``, ``less`` (1 where the first is below the
-        second, else 0), or a key of FUNCTIONS.
+        second, else 0), or a key of FUNCTIONS; ``where`` takes a ``less`` and what holds where it
+        is 1 and where it is 0.
     args : tuple
         A float, a text, or nodes.
     """
@@ -138,6 +139,8 @@ def _derivative(one, variable, rates):
         return ZERO
     if op == 'name':
         return ONE if args[0] == variable else ZERO
+    if op == 'where':
+        return choice(args[0], rates[args[1]], rates[args[2]])
     u, v, *_ = *args, None
     du, dv = rates[u], rates.get(v)
     if du is ZERO and (dv is None or dv is ZERO):
@@ -171,12 +174,17 @@ def _derivative(one, variable, rates):
         case 'tanh':
             return times(minus(ONE, times(one, one)), du)
         case 'abs':
-            below = node('less', u, ZERO)
-            return times(minus(ONE, times(TWO, below)), du)
+            return times(node('sign', u), du)
         case 'min' | 'max':
-            first = node('less', *((u, v) if op == 'min' else (v, u)))
-            return plus(times(first, du), times(minus(ONE, first), dv))
-    raise AssertionError(op)    # `less` has no slope, and is not differentiated
+            return choice(node('less', *((u, v) if op == 'min' else (v, u))), du, dv)
+        case 'less' | 'sign':    # steps: their jumps have no slope
+            return ZERO
+    raise AssertionError(op)
+
+
+def choice(less, a, b):
+    """Return a where a comparison holds, else b."""
+    return a if a is b else node('where', less, a, b)
 
 
 def minus_one(v):

@@ -28,7 +28,7 @@ def test_arithmetic_is_read_in_the_order_of_the_text(text, shown):
     ('[x]', 'is not part'), ('lambda: 1', 'is not part'), ('sin(x', "'(' was never closed"),
     ('sin(x, x)', 'sin with 2 arguments'), ('-' * 100 + 'x', 'too deep'),
     ('(' * 300 + 'x' + ')' * 300, ''), ('True', 'True is no number'), ('x y', 'invalid syntax'),
-    ('"a"', "'a' is no number"), ('x < 1', 'is not part'), ('é', 'é is not known here'),
+    ('"a"', "'a' is no number"), ('x == 1', 'is not part'), ('é', 'é is not known here'),
     ('sin', 'sin is not known here'), ('\x00', ''), ('', ''), ('x=1', ''), ('f"{x}"', ''),
     ('x' * (LONGEST + 1), f'an expression of {LONGEST + 1} characters'), ('sin(x=1)', ''),
     ('1j', '1j is no number'), ('x@k', 'is not part'), ('x//k', 'is not part'), ('...', '')])

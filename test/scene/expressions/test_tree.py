@@ -13,7 +13,8 @@ OPERATIONS = {
     '/': lambda a, b: a / b, '^': lambda a, b: a ** b, 'negative': lambda a: -a,
     'sqrt': mpmath.sqrt, 'sin': mpmath.sin, 'cos': mpmath.cos, 'tan': mpmath.tan,
     'exp': mpmath.exp, 'log': mpmath.log, 'tanh': mpmath.tanh, 'abs': abs, 'min': min, 'max': max,
-    'less': lambda a, b: mpmath.mpf(a < b)}
+    'less': lambda a, b: mpmath.mpf(a < b), 'sign': mpmath.sign,
+    'where': lambda less, a, b: a if less else b}
 
 
 def value(one, known):
@@ -27,7 +28,8 @@ def value(one, known):
 @pytest.mark.parametrize('text', [
     'x*y + x/y - 3*x', 'x^3*y', 'x^y', '2^x', 'x^-2', 'sqrt(x^2 + y^2)', 'sin(x*y)*cos(x)',
     'tan(x) + tanh(x*y)', 'exp(-x*y)/(1 + x)', 'log(x + y)', 'abs(x - y)*x',
-    'min(x, y)*max(x, 2*y)', '-(x - y)^2', 'sqrt(x)^3', 'exp(sin(x^2))'])
+    'min(x, y)*max(x, 2*y)', '-(x - y)^2', 'sqrt(x)^3', 'exp(sin(x^2))',
+    'where(x < y, x^2*y, y)', 'where(y > 3*x, x, sign(x)*x^3*y)', '(x < y)*x*y'])
 @pytest.mark.parametrize('variable', ['x', 'y'])
 def test_a_derivative_is_the_slope(text, variable):
     function = read(text, NAMES, 'here')

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: the switches of what acts, at a state: their signs say on which side of each kink."""
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.euler import load_equation, load_state, read_state
+from rigid_body_sim.numerics.rotations import rotate_back
+
+switching = UNBOUND
+COUNT = UNBOUND
+
+
+@compiled
+def sides(p, vector, out):
+    """Fill `out`, shape (COUNT,), with the switches at a state vector; a start in p is changed."""
+    q, _, place, drift = read_state(p, vector)
+    omega = rotate_back(*load_equation(p).axes, *load_state(vector).angular_velocity)
+    found = switching(p, *q, *omega, *drift, vector[0], *place)
+    for k in range(COUNT):
+        out[k] = found[k]

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kinks of expressions and dry friction: located to round-off, so methods keep their orders."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators import runnable
+from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.scene import parse_scene
+
+HINGE = '{hinge: {axis: [0, 0, 1]}}'
+I = 0.5    # kg m^2 about the axis
+
+
+def scene_of(effects, initial, constraint='free'):
+    return parse_scene('scene: a\nbody: {mass: 2.0, inertia: [0.3, 0.3, 0.5]}\n'
+                       f'constraint: {constraint}\neffects: {effects}\ninitial: {initial}\n')
+
+
+def followed(scene, time, method='dop8', **control):
+    """Return the rate at a time, the times of the kinks, and the ledger's entries."""
+    solver = Stepped(scene, method, **(control or {'accuracy': 1e-13})).start(scene.initial.vector)
+    out = np.empty(14)
+    solver.state(time, out)
+    return float(out[7]), solver._course.kinks(time), solver.exchanged(time), out
+
+
+@pytest.mark.without_numba
+def test_kinks_are_where_they_are_and_cost_no_accuracy():
+    for text, time, rate, kinks in (
+            ('where(t < 1, 0.1, -0.2)', 2.0, 1.0 + (0.1 - 0.2) / I, [1.0]),
+            ('where(1 <= t, 0.1, -0.2)', 2.0, 1.0 + (0.1 - 0.2) / I, [1.0]),
+            ('abs(sin(3*t))', math.pi, 1.0 + 2.0 / I, [math.pi / 3, 2 * math.pi / 3]),
+            ('sign(1 - t)', 3.0, 1.0 - 1.0 / I, [1.0]),
+            ('max(t - 1, 0)*min(1, 3 - t)', 2.5, 1.0 + (0.5 + 0.5 - 1 / 24) / I, [1.0, 2.0])):
+        scene = scene_of(f"[torque: {{value: [0, 0, '{text}']}}]", '{spin: 1}')
+        for method in ('dop8', 'gauss16')[:1 + (text == 'sign(1 - t)')]:
+            found, times, entries, _ = followed(scene, time, method)
+            times = [one for one in times if one < time * (1 - 1e-12)]
+            assert found == pytest.approx(rate, abs=2e-14), (text, method)
+            assert times == pytest.approx(kinks, rel=1e-15), (text, method)
+            assert entries[4] == pytest.approx(I * (rate - 1.0), abs=2e-14), (text, method)
+
+
+@pytest.mark.without_numba
+def test_a_well_with_a_sharp_bottom_has_the_period_of_its_parabolas():
+    scene = scene_of("[potential: {energy: '2*abs(angle)'}]", '{angle: 0.5}', HINGE)
+    period = 4 * math.sqrt(2 * I * 0.5 / 2.0)
+    found, kinks, _, _ = followed(scene, 1.25 * period + 0.01)
+    assert np.array(kinks) / period == pytest.approx([0.25, 0.75, 1.25], rel=1e-14)
+    assert found == pytest.approx(-2.0 / I * (period / 4 - 0.01), rel=1e-13)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('method', 'order', 'steps'), [
+    ('rk4', 4, (0.04, 0.02, 0.01)), ('dop8', 8, (0.2, 0.14, 0.1))])
+def test_the_order_survives(method, order, steps):
+    scene = scene_of("[potential: {energy: '2*abs(angle) + 5*angle^4'}, "
+                     "torque: {value: [0, 0, '-0.1*wz*abs(wz) + max(sin(t), 0.2)']}]",
+                     '{angle: 0.5}', HINGE)
+    exact, kinks, _, _ = followed(scene, 3.0, 'gauss16')
+    assert len(kinks) > 6
+    errors = [abs(followed(scene, 3.0, method, step=step)[0] - exact) for step in steps]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope > order - 0.6, errors
+
+
+@pytest.mark.without_numba
+def test_dry_friction_takes_the_same_from_every_swing_and_stops():
+    """On a torsion spring k a friction T takes 2 T/k from each half swing of pi sqrt(I/k)."""
+    scene = scene_of('[spring: {stiffness: 50}, dry_friction: {torque: 3}]', '{angle: 0.5}', HINGE)
+    half, lost = math.pi * math.sqrt(I / 50), 2 * 3 / 50
+    _, kinks, entries, end = followed(scene, 2.5)
+    assert kinks == pytest.approx([n * half for n in (1, 2, 3, 4)], rel=2e-15)
+    out = np.empty((4, 14))
+    solver = Stepped(scene, 'dop8', accuracy=1e-13).start(scene.initial.vector)
+    solver.states(np.array(kinks), out)
+    turns = [(-1) ** n * (0.5 - n * lost) for n in (1, 2, 3, 4)]
+    assert 2 * np.arctan2(out[:, 3], out[:, 4]) == pytest.approx(turns, abs=1e-15)
+    assert not end[5:8].any()
+    assert 2 * math.atan2(end[3], end[4]) == pytest.approx(turns[-1], abs=1e-15)
+    assert entries[1] == pytest.approx(0.5 * 50 * (0.5 ** 2 - 0.02 ** 2), rel=2e-15)
+    found = {round(time / half) for time, name, _ in solver.events(0.0, 2.5)
+             if name == 'turning point'}
+    assert found >= {1, 2, 3}
+
+
+@pytest.mark.without_numba
+def test_friction_bears_a_torque_until_it_outgrows_it():
+    """0.5 t N m break loose from 1 N m at 2 s: I rate = (t - 2)^2/4 from there on."""
+    scene = scene_of("[torque: {value: [0, 0, '0.5*t']}, dry_friction: {torque: 1}]", '{}', HINGE)
+    rate, (loose,), _, _ = followed(scene, 3.0, accuracy=1e-11)
+    assert loose == pytest.approx(2.0, rel=1e-15)
+    assert rate == pytest.approx(0.25 / I, rel=1e-11)
+    for torque, moves in ((0.9, False), (1.1, True)):
+        scene = scene_of(f'[torque: {{times: [0, 1], values: [[0, 0, 0], [0, 0, {torque}]]}}, '
+                         'dry_friction: {torque: 1}]', '{}', HINGE)
+        rate, _, _, _ = followed(scene, 3.0)
+        assert rate == pytest.approx(0.1 * 2.0 / I if moves else 0.0, rel=1e-14)
+
+
+@pytest.mark.without_numba
+def test_what_slides_along_a_kink_says_so():
+    scene = scene_of("[torque: {value: [0, 0, '-0.1*sign(wz)']}]", '{spin: 1}')
+    with pytest.raises(NotConverged, match=r'at t = 5\.0.* s the body slides along a kink'):
+        followed(scene, 10.0)
+    # a kink on which nothing drives the body stays as it is
+    scene = scene_of("[torque: {value: ['-0.1*sign(wx)', 0, 0]}]", '{spin: 1}')
+    assert followed(scene, 10.0)[0] == 1.0
+
+
+def test_only_methods_that_stop_at_kinks_run_them():
+    able = runnable(scene_of("[torque: {value: [0, 0, 'abs(t - 1)']}]", '{}'))
+    assert able == ['dop8', 'gauss16', 'rk4']
+    able = runnable(scene_of('[dry_friction: {torque: 1}]', '{}', HINGE))
+    assert able == ['dop8', 'gauss16', 'split2', 'rk4', 'semi_implicit_euler']
+
+
+@pytest.mark.parametrize(('effect', 'constraint', 'words'), [
+    ("torque: {value: [0, 0, 'where(t, 1, 2)']}", 'free', 'where without a comparison'),
+    ("torque: {value: [0, 0, 'where(t < 1, 1)']}", 'free', 'where with 2 arguments'),
+    ("torque: {value: [0, 0, '0 < t < 1']}", 'free', 'is not part of the language'),
+    ("torque: {value: [0, 0, 't == 1']}", 'free', 'is not part of the language'),
+    ('dry_friction: {torque: 0}', HINGE, 'needs a number above 0'),
+    ('dry_friction: {torque: 1}', 'pivot', "cannot act on constraint 'pivot'")])
+def test_what_does_not_fit_gets_one_line(effect, constraint, words):
+    with pytest.raises(BadInput, match=words):
+        scene_of(f'[{effect}]', '{}', constraint)
