@@ -41,9 +41,12 @@ def total_pull(scene):
     Returns
     -------
     Total or None
-        None where something acts that is not of this kind, or changes in time.
+        None where something acts that is not of this kind, or changes in time, and where another
+        point than the body's origin is held.
     """
     frame = scene.constraint.frame(scene.body)
+    if scene.constraint.axis is None and not frame.moves and any(frame.point):
+        return None    # motions about a point hold the body's origin
     pulls = []
     for effect in scene.acting:
         if effect.series is None or effect.acting is None:

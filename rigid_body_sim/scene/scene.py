@@ -271,6 +271,7 @@ def _scene(mapping, where):
     parameters = checked_parameters(mapping.get('parameters', {}), f'{where}: parameters')
     effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
                              f'{where}: effects'))
+    _refuse_parts_beside_turning(effects, body, constraint, f'{where}: effects')
     initial = constraint.initial(start, body, f'{where}: initial')
     about = printable(' '.join(mapping.get('about', '').split()))
     return Scene(mapping['scene'], about, body, constraint, effects, initial,
@@ -417,6 +418,19 @@ def _effects(entries, body, constraint, parameters, where):
         check(settings, effect.SCHEMA, at)
         settings = with_expressions(settings, effect.SCHEMA, parameters)
         yield effect.from_scene(settings, body, constraint, at)
+
+
+def _refuse_parts_beside_turning(effects, body, constraint, where):
+    """Refuse a rotor beside internal dissipation, which would not turn the rotor's momentum."""
+    carrying = [effect.name for effect in effects if effect.momentum is not None]
+    if not carrying:
+        return
+    frame = constraint.frame(body)
+    for effect in effects:
+        if effect.acting is not None and any(one.gives == 'turning'
+                                             for one in effect.acting(frame, 0.0)):
+            raise BadInput(f'{where}.{effect.name}', f'stands beside {carrying[0]}',
+                           'heat at constant momentum is that of the body alone: leave one out')
 
 
 def _named(entry):

@@ -101,6 +101,12 @@ CASES = {
         '[-1.5707963267948966, 0, 0], angular_velocity: [1, -2, 3]}', 1.0),
     'the same upright': (SKEW, 'pivot', '', 'gravity: {g: 9.81}',
                          '{angular_velocity: [1, -2, 3]}', 1.0),
+    'held off its origin': (
+        SKEW, '{pivot: {at: [-0.1, -0.2, 0.1]}}', '', 'gravity: {g: 9.8}}, {drag: {linear: 0.1}',
+        TURNING, 1.0),
+    'the same with its origin there': (
+        SKEW.replace('[0.02, -0.03, 0.1]', '[0.12, 0.17, 0.0]'), 'pivot', '',
+        'gravity: {g: 9.8}}, {drag: {linear: 0.1}', TURNING, 1.0),
     'all of drag': (SKEW, 'free', '', f'drag: {DRAGGED}', TURNING, 1.0),
     'all of drag at a pivot': (SKEW, 'pivot', '', f'drag: {DRAGGED}', TURNING, 1.0),
     'all of drag at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', '', f'drag: {DRAGGED}',

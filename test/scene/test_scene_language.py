@@ -15,6 +15,7 @@ from scene import language_cases
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import runnable
+from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
@@ -114,6 +115,42 @@ def test_gravity_in_another_direction_is_the_world_turned(found):
     assert np.abs(turned - upright).max() < 2e-13
 
 
+def test_a_pivot_off_the_origin_is_one_at_the_origin_of_other_axes(found):
+    one, other = (np.array(found[case]['state'])
+                  for case in ('held off its origin', 'the same with its origin there'))
+    assert np.abs(one[1:8] - other[1:8]).max() < 2e-13
+    point = one[8:11] + rotate(*one[1:5], -0.1, -0.2, 0.1)
+    assert np.abs(point).max() < 1e-15
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('amplitude', 'stands'), [(0.05, True), (0.02, False)])
+def test_kapitzas_pendulum_stands_where_the_averaged_formula_says(amplitude, stands):
+    """In the frame of a pivot that shakes with A cos(w t) the force m A w^2 cos(w t) acts.
+
+    Averaged over the shaking, upright is stable if (A w)^2 > 2 g l; then it swings slowly with
+    (A w)^2/(2 l^2) - g/l, else it falls so (Landau, Lifshitz, Mechanics, section 30). 2 g l is
+    19.6 here, beside 100 and 16.
+    """
+    scene = parse_scene(
+        f"""scene: kapitza
+parameters: {{A: {amplitude}, w: 200.0}}
+body: {{mass: 1.0, inertia: [1.0e-9, 1.0e-9, 1.0e-9], center_of_mass: [0, 0, 1]}}
+constraint: {{hinge: {{axis: [0, 1, 0]}}}}
+effects: [{{gravity: {{g: 9.8}}}}, {{force: {{value: [0, 0, 'A*w^2*cos(w*t)'], frame: world}}}}]
+initial: {{angle: 0.1}}
+""")
+    square = (amplitude * 200.0) ** 2 / 2 - 9.8
+    slow = math.sqrt(abs(square))
+    times = np.linspace(0.0, math.pi / slow if stands else 1.5, 17)[1:]
+    states = Simulation(scene, 'dop8', accuracy=1e-8, rate=10.0).states(times)
+    angle = 2 * np.arctan2(states.orientation[:, 1], states.orientation[:, 3])
+    assert (square > 0.0) == stands
+    averaged = 0.1 * (np.cos if stands else np.cosh)(slow * times)
+    # the shaking itself is A/l of the angle; measured 0.012 at most
+    assert np.abs(angle - averaged).max() < 0.02
+
+
 def test_the_momentum_of_a_gyrostat_counts_its_rotor(found):
     # |I omega + h|^2 of the start, where the body turns about skew axes
     start = np.array([0.3 * 0.3, 0.3 * 0.1, 0.5 * 1.5 + 0.4])
@@ -154,6 +191,8 @@ def scene_of(effect, constraint='free', parameters=''):
     ('drag: {quadratic: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]}', '', 'which drives some motions'),
     ('drag: {quadratic: -1}', '', 'needs a number of at least 0'),
     ('rotor: {axis: [0, 0, 1], momentum: 1, rate: 2}', '', 'give momentum alone, or inertia and'),
+    ('rotor: {axis: [0, 0, 1], momentum: 1}}, {internal_dissipation: {coefficient: 1}', '',
+     'internal_dissipation: stands beside rotor'),
     ('rotor: {axis: [0, 0, 0], momentum: 1}', '', 'a direction: three numbers, not all zero'),
     ('spring: {at: [0, 0, 0], anchor: [0, 0, 1]}', '', "the key 'stiffness' is missing"),
     ('spring: {anchor: [0, 0, 1], stiffness: 1}', '', "the key 'at' is missing")])

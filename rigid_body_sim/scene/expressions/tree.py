@@ -141,7 +141,7 @@ def _derivative(one, variable, rates):
         return ONE if args[0] == variable else ZERO
     if op == 'where':
         return choice(args[0], rates[args[1]], rates[args[2]])
-    u, v, *_ = *args, None
+    u, v = (*args, None)[:2]
     du, dv = rates[u], rates.get(v)
     if du is ZERO and (dv is None or dv is ZERO):
         return ZERO
