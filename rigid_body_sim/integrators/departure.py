@@ -261,6 +261,10 @@ class Arriving:
             if self._rest is None:
                 self._ahead *= 2.0
 
+    def kinks(self, until):
+        """Return the times of kinks: none."""
+        return []
+
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""
         self._reach(time)
