@@ -52,7 +52,9 @@ def aim(client, preset='3/4'):
         place = place_of(client, preset)
         if np.allclose(place, aimed[0], rtol=1e-3):
             return
-        if np.allclose(client.camera.position, aimed[0], atol=1e-3):
+        # the page itself begins at the preset, which may come after what was sent first
+        if any(np.allclose(client.camera.position, one, atol=1e-3)
+               for one in (aimed[0], PRESETS[preset])):
             aimed[0] = place
             look(client, preset)
     client.camera.on_update(resized)
