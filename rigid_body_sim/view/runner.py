@@ -149,7 +149,10 @@ class Runner:
         self._write(lambda recording: recording.ticks(first, States(states.vector[:-1])))
 
     def close(self):
-        """Finish the recording, if there is one."""
+        """Do what the page asked for last, and finish the recording, if there is one."""
+        with contextlib.suppress(EOFError, OSError):
+            while self._pipe.poll():
+                self.told(*self._pipe.recv())
         if self._recording:
             self._write_present()
             self._write(lambda recording: recording.close())

@@ -125,8 +125,11 @@ def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_
         until(page, lambda: page._source.scene.name == 'tennis_racket')
         page.panel.requests.put(('speed', 10.0))
         until(page, lambda: page.frame.events)
+        page.mouse.pull = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
+        until(page, lambda: page.frame.wrench)
     finally:
         page.close()
+    assert commands_in(tmp_path / 'run')[-1]['topic'] == 'release'
     with Recording(tmp_path / 'run') as recording:
         kinds = [entry['kind'] for entry in recording.journal()]
         names = [event['name'] for _, event in recording.decoded('/events')]
