@@ -27,8 +27,8 @@ constraint: free
 effects: []
 initial: {}
 """
-PATIENCE = 60.0
-"""Time for a process that imports numba on a loaded machine, s."""
+PATIENCE = 200.0
+"""Time for a process that imports numba and compiles, on a loaded machine, s."""
 
 
 def until(page, condition):
