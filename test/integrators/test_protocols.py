@@ -5,9 +5,12 @@ import types
 
 import pytest
 
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.integrators import GENERAL, METHODS, protocols
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions.solver import Exact
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import load_scene
 
 FAMILIES = sorted(
     {method.FAMILY for method in METHODS.values()}, key=lambda family: family.__name__)
@@ -30,9 +33,13 @@ def test_a_missing_declaration_is_found():
     assert not isinstance(types.SimpleNamespace(**names), protocols.Method)
 
 
-@pytest.mark.parametrize('solver', [Stepped, Exact])
-def test_solvers_have_the_methods_of_the_contract(solver):
-    assert issubclass(solver, protocols.Solver)
+@pytest.mark.parametrize(('name', 'solver'), [('dop8', Stepped), ('exact', Exact)])
+@pytest.mark.without_numba
+def test_solvers_have_what_the_contract_names(name, solver):
+    scene = load_scene('free_body')
+    made = choose(scene, name).solver(scene.initial.vector, Wrench())
+    assert isinstance(made, solver)
+    assert isinstance(made, protocols.Solver)
 
 
 def test_the_general_method_takes_wrenches():

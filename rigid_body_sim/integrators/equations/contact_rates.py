@@ -41,7 +41,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
     turning,
 )
-from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, FILMY, FLAT, FLATTER, LOW
 from rigid_body_sim.mechanics.contact.touch import couples, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import (
@@ -77,10 +77,6 @@ PACE = LEVER + 3         # of the slip, with the spin of a patch, m/s
 ROW = PACE + 1
 PARAMETER_COUNT = CONTACT.size
 ROUNDING = 2.0 ** -50    # of a normal velocity, beside the speeds
-FLAT = 1e-6              # rad: a disk that is inclined by less lies flat, where friction stops it
-FILMY = 1e-4             # rad: and where a film of air does
-FLATTER = 1e-10          # rad: and where neither does
-LOW = 1e-3               # rad: below it dry friction jams a disk that no step can follow
 SLOW = 1e-13             # share of the speeds below which a body does not roll
 SPINLESS = 1e-9          # share of the speeds below which a body that rests does not spin
 SHORT = 1e-6             # time of a difference, over that in which the body moves by its size

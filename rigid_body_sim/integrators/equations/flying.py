@@ -8,14 +8,15 @@ x' = v, M v' = F.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import (
     MASS,
     attitude_rate,
     read_state,
-    settled,  # noqa: F401 - one of the template's kernels
     write_state,
 )
 
+settled = euler.settled    # one of the template's kernels
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND

@@ -5,6 +5,11 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 
+FLAT = 1e-6              # rad: a disk that is inclined by less lies flat, where friction stops it
+FILMY = 1e-4             # rad: and where a film of air does
+FLATTER = 1e-10          # rad: and where neither does
+LOW = 1e-3               # rad: below it dry friction jams a disk that no step can follow
+
 
 class ContactParameters(NamedTuple):
     """A body and its plane; the values of what else acts stand behind it.

@@ -12,12 +12,12 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
-from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, FILMY, FLAT, FLATTER, LOW
 from rigid_body_sim.mechanics.contact.touch import couples, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
-from rigid_body_sim.scene.surfaces import shifted
+from rigid_body_sim.scene.surfaces import TORUS, shifted
 
 TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
 NOTHING = (0.0, 0.0, 0.0)
@@ -70,6 +70,10 @@ class Standing:
         if height + below > TOUCHES * (abs(height) + abs(below)) or u[2] > TOUCHES * speed:
             return NOTHING, NOTHING, r
         moved = shifted(c.kind, c.size, gamma, cross(gamma, omega))
+        pressed = rotate_back(*c.plane, *force)[2] < 0.0
+        if pressed and not any(omega) and not any(velocity) and self._lies(gamma):
+            force = scaled(-1.0, force)
+            return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         viscous, wrung, _, _ = couples(c, gamma, moved)
         torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
         carried = cross(omega, r)
@@ -86,6 +90,18 @@ class Standing:
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r
         return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
+
+    def _lies(self, gamma):
+        """Return whether a disk is so low that it counts as flat once nothing moves.
+
+        It then rests on its face, or is jammed by dry friction: no force at one point holds it.
+        """
+        c = self._c
+        if c.kind != TORUS or c.size[1] != 0.0:
+            return False
+        lowest = (LOW if c.rolling > 0.0 else FILMY if c.film > 0.0
+                  else FLAT if c.rolling_viscous > 0.0 else FLATTER)
+        return hypot(gamma[0], gamma[1]) < lowest * (1.0 + 1e-6)
 
     def _patch_force(self, patch, u, spin, speed):
         """Return force (axes of the plane) and couple about the normal of a patch of contact."""

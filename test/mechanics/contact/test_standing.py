@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.contact.standing import Standing
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.surfaces import KINDS, lowest
@@ -152,3 +153,24 @@ def test_a_ball_at_rest_on_a_slope_needs_the_tangent_for_friction():
         assert np.array(force) @ NORMAL == pytest.approx(2.0 * 9.81 * 0.8)
         assert np.array(force) @ down == pytest.approx(-2.0 * 9.81 * 0.6 * share)
         assert math.isclose(force[0], 0.0, abs_tol=1e-14)
+
+
+@pytest.mark.parametrize(('friction', 'tilt', 'lies'), [
+    (', rolling_friction: {viscous: 1.0e-3}', 0.99e-6, True),
+    (', rolling_friction: {viscous: 1.0e-3}', 1.1e-6, False),
+    (', rolling_friction: {dry: 1.0e-4}', 9e-4, True),
+    (', air_film: {viscosity: 1.8e-5}', 9e-5, True),
+    ('', 1e-7, False)])
+def test_a_disk_that_has_come_to_rest_is_held_by_its_face(friction, tilt, lies):
+    """At one point of its edge it would fall at once: 4 g/5 downward for its centre."""
+    scene = parse_scene(
+        'scene: s\nbody: {mass: 2.0, shape: {disk: {radius: 0.5}}}\nconstraint: table\n'
+        f'effects: [gravity: {{g: 9.81}}, sliding_friction: {{mu: .inf}}{friction}]\n'
+        f'initial: {{euler_zyz: [0.3, {tilt!r}, 0.0], rolling: true}}\n')
+    balance = Dynamics(scene).balance(scene.initial.vector)
+    if lies:
+        assert np.abs(balance.acceleration).max() == 0.0
+        assert np.abs(balance.angular_acceleration).max() < 1e-14
+        assert balance.force == pytest.approx([0.0, 0.0, 2.0 * 9.81], abs=1e-15)
+    else:
+        assert balance.acceleration[2] == pytest.approx(-0.8 * 9.81, rel=1e-3)
