@@ -93,6 +93,10 @@ BODIES = {
     'inertia_tensors': Labelled('sphere', points={'C': O}),
     'rolling_disk': Labelled('rolling_disk', vertical=True, points={'C': O},
                              lengths={'R': (O, (0.5, 0.0, 0.0))}),
+    'rising_tops': Labelled('tippe_top', vertical=True, points={'C': O}, axes='3'),
+    'rolling_spheres': Labelled('routh_sphere', vertical=True, points={'C': O}, axes='3'),
+    'tossed_coin': Labelled('tossed_coin', vertical=True, points={'C': O},
+                            lengths={'R': (O, (0.012, 0.0, 0.0))}, axes='3'),
     'rattleback': Labelled('rattleback', view=(25.0, -75.0), vertical=True),
 }
 
