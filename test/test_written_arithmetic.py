@@ -20,14 +20,14 @@ SCRIPTS = ('numerics/make_functions.py',)
 CORRECT = {
     # fsum, comb, factorial and isqrt are exact; fma is rounded once
     'math': 'ceil comb copysign factorial floor fma frexp fsum inf isfinite isnan isqrt ldexp nan '
-            'pi sqrt ulp',
+            'nextafter pi prod sqrt ulp',
     # cumsum and prod are for whole numbers here, and add one by one in any case
     'np': 'abs add append arange argmax argsort array array_equal asarray ascontiguousarray '
           'broadcast_arrays concatenate count_nonzero cumsum diag diagonal diff divide empty '
           'empty_like errstate eye finfo flatnonzero float64 frexp frombuffer full inf int64 intp '
           'isfinite isnan maximum minimum nan ndarray newaxis nonzero ones ones_like outer prod '
           'random repeat reshape roll searchsorted sort sqrt square stack tile uint8 uint32 '
-          'uint64 where zeros'}
+          'uint64 unique where zeros'}
 CORRECT = {module: set(names.split()) for module, names in CORRECT.items()}
 LIBRARIES = ('scipy', 'mpmath', 'cmath', 'statistics', 'sympy')
 REDUCTIONS = ('dot', 'mean', 'std', 'var', 'trace')
@@ -54,7 +54,7 @@ SUMS = {
     'integrators/families/one_step.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/marching/gauss_nodes.py: '
     'sum((coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m))',
-    'mechanics/potential.py: sum((len(one.values) for one in parts))',
+    'mechanics/potential.py: sum((size for _, size in parts))',
     'motions/fixed_axis.py: sum((x * y for x, y in zip(a, b, strict=True)))',
     'motions/pendulum/anchor.py: sum((x * y for x, y in zip(a, b, strict=True)))',
     'motions/pendulum/anchor.py: '

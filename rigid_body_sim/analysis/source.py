@@ -185,10 +185,11 @@ def missed(runs):
     Parameters
     ----------
     runs : sequence of dict
-        What each simulation was asked for and chose, see recording.about.run_of.
+        What each simulation was asked for and chose, see recording.about.run_of; empty where the
+        recording does not tell.
     """
     lines = (forecast.missed(run['accuracy'], run['horizon'], run.get('expected_error'),
-                             run.get('met_until')) for run in runs)
+                             run.get('met_until')) for run in runs if run)
     return list(dict.fromkeys(line for line in lines if line))
 
 

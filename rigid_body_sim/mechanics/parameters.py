@@ -5,6 +5,8 @@ The point of reference is the centre of mass of a free body and of a sphere on a
 point of a pivoted body, and the axis of a hinged one.
 """
 
+import functools
+import operator
 from typing import NamedTuple
 
 import numpy as np
@@ -72,7 +74,7 @@ def scene_parameters(scene):
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
         hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint),
-        grip=sum(effect.grip for effect in scene.effects))
+        grip=functools.reduce(operator.add, (effect.grip for effect in scene.effects), 0.0))
 
 
 def parameters(scene):

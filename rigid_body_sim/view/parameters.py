@@ -64,7 +64,8 @@ def with_spin(scene, spin):
     else:
         omega = scene.initial.angular_velocity.tolist()
         omega[axis] = spin
-        initial.pop('spin', None)
+        for other in ('spin', 'angular_velocity_world', 'angular_momentum'):
+            initial.pop(other, None)
         initial['angular_velocity'] = omega
     return yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)
 
@@ -87,6 +88,7 @@ def with_tilt(scene, tilt):
     elif 'euler_zyz' in initial:
         initial['euler_zyz'] = [initial['euler_zyz'][0], tilt, initial['euler_zyz'][2]]
     else:
-        initial.pop('orientation', None)
+        for other in ('orientation', 'euler', 'rotation_vector'):
+            initial.pop(other, None)
         initial['tilt'] = tilt
     return yaml.safe_dump(mapping, sort_keys=False, allow_unicode=True)

@@ -39,10 +39,10 @@ def test_the_reach_is_that_of_the_farthest_corner():
 
 
 def test_the_ground_is_the_table_or_just_below_all_that_turns():
-    assert setting.ground_of(scene('free', TURNED), 2.0) == pytest.approx(3.3 - 2.2)
+    assert setting.ground_of(scene('free', TURNED), 2.0).height == pytest.approx(3.3 - 2.2)
     ball = scene('table', '', 'solid_sphere: {radius: 0.5}', '[0, 0, 0]')
-    assert setting.ground_of(ball, 9.0) == pytest.approx(ball.initial.position[2] - 0.5)
-    assert setting.ground_of(None, 2.0) == pytest.approx(-2.2)
+    assert setting.ground_of(ball, 9.0).height == pytest.approx(ball.initial.position[2] - 0.5)
+    assert setting.ground_of(None, 2.0).height == pytest.approx(-2.2)
 
 
 def test_a_column_carries_a_pivot_and_an_axle_goes_through_a_hinge():

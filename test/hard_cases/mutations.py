@@ -19,7 +19,8 @@ MUTANTS = {
         'motions/free_body/anchor.py', 'if gap[0] < 0.0:', 'if gap[0] > 0.0:',
         'test/hard_cases/test_02_inertia.py::test_case[lamina]'),
     'free body: Euler coefficient of the wrong axis': (
-        'motions/free_body/anchor.py', '_quotient(e3, e2)', '_quotient(e2, e3)',
+        'motions/free_body/anchor.py', '_quotient(d3 * I2, I3 * d2)',
+        '_quotient(d2 * I3, I2 * d3)',
         'test/hard_cases/test_02_inertia.py::test_case[lamina]'),
     'free body: next flip a half turn late': (
         'motions/free_body/free_body.py',
