@@ -98,6 +98,12 @@ def is_message_index(head, length):
             and int.from_bytes(head[11:15], 'little') == length - _INDEX_FIXED)
 
 
+def index_end(source, offset):
+    """Return where the message index at `offset` ends by the length of its array of entries."""
+    head = source.read(offset, HEAD.size + _INDEX_FIXED)
+    return offset + len(head) + int.from_bytes(head[HEAD.size + 2:], 'little')
+
+
 def record_end(source, offset, channels=None):
     """Return the end of the record at `offset` if its opcode and lengths agree, 0 otherwise.
 

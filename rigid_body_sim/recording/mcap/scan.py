@@ -24,6 +24,7 @@ from rigid_body_sim.recording.mcap.forms import (
     SUMMARY,
     chunk_end,
     follows,
+    index_end,
     is_message_index,
     next_record,
     parsed,
@@ -53,6 +54,7 @@ LARGEST_RECORD = LARGEST_CHUNK + 2**16
 _ATTACHMENT_START = 2**16       # bytes of an attachment that are read: its data is not needed
 _LONGEST_DESCRIPTION = 2**20    # bytes of a damaged schema, channel, header or metadata record
 _BLOCK = 2**22
+_DATA_END_SIZE = 4     # bytes of its content
 _FAR = 10**12                   # ns of log time to a message that is not believed
 _UNKNOWN = Schema(data=b'', encoding='', id=0, name='unknown')
 
@@ -334,7 +336,9 @@ class Scan:
             return True                 # the file is cut there
         following = next_record(self._bytes, offset + 1, self._limit, self._known_channels())
         opcode, length = HEAD.unpack(self._bytes.read(end, HEAD.size))
-        return following > end and (opcode == MESSAGE or following == end + HEAD.size + length)
+        return following > end and (
+            opcode == MESSAGE or following == end + HEAD.size + length
+            or (opcode, length) == (Opcode.DATA_END, _DATA_END_SIZE))     # the file is cut in it
 
     def _known_channels(self):
         part = self._part.contents.channels if self._part else ()
@@ -385,6 +389,12 @@ class Scan:
             return replaced
         known = self._channels() or None
         following = offset + HEAD.size + length
+        if is_index:
+            # its array has a length of its own: the wrong one of the two may swallow a chunk
+            entries = index_end(source, offset)
+            if follows(source, entries, known) and not (
+                    entries > following and follows(source, following, known)):
+                following = entries
         if hint is not None:
             following = offset + hint.chunk_length
         if not (offset < following <= limit and follows(source, following, known)):

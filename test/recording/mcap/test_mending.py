@@ -145,7 +145,8 @@ def test_a_wrong_byte_costs_what_it_must_and_all_of_it_is_told(form, wrong):
         told = losses or Losses()
         assert told.certainty == 'counted', at
         assert len(found) + told.messages == COUNT, at
-        assert len(found) >= readable(flipped), at
+        # a wrong offset of an index has the library read some messages twice
+        assert len(found) >= min(readable(flipped), COUNT), at
         other = len(set(found) - set(truth))
         if at not in inside:
             assert found == truth, at
@@ -161,6 +162,25 @@ def test_a_wrong_byte_costs_what_it_must_and_all_of_it_is_told(form, wrong):
         if other and form != 'no chunks':
             assert told.doubtful >= other, at
             assert told.doubtful <= 8, at
+
+
+@pytest.mark.parametrize(('form', 'into', 'wrong'), [
+    ('zstd', 2, 1), ('uncompressed', 1, 0x80), ('zstd', 12, 1), ('uncompressed', 11, 0x80)])
+def test_a_message_index_with_a_wrong_length_does_not_swallow_a_chunk(form, into, wrong):
+    """The wrong length, of the record or of its array, ends where another record begins."""
+    content = small(form)
+    index = [begin for opcode, begin, _ in records(content) if opcode == Opcode.MESSAGE_INDEX]
+    for begin in index:
+        flipped = bytearray(content)
+        flipped[begin + into] ^= wrong
+        assert mended(flipped)[0] == messages(content), begin
+
+
+def test_a_file_cut_within_the_record_that_ends_the_data_keeps_its_last_message():
+    content = small('no chunks')
+    [begin] = [begin for opcode, begin, _ in records(content) if opcode == Opcode.DATA_END]
+    for size in range(begin, begin + 13):
+        assert mended(content[:size])[0] == messages(content), size
 
 
 @pytest.mark.parametrize('form', FORMS)
