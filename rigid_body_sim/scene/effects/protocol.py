@@ -269,8 +269,8 @@ class Effect(Protocol):
     def inner_dissipation(self) -> float:
         """The c of an extra turning c m x omega that makes heat at constant L, 1/(kg m^2/s).
 
-        It is 0 for an effect that does not do this. Its rate ``c |m|`` relative to the rotation says
-        whether a scene is stiff.
+        It is 0 for an effect that does not do this. Its rate ``c |m|`` relative to the rotation
+        says whether a scene is stiff.
         """
         return 0.0
 
