@@ -147,7 +147,7 @@ initial: {{angle: 0.1}}
     angle = 2 * np.arctan2(states.orientation[:, 1], states.orientation[:, 3])
     assert (square > 0.0) == stands
     averaged = 0.1 * (np.cos if stands else np.cosh)(slow * times)
-    # the shaking itself is A/l of the angle; measured 0.012 at most
+    # the shaking itself is A/l of the angle
     assert np.abs(angle - averaged).max() < 0.02
 
 
