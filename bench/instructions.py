@@ -73,8 +73,8 @@ def march(control):
             for name in [name for name in every if known == 'listed' and name not in listed]:
                 del EFFECTS[name]
             act = steps(text)
-            # the first call loads more
-            for label, count in (('first', 1), ('once', STEPS), ('twice', 2 * STEPS)):
+            # the first call loads more, and a long one more than a short one
+            for label, count in (('first', STEPS), ('once', STEPS), ('twice', 2 * STEPS)):
                 control('-z')
                 act(count)
                 control(f'--dump={number}.{known}.{label}')
