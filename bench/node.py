@@ -279,8 +279,8 @@ def main():
             print(f'{case["subscribers"]:8}{case["rate"]:7.0f} {row:16}{found["cpu"]:7.1f}'
                   f'{ratio:>9}{found["tick_us"]:9.1f}{found["recorder_cpu"]:12.1f}'
                   f'{found["rate"]:12.3f}{found["p50"]:10.0f}{found["p99"]:7.0f}'
-                  f'{found["max"]:8.0f}{found["p99_of_1_s"]:12.0f}{found["overruns"]:10.0f}{found["growth_kib"]:12.0f}'
-                  f'{found["received"]:10.5f}')
+                  f'{found["max"]:8.0f}{found["p99_of_1_s"]:12.0f}{found["overruns"]:10.0f}'
+                  f'{found["growth_kib"]:12.0f}{found["received"]:10.5f}')
     return 0
 
 

@@ -35,7 +35,8 @@ MUTANTS = {
     'top: a phase not rescaled below 1e-60': (
         'motions/lagrange_top/means.py',
         'ab, bb, pb = one, scaled(kc, scale), scaled(kc, 1.0 / scale)', 'ab, bb, pb = one, kc, kc',
-        'test/hard_cases/test_06_tops.py::test_a_kick_in_a_plane_stays_in_it_and_follows_the_hyperbolic_sine'),
+        'test/hard_cases/test_06_tops.py::'
+        'test_a_kick_in_a_plane_stays_in_it_and_follows_the_hyperbolic_sine'),
     'top: exactly upright loses its quaternion': (
         'motions/lagrange_top/anchor.py', 'if gap == 0.0:', 'if gap < 0.0:',
         'test/hard_cases/test_06_tops.py::test_exactly_upright_and_exactly_hanging_for_ever'),

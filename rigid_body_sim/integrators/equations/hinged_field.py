@@ -6,11 +6,11 @@ Unknowns are those of hinged.py, and the time, t' = 1, as in field.py.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations import hinged
 from rigid_body_sim.integrators.equations.euler import (
     INVERSE,
     load_start,
     read_state,
-    write_state,
 )
 from rigid_body_sim.integrators.equations.hinged import (
     AXIS,
@@ -24,6 +24,7 @@ from rigid_body_sim.integrators.equations.hinged import (
 )
 from rigid_body_sim.numerics.vectors import dot
 
+write = hinged.write      # one of the template's kernels
 torque = UNBOUND
 
 UNKNOWNS = 3
@@ -60,11 +61,3 @@ def settled(y, c):
     if phi < -TURN:
         return (phi + TWO_TURNS, y[1], y[2]), (lost + REST, c[1], c[2])
     return y, c
-
-
-@compiled
-def write(p, time, y, out):
-    """Fill `out`, the state vector."""
-    nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
-    omega = (y[1] * nx, y[1] * ny, y[1] * nz)
-    write_state(p, time, attitude(p, y[0]), omega, load_start(p).place, (0.0, 0.0, 0.0), out)
