@@ -13,23 +13,25 @@ import numpy as np
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.equations import contact_rates, equations
-from rigid_body_sim.integrators.equations.contact_rates import (
+from rigid_body_sim.integrators.equations.contact_impacts import (
+    IMPACT,
+    collide,
+    velocity_of_lowest,
+)
+from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
+from rigid_body_sim.integrators.equations.contact_states import read
+from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
-    GAP,
     GLIDING,
-    OMEGA,
     RESTING,
     ROLLING,
     ROW,
-    SIZE,
     SLIDING,
-    TIME,
-    VELOCITY,
+    UNKNOWNS,
     WATCHED,
-    U,
 )
-from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.integrators.marching import contact_march, contact_step
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
@@ -45,8 +47,14 @@ HOLDS = 1e-12            # of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
 AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
-MODE, SWIFT, CREEP, UNTIL = (CONTACT.part(name).first
-                             for name in ('mode', 'swift', 'creep', 'until'))
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
+    CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
+                                          'rolling', 'restitution'))
+SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
+OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
+VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
+NORMAL, GRIP, FIRMNESS = (WATCHED.part(name).first for name in ('normal', 'grip', 'firmness'))
+SLIP = slice(U.start, U.start + 2)    # of the unknown u, along the plane
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
            'sinking into the plane; a smaller mu does not meet it')
@@ -55,8 +63,6 @@ PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without fric
 HELD = (': dry rolling friction holds a body there that still slides or spins, which is not '
         'solved; viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
-DRY = CONTACT.part('rolling').first
-MU, INCLINED = CONTACT.part('mu').first, CONTACT.part('inclined').first
 
 
 class OnPlane:
@@ -81,9 +87,12 @@ class OnPlane:
             raise BadInput(f'{scene.name}: effects', 'an expression of time or place, or an '
                            'effect that turns the axes, for a body on a plane',
                            'numbers that hold, or pieces in time: gravity, torque, drag, strike')
-        source = equations.applied_source(acting, contact_rates.PARAMETER_COUNT)
+        source = equations.applied_source(acting, CONTACT.size)
         self.rates = specialise(contact_rates, applied=source)
-        self.kernels = specialise(contact_march, rate=f'{self.rates.__name__}:rate')
+        rate = f'{self.rates.__name__}:rate'
+        step = specialise(contact_step, rate=rate).__name__
+        self.kernels = specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
+                                  first_zero=f'{step}:first_zero')
         self._fixed = contact_parameters(scene)
 
     def _acting(self, time):
@@ -109,11 +118,11 @@ class PlaneCourse:
         self._bound, self._start = bound, np.array(stepped.vector)
         self._begin = float(self._start[STATE_TIME])
         self._tolerance = stepped.accuracy / stepped.horizon
-        self._work = np.zeros((contact_march.WORK_ROWS, ROW))
+        self._work = np.zeros((contact_step.WORK_ROWS, ROW.size))
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most)
         self._phases, self._events, self._over, self._why = [], [], None, ''
         p, y = bound.parameters(self._begin), np.empty(SIZE)
-        x, yy, height = bound.rates.read(p, self._start, y)
+        x, yy, height = read(p, self._start, y)
         self._place = x, yy
         self._length = length = _length(p, bound.rates, y, self._work[0])
         self._heaviness = max(weight(bound.scene), 1e-3)
@@ -123,7 +132,7 @@ class PlaneCourse:
         if y[GAP] > slack:
             self._open(FLIGHT, p, y)
             return
-        ux, uy, normal = bound.rates.velocity_of_lowest(p, y)
+        ux, uy, normal = velocity_of_lowest(p, y)
         rounding = ROUNDING * speed
         y[GAP] = 0.0
         if normal > rounding:
@@ -135,8 +144,8 @@ class PlaneCourse:
 
     def _speed(self, y):
         """Return a speed beside which rounding is judged, m/s."""
-        rate = hypot3(*y[OMEGA:U].tolist())
-        return (hypot3(*y[U:U + 3].tolist()) + rate * self._length
+        rate = hypot3(*y[OMEGA].tolist())
+        return (hypot3(*y[U].tolist()) + rate * self._length
                 + math.sqrt(self._heaviness * self._length))
 
     def _open(self, mode, p, y):
@@ -158,50 +167,50 @@ class PlaneCourse:
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
-        y[U], y[U + 1], y[U + 2] = *u, 0.0
+        y[U] = *u, 0.0
         y[GAP] = 0.0
-        mu, row, rates = p[MU], np.empty(ROW), self._bound.rates
-        slides = u[0] != 0.0 or u[1] != 0.0 or rates.spins(p, y) > ROUNDING * self._speed(y)
+        mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
+        slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > ROUNDING * self._speed(y)
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
         rates.rate(p, y, row)
-        if not row[WATCHED + 2] > 0.0:
+        if not row[FIRMNESS] > 0.0:
             self._end(y)
             return
-        if not row[WATCHED] > 0.0:
+        if not row[NORMAL] > 0.0:
             self._fly(p, y)
             return
         mode = p[MODE]
-        if mode == ROLLING and row[WATCHED + 1] < -HOLDS * mu * row[WATCHED]:
+        if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]:
             self._creep_off(p, y)
             return
         self._open(mode, p, y)
 
     def _creep_off(self, p, y):
-        y[U], y[U + 1] = 0.0, 0.0
-        p[MODE], row = CREEPING, np.empty(ROW)
+        y[SLIP] = 0.0, 0.0
+        p[MODE], row = CREEPING, np.empty(ROW.size)
         p[SWIFT] = self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
         self._bound.rates.rate(p, y, row)
-        if not row[WATCHED + 2] > 0.0:
+        if not row[FIRMNESS] > 0.0:
             self._end(y)
-        elif not row[WATCHED] > 0.0:
+        elif not row[NORMAL] > 0.0:
             self._fly(p, y)
         else:
             self._open(CREEPING, p, y)
 
     def _fly(self, p, y):
         """Begin a flight from a contact whose slip is in y."""
-        row = np.empty(ROW)
+        row = np.empty(ROW.size)
         if p[MU] > IDEAL:
             # without friction the body would stay: ideal rolling would need a plane that pulls
             p[MODE] = GLIDING
             self._bound.rates.rate(p, y, row)
-            if row[WATCHED] > 0.0:
+            if row[NORMAL] > 0.0:
                 self._end(y, PULLS)
                 return
             p[MODE] = ROLLING
         self._bound.rates.rate(p, y, row)
-        y[U:U + 3], y[GAP] = row[VELOCITY:VELOCITY + 3], 0.0
+        y[U], y[GAP] = row[VELOCITY], 0.0
         self._open(FLIGHT, p, y)
 
     def _end(self, y, why=PARADOX):
@@ -212,36 +221,37 @@ class PlaneCourse:
     def _stop(self, p, y, time):
         """Let a body rest that lies flat or is held by friction, else let it roll on."""
         if not self._bound.rates.stays(p, y):
-            self._bound.rates.pause(p, y)
+            pause(p, y)
             self._open(int(p[MODE]), p, y)
             return
-        self._bound.rates.halt(p, y)
+        halt(p, y)
         self._events.append((time, 'rest', {}))
         self._open(RESTING, p, y)
 
     def _impact(self, p, y):
         """Let the body bounce, or land where it rebounds no more."""
-        out, restitution = np.empty(6), p[CONTACT.part('restitution').first]
+        out = np.empty(IMPACT.size)
         trial = y.copy()
-        self._bound.rates.collide(p, trial, restitution, out)
-        rebounds = out[3] > CHATTER * self._speed(y)
+        collide(p, trial, p[RESTITUTION], out)
+        rebounds = IMPACT.load(out).after > CHATTER * self._speed(y)
         if not rebounds:
             trial = y.copy()
-            self._bound.rates.collide(p, trial, 0.0, out)
+            collide(p, trial, 0.0, out)
         y[:] = trial
         y[GAP] = 0.0
+        impact = IMPACT.load(out.tolist())
         self._events.append((self._begin + float(y[TIME]), 'impact', {
-            'normal_velocity': float(out[2]), 'impulse': float(out[4])}))
+            'normal_velocity': impact.before, 'impulse': impact.impulse}))
         if rebounds:
             self._open(FLIGHT, p, y)
         else:
-            self._land(p, y, (float(out[0]), float(out[1])))
+            self._land(p, y, impact.slip)
 
     def _follow(self, phase):
         """Begin the phase that follows one that has ended."""
         p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
         time = self._begin + float(y[TIME])
-        if why == contact_march.FAILED and self._bound.rates.jams(p, y):
+        if why == contact_march.FAILED and jams(p, y):
             why = contact_march.STOPPED
         if why == contact_march.FAILED:
             held = p[DRY] > 0.0
@@ -266,9 +276,9 @@ class PlaneCourse:
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
         elif why == contact_march.FASTER:
-            row = np.empty(ROW)
+            row = np.empty(ROW.size)
             self._bound.rates.rate(p, y, row)
-            y[U], y[U + 1] = row[contact_rates.SLIP:contact_rates.SLIP + 2]
+            y[SLIP] = row[ROW.part('slip').places]
             self._open(SLIDING, p, y)
         else:
             self._open(int(p[MODE]), p, y)
@@ -383,15 +393,15 @@ class _Phase:
     def write(self, elapsed, time, place, out):
         """Fill `out` with the state at a time that the march has passed."""
         if not self._meta[contact_march.STEPS]:
-            self._bound.rates.write(self.p, self.front[:SIZE], self._work[0], time, *place, out)
+            self._bound.rates.write(self.p, self.front[:SIZE], self._work[0], time, place, out)
             return
         self._bound.kernels.at(self.p, self._work, self._store, self._sizes, self._meta,
                                self._cursor, elapsed, self._y)
-        self._bound.rates.write(self.p, self._y, self._work[0], time, *place, out)
+        self._bound.rates.write(self.p, self._y, self._work[0], time, place, out)
 
 
 def _length(p, rates, y, row):
     """Return a length of the body: from its centre of mass to the plane, and its size, m."""
     rates.rate(p, y, row)
-    lever = hypot3(*row[contact_rates.LEVER:contact_rates.LEVER + 3].tolist())
+    lever = hypot3(*row[LEVER].tolist())
     return max(lever, max(map(abs, p[CONTACT.part('size').places])))

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The impact of a convex body that comes down on a plane.
+
+Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
+"""
+
+from typing import NamedTuple
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import Pair, layout
+from rigid_body_sim.integrators.equations.contact_views import LEDGER, UNKNOWNS
+from rigid_body_sim.mechanics.contact.forces import posture
+from rigid_body_sim.mechanics.contact.laws import impulse
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.touch import response
+from rigid_body_sim.numerics.functions import hypot
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
+
+
+class Impact(NamedTuple):
+    """What an impact did.
+
+    Attributes
+    ----------
+    slip : Pair
+        After the impact, m/s; 0 if the body sticks.
+    before, after : float
+        Normal velocity of the lowest point, m/s.
+    impulse : float
+        Along the normal, N s.
+    """
+
+    slip: Pair
+    before: float
+    after: float
+    impulse: float
+
+
+IMPACT = layout(Impact)
+load_contact, load_unknowns, store_impact = CONTACT.load, UNKNOWNS.load, IMPACT.store
+store_omega, store_u = UNKNOWNS.part('omega').store, UNKNOWNS.part('u').store
+store_impulse, STRUCK = LEDGER.part('impulse').store, LEDGER.part('struck').first
+
+
+@compiled
+def velocity_of_lowest(p, y):
+    """Return the velocity of the lowest point of a flight, axes of the plane, m/s."""
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    return plus(now.u, apply(at.axes, at.carried))
+
+
+@compiled
+def collide(p, y, restitution, out):
+    """Change the unknowns of a flight by an impact.
+
+    An impact that would make energy is taken without restitution: Newton's law with friction can.
+
+    Parameters
+    ----------
+    y : array
+        Unknowns, changed in place: omega, velocity, ledger.
+    out : array
+        Filled with the Impact.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    before = plus(now.u, apply(at.axes, at.carried))
+    G = response(c, at.axes, at.r, (0.0, 0.0, 0.0))
+    given = impulse(G, before, restitution, c.mu)
+    after = plus(before, apply(G, given))
+    loss = -0.5 * dot(given, plus(before, after))
+    normal = -restitution * before[2]
+    if loss < 0.0 and restitution > 0.0:
+        given = impulse(G, before, 0.0, c.mu)
+        after = plus(before, apply(G, given))
+        loss, normal = -0.5 * dot(given, plus(before, after)), 0.0
+    turn = cross(at.r, rotate_back(*now.q, *given))
+    store_omega(y, plus(now.omega, apply(c.inverse, turn)))
+    store_u(y, plus(now.u, scaled(1.0 / c.mass, given)))
+    y[STRUCK] += loss
+    store_impulse(y, plus(now.ledger.impulse, apply(at.axes, turn)))
+    sticks = c.mu > 0.0 and hypot(given[0], given[1]) < c.mu * given[2] * (1.0 - 1e-14)
+    slip = (0.0, 0.0) if sticks else (after[0], after[1])
+    store_impact(out, Impact(slip, before[2], normal, given[2]))

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: one step of a convex body on a plane, its error, and what falls below zero within it.
+
+It is bound to the rates of equations/contact_rates.py, and uses the coefficients of a Runge-Kutta
+method that estimates its error (dop8). Loops over tables keep the compilation short.
+
+The work space is an array of rows of rates: one a stage, and END, FRESH, TRIED. A step leaves the
+new unknowns in row FRESH and what their sums have lost in row TRIED.
+"""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.contact_views import ROW, UNKNOWNS
+from rigid_body_sim.integrators.methods import dop8
+from rigid_body_sim.numerics.rotations import normalised
+
+rate = UNBOUND
+
+STAGES = len(dop8.A)
+A = np.zeros((STAGES, STAGES))
+B, E5, E3 = np.zeros(STAGES), np.zeros(STAGES), np.zeros(STAGES)
+WEIGHED = tuple(dop8.B)        # stages that a step adds up, and its errors
+for _i, _row in enumerate(dop8.A):
+    for _j, _a in _row.items():
+        A[_i, _j] = _a
+for _table, _values in ((B, dop8.B), (E5, dop8.E5), (E3, dop8.E3)):
+    for _j, _b in _values.items():
+        _table[_j] = _b
+
+END, FRESH, TRIED = STAGES, STAGES + 1, STAGES + 2    # rows of the work space beside the stages
+WORK_ROWS = STAGES + 3
+SIZE, WATCHED = UNKNOWNS.size, ROW.part('watched').first
+COUPLED = UNKNOWNS.part('ledger').first    # unknowns that the rates depend on
+OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
+                              for name in ('omega', 'u', 'place', 'gap', 'time'))
+load_q, store_q = UNKNOWNS.part('q').load, UNKNOWNS.part('q').store
+ROUNDING = 2.0 ** -49
+PARTS = 16                   # of a step that is looked through
+SEARCHES = 24                # golden sections for a dip
+GOLDEN = 0.6180339887498949
+BISECTIONS = 120
+
+
+@compiled
+def step_from(p, w, y, lost, h):
+    """Fill row FRESH with the unknowns after a step h from y; the rates at y are in row 0.
+
+    Returns
+    -------
+    float
+        0 if the numbers stayed finite, else infinite.
+    """
+    for i in range(1, STAGES):
+        _stage(w, y, h, i)
+        rate(p, w[TRIED], w[i])
+    b0, b5, b6, b7 = h * B[0], h * B[5], h * B[6], h * B[7]
+    b8, b9, b10, b11 = h * B[8], h * B[9], h * B[10], h * B[11]
+    bad = 0.0
+    for n in range(SIZE):
+        d = lost[n] + (
+            b0 * w[0, n] + b5 * w[5, n] + b6 * w[6, n] + b7 * w[7, n]
+            + b8 * w[8, n] + b9 * w[9, n] + b10 * w[10, n] + b11 * w[11, n])
+        s = y[n] + d
+        w[FRESH, n] = s
+        w[TRIED, n] = d - (s - y[n])
+        if not abs(s) < math.inf:
+            bad = math.inf
+    summed = load_q(w[FRESH])
+    q = normalised(*summed)
+    short = load_q(w[TRIED])
+    x, yy, z, v = (short[0] + (summed[0] - q[0]), short[1] + (summed[1] - q[1]),
+                   short[2] + (summed[2] - q[2]), short[3] + (summed[3] - q[3]))
+    # along q there is nothing to make up for
+    along = x * q[0] + yy * q[1] + z * q[2] + v * q[3]
+    store_q(w[TRIED], (x - along * q[0], yy - along * q[1], z - along * q[2], v - along * q[3]))
+    store_q(w[FRESH], q)
+    return bad
+
+
+@compiled_inline
+def _stage(w, y, h, i):
+    """Fill row TRIED with the unknowns at which stage i takes its rates."""
+    # sums stay in registers: two arrays in a loop would be looked at for overlap each time
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = s8 = s9 = s10 = s11 = s12 = s13 = 0.0
+    for j in range(i):
+        a = h * A[i, j]
+        if a != 0.0:
+            s0 += a * w[j, 0]
+            s1 += a * w[j, 1]
+            s2 += a * w[j, 2]
+            s3 += a * w[j, 3]
+            s4 += a * w[j, 4]
+            s5 += a * w[j, 5]
+            s6 += a * w[j, 6]
+            s7 += a * w[j, 7]
+            s8 += a * w[j, 8]
+            s9 += a * w[j, 9]
+            s10 += a * w[j, 10]
+            s11 += a * w[j, 11]
+            s12 += a * w[j, 12]
+            s13 += a * w[j, 13]
+    sums = s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13
+    for n in range(COUPLED):
+        w[TRIED, n] = sums[n] + y[n]
+
+
+@compiled
+def error_of(w, h, scales):
+    """Return the estimated error of the step in the rows, as an angle (rad).
+
+    Parameters
+    ----------
+    scales : tuple of 3 floats
+        What counts as one radian: of angular velocity (rad/s), of velocity (m/s), of length (m).
+    """
+    turning, speed, length = scales
+    fifth = third = moved = 0.0
+    for n in range(COUPLED):
+        e5 = e3 = d = 0.0
+        for j in WEIGHED:
+            e5 += E5[j] * w[j, n]
+            e3 += E3[j] * w[j, n]
+            d += B[j] * w[j, n]
+        weight = 1.0
+        if OMEGA <= n < U:
+            weight = 1.0 / turning
+        elif U <= n < PLACE:
+            weight = 1.0 / speed
+        elif PLACE <= n <= GAP:
+            weight = 1.0 / length
+        elif n == TIME:
+            weight = turning
+        fifth += weight * weight * e5 * e5
+        third += weight * weight * e3 * e3
+        moved += weight * weight * d * d
+    fifth, third, moved = h * h * fifth, h * h * third, h * h * moved
+    if not fifth > ROUNDING * ROUNDING * moved:
+        return 0.0 if fifth >= 0.0 else math.inf
+    return fifth / math.sqrt(fifth + 0.01 * third)
+
+
+@compiled
+def look(p, w, y, lost, h, k):
+    """Return the watched number k after a step h from y, whose rates are in row 0."""
+    step_from(p, w, y, lost, h)
+    rate(p, w[FRESH], w[END])
+    return w[END, WATCHED + k]
+
+
+@compiled
+def first_zero(p, w, y, lost, h, k, begin):
+    """Return the part of the step h at which a watched number first falls below zero.
+
+    Parameters
+    ----------
+    begin : float
+        The watched number k at y.
+
+    Returns
+    -------
+    float
+        The first part (same unit as h) for which it is negative, to round-off; -1 if it stays
+        above.
+    """
+    low, value_low = 0.0, begin
+    least, at = math.inf, 0.0
+    for n in range(1, PARTS + 1):
+        part = h * n / PARTS
+        value = look(p, w, y, lost, part, k)
+        if value < 0.0:
+            return _refined(p, w, (y, lost), k, (low, value_low), (part, value))
+        if value < least:
+            least, at = value, part
+        low, value_low = part, value
+    # the least of the values may hide a dip
+    left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
+    part, value = _dip(p, w, (y, lost), k, left, right)
+    if part < 0.0:
+        return -1.0
+    return _refined(p, w, (y, lost), k, (left, least), (part, value))
+
+
+@compiled
+def _dip(p, w, start, k, left, right):
+    """Return a part at which a watched number is below zero, and the number; -1, 0 if none is.
+
+    Golden section looks for its least value between two parts.
+    """
+    y, lost = start
+    for _ in range(SEARCHES):
+        first = right - GOLDEN * (right - left)
+        second = left + GOLDEN * (right - left)
+        one, other = (look(p, w, y, lost, first, k), look(p, w, y, lost, second, k))
+        if one < 0.0:
+            return first, one
+        if other < 0.0:
+            return second, other
+        if one < other:
+            right = second
+        else:
+            left = first
+    return -1.0, 0.0
+
+
+@compiled
+def _refined(p, w, start, k, above, below):
+    """Return the first part at which a watched number is negative, to round-off.
+
+    The Illinois method, kept within the bracket, until no double lies between. `above` and
+    `below` are its ends, each a part and the number there.
+    """
+    y, lost = start
+    low, value_low = above
+    high, value_high = below
+    side = 0
+    for n in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if n % 3 != 2 and value_low > value_high and math.isfinite(value_low):
+            middle = (low * value_high - high * value_low) / (value_high - value_low)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        value = look(p, w, y, lost, middle, k)
+        if value < 0.0:
+            high, value_high = middle, value
+            if side == 1:
+                value_low *= 0.5
+            side = 1
+        else:
+            low, value_low = middle, value
+            if side == -1:
+                value_high *= 0.5
+            side = -1
+    return high
