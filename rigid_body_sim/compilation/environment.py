@@ -35,13 +35,18 @@ KEEP_UNUSED = 30 * 86400.0    # s
 def processor():
     """Return the name and the feature flags of the processor that kernels are compiled for."""
     if HAVE_NUMBA:
-        from llvmlite import binding
         # numba compiles for another processor if its settings say so
-        name = numba.config.CPU_NAME or binding.get_host_cpu_name()
-        features = numba.config.CPU_FEATURES
-        return (f'{name} '
-                f'{binding.get_host_cpu_features().flatten() if features is None else features}')
+        name, features = _host()
+        given = numba.config.CPU_FEATURES
+        return f'{numba.config.CPU_NAME or name} {features if given is None else given}'
     return platform.processor() or platform.machine()
+
+
+@functools.cache
+def _host():
+    """Return the name and the feature flags of this machine's processor, as LLVM has them."""
+    from llvmlite import binding
+    return binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
 
 
 def kernel_sources():

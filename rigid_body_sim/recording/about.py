@@ -6,6 +6,7 @@ It is enough to understand the recording and to run it again. ``about`` goes int
 entry ``state`` stands at the start of each file and after each gap. All texts are plain or JSON.
 """
 
+import functools
 import json
 import pathlib
 import platform
@@ -26,6 +27,7 @@ SIMULATION_PARAMETERS = {'scene', 'scene_overrides', 'integrator', 'accuracy', '
 """Parameters whose change makes a new Simulation, which continues the one before."""
 
 
+@functools.cache
 def version():
     """Return the package's version as package.xml has it; '' without that file.
 

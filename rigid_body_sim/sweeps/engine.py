@@ -6,6 +6,7 @@ Which piece runs where and when has no influence on any bit of the result.
 
 import concurrent.futures
 import contextlib
+import functools
 import itertools
 import math
 import os
@@ -40,6 +41,16 @@ def cores():
     return len(os.sched_getaffinity(0))
 
 
+@functools.cache
+def _threads():
+    """Return the threads of this process: they keep their memory from one sweep to the next."""
+    return concurrent.futures.ThreadPoolExecutor(cores(), 'sweep')
+
+
+# a child of fork has no threads but the one that forked
+os.register_at_fork(after_in_child=_threads.cache_clear)
+
+
 class Workers:
     """Where the work goes: an executor, or a client of Dask.
 
@@ -59,7 +70,7 @@ class Workers:
         if self._client is not None:
             self._executor = executor.get_executor(pure=False)
         else:
-            self._executor = executor or concurrent.futures.ThreadPoolExecutor(cores())
+            self._executor = executor or _threads()
         self._looked, self._count = -math.inf, 0
 
     def submit(self, function, *arguments):
@@ -84,11 +95,6 @@ class Workers:
         """Raise Stopped where the scheduler of Dask is gone."""
         if self._client is not None and self._client.status not in ('running', 'newly-created'):
             raise Stopped('the Dask scheduler is gone')
-
-    def close(self):
-        """End the threads that were started here; another's executor stays open."""
-        if self.local:
-            self._executor.shutdown()
 
 
 def _brief(error):

@@ -141,10 +141,7 @@ class Plan:
 
     def places(self, first, stop):
         """Return the place along each dimension of the runs from `first` up to `stop`."""
-        shape = tuple(self.dims.values())
-        runs = np.arange(first, stop)
-        found = (runs,) if len(shape) == 1 else np.unravel_index(runs, shape)
-        return dict(zip(self.dims, found))
+        return dict(zip(self.dims, _places(tuple(self.dims.values()), first, stop), strict=True))
 
     def values(self, first, stop):
         """Return the values of each key at the runs from `first` up to `stop`.
@@ -189,6 +186,19 @@ class Plan:
             except BadInput as error:
                 problem = problem or error
         raise problem
+
+
+def _places(shape, first, stop):
+    """Return the places along each dimension of the elements from `first` up to `stop`.
+
+    It is numpy.unravel_index of a range, without a division for each element.
+    """
+    *outer, width = shape
+    row, end = first // width, -(-stop // width)
+    part = slice(first - row * width, stop - row * width)
+    inner = np.tile(np.arange(width), end - row)[part]
+    above = _places(outer, row, end) if outer else ()
+    return (*(np.repeat(places, width)[part] for places in above), inner)
 
 
 def starts_alone_differ(scene, integrator):

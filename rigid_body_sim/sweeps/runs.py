@@ -432,8 +432,12 @@ def _expected(choice, scene, starts, alone):
     # as choose has it for one start: half an ulp of all the angle turned, to which torque adds
     x, y, z = starts[:, ANGULAR_VELOCITY].T
     horizon = choice.horizon
-    pace = np.sqrt(x * x + y * y + z * z) + swing_rate(scene)
-    return HALF_ULP * (4.0 + pace * horizon + 0.5 * drive(scene, None) * horizon * horizon)
+    turned = np.sqrt(x * x + y * y + z * z)
+    turned += swing_rate(scene)
+    turned *= horizon
+    turned += 4.0 + 0.5 * drive(scene, None) * horizon * horizon
+    turned *= HALF_ULP
+    return turned
 
 
 def _residuals(scene, choice, starts, ends, time):

@@ -85,14 +85,11 @@ def sweep(spec, executor=None, store=None, *, progress: bool = False) -> 'xarray
     need('xarray')
     plan = prepared(spec)
     workers = engine.Workers(executor)
-    try:
-        with tqdm(total=plan.spec.size, unit=' runs', unit_scale=True, disable=not progress,
-                  desc=plan.template.name) as bar:
-            if store is None:
-                return _to_memory(plan, workers, bar)
-            return _to_store(plan, workers, stores.store_at(store), bar)
-    finally:
-        workers.close()
+    with tqdm(total=plan.spec.size, unit=' runs', unit_scale=True, disable=not progress,
+              desc=plan.template.name) as bar:
+        if store is None:
+            return _to_memory(plan, workers, bar)
+        return _to_store(plan, workers, stores.store_at(store), bar)
 
 
 def prepared(spec):
@@ -106,11 +103,8 @@ def forecast(spec, executor=None) -> Forecast:
     """Return what a sweep would take: some runs are tried, for less than a second."""
     plan = prepared(spec)
     workers = engine.Workers(executor)
-    try:
-        seconds = engine.seconds_a_run(plan, patience=0.5) * plan.spec.size / workers.count
-        return Forecast(plan.spec.size, workers.count, seconds, plan.bytes * plan.spec.size)
-    finally:
-        workers.close()
+    seconds = engine.seconds_a_run(plan, patience=0.5) * plan.spec.size / workers.count
+    return Forecast(plan.spec.size, workers.count, seconds, plan.bytes * plan.spec.size)
 
 
 def _to_memory(plan, workers, bar):
