@@ -35,7 +35,8 @@ def draw():
     for bound in (1.0 - line, 1.0 + line):
         axes[0].plot(bound, line, color='white', linestyle='--', linewidth=1.5)
     for x, y, name in ((0.68, 0.1, 'I'), (1.02, 0.36, 'II'), (1.4, 0.1, 'III')):
-        axes[0].text(x, y, name, color='white', weight='bold', ha='center')
+        axes[0].text(x, y, name, color='black' if name == 'II' else 'white', weight='bold',
+                     ha='center')
     axes[0].set_xlim(share[-1], share[0])
     axes[0].grid(False)
     label(axes[0], 'A/C', 'e', legend=False)
