@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of all tests."""
 
+import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 
 import pytest
 import ros
@@ -32,19 +35,50 @@ def ros_domain(tmp_path, monkeypatch):
         yield domain
 
 
+WITHOUT_NUMBA = pytest.StashKey()
+"""Of a session: what the tests that ran without numba came to, by name."""
+OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
+"""Variable with the file in which a process without numba leaves what its tests came to."""
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem):
-    """Run a test marked `without_numba` in a process of its own that does not compile.
+    """Run the tests of a file marked `without_numba` in one process that does not compile.
 
-    It runs a kind of scene for a second or less: plain Python takes less than compiling it would,
+    They run a kind of scene for a second or less: plain Python takes less than compiling it would,
     and gives the same bits (test_digests.py).
     """
     if not HAVE_NUMBA or pyfuncitem.get_closest_marker('without_numba') is None:
         return None
-    command = [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '-p', 'no:xdist',
-               pyfuncitem.nodeid]
-    done = subprocess.run(command, cwd=pyfuncitem.config.rootpath, capture_output=True, text=True,
-                          timeout=280, env=os.environ | {'NUMBA_DISABLE_JIT': '1'})
-    if done.returncode:
-        pytest.fail(done.stdout + done.stderr, pytrace=False)
+    found = pyfuncitem.session.stash.setdefault(WITHOUT_NUMBA, {})
+    if pyfuncitem.nodeid not in found:
+        found |= _without_numba(pyfuncitem)
+    if found[pyfuncitem.nodeid]:
+        pytest.fail(found[pyfuncitem.nodeid], pytrace=False)
     return True
+
+
+def _without_numba(wanted):
+    """Return name -> what failed, '' if nothing, of a test and those like it in its file."""
+    names = [item.nodeid for item in wanted.session.items if item.path == wanted.path
+             and item.get_closest_marker('without_numba') is not None]
+    with tempfile.TemporaryDirectory() as folder:
+        outcomes = pathlib.Path(folder) / 'outcomes'
+        outcomes.touch()
+        # the plugins of other packages take a second to import
+        done = subprocess.run(
+            [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '-p',
+             'pytest_timeout', *names], cwd=wanted.config.rootpath, capture_output=True,
+            text=True, timeout=280, env=os.environ | {
+                'NUMBA_DISABLE_JIT': '1', 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1',
+                OUTCOMES: str(outcomes)})
+        found = [json.loads(line) for line in outcomes.read_text().splitlines()]
+    return dict.fromkeys(names, f'did not run\n{done.stdout}{done.stderr}') | dict(found)
+
+
+def pytest_runtest_logreport(report):
+    """Leave what a test came to where another process asks for it."""
+    if OUTCOMES in os.environ and (report.failed or report.when == 'call'):
+        with open(os.environ[OUTCOMES], 'a', encoding='utf-8') as file:
+            file.write(json.dumps([report.nodeid, report.longreprtext if report.failed else ''])
+                       + '\n')

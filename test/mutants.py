@@ -8,11 +8,12 @@
 
 A mutant is the package with one small change of its code: a sign, a factor, a comparison, min for
 max, `and` for `or`, a number, a neighbouring name (x2 for x3). Each kind is drawn as often as the
-others. The change is made in a copy of the tree. The tests next to it run first, then those of its
-room, then wider ones, in plain Python: it starts in a second, where compiling takes minutes. The
-first test that fails finds the mutant, if that test passes on what is not mutated; so does one
-that hangs. Mutants that change no answer are named in equivalent_mutants.yaml, and do not count.
-Exit status 1 if fewer than 95 % are found.
+others. The change is made in a copy of the tree. Tests run in plain Python: it starts in a second,
+where compiling takes minutes. Where covering.py has noted which tests and digests run the line,
+these come first, the quickest ones before the others; then the tests next to the file, those of
+its room, and wider ones. The first test that fails finds the mutant, if that test passes on what
+is not mutated; so does one that hangs. Mutants that change no answer are named in
+equivalent_mutants.yaml, and do not count. Exit status 1 if fewer than 95 % are found.
 
 Why no library: mutmut (3.8) replaces each function by a switch between all its mutants, which
 neither numba nor compilation/templates.py, which rewrites sources, can take; Cosmic Ray (8.7) runs
@@ -26,11 +27,13 @@ import collections
 import concurrent.futures
 import contextlib
 import copy
+import json
 import os
 import pathlib
 import queue
 import random
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -39,6 +42,7 @@ import tempfile
 import time
 import typing
 
+import covering
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -49,6 +53,7 @@ ELSEWHERE = ('study/precision/peers/', 'numerics/make_functions.py', 'study/prec
 WANTED = 0.95
 PATIENCE = 120      # s, a test; the tests next to a change take seconds
 LONGEST = 1800      # s, all tests of a stage
+AT_FIRST = 15.0     # s, of tests and of digests that run the line, before the others of them
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
 FIRST_DIGEST = """
@@ -93,10 +98,15 @@ SLOW = ('test/choice/test_choose.py', 'test/integrators/test_convex_body.py',
 # ---------------------------------------------------------------------------- what is mutated
 
 class Mutant(typing.NamedTuple):
-    """A change of the code: where it is, the statement before and after, the new source."""
+    """A change of the code: where it is, the statement before and after, the new source.
+
+    One of the lines `begin` to `end` is run when the changed code is.
+    """
 
     file: str
     line: int
+    begin: int
+    end: int
     function: str
     kind: str
     before: str
@@ -225,6 +235,13 @@ def _text(statement):
     return ast.unparse(_changed(statement, **empty)).removesuffix('...').strip()
 
 
+def _run(site):
+    """Return the first and the last line of which one is run when the code of a site is."""
+    if isinstance(site.statement, (ast.FunctionDef, ast.ClassDef)):
+        return site.statement.lineno, site.statement.end_lineno    # a default value
+    return getattr(site.statement, 'lineno', site.node.lineno), site.node.end_lineno
+
+
 def _put(statement, node, other):
     """Return a copy of a statement with one node replaced."""
     class Put(ast.NodeTransformer):
@@ -260,8 +277,9 @@ def mutants_of(path, root=ROOT):
         new = ast.unparse(other)
         new = new if isinstance(other, (ast.stmt, ast.Name)) else f'({new})'
         source = (data[:begin] + new.encode() + data[end:]).decode()
-        return Mutant(str(path.relative_to(root)), node.lineno, site.function, site.kind,
-                      _text(site.statement), _text(_put(site.statement, node, other)), source)
+        return Mutant(str(path.relative_to(root)), node.lineno, *_run(site), site.function,
+                      site.kind, _text(site.statement),
+                      _text(_put(site.statement, node, other)), source)
 
     for site in sites(ast.parse(text)):
         found[site.kind].append(lambda chance, site=site: make(site, chance.choice(site.becomes)))
@@ -328,19 +346,54 @@ def stages(file, root=ROOT):
     return [stage for stage in found if stage]
 
 
+def attempts(mutant, near=False):
+    """Return what is run for a mutant, in turn: chosen tests and digests, then the stages.
+
+    If only what is near is wanted, the tests next to it that are not noted follow on the chosen.
+    """
+    noted = covering.covering(mutant.file, mutant.begin, mutant.end)
+    noted = dict(sorted(noted.items(), key=lambda item: item[1]))
+    parts = pathlib.PurePath(mutant.file).parts
+    room, stem = parts[1], pathlib.PurePath(mutant.file).stem
+    digests = {name: took for name, took in noted.items() if name.startswith(covering.DIGEST)}
+    beside = {name: took for name, took in noted.items() if f'test_{stem}' in name} | {
+        name: took for name, took in noted.items() if name.startswith(f'test/{room}/')}
+    tests = beside | {name: took for name, took in noted.items() if name not in digests}
+    (first, later), (digests, more) = _shared_out(tests), _shared_out(digests)
+    found = [first, digests, more, later] if beside else [digests, first, more, later]
+    found = [one for one in found if one]
+    if not near:
+        return found + stages(mutant.file)
+    left = [[path for path in stage if path not in covering.noted_files()]
+            for stage in stages(mutant.file)[:2] if not (digests and stage == [DIGESTS])]
+    return found + [stage for stage in left if stage]
+
+
+def _shared_out(names):
+    """Return those of the names that take AT_FIRST together, and the others."""
+    first, took = {}, 0.0
+    for name, seconds in names.items():
+        if took + seconds <= AT_FIRST:
+            first[name], took = seconds, took + seconds
+    return first, {name: seconds for name, seconds in names.items() if name not in first}
+
+
 class Tree:
     """A copy of the repository in which a mutant can be tested."""
 
     def __init__(self, folder):
         self.folder, self._run, self.closed = pathlib.Path(folder) / 'tree', None, False
         shutil.copytree(ROOT, self.folder, symlinks=True, ignore=shutil.ignore_patterns(
-            '.venv*', '.git', '.cache', '__pycache__', '.*_cache'))
+            '.venv*', '.git', '.cache', '.*_cache'))
         (self.folder / '.venv').symlink_to(ROOT / '.venv')
         self.environment = {name: value for name, value in os.environ.items()
                             if not name.startswith('PYTEST')}
         self.environment |= {
-            'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': str(self.folder), 'OMP_NUM_THREADS': '1',
-            'PYTHONDONTWRITEBYTECODE': '1', 'XDG_CACHE_HOME': str(pathlib.Path(folder) / 'cache')}
+            'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': f'{self.folder}:{self.folder}/test',
+            'OMP_NUM_THREADS': '1', 'PYTHONDONTWRITEBYTECODE': '1',
+            'XDG_CACHE_HOME': str(pathlib.Path(folder) / 'cache'),
+            # those of other packages take longer to import than most tests to run
+            'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1', 'PYTEST_PLUGINS': 'pytest_timeout'}
 
     def end(self):
         """Kill the processes that run."""
@@ -349,14 +402,29 @@ class Tree:
                 os.killpg(self._run.pid, signal.SIGKILL)
 
     def failing(self, tests, without=()):
-        """Return the first test that fails, None if all pass, or 'a hang'."""
+        """Return the first test that fails, None if all pass, or 'a hang'.
+
+        Parameters
+        ----------
+        tests : list or dict
+            Files and names of tests, or name -> CPU seconds of those that covering.py chose.
+        without : iterable
+            Tests of files that do not run.
+        """
         if self.closed:
             return None
+        chosen = self.folder.parent / 'chosen.json'
+        if isinstance(tests, dict):
+            chosen.write_text(json.dumps(tests))
         left_out = [part for test in without for part in ('--deselect', test)]
         command = ['-m', 'pytest', '-q', '-x', '-p', 'no:cacheprovider', '--timeout',
                    str(PATIENCE), '--tb', 'no', '-rfE', *left_out, *tests]
+        if isinstance(tests, dict):
+            command = ['test/covering.py', '--judge', str(chosen)]
+        elif tests == [DIGESTS]:
+            command = ['-c', FIRST_DIGEST]
         self._run = run = subprocess.Popen(
-            [sys.executable, *(['-c', FIRST_DIGEST] if tests == [DIGESTS] else command)],
+            [sys.executable, '-W', 'ignore', *command],
             cwd=self.folder, env=self.environment, text=True, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, start_new_session=True)
         try:
@@ -371,15 +439,16 @@ class Tree:
             return None
         if tests == [DIGESTS]:
             return DIGESTS
-        found = re.search(r'^(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*)', output, re.MULTILINE)
+        found = re.search(r'^(?:FAILED|ERROR) ((?:digest: .*|\S+?\.py(?:::\w+)*))', output,
+                          re.MULTILINE)
         return found[1] if found else f'pytest itself (status {run.returncode})'
 
 
 class Trial:
     """Tests mutants, each in one of a few trees."""
 
-    def __init__(self, folder, most, processes):
-        self._trees, self._sound, self._most, self._ended = queue.Queue(), {}, most, False
+    def __init__(self, folder, near, processes):
+        self._trees, self._sound, self._near, self._ended = queue.Queue(), {}, near, False
         self._all = [Tree(pathlib.Path(folder) / str(number)) for number in range(processes)]
         for tree in self._all:
             self._trees.put(tree)
@@ -395,23 +464,29 @@ class Trial:
         """Return (the test that finds a mutant, or None; the s that this took)."""
         tree, begin = self._trees.get(), time.monotonic()
         path = tree.folder / mutant.file
-        original = path.read_text()
+        original, stamp = path.read_text(), path.stat()
         try:
-            left = stages(mutant.file, tree.folder)[:self._most]
+            left = attempts(mutant, self._near)
             while left and not self._ended:
                 path.write_text(mutant.source)
-                unsound = [test for test, sound in self._sound.items() if not sound]
-                failing = tree.failing(left[0], unsound)
+                unsound = {test for test, sound in self._sound.items() if not sound}
+                if isinstance(left[0], dict):
+                    left[0] = {name: took for name, took in left[0].items()
+                               if name.partition('[')[0] not in unsound}
+                failing = tree.failing(left[0], unsound) if left[0] else None
                 path.write_text(original)
+                os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
                 if failing is None:
                     left.pop(0)
-                elif self._passes(failing if '.py' in failing else '\n'.join(left[0]), tree):
+                elif failing.startswith(covering.DIGEST) or self._passes(
+                        failing if '.py' in failing else '\n'.join(left[0]), tree):
                     return failing, time.monotonic() - begin
                 elif left[0] == [failing] or '.py' not in failing:
                     left.pop(0)    # what is left out next time is all of it
             return None, time.monotonic() - begin
         finally:
             path.write_text(original)
+            os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
             self._trees.put(tree)
 
     def _passes(self, test, tree):
@@ -442,7 +517,7 @@ def main():
             print(f'equivalent: {mutant}\n    {why_equivalent(mutant, table)}', flush=True)
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(options.processes) as pool):
-        trial = Trial(folder, 2 if options.near else None, options.processes)
+        trial = Trial(folder, options.near, options.processes)
         waiting = {pool.submit(trial.found_by, mutant): mutant for mutant in counted}
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
         try:
@@ -455,12 +530,13 @@ def main():
             pool.shutdown(wait=False, cancel_futures=True)
             trial.end()
             raise
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
     rate = 1.0 - len(survivors) / len(counted) if counted else 1.0
     for mutant in survivors:
         print(f'survivor: {mutant}')
     print(f'seed {options.seed}: {len(counted) - len(survivors)} of {len(counted)} mutants found, '
           f'{100.0 * rate:.1f} %; {len(mutants) - len(counted)} equivalent ones; '
-          f'{time.monotonic() - begin:.0f} s')
+          f'{time.monotonic() - begin:.0f} s, {used.ru_utime + used.ru_stime:.0f} s of CPU')
     return rate < WANTED
 
 

@@ -203,6 +203,16 @@ def test_torque_about_a_rod_is_refused():
             act(torque=(0.0, 0.0, 1.0), frame='body')
 
 
+def test_a_rod_is_pushed_at_its_centre_without_a_torque():
+    """No torque is none along the rod either."""
+    simulation = Simulation(load_scene(
+        'tennis_racket',
+        ['body={mass: 2.0, shape: {rod: {length: 1.0}}}', 'initial.angular_velocity=[1, 0, 0]']))
+    simulation.impulse(force=(0.0, 1.0, 4.0))
+    assert tuple(simulation.state.velocity) == (0.0, 0.5, 2.0)
+    assert tuple(simulation.state.angular_velocity) == (1.0, 0.0, 0.0)
+
+
 @pytest.mark.parametrize(('overrides', 'work'), [
     ([], '1.62[0-9]*e[+]300'),
     (['body.mass=1e-70', 'body.inertia=[1e-140, 1e-140, 1e-140]'], 'inf')])

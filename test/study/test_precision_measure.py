@@ -38,8 +38,10 @@ def turned(q, angle):
 def made_up(problem, truth, name, angle):
     """Return the Runner of a method with a known error.
 
-    Its attitude is off by an angle at the end, and by twice that half-way.
+    Its attitude is off by an angle at the end, by twice that half-way, and right at the first
+    time, as that of any method is that has not gone far yet.
     """
+    shares = {truth.times[0]: 0.0, problem.duration / 2: 2.0}
     rows = {time: (np.array([float(x) for x in q]), np.array([float(x) for x in omega]))
             for time, q, omega in zip(truth.times.tolist(), truth.orientation, truth.omega)}
     place = [None]
@@ -49,7 +51,7 @@ def made_up(problem, truth, name, angle):
 
     def state():
         q, omega = rows[place[0]]
-        return *turned(q, angle * (2.0 if place[0] == problem.duration / 2 else 1.0)), *omega
+        return *turned(q, angle * shares.get(place[0], 1.0)), *omega
     return runner.Runner(name, 'step', (0.1,), lambda _: runner.Run(lambda: None, to, state))
 
 

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The march through a phase of contact, on made-up rates whose motion and events are known.
+
+The body turns about its x axis at 1 rad/s and moves in a circle; each watched number is a parabola
+in time, so that each event has a time that is known to the last bit or two. A slip that dies goes
+by s, with dt = u ds and u = e^-s.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.integrators.equations.contact_rates import (
+    CREEPING,
+    FLIGHT,
+    GAP,
+    OMEGA,
+    PACE,
+    PARAMETER_COUNT,
+    PLACE,
+    ROLLING,
+    ROW,
+    SIZE,
+    SLIDING,
+    TIME,
+    UNKNOWNS,
+    WATCHES,
+    WORK,
+    U,
+)
+from rigid_body_sim.integrators.marching import contact_march
+
+pytestmark = pytest.mark.without_numba
+
+RATES = f"""
+def rate(p, y, row):
+    for n in range({ROW}):
+        row[n] = 0.0
+    pace = y[{U}] if p[{contact_march.MODE}] == {SLIDING} else 1.0
+    row[0], row[3] = 0.5 * pace * y[3], -0.5 * pace * y[0]
+    if p[{contact_march.MODE}] == {SLIDING}:
+        row[{U}] = -y[{U}]
+    row[{PLACE}], row[{PLACE} + 1] = -pace * y[{PLACE} + 1], pace * y[{PLACE}]
+    row[{TIME}], row[{PACE}], row[{WORK}] = pace, pace, pace * 2.0 * y[{TIME}]
+    for k in range({WATCHES}):
+        a, b, c = p[{PARAMETER_COUNT} + 3 * k:{PARAMETER_COUNT} + 3 * k + 3]
+        row[{SIZE} + k] = a + y[{TIME}] * (b + y[{TIME}] * c)
+"""
+KERNELS = specialise(contact_march, rate=RATES)
+ACCURACY = 1e-12
+
+
+class Phase:
+    """One phase of the made-up body, with the parabolas that are watched, k -> (a, b, c)."""
+
+    def __init__(self, mode=ROLLING, kept=512, **watched):
+        self.p = np.zeros(PARAMETER_COUNT + 3 * WATCHES)
+        self.p[contact_march.MODE], self.p[contact_march.SWIFT] = mode, 1.0
+        for k in range(WATCHES):
+            first = PARAMETER_COUNT + 3 * k
+            self.p[first:first + 3] = watched.get(f'watch{k}', (1.0, 0.0, 0.0))
+        self.w = np.zeros((contact_march.WORK_ROWS, ROW))
+        self.meta = np.zeros(contact_march.META)
+        self.meta[contact_march.TOLERANCE] = ACCURACY
+        self.meta[[contact_march.RATE, contact_march.SPEED, contact_march.LENGTH]] = 1.0
+        self.store, self.sizes = np.empty((kept, contact_march.POINT)), np.empty(512)
+        self.front = np.empty(contact_march.POINT)
+        self.cursor = np.empty((2, contact_march.POINT))
+        y = np.zeros(SIZE)
+        y[3] = y[OMEGA] = y[PLACE] = 1.0
+        y[U] = 1.0 if mode == SLIDING else 0.0
+        KERNELS.begin(self.p, self.w, self.front, self.meta, y)
+
+    def march(self, end):
+        KERNELS.march(self.p, self.w, self.store, self.sizes, self.front, self.meta, end)
+        return int(self.meta[contact_march.STATUS])
+
+    def at(self, time):
+        y = np.empty(SIZE)
+        KERNELS.at(self.p, self.w, self.store, self.sizes, self.meta, self.cursor, time, y)
+        return y
+
+
+def true(time):
+    """Return what is known of the unknowns at a time."""
+    return [math.sin(0.5 * time), math.cos(0.5 * time), math.cos(time), math.sin(time), time,
+            time * time]
+
+
+def known(y):
+    return y[[0, 3, PLACE, PLACE + 1, TIME, WORK]]
+
+
+@pytest.mark.parametrize(('mode', 'k', 'why'), [
+    (FLIGHT, 0, contact_march.TOUCHED), (ROLLING, 0, contact_march.LOST_CONTACT),
+    (SLIDING, 0, contact_march.LOST_CONTACT), (ROLLING, 1, contact_march.LET_GO),
+    (CREEPING, 1, contact_march.FASTER), (ROLLING, 2, contact_march.PARADOX),
+    (SLIDING, 3, contact_march.JUMP), (ROLLING, 3, contact_march.JUMP),
+    (ROLLING, 4, contact_march.STOPPED)])
+def test_a_phase_ends_where_a_watched_number_falls_below_zero(mode, k, why):
+    phase = Phase(mode, **{f'watch{k}': (1.0, -2.0, 0.0)})
+    assert phase.march(0.2) == contact_march.RUNNING
+    assert phase.front[TIME] < 0.5
+    assert phase.march(3.0) == why
+    assert phase.front[TIME] == pytest.approx(0.5, abs=2e-16)
+    assert known(phase.front) == pytest.approx(true(0.5), abs=2e-12)
+
+
+def test_the_first_of_two_events_in_a_step_ends_the_phase():
+    early, late = (1.0, -10.0, 0.0), (1.0, -9.9, 0.0)
+    for first, second, why in ((1, 2, contact_march.LET_GO), (2, 1, contact_march.PARADOX)):
+        phase = Phase(**{f'watch{first}': early, f'watch{second}': late})
+        assert phase.march(1.0) == why
+        assert phase.front[TIME] == pytest.approx(0.1, abs=1e-16)
+
+
+def test_what_begins_at_zero_and_rises_is_no_event_but_what_stops_is():
+    rises = (0.0, -1e-3, 1.0)
+    assert Phase(watch0=rises).march(0.5) == contact_march.RUNNING
+    assert Phase(watch4=rises).march(0.5) == contact_march.RUNNING    # no zero is within a step
+    returns = Phase(watch1=(0.0, 1.0, -1.0))
+    assert returns.march(2.0) == contact_march.LET_GO
+    assert returns.front[TIME] == pytest.approx(1.0, abs=4e-16)
+
+
+@pytest.mark.parametrize(('place', 'depth', 'width'), [
+    (0.53, 1.0, 0.01), (0.5, 1e-3, 0.2), (0.97, 0.5, 0.02), (0.02, 1.0, 0.015), (0.53, 0.0, 0.01)])
+def test_a_dip_is_found_between_the_parts_of_a_step_to_round_off(place, depth, width):
+    """The parabola d ((t - place)^2/width^2 - 1) is below zero from place - width on."""
+    c = (depth or 1.0) / width ** 2
+    parabola = (c * (place * place - width * width * (1.0 if depth else -1.0)),
+                -2.0 * c * place, c)
+    phase = Phase(watch0=parabola)
+    y, lost = phase.front[:SIZE], phase.front[SIZE:]
+    found = KERNELS.first_zero(phase.p, phase.w, y, lost, 1.0, 0, parabola[0])
+    assert found == (pytest.approx(place - width, rel=1e-13) if depth else -1.0)
+    if depth:
+        assert KERNELS.look(phase.p, phase.w, y, lost, found, 0) < 0.0
+        before = KERNELS.look(phase.p, phase.w, y, lost, found * (1.0 - 1e-15), 0)
+        assert before >= -1e-15 * parabola[0]    # rounding of the parabola
+
+
+@pytest.mark.parametrize('mode', [ROLLING, SLIDING])
+def test_states_do_not_depend_on_the_order_in_which_they_are_asked_for(mode):
+    phase = Phase(mode)
+    last = 0.999 if mode == SLIDING else 9.0
+    assert phase.march(last) == contact_march.RUNNING
+    times = np.linspace(0.0, last, 13)
+    forth = np.array([phase.at(time) for time in times])
+    for time, y in zip(times, forth, strict=True):
+        assert known(y) == pytest.approx(true(time), abs=1e-11)
+        assert y[TIME] == pytest.approx(time, rel=4e-16)
+        if mode == SLIDING:
+            assert y[U] == pytest.approx(1.0 - time, rel=1e-9)
+    back = np.array([phase.at(time) for time in times[::-1]])[::-1]
+    assert back.tobytes() == forth.tobytes()
+    for place in np.random.default_rng(1).permutation(len(times)):
+        assert phase.at(times[place]).tobytes() == forth[place].tobytes()
+
+
+def test_a_slip_dies_within_its_time():
+    phase = Phase(SLIDING)
+    assert phase.march(2.0) == contact_march.STUCK
+    assert phase.front[TIME] == pytest.approx(1.0, abs=1e-12)
+    assert 0.0 < phase.w[contact_march.END, PACE] <= contact_march.DEAD
+
+
+def test_a_long_phase_keeps_every_other_point_and_gives_the_same_bits(monkeypatch):
+    all_kept = Phase()
+    monkeypatch.setattr(KERNELS, 'KEPT', 8)
+    few = Phase(kept=8)
+    for end in (1.0, 5.0, 30.0):
+        for phase in (all_kept, few):
+            monkeypatch.setattr(KERNELS, 'KEPT', len(phase.store))
+            assert phase.march(end) == contact_march.RUNNING
+    count, stride = few.meta[[contact_march.STORED, contact_march.STRIDE]]
+    assert all_kept.meta[contact_march.STEPS] == few.meta[contact_march.STEPS] > 32
+    assert 4 <= count <= 8
+    assert stride >= 8.0
+    for n in range(int(count)):
+        assert few.store[n].tobytes() == all_kept.store[int(n * stride)].tobytes()
+    for time in (0.0, 29.3, 0.7, 12.1, 12.2, 4.4):
+        assert few.at(time).tobytes() == all_kept.at(time).tobytes()
+
+
+def test_the_error_of_a_step_does_not_depend_on_the_units():
+    """Of length, of speed and of time: rates go with them, and the times against them."""
+    draw = np.random.default_rng(4)
+    w = draw.normal(size=(contact_march.WORK_ROWS, ROW))
+    meta = np.ones(contact_march.META)
+    first = KERNELS.error_of(w, 0.1, meta)
+    for columns, scale in ((slice(OMEGA, U), contact_march.RATE),
+                           (slice(U, PLACE), contact_march.SPEED),
+                           (slice(PLACE, GAP + 1), contact_march.LENGTH)):
+        other, scales = w.copy(), meta.copy()
+        other[:, columns] *= 1000.0
+        scales[scale] *= 1000.0
+        if scale == contact_march.RATE:
+            other[:, TIME] /= 1000.0
+        assert KERNELS.error_of(other, 0.1, scales) == pytest.approx(first, rel=1e-12)
+    only = np.zeros_like(w)
+    for n in range(UNKNOWNS):    # each unknown counts
+        only[:] = 0.0
+        only[:, n] = w[:, n]
+        assert 0.0 < KERNELS.error_of(only, 0.1, meta) < first
+    only[:] = 0.0
+    only[:, UNKNOWNS:] = w[:, UNKNOWNS:]    # the ledger does not
+    assert KERNELS.error_of(only, 0.1, meta) == 0.0
+    assert KERNELS.error_of(np.full_like(w, np.nan), 0.1, meta) == math.inf
