@@ -29,16 +29,18 @@ DIGEST = 'digest: '
 """What the name of a context begins with that is a digest."""
 LONGEST = 90    # s of a test that is noted
 PATIENCE = 60.0    # s, the least that a chosen test may take
+SHORT = 2.0     # CPU seconds of a test that passes, however busy the machine is
 
 
 # ---------------------------------------------------------------------------------- to note
 
 class Notes:
-    """A plugin of pytest that notes the lines of each test and the CPU time it takes."""
+    """A plugin of pytest that notes the lines of each test that passes, and its CPU time."""
 
     def __init__(self, name):
         FOLDER.mkdir(parents=True, exist_ok=True)
         self.name, self.seconds, self.users, self._within = name, {}, {}, ['']
+        self._failed = set()
         cache = pathlib.Path(os.environ['XDG_CACHE_HOME'])
         self.trace = coverage.Coverage(
             data_file=FOLDER / f'{name}.coverage', config_file=False,
@@ -65,8 +67,13 @@ class Notes:
         self.within(item.nodeid)
         begin = time.process_time()
         yield
-        self.seconds[item.nodeid] = round(time.process_time() - begin, 3)
+        if item.nodeid not in self._failed:
+            self.seconds[item.nodeid] = round(time.process_time() - begin, 3)
         self.over()
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            self._failed.add(report.nodeid)
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_fixture_setup(self, fixturedef):
@@ -157,6 +164,17 @@ def covering(file, first, last):
     found = found or set().union(*lines.values()) - {''}
     found = found.union(*(users.get(name, ()) for name in found))
     return {name: seconds[name] for name in found if name in seconds}
+
+
+@functools.cache
+def short():
+    """Return the names, without parameters, of tests of which each run passed and was short."""
+    longest = {}
+    for _, seconds, *_ in _noted():
+        for name, took in seconds.items():
+            test = name.partition('[')[0]
+            longest[test] = max(took, longest.get(test, 0.0))
+    return {test for test, took in longest.items() if took < SHORT}
 
 
 def noted_files():

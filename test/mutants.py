@@ -491,6 +491,8 @@ class Trial:
 
     def _passes(self, test, tree):
         """Return whether a test, or some on lines, pass on what is not mutated."""
+        if test in covering.short():
+            return True
         if test not in self._sound:
             self._sound[test] = tree.failing(test.split('\n')) is None
             if not self._sound[test]:

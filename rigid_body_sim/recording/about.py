@@ -119,7 +119,7 @@ def event_message(source, level, name, message, values):
 
     `values` maps names to texts or numbers, which keep all their digits.
     """
-    texts = [{'key': key, 'value': repr(value) if isinstance(value, float) else str(value)}
+    texts = [{'key': key, 'value': repr(float(value)) if isinstance(value, float) else str(value)}
              for key, value in values.items()]
     return cdr.encode(STATUS_TYPE, {'level': level, 'name': name, 'message': message,
                                     'hardware_id': source, 'values': texts})

@@ -17,7 +17,8 @@ def start(surface, initial, normal=NORMAL):
     """Return the scene of a body with a surface on a slope."""
     return parse_scene(
         f'scene: laid\nbody: {{mass: 1.0, inertia: [0.3, 0.4, 0.5], surface: {surface}}}\n'
-        f'constraint: {{table: {{normal: {[float(x) for x in normal]}}}}}\neffects: [gravity: {{g: 9.81}}]\n'
+        f'constraint: {{table: {{normal: {[float(x) for x in normal]}}}}}\n'
+        f'effects: [gravity: {{g: 9.81}}]\n'
         f'initial: {{{initial}}}\n')
 
 
@@ -41,7 +42,7 @@ def test_a_body_within_a_billionth_of_its_size_lies_on_the_plane(surface, below,
     off = share * 1e-9 * size
     initial = f'{LEVEL}, position: {((below + off) * NORMAL).tolist()}'
     if share < -1.0:
-        with pytest.raises(BadInput, match='the lowest point is .* m below the plane'):
+        with pytest.raises(BadInput, match=r'the lowest point is .* m below the plane'):
             start(surface, initial)
         return
     assert gap(start(surface, initial)) == pytest.approx(off if share > 1.0 else 0.0, abs=1e-14)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The figures and pages of two short recordings are those that were looked at (kept.py)."""
+
+import base64
+
+import kept
+import numpy as np
+import pytest
+from analysis import made
+from matplotlib.collections import Collection
+from matplotlib.colors import to_hex
+
+from rigid_body_sim.analysis import page, panels, plots
+from rigid_body_sim.analysis.analyze import _ledger
+from rigid_body_sim.analysis.measure import measure
+from rigid_body_sim.analysis.source import sources
+from rigid_body_sim.analysis.space import spaces
+from rigid_body_sim.analysis.spectrum import Spectrum
+from rigid_body_sim.analysis.summary import lines, summary
+from rigid_body_sim.recording.reader import Recording
+
+LATE = np.random.default_rng(2).integers(30_000, 90_000, 201)
+ACTS = {50: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')],
+        75: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), 'body')],
+        100: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 'body')], 175: [('reset',)]}
+RECORDINGS = {
+    'racket': {'scene': 'tennis_racket', 'acts': ACTS, 'late': LATE, 'left_out': range(125, 130)},
+    'ball': {'scene': 'billiard_follow'}, 'top': {'scene': 'heavy_top'}}
+
+
+@pytest.fixture(scope='module', params=RECORDINGS)
+def analysed(request, tmp_path_factory):
+    """Return (name, Measured, summary, Spectrum, ledger) of 4 s at 50 Hz."""
+    path = tmp_path_factory.mktemp('kept') / request.param
+    made.record(path, ticks=200, rate=50.0, **RECORDINGS[request.param])
+    with Recording(path) as recording:
+        [one] = measure(recording, sources(recording))
+        spectrum = Spectrum(one)
+        return request.param, one, summary(one, spectrum), spectrum, _ledger(one.source)
+
+
+def drawn(figure):
+    """Return what a figure of matplotlib shows."""
+    def line(one):
+        return {'label': one.get_label(), 'color': to_hex(one.get_color()),
+                'style': [one.get_linestyle(), one.get_marker(), one.get_drawstyle()],
+                'sizes': [one.get_linewidth(), one.get_markersize()],
+                'x': np.asarray(one.get_xdata(), float), 'y': np.asarray(one.get_ydata(), float)}
+
+    def axes(one):
+        return {
+            'labels': [one.get_xlabel(), one.get_ylabel()], 'scale': one.get_yscale(),
+            'limits': [*one.get_xlim(), *one.get_ylim()], 'lines': list(map(line, one.lines)),
+            'texts': [[text.get_text(), *text.xy, *text.xyann, text.get_fontsize()]
+                      for text in one.texts],
+            'patches': [[to_hex(patch.get_facecolor()), *patch.get_extents().bounds]
+                        for patch in one.patches],
+            'legend': [text.get_text() for text in one.get_legend().get_texts()]
+            if one.get_legend() else None,
+            'collections': [[len(part.get_paths()), len(part.get_offsets()),
+                             *map(float, part.get_linewidth())][:4]
+                            for part in one.collections if isinstance(part, Collection)]}
+    return {'size': list(figure.get_size_inches()), 'title': figure.get_suptitle(),
+            'axes': list(map(axes, figure.axes))}
+
+
+def plain(figure):
+    """Return what a figure of Plotly shows."""
+    def numbers(part):
+        """Return a part with the arrays that Plotly has encoded."""
+        if isinstance(part, dict) and 'bdata' in part:
+            return np.frombuffer(base64.b64decode(part['bdata']), part['dtype'])
+        if isinstance(part, dict):
+            return {key: numbers(one) for key, one in part.items()}
+        return list(map(numbers, part)) if isinstance(part, (list, tuple)) else part
+    found = figure.to_dict()
+    found['layout'].pop('template')
+    return numbers(found)
+
+
+def test_figures_for_print(analysed):
+    name, one, _, spectrum, balance = analysed
+    figures = {'overview': plots.stack(panels.overview(one), 'title', one.source),
+               'motion': plots.stack(panels.motion(one), 'title', one.source),
+               **{space.name: plots.space(space) for space in spaces(one)}}
+    if balance:
+        figures['ledger'] = plots.stack(panels.energies(balance), 'title', one.source)
+    if spectrum.amplitudes:
+        figures['spectrum'] = plots.spectra(spectrum, 'title')
+    kept.check(f'print_{name}', {key: drawn(figure) for key, figure in figures.items()})
+
+
+@pytest.mark.skipif(not page.available(), reason='needs plotly')
+def test_the_interactive_page(analysed, monkeypatch):
+    name, *others = analysed
+    packed = {'figures': {}, 'bodies': {}}
+    monkeypatch.setattr(page, '_plain', plain)
+    text = list(page._section(3, packed, name, *others))
+    kept.check(f'page_{name}', {'text': text, **packed})
+
+
+def test_the_numbers(analysed):
+    name, _, found, *_ = analysed
+    kept.check(f'numbers_{name}', {'found': found, 'lines': len(lines(found))})
