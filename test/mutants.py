@@ -365,7 +365,7 @@ def attempts(mutant, near=False):
     if not near:
         return found + stages(mutant.file)
     left = [[path for path in stage if path not in covering.noted_files()]
-            for stage in stages(mutant.file)[:2] if not (digests and stage == [DIGESTS])]
+            for stage in stages(mutant.file)[:1 if found else 2] if stage != [DIGESTS]]
     return found + [stage for stage in left if stage]
 
 

@@ -7,6 +7,7 @@ bound; `hard_cases` prints what is measured.
 
 import numpy as np
 import pytest
+from hard_cases.judged import judge
 
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -16,9 +17,8 @@ from rigid_body_sim.study.hard_cases.table import of_group
 
 @pytest.mark.parametrize('case', of_group(10), ids=lambda case: case.name)
 def test_case(case):
-    outcome = case.run()
     # measured: 1.6e-13 rad of 1.8e-13; the same bits
-    assert outcome.good, f'{outcome}; {case.why}'
+    judge(case)
 
 
 def test_stepped_motion_comes_back_by_symmetric_compositions():

@@ -4,6 +4,7 @@
 import json
 import os
 
+import kept
 import numpy as np
 import pytest
 from notices import without_notices
@@ -20,6 +21,8 @@ from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric
 QUICK = [name for name in SYSTEMS if not name.startswith((
     'billiard', 'driven', 'major', 'baseball', 'falling', 'rolling_', 'euler_disk', 'rattleback',
     'tippe', 'rising', 'routh', 'chaplygin', 'tossed'))]
+
+KEPT = 'predicted', 'tolerance', 'unit', 'bound', 'absolute', 'as_written', 'detail'
 
 
 def table(*arguments, capsys, status=0):
@@ -45,6 +48,8 @@ def test_scene_is_confirmed_by_both_ways(name, capsys):
     for row in rows.values():
         if 'error_as_written' in row:
             assert row['error_as_written'] > 1e3 * row['tolerance']
+    kept.check(f'theory_{name}', {quantity: {key: row.get(key) for key in KEPT}
+                                  for quantity, row in rows.items()})
 
 
 def test_inertia_by_quadrature_and_by_a_blow(capsys):
