@@ -5,9 +5,12 @@ import ast
 import random
 import types
 
-import mutants
 import pytest
 import yaml
+
+pytest.importorskip('coverage')
+
+import mutants
 
 TABLE = yaml.safe_load(mutants.EQUIVALENT.read_text())
 SOURCE = '''
