@@ -7,7 +7,7 @@ import pytest
 
 coverage = pytest.importorskip('coverage')
 
-import covering
+import covering  # noqa: E402
 
 FILE = 'rigid_body_sim/mechanics/energy.py'
 
