@@ -359,7 +359,8 @@ def in_kernels(file):
 def attempts(mutant, near=False):
     """Return what is run for a mutant, in turn: chosen tests and digests, then the stages.
 
-    If only what is near is wanted, the tests next to it that are not noted follow on the chosen.
+    If only what is near is wanted, the quickest of the chosen are followed by the tests of its
+    room that are not noted; those of a kernel by the tests that have its name.
     """
     noted = covering.covering(mutant.file, mutant.begin, mutant.end)
     noted = dict(sorted(noted.items(), key=lambda item: item[1]))
@@ -371,7 +372,7 @@ def attempts(mutant, near=False):
     tests = beside | {name: took for name, took in noted.items() if name not in digests}
     (first, later), (digests, more) = _shared_out(tests), _shared_out(digests)
     found = [first, digests, more, later] if beside else [digests, first, more, later]
-    found = [one for one in found if one]
+    found = [one for one in found if one and not (near and one in (more, later))]
     if not near:
         return found + stages(mutant.file)
     of_own = stages(mutant.file)[:1] if found and in_kernels(mutant.file) else [
