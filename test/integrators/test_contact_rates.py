@@ -1,20 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is watched of a body on a plane: its gap in flight, as it falls and just after lift-off."""
+"""A body on a plane: when its gap ends a flight, where it is a moment later, what is written."""
 
 import numpy as np
 import pytest
 
 from rigid_body_sim.integrators.equations.contact_rates import (
+    DAMPED,
+    FILMED,
     FLIGHT,
     GAP,
     OMEGA,
+    ROLLED,
+    ROLLING,
     ROW,
+    SHORT,
     SIZE,
+    SLID,
+    SPUN,
+    STRUCK,
     WATCHED,
+    WORK,
     U,
 )
 from rigid_body_sim.integrators.marching.contact import MODE, SWIFT, OnPlane
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.touch import lever
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
+from rigid_body_sim.numerics.rotations import matrix
+from rigid_body_sim.numerics.vectors import apply, cross
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import STATE_SIZE
 
 pytestmark = pytest.mark.without_numba
 
@@ -42,3 +57,55 @@ def test_a_gap_ends_a_flight_when_it_shrinks_by_more_than_rounding(gap, speed, w
     assert row[WATCHED] == watched
     assert row[GAP] == pytest.approx(speed, abs=1e-15)
     assert row[U + 2] == pytest.approx(-9.81)
+
+
+def rolling():
+    """Return (rates, parameters, unknowns) of the egg as it rolls in any attitude."""
+    bound = OnPlane(SCENE, None, None, None)
+    p, y = bound.parameters(0.0), np.zeros(SIZE)
+    p[MODE], p[SWIFT] = ROLLING, 0.3
+    y[:4] = np.array([0.1, -0.5, 0.3, 0.8]) / np.sqrt(0.99)
+    y[OMEGA:U] = 3.0, -8.0, 5.0
+    return bound.rates, p, y
+
+
+def test_a_moment_later_the_body_has_turned_and_its_rates_have_grown():
+    """By the difference that a creep takes: the attitude turns by omega, r goes with it."""
+    rates, p, y = rolling()
+    c, axes, row = CONTACT.load(p), matrix(*y[:4].tolist()), np.empty(ROW)
+    r = lever(c, axes[2])
+    rates.rate(p, y, row)
+    omega, short = tuple(y[OMEGA:U].tolist()), SHORT * c.size[0] / c.swift
+    force = tuple(row[rates.FORCE:rates.FORCE + 3].tolist())
+    now = rates._ahead(p, c._replace(swift=1e30), y, axes, r, force, (0.0, 0.0, 0.0))
+    system, turned, later, (torque, _) = rates._ahead(p, c, y, axes, r, force, (0.0, 0.0, 0.0))
+    slopes = (np.array(turned) - np.array(axes)) / short
+    assert slopes == pytest.approx(np.array([cross(axis, omega) for axis in axes]), abs=1e-4)
+    assert later == lever(c, turned[2])
+    # the torque without the contact is -omega x I omega, and omega grows by the whole torque
+    grown = row[OMEGA:U]
+    I = np.array(c.inertia)
+    expected = -(np.cross(grown, I @ omega) + np.cross(omega, I @ grown))
+    assert (np.array(torque) - now[3][0]) / short == pytest.approx(expected, rel=1e-4)
+    growth = (np.array(system.b) - now[0].b) / short
+    assert np.isfinite(growth).all()
+    assert np.linalg.norm(growth) > 1.0
+
+
+def test_what_is_written_holds_each_heat_by_its_cause():
+    rates, p, y = rolling()
+    y[[WORK, SLID, ROLLED, FILMED, STRUCK, DAMPED, SPUN]] = 7.0, 1.0, 20.0, 300.0, 4e3, 5e4, 6e5
+    out, row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS)), np.empty(ROW)
+    rates.write(p, y, row, 2.5, 0.1, 0.2, out)
+    assert out[0] == 2.5
+    assert out[STATE_SIZE:STATE_SIZE + 2].tolist() == [7.0, 654321.0]
+    assert out[STATE_SIZE + ENTRIES_SIZE:].tolist() == [1.0, 20.0, 300.0, 4e3, 6e5]
+    assert out[1:5] == pytest.approx(y[:4], abs=1e-15)
+    # without slip the centre of mass moves by r x omega, and lies above the plane by -n . r
+    axes = matrix(*y[:4].tolist())
+    arm = lever(CONTACT.load(p), axes[2])
+    assert out[11:14] == pytest.approx(apply(axes, cross(arm, tuple(y[OMEGA:U]))), abs=1e-15)
+    assert out[8:11] == pytest.approx([0.1, 0.2, -np.dot(axes[2], arm)], abs=1e-15)
+    short = np.full(len(out), np.nan)
+    rates.write(p, y, row, 2.5, 0.1, 0.2, short[:STATE_SIZE])
+    assert short[:STATE_SIZE].tolist() == out[:STATE_SIZE].tolist()
