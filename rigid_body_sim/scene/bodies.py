@@ -187,10 +187,16 @@ def moved(inertia, M, shift, sign):
     """Return the tensor moved by the parallel-axis theorem.
 
     It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass.
+    There no moment is below the least one about the centre: what rounding leaves below zero, on a
+    body that is small beside the shift, is that one.
     """
     if not any(shift):
         return inertia
-    return Inertia.of_matrix(inertia.matrix + sign * M * _of_point(shift))
+    found = Inertia.of_matrix(inertia.matrix + sign * M * _of_point(shift))
+    if sign > 0.0 and min(found.moments) < 0.0:
+        least = max(0.0, min(inertia.moments))
+        return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
+    return found
 
 
 def _of_point(d):

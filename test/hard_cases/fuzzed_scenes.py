@@ -19,13 +19,16 @@ import numpy as np
 
 from rigid_body_sim.choice import forecast, trial
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators.marching import work
+from rigid_body_sim.integrators.families import scipy_methods
+from rigid_body_sim.integrators.marching import contact, switched, work
 from rigid_body_sim.mechanics import events
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
-EXTREMES = (0.0, 1e-310, 1e-160, 1e-30, 1e-9, 1e-3, 1.0, 1e3, 1e6, 1e15, 1e40, 1e74, 1e160, 1e308)
+EXTREMES = (0.0, 1e-70, 1e-30, 1e-9, 1e-3, 1.0, 1e3, 1e6, 1e15, 1e40, 1e74)
+OUTSIDE = 1e-310, 1e-160, 1e160, 1e308    # most keys refuse them
 SHARE = 0.1      # of the numbers that are extremes
+FAR = 0.003      # of the numbers that are outside
 SECONDS = 30
 
 
@@ -35,7 +38,9 @@ class Slow(Exception):
 
 def number(source, signed=True):
     """Return an extreme or a usual number."""
-    size = (source.choice(EXTREMES) if source.random() < SHARE
+    chance = source.random()
+    size = (source.choice(OUTSIDE) if chance < FAR
+            else source.choice(EXTREMES) if chance < SHARE
             else 10.0 ** source.uniform(-3.0, 3.0))
     return size * (source.choice((1, -1)) if signed else 1)
 
@@ -51,13 +56,16 @@ def moments(source):
     return source.choice((
         [a, a, a * source.choice((1e-310, 1e-100, 1e-12, 1e-6, 1e-4, 1.0, 1.99))],
         [a, a * (1.0 + 1e-9), a * 10.0 ** source.uniform(-8.0, -3.0)],
-        [number(source, signed=False) for _ in range(3)],
-        [a, b, abs(a - b) + source.random() * (a + b - abs(a - b))]))
+        [number(source, signed=False)] * 3, [number(source, signed=False) for _ in range(3)],
+        [a, b, max(a, b)], [a, b, abs(a - b) + source.random() * (a + b - abs(a - b))]))
 
 
 EXPRESSIONS = ('-k*wx', '0.1*sin(w0*t)', 'k*tanh(Wz/w0)', 'exp(-t)*qx', 'k/(1 + x^2)', '-k*vy^3',
                'sqrt(k*k + y*y)', 'log(k)*qw', 'k*cos(z)', 'max(wx, wy) - k', 'abs(Wx)', 'k^0.5',
-               'w0/(x - k)', 'tan(k*t)')
+               'w0/(x - k)', 'tan(k*t)', 'where(z < k, -w0*z, 0)', 'k*sign(sin(w0*t))',
+               '-k*sign(wz)', 'min(k*qx, w0)*(qy >= 0)', '-k*wy*abs(wy)')
+OF_HINGE = ('-k*sin(angle)', '-k*rate', 'k*sign(rate)', 'where(angle > k, w0, -w0)', 'max(rate, 0)*k',
+            'k*qx', 'w0*exp(wz)', 'abs(angle)')
 ENERGIES = ('0.5*k*(z - 1)^2', 'k*qx^2*qw', '-k/sqrt(x^2 + y^2 + z^2)', 'k*cos(x*w0)', 'k*log(z)',
             'exp(k*y)', 'w0*(qx*qz - qy*qw)')
 
@@ -67,17 +75,17 @@ def positive(source):
     return number(source, signed=False)
 
 
-def expressions(source):
+def expressions(source, texts=EXPRESSIONS):
     """Return three numbers or expressions."""
-    return [source.choice(EXPRESSIONS) if source.random() < 0.5 else number(source)
-            for _ in range(3)]
+    return [source.choice(texts) if source.random() < 0.5 else number(source) for _ in range(3)]
 
 
-def torque(source):
+def torque(source, kind):
     """Return a torque that stays, comes in pieces, or is an expression."""
     frame = source.choice(('body', 'world'))
+    texts = OF_HINGE if kind == 'hinge' else EXPRESSIONS
     return {'torque': source.choice((
-        {'value': vector(source)}, {'value': expressions(source)},
+        {'value': vector(source)}, {'value': expressions(source, texts)},
         {'times': [0.001, 0.5], 'values': [vector(source), vector(source)]})) | {'frame': frame}}
 
 
@@ -107,19 +115,45 @@ def strike(source):
 
 
 def gravity(source):
-    """Return a weight."""
-    return {'gravity': {'g': positive(source)}}
+    """Return a weight, by its size or as a vector."""
+    return {'gravity': {'g': vector(source) if source.random() < 0.3 else positive(source)}}
+
+
+def matrix(source):
+    """Return a coefficient of drag: a number, or a symmetric matrix that takes energy."""
+    if source.random() < 0.6:
+        return positive(source)
+    a, b, c = positive(source), positive(source), positive(source)
+    share = source.choice((0.0, 0.5, 1.0)) * math.sqrt(a) * math.sqrt(b)
+    return [[a, share, 0.0], [share, b, 0.0], [0.0, 0.0, c]]
 
 
 def drag(source):
-    """Return a drag."""
-    return {'drag': {'linear': positive(source), 'angular': positive(source)}}
+    """Return a drag of one to four coefficients."""
+    keys = source.choice((('linear', 'angular'), ('linear', 'angular'), ('quadratic',),
+                          ('linear', 'angular', 'quadratic', 'angular_quadratic')))
+    return {'drag': {key: matrix(source) for key in keys}}
 
 
-HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, force: 0.15, magnetic: 0.15,
+def rotor(source):
+    """Return a flywheel whose motor keeps its speed, or that turns freely, or under a torque."""
+    return {'rotor': {'axis': vector(source)} | source.choice((
+        {'momentum': number(source)}, {'inertia': positive(source), 'rate': number(source)},
+        {'inertia': positive(source), 'rate': number(source), 'torque': number(source)}))}
+
+
+def torsion(source):
+    """Return a torsion spring."""
+    more = {key: make(source) for key, make in (('damping', positive), ('angle', number))
+            if source.random() < 0.5}
+    return {'spring': {'stiffness': positive(source)} | more}
+
+
+HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, rotor: 0.15, magnetic: 0.15,
         lambda source: {'potential': {'energy': source.choice(ENERGIES)}}: 0.15}
 """What acts under every constraint but the table: what makes it, and how often."""
-PIVOTED = HELD | {spring: 0.15}
+HINGED = HELD | {torsion: 0.2, lambda source: {'dry_friction': {'torque': positive(source)}}: 0.2}
+PIVOTED = HELD | {spring: 0.15, force: 0.15}
 FREE = PIVOTED | {
     lambda source: {'internal_dissipation': {'coefficient': positive(source)}}: 0.3,
     lambda source: {'gravity_gradient': {'mu': positive(source),
@@ -130,8 +164,9 @@ ON_PLANE = {
         'mu': source.choice((positive(source), math.inf))}}: 0.7,
     lambda source: {'rolling_friction': {'dry': positive(source),
                                          'viscous': positive(source)}}: 0.2,
+    lambda source: {'spinning_friction': {'radius': positive(source)}}: 0.2,
     lambda source: {'air_film': {'viscosity': positive(source)}}: 0.1}
-ACTING = {'free': FREE, 'pivot': PIVOTED, 'hinge': HELD, 'plane': ON_PLANE}
+ACTING = {'free': FREE, 'pivot': PIVOTED, 'hinge': HINGED, 'plane': ON_PLANE}
 
 
 def effects(source, kind):
@@ -141,7 +176,7 @@ def effects(source, kind):
     found = [make(source) for make, often in ACTING[kind].items() if source.random() < often]
     if kind == 'plane':
         return found
-    return found + [torque(source) for _ in range(source.choice((0, 0, 1, 2)))]
+    return found + [torque(source, kind) for _ in range(source.choice((0, 0, 1, 2)))]
 
 
 def surface(source):
@@ -211,6 +246,8 @@ def scene(seed):
         axis = [source.uniform(-1.0, 1.0) for _ in range(3)]
         return found | {'constraint': {'hinge': {'axis': axis, 'through': vector(source)}},
                         'initial': {'rate': number(source), 'angle': number(source)}}
+    if kind == 'pivot' and source.random() < 0.2:
+        found['constraint'] = {'pivot': {'at': vector(source)}}
     if kind == 'free':
         start |= {'velocity': vector(source), 'position': vector(source)}
     return found | {'initial': start}
@@ -242,7 +279,8 @@ def alarm(*_):
 def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
-    work.FIRST_LOOK, work.MOST, work.PATIENCE = 16, 50.0, 1e4
+    work.FIRST_LOOK, work.MOST, work.PATIENCE, contact.EVENT = 16, 50.0, 1e4, 4
+    switched.DEAR = scipy_methods.COST = 1
     trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 20, 5, 0.5, 20
     forecast.SIGNS, forecast.MOVED, forecast.LOOKS = forecast.SIGNS[:1], forecast.MOVED[:1], 3
     signal.signal(signal.SIGVTALRM, alarm)

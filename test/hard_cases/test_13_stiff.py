@@ -18,6 +18,7 @@ from hard_cases.stiff_scenes import scene
 
 from rigid_body_sim.compilation import threads
 from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.marching import work
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import solver as closed_forms
@@ -170,6 +171,30 @@ def test_a_march_gives_up_where_the_way_ahead_asks_for_too_many_steps():
     bounded = Stepped(top, 'dop8', 1e-9, most=100).start(top.initial.vector)
     with pytest.raises(TooMuchWork, match=r'^dop8 on stiff: \d+ steps'):
         bounded.state(1e-20, np.empty(14))
+
+
+BODY = {'mass': 1.0, 'inertia': [1.0, 2.0, 2.5]}
+ENDLESS = {
+    'impacts': ('auto', {
+        'constraint': {'table': {'restitution': 1.0}}, 'effects': [{'gravity': {'g': 9.81}}],
+        'body': {'mass': 1.0, 'shape': {'ellipsoid': {'semi_axes': [0.1, 0.1, 0.1]}}},
+        'initial': {'position': [0, 0, 1]}}),
+    'kinks': ('dop8', {
+        'body': BODY, 'effects': [{'torque': {'value': ['sign(sin(9*t))', 0, 0]}}],
+        'initial': {}}),
+    'steps of SciPy': ('radau', {
+        'body': BODY, 'effects': [], 'initial': {'angular_velocity': [9.0, 1.0, 2.0]}})}
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('method, parts', ENDLESS.values(), ids=ENDLESS)
+def test_what_python_does_between_marches_counts_as_work(method, parts, monkeypatch):
+    monkeypatch.setattr(work, 'MOST', 1e6)
+    monkeypatch.setattr(work, 'PATIENCE', 1e8)
+    monkeypatch.setattr(work, 'FIRST_LOOK', 1000)
+    simulation = Simulation(scene(**parts), method, accuracy=1e-6)
+    with pytest.raises(TooMuchWork, match='too many'):
+        simulation.states([1e7])
 
 
 def test_a_march_in_slices_has_the_bits_of_one_that_is_asked_for_each_state():

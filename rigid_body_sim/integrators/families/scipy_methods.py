@@ -17,14 +17,15 @@ import numpy as np
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
-from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.scene.state import TIME
 
 TAKES_WRENCH = True
 LANES = False
 KINKS = False
 FINEST = 100.0 * np.finfo(float).eps
-DEAR = 10    # steps of a compiled march that cost as much as one step here
+DEAR = 10    # steps of a compiled march that a trial takes for one step here
+COST = 200   # steps of a compiled march that cost as much as one step here
 
 
 def bind(method, stepped):
@@ -100,6 +101,24 @@ class _Course:
         if self._solver.status == 'finished':
             self._enter(self._solver.t, self._solver.y)
 
+    def _reach(self, target):
+        """Go on until a time (s) is passed."""
+        name, before = f'{self._method.NAME} on {self._scene.name}', len(self._steps)
+
+        def reached():
+            return self._reached[-1] if self._reached else -math.inf
+
+        def arrived(limit):
+            for _ in range(limit):
+                if reached() >= target:
+                    return True
+                self._advance()
+                if self._most is not None and DEAR * (len(self._steps) - before) > self._most:
+                    raise TooMuchWork(f'{name}: more than {self._most} steps to t = {target!r} s')
+            return False
+
+        Work(name, None, COST).go(arrived, lambda: max(self._begin, reached()), target)
+
     def state(self, time, out):
         """Fill out with the state at a time not before the start."""
         self.states(np.array([time]), out[np.newaxis])
@@ -108,12 +127,7 @@ class _Course:
         """Fill out with the states at times not before the start."""
         if self._solver is None:
             self._enter(self._begin, self._y)
-        before = len(self._steps)
-        while not self._reached or self._reached[-1] < times.max():
-            self._advance()
-            if self._most is not None and DEAR * (len(self._steps) - before) > self._most:
-                raise TooMuchWork(f'{self._method.NAME} on {self._scene.name}: more than '
-                                  f'{self._most} steps to t = {float(times.max())!r} s')
+        self._reach(float(times.max()))
         write = self._equations.kernels.write
         for time, row in zip(times, out, strict=True):
             k = bisect.bisect_left(self._reached, time)

@@ -46,6 +46,7 @@ CHATTER = 1e-13          # an impact rebounds no more below that share of the sp
 HOLDS = 1e-12            # of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
+EVENT = 256              # steps that cost as much as finding one event and what follows it
 AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
@@ -286,6 +287,7 @@ class PlaneCourse:
     def reach(self, elapsed):
         """March until the time since the start is passed."""
         while self._over is None and self._phases[-1].reach(elapsed, self._steps):
+            self._steps.count(EVENT, float(self._phases[-1].front[TIME]), elapsed)
             self._follow(self._phases[-1])
         if self._over is not None and (elapsed > self._over or not self._phases):
             raise NotConverged(f'{self._bound.scene.name}: '

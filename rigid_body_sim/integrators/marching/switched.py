@@ -27,6 +27,7 @@ from rigid_body_sim.integrators.marching.work import Work
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, VELOCITY
 
 LOOKS = 4                    # of one step
+DEAR = 100                   # steps that cost as much as the looks of one
 STALLS = 4                   # marches that end where they begin: then a body slides along a kink
 SHORTEST, LONGEST = 2.0 ** -20, 2.0 ** -4    # s, between two looks at a body at rest
 CALM, BRISK = 0.01, 0.1      # share of the friction by which a torque changes between two looks
@@ -186,7 +187,7 @@ class Switched:
             return False
 
         if not self._seen > target:
-            work = Work(f'{self._method.NAME} on {self._scene.name}', self._most)
+            work = Work(f'{self._method.NAME} on {self._scene.name}', self._most, DEAR)
             work.go(arrived, lambda: self._seen, target)
 
     def _sides(self, vector, modes=None):

@@ -2,7 +2,8 @@
 """A bound on the work of a march: it gives up where the way ahead asks for more steps than pay.
 
 A march goes in slices, so that an interrupt is heard between two of them (compilation/threads.py).
-Whether it gives up depends on its steps alone, not on the clock.
+Whether it gives up depends on its steps alone, not on the clock. Steps that Python makes, and
+events between two phases of a march, count as the steps of a compiled march that they cost.
 """
 
 import math
@@ -29,11 +30,14 @@ class Work:
         Of the method and the scene, for the message.
     most : int or None
         Steps after which the march gives up whatever lies ahead; None is no such bound.
+    dear : int
+        Compiled steps that one step costs, where it is judged what lies ahead.
     """
 
-    def __init__(self, name, most):
-        self._name, self._most, self.done = name, most, 0
-        self._look, self._seen = FIRST_LOOK, (0, None)
+    def __init__(self, name, most, dear=1):
+        self._name, self._most, self._dear, self.done = name, most, dear, 0
+        self._look, self._target = max(1, FIRST_LOOK // dear), None
+        self._begin = self._seen = (0, math.nan)
 
     def go(self, follow, now, target):
         """Call follow(limit), which returns whether it has arrived, until it has.
@@ -51,19 +55,38 @@ class Work:
         ------
         TooMuchWork
         """
-        begin = self._seen = (self.done, now())
+        if target != self._target:
+            self._target = target
+            self._begin = self._seen = (self.done, now())
 
         def arrived(limit):
             if follow(limit):
                 return True
-            self.done += limit
-            if self._most is not None and self.done >= self._most:
-                raise self._given_up(now(), target, begin)
-            if self.done == self._look:
-                self._look_ahead(now(), target, begin)
+            self.count(limit, now(), target)
             return False
 
         in_slices(arrived, SLICE, self._until_look)
+
+    def count(self, steps, time, target):
+        """Count steps that were made on the way to a time, besides those that `go` counts.
+
+        Parameters
+        ----------
+        steps : int
+        time : float
+            That the march has reached, s.
+        target : float
+            As `go` has it, s.
+
+        Raises
+        ------
+        TooMuchWork
+        """
+        self.done += steps
+        if self._most is not None and self.done >= self._most:
+            raise self._given_up(time, target)
+        if self.done >= self._look:
+            self._look_ahead(time, target)
 
     def _until_look(self):
         most = (
@@ -71,17 +94,17 @@ class Work:
         )
         return most - self.done
 
-    def _look_ahead(self, time, target, begin):
+    def _look_ahead(self, time, target):
         """Compare the steps done since the last look with the time that is left."""
         done, before = self._seen
         pace = (time - before) / (self.done - done)
         ahead = (target - time) / pace if pace > 0.0 else math.inf
-        if ahead > max(MOST, PATIENCE / self.done):
-            raise self._given_up(time, target, begin)
-        self._look, self._seen = 2 * self._look, (self.done, time)
+        if self._dear * ahead > max(MOST, PATIENCE / (self._dear * self.done)):
+            raise self._given_up(time, target)
+        self._look, self._seen = max(2 * self._look, self.done + 1), (self.done, time)
 
-    def _given_up(self, time, target, begin):
-        done, before = begin
+    def _given_up(self, time, target):
+        done, before = self._begin
         return TooMuchWork(
             f'{self._name}: {self.done - done} steps from t = {before!r} s led to t = {time!r} s; '
             f'to reach {target!r} s asks for too many. A slower body, weaker effects, a coarser '
