@@ -155,8 +155,8 @@ def _simulate(options, bar):
             'messages': recording.messages if recording else 0}
     for line in simulation.scene.notes:
         print(f'{simulation.scene.name}: {line}', file=sys.stderr)
-    if simulation.choice.missed:
-        print(f'{simulation.scene.name}: {simulation.choice.missed}', file=sys.stderr)
+    if simulation.missed:
+        print(f'{simulation.scene.name}: {simulation.missed}', file=sys.stderr)
     result = {'state': _plain(simulation.state), 'ledger': simulation.ledger(),
               'method': about.run_of(simulation), 'events': dict(events), 'cost': cost}
     if options.json:

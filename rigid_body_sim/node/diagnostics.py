@@ -105,14 +105,17 @@ class Diagnostics:
         level, message = self._bounded(
             {name: abs(balance[name]) for name in ('energy_residual', 'momentum_residual')}
         )
-        choice = self._session.simulation.choice
-        if level == OK and choice.missed:
-            level, message = WARN, choice.missed
+        simulation = self._session.simulation
+        if level == OK and simulation.missed:
+            level, message = WARN, simulation.missed
         method = {
             name: value
-            for name, value in about.method_of(choice).items()
+            for name, value in about.method_of(simulation.choice).items()
             if value is not None
-        } | {'method': self._session.simulation.method}
+        } | {'method': simulation.method}
+        if simulation.departed is not None and 'expected_error' in method:
+            unknown = f'unknown since the command at t = {simulation.departed:.9g} s'
+            method |= {'expected_error': unknown, 'met_until': unknown}
         return self._status(
             'ledger',
             level,

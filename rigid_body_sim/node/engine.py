@@ -73,8 +73,8 @@ class Engine:
         simulation = self._prepare({})
         for line in simulation.scene.notes:
             node.get_logger().info(line)
-        if simulation.choice.missed:
-            node.get_logger().warning(f'{simulation.scene.name}: {simulation.choice.missed}')
+        if simulation.missed:
+            node.get_logger().warning(f'{simulation.scene.name}: {simulation.missed}')
         frames = frames_of(node, settings)
         outputs = state_topics.chosen(settings.publish)
         messages = state_topics.scene_messages(outputs, simulation.scene, frames)

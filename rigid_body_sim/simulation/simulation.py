@@ -54,7 +54,8 @@ LOOKS = 1024  # parts of the time ahead in which at_event looks first
 LAST_TICK = 2**53
 """Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
 KEPT = (
-    'tick', 'events', 'vector', '_origin', '_origin_time', '_beginning', '_initial', '_commands'
+    'tick', 'events', 'vector', 'departed', '_origin', '_origin_time', '_beginning', '_initial',
+    '_commands',
 )
 """What a copy or a pickle takes over as it is."""
 NOTHING_HELD = Wrench()
@@ -92,6 +93,9 @@ class Simulation:
         :attr:`state`).
     events : list of Event
         What happened so far.
+    departed : float or None
+        The time (s) from which on the motion is not the one that `choice` made its forecast for:
+        that of the first command, or 0 after a restart from another start; None before.
     watching : bool
         Whether :meth:`advance` looks for events; True. Without it, a jump costs the same however
         much happens on the way.
@@ -246,6 +250,9 @@ class Simulation:
         spans[-1].solver.state(0.0, self.vector)
         self._diagnosed_tick = None
         self.choice, self.tick, self._beginning = choice, tick, start
+        own = self.scene.initial.vector    # of another start the choice of the scene knows nothing
+        elsewhere = choice is self._chosen and start.tobytes() != own.tobytes()
+        self.departed = 0.0 if elsewhere else None
         self._origin, self._origin_time = tick, 0.0
         self._initial = diagnosis
         self._spans, self._commands, self._foreseen = spans, None, NOTHING_FORESEEN
@@ -316,6 +323,27 @@ class Simulation:
         wrench that another method solves.
         """
         return self._spans[-1].solver.name
+
+    @property
+    def expected_error(self) -> float | None:
+        """Largest error of the attitude that is expected within the horizon, rad.
+
+        None where nothing is known: of a method that was named, and after a command, since no
+        trial has seen what it does to the motion. `choice.expected_error` is that of the scene.
+        """
+        return self.choice.expected_error if self.departed is None else None
+
+    @property
+    def missed(self) -> str | None:
+        """One line that says that the accuracy asked is missed and until when it is met; or None.
+
+        After a command it says what was missed before.
+        """
+        if self.departed is not None:
+            met = self.choice.met_until
+            if met is None or met >= self.departed:
+                return None
+        return self.choice.missed
 
     def advance(self, ticks: int = 1) -> None:
         """Go on by a number of ticks; events on the way are appended to `events`.
@@ -672,6 +700,8 @@ class Simulation:
         commands, time = self._commands, self.time
         kept, given = self._spans[: commands.base], commands.given
         last = kept[-1]
+        if self.departed == time:
+            self.departed = None    # the commands of the tick may cancel
         if given.any_impulse or commands.wrench != last.wrench:
             exchanged = last.given + last.solver.exchanged(time)
             if given.any_impulse:
@@ -680,6 +710,7 @@ class Simulation:
                 *kept,
                 self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged),
             ]
+            self.departed = time if self.departed is None else self.departed
         self._spans = kept
         self._arrive()
 

@@ -6,11 +6,10 @@ import types
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.choice.trial import Settled
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.engine import Engine
-from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 BALANCED = {'energy_residual': 1e-16, 'momentum_residual': 1e-16}
 BOUNDS = {f'diagnostics.{name}_{level}': bound for name in BALANCED
@@ -18,22 +17,40 @@ BOUNDS = {f'diagnostics.{name}_{level}': bound for name in BALANCED
 
 
 def simulation(expected):
-    """Return what the node asks of a simulation: one whose error is expected to be that large."""
-    scene = load_scene('tennis_racket')
-    choice = choose(scene, accuracy=1e-9, settled=Settled('dop8', 1e-9, expected, 12.5))
-    return types.SimpleNamespace(scene=scene, choice=choice, method='dop8')
+    """Return a simulation whose error is expected to be that large."""
+    return Simulation('tennis_racket', accuracy=1e-9,
+                      settled=Settled('dop8', 1e-9, expected, 12.5))
+
+
+def ledger_of(simulation):
+    """Return the status of the ledger."""
+    node = object.__new__(Diagnostics)
+    node._session = types.SimpleNamespace(simulation=simulation, balance=BALANCED)
+    node._settings, node._name = BOUNDS, 'sim_node'
+    return node._ledger()
 
 
 @pytest.mark.parametrize(('expected', 'level'), [(1.64, b'\x01'), (1e-10, b'\x00')])
 def test_the_status_of_the_ledger_warns(expected, level):
-    node = object.__new__(Diagnostics)
-    node._session = types.SimpleNamespace(simulation=simulation(expected), balance=BALANCED)
-    node._settings, node._name = BOUNDS, 'sim_node'
-    status = node._ledger()
+    status = ledger_of(simulation(expected))
     assert status.level == level and level in (DiagnosticStatus.OK, DiagnosticStatus.WARN)
     assert ('accuracy asked, 1e-09 rad, is missed' in status.message) == (level == b'\x01')
     assert ('met until 12.5 s' in status.message) == (level == b'\x01')
     assert {value.key: value.value for value in status.values}['method'] == 'dop8'
+
+
+@pytest.mark.parametrize(('tick', 'level', 'told'), [
+    (3000, b'\x00', 'unknown since the command at t = 3 s'),
+    (13_000, b'\x01', 'unknown since the command at t = 13 s')])    # missed before the command
+def test_after_a_command_the_status_says_that_the_error_is_not_known(tick, level, told):
+    commanded = simulation(1.64)
+    commanded.watching = False
+    commanded.advance(tick)
+    commanded.hold(torque=(0.0, 0.1, 0.0))
+    status = ledger_of(commanded)
+    values = {value.key: value.value for value in status.values}
+    assert status.level == level
+    assert values['expected_error'] == values['met_until'] == told
 
 
 def test_the_start_warns_before_anything_is_offered():
