@@ -61,4 +61,5 @@ def _view(self, duration: float = 10.0):
 
 
 def __dir__():
-    return sorted({*globals(), *__all__, '__version__'})
+    special = (name for name in globals() if name.startswith('__'))
+    return sorted({*special, *__all__, '__version__'})

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors that a person reads: one line with the place, the fault and what would be right."""
 
+import importlib
+
 MOST_SLIPS = 2
 """A word with more slips of the keyboard in it is taken for another word."""
 LETTERS_TO_A_SLIP = 3
@@ -31,6 +33,17 @@ class BadInput(ValueError):
 
 class NotConverged(ArithmeticError):
     """A method gave up: it says at which time and why, instead of returning NaN."""
+
+
+def optional(package):
+    """Import a package that is not required; raise BadInput where it is not installed."""
+    try:
+        return importlib.import_module(package)
+    except ModuleNotFoundError as error:
+        if error.name not in (package, package.partition('.')[0]):
+            raise
+        name = package.partition('.')[0]
+        raise BadInput(name, 'is not installed', f'pip install {name}') from None
 
 
 def printable(text):

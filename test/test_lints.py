@@ -1,33 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """The linters of ROS 2 where they are installed, and the header that each source file has.
 
-Folders whose lines are still long stand in the E501 list of pyproject.toml and are left out; the
-list may only grow shorter. ament_copyright is not run: it knows no SPDX header (ament_lint #462).
+ament_copyright is not run: it knows no SPDX header (ament_lint #462).
 """
 
 import os
 import pathlib
 import shutil
 import subprocess
-import tomllib
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-IGNORED = tomllib.loads((ROOT / 'pyproject.toml').read_text())[
-    'tool']['ruff']['lint']['per-file-ignores']
-LONG = [pattern.removesuffix('/**') for pattern, codes in IGNORED.items() if 'E501' in codes]
 CLEAN = {name: value for name, value in os.environ.items()
          if name not in ('PYTHONPATH', 'AMENT_PREFIX_PATH')}
 
 
 def sources():
-    """Return the Python files whose folders have short lines."""
-    files = [*ROOT.glob('*.py'), *(path for folder in ('examples', 'launch', 'rigid_body_sim',
-                                                       'requirements')
-                                   for path in (ROOT / folder).rglob('*.py'))]
-    return [path for path in sorted(files)
-            if not any(path.is_relative_to(ROOT / folder) for folder in LONG)]
+    """Return the Python files of the package and of what is installed with it."""
+    return sorted([*ROOT.glob('*.py'), *(
+        path for folder in ('examples', 'launch', 'rigid_body_sim', 'requirements')
+        for path in (ROOT / folder).rglob('*.py'))])
 
 
 def lint(program, *arguments):

@@ -122,6 +122,20 @@ def test_a_missing_package_is_one_line_with_its_remedy(environment, tmp_path):
     assert 'rclpy is not installed' in line and 'pip install' in line
 
 
+def test_a_recording_needs_neither_ros_nor_rosbags_nor_numba(environment, tmp_path):
+    absent = ['numba', 'rosbags', 'builtin_interfaces', *(f'{name}_msgs' for name in (
+        'diagnostic', 'geometry', 'nav', 'rosgraph', 'sensor', 'std', 'tf2', 'visualization'))]
+    code = (f'import sys; sys.modules |= dict.fromkeys({absent})\n'
+            'from rigid_body_sim.__main__ import main; sys.exit(main())')
+    for words in (['simulate', '--scene', 'tennis_racket', '--duration', '0.5', '--publish',
+                   'tf', 'odom', '--output', 'racket'],
+                  ['resimulate', 'racket']):
+        done = subprocess.run([environment[0] / 'python', '-c', code, *words], cwd=tmp_path,
+                              env=CLEAN, capture_output=True, text=True, timeout=240)
+        assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith('identical, 501 states')
+
+
 def test_completion_offers_commands_options_and_scenes(environment):
     if not shutil.which('bash'):
         pytest.skip('needs bash')

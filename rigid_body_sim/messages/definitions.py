@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Message definitions, from the installed ROS 2 or from rosbags, and a parser of their text.
+"""Message definitions, from the installed ROS 2 or kept here, and a parser of their text.
+
+``definitions.json`` keeps those of the types that this package publishes and records, as ROS 2
+Jazzy has them (common_interfaces, Apache 2.0; tf2_msgs), for installations without ROS.
+``python -m rigid_body_sim.messages.definitions > rigid_body_sim/messages/definitions.json`` makes
+it anew where a ROS 2 Jazzy is installed; what that lacks stays as it is.
 
 The text is ``ros2msg``, as recordings contain it, so the parser reads foreign recordings as well.
 A schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.
@@ -47,18 +52,26 @@ class Definition(typing.NamedTuple):
 
 @functools.cache
 def definition(type_name):
-    """Return the Definition of a type, from the installed ROS 2 or else from rosbags.
+    """Return the Definition of a type, from the installed ROS 2 or else from those kept here.
 
     Raises
     ------
     BadInput
         If neither knows the type.
     """
-    found = _of_ros(type_name) or _of_rosbags(type_name)
+    found = _of_ros(type_name) or _kept().get(type_name)
     if found is None:
         raise BadInput(type_name, 'is a message type that is not installed here',
-                       'a ROS 2 package that defines it, or "pip install rosbags" for common ones')
+                       f'a ROS 2 package that defines it, or one of {", ".join(sorted(_kept()))}')
     return found
+
+
+@functools.cache
+def _kept():
+    """Return {type name: Definition} of the types kept here."""
+    text = pathlib.Path(__file__).with_suffix('.json').read_text(encoding='utf-8')
+    return {name: Definition(name, ''.join(one['text']), one['hash'])
+            for name, one in json.loads(text).items()}
 
 
 def _of_ros(type_name):
@@ -102,19 +115,6 @@ def _complete_text(type_name, seen):
             short = name.replace('/msg/', '/')
             text += f'\n{"=" * 80}\nMSG: {short}\n' + _complete_text(name, seen)
     return text
-
-
-def _of_rosbags(type_name):
-    """Return the Definition that rosbags has of a type (without comments), or None."""
-    try:
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        return None
-    store = get_typestore(Stores.ROS2_JAZZY)
-    if type_name not in store.fielddefs:
-        return None
-    text, _ = store.generate_msgdef(type_name, ros_version=2)
-    return Definition(type_name, text, store.hash_rihs01(type_name))
 
 
 @functools.cache
@@ -188,3 +188,9 @@ def _check(schemas, type_name, above):
     for field in schemas[type_name]:
         if field.base not in SIZES and field.base != 'string':
             _check(schemas, field.base, (*above, type_name))
+
+
+if __name__ == '__main__':
+    print(json.dumps({name: {'hash': found.hash, 'text': found.text.splitlines(keepends=True)}
+                      for name, found in ((name, definition(name)) for name in sorted(_kept()))},
+                     indent=1))

@@ -29,7 +29,7 @@ import typing
 import numpy as np
 import yaml
 
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, optional
 from rigid_body_sim.recording import metadata, tables
 from rigid_body_sim.recording.needed import need_mcap
 from rigid_body_sim.recording.topics import JOURNAL_TYPE
@@ -284,7 +284,7 @@ class Recording:
 
         Seconds count from the start of the recording. BadInput where pandas is not installed.
         """
-        pandas = tables.optional('pandas')
+        pandas = optional('pandas')
         flat = tables.flat(self.read(topic, None, start, end), self.decoder(topic).components)
         seconds = tables.seconds(flat['log_time'], self.start_time)
         return pandas.DataFrame(flat, index=pandas.Index(seconds, name='seconds'))
@@ -295,7 +295,7 @@ class Recording:
         Its variables are the columns of :meth:`read`; those with several numbers have a dimension
         more, with their names (x, y, z) as coordinates. BadInput where xarray is not installed.
         """
-        return tables.dataset(tables.optional('xarray'), self.read(topic, None, start, end),
+        return tables.dataset(optional('xarray'), self.read(topic, None, start, end),
                               self.decoder(topic).components, self.start_time)
 
     def messages(self, topics=None, start=0, end=2**63):

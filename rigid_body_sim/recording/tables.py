@@ -1,21 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of a topic as tables: for files, pandas and xarray, and several topics joined."""
 
-import importlib
-
 import numpy as np
 
-from rigid_body_sim.errors import BadInput
-
 NANOSECONDS = 1e9
-
-
-def optional(name):
-    """Return a package that is not required; BadInput where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise BadInput(name, 'is not installed', f'"pip install {name}"') from error
 
 
 def seconds(log_times, start):

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
+from rigid_body_sim.errors import optional
 
 if typing.TYPE_CHECKING:
     import pandas
@@ -163,14 +164,14 @@ class States(State):
 
         The columns are ``orientation_x`` ... ``velocity_z``; the units are those of the parts.
         """
-        import pandas
+        pandas = optional('pandas')
         columns = [f'{part}_{axis}' for part, axes in AXES.items() for axis in axes]
         return pandas.DataFrame(self.vector[:, 1:], columns=columns,
                                 index=pandas.Index(self.time, name='time'))
 
     def to_xarray(self) -> 'xarray.Dataset':
         """Return a Dataset: a variable for each part, over time and its axes, with units."""
-        import xarray
+        xarray = optional('xarray')
         coordinates = {'time': ('time', self.time, {'units': UNITS['time']}),
                        'quaternion': list('xyzw'), 'axis': list('xyz')}
         dimension = {part: 'quaternion' if axes == 'xyzw' else 'axis'
@@ -202,7 +203,7 @@ class States(State):
         for part in parts:
             if part not in AXES:
                 raise ValueError(f'plot: no part {part!r}; the parts are {", ".join(AXES)}')
-        from matplotlib import pyplot
+        pyplot = optional('matplotlib.pyplot')
         _, rows = pyplot.subplots(len(parts), sharex=True, squeeze=False, layout='constrained')
         for part, axes in zip(parts, rows[:, 0], strict=True):
             for name, values in zip(AXES[part], getattr(self, part).T, strict=True):

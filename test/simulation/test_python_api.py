@@ -175,6 +175,15 @@ def test_states_plot():
         some.plot('speed')
 
 
+@pytest.mark.parametrize(('take', 'package'), [
+    ('to_pandas', 'pandas'), ('to_xarray', 'xarray'), ('plot', 'matplotlib')])
+def test_a_package_that_is_not_installed_is_one_line(take, package, monkeypatch):
+    for name in (package, f'{package}.pyplot'):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(BadInput, match=f'^{package}: is not installed; pip install {package}$'):
+        getattr(states(), take)()
+
+
 def test_the_code_of_the_readme_runs():
     matplotlib = pytest.importorskip('matplotlib')
     matplotlib.use('Agg')
