@@ -48,7 +48,7 @@ def runnable(scene):
               for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' or one.of_motion for one in acting)
     kinked = any(one.modes for one in acting)
-    in_field = any(one.in_field for one in acting)
+    in_field = frame.path is not None or any(one.in_field for one in acting)
     return [name for name, method in METHODS.items()
             if all(getattr(effect, method.NEEDS) is not None for effect in effects)
             and (method.HEAT or not hot) and (method.FIELD or not in_field)

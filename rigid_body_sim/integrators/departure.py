@@ -47,7 +47,7 @@ def relaxing(scene, vector):
 
     About, and infinite where it has no such axis.
     """
-    moments = scene.body.about_center.moments
+    moments = scene.constraint.inertia(scene.body).moments
     frame = scene.constraint.frame(scene.body)
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     L = hypot3(*(I * w for I, w in zip(frame.moments, omega, strict=True)))

@@ -7,7 +7,8 @@ of reference P to the centre of mass, I tensor about P, Gamma torque of F and of
 P (body axes), n unit vector along a hinge.
 
     free      M a = F,                              I omega' = Gamma - omega x I omega
-    pivot     I omega' = Gamma - omega x I omega    reaction M a - F at P, no couple
+    pivot     I omega' = Gamma - omega x I omega    reaction M a - F at P, no couple; of one that
+              moves with the acceleration b, Gamma has -r x R^T M b
     hinge     omega' = n (n . Gamma)/(n . I n)      reaction M a - F,
                                                     I omega' + omega x I omega - Gamma about P
     table     normal force M g - F_z; friction mu times that against the slip, or what keeps the
@@ -39,6 +40,7 @@ from rigid_body_sim.numerics.vectors import (
 from rigid_body_sim.scene.constraints import Free
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.expressions.path import along
 from rigid_body_sim.scene.state import STATE
 
 STICKS = 1e-11    # slip below that share of the speeds is the rounding of rolling
@@ -80,12 +82,15 @@ class Motion(NamedTuple):
         Angular velocity, body axes, rad/s.
     position, velocity : tuple of 3 floats
         Of the body's origin, world axes, m and m/s.
+    time : float
+        s.
     """
 
     R: tuple
     omega: tuple
     position: tuple
     velocity: tuple
+    time: float
 
 
 class Actions(NamedTuple):
@@ -135,6 +140,8 @@ class Dynamics:
         # effects are asked as if the body were free: only then do they name their forces
         hinge = constraint.frame(body).hinge
         self._frame = dataclasses.replace(Free().frame(body), hinge=hinge)
+        self._path = constraint.path
+        self._own, self._inner = constraint.frame(body), scene.inner_dissipation
         balances = {Mechanism.FREE: self._free, Mechanism.POINT: self._pivot,
                     Mechanism.AXIS: self._hinge, Mechanism.TABLE: self._table,
                     Mechanism.PLANE: self._plane}
@@ -152,7 +159,7 @@ class Dynamics:
         of_center = plus(velocity, apply(R, cross(omega, self._scene.center)))
         center = plus(position, apply(R, self._scene.center))
         acting = self._actions(time, q, omega, of_center, center, wrench)
-        found = self._of(Motion(R, omega, position, velocity), acting)
+        found = self._of(Motion(R, omega, position, velocity, time), acting)
         return Balance(*(np.array(part) for part in found))
 
     def reactions(self, vectors, wrenches):
@@ -166,14 +173,32 @@ class Dynamics:
         """Return the Actions of effects and wrench; velocity and place are of the mass centre."""
         axes = self._frame.axes
         q_frame, omega_frame = multiply(*q, *axes), rotate_back(*axes, *omega)
-        sums = {'force': NOTHING, 'torque': NOTHING, 'turning': NOTHING}
+        sums = {'force': NOTHING, 'torque': NOTHING}
         for actor in [*self._effects, *([wrench] if wrench else [])]:
             for one in actor.acting(self._frame, time):
+                if one.gives == 'turning':
+                    continue
                 field = (time, *center) if one.in_field else ()
                 added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity, *field)
                 sums[one.gives] = plus(sums[one.gives], added)
-        couple, turning = rotate(*axes, *sums['torque']), rotate(*axes, *sums['turning'])
-        return Actions(sums['force'], couple, turning)
+        turning = self._turning(time, q, omega, velocity, center) if self._inner else NOTHING
+        return Actions(sums['force'], rotate(*axes, *sums['torque']), turning)
+
+    def _turning(self, time, q, omega, velocity, center):
+        """Return the extra rate of the axes, body axes: its moments are about the held point."""
+        own = self._own
+        q_frame, omega_frame = multiply(*q, *own.axes), rotate_back(*own.axes, *omega)
+        place = minus(center, rotate(*q_frame, *own.arm))
+        turning = NOTHING
+        for effect in self._effects:
+            for one in effect.acting(own, time):
+                if one.gives == 'force' or (one.gives == 'torque' and one.books != 'potential'):
+                    continue
+                field = (time, *place) if one.in_field else ()
+                added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity, *field)
+                share = 1.0 if one.gives == 'turning' else self._inner
+                turning = plus(turning, scaled(share, added))
+        return rotate(*own.axes, *turning)
 
     def _growth(self, omega, torque):
         """Return I^-1 (torque - omega x I omega); nothing about an axis without moment."""
@@ -198,14 +223,23 @@ class Dynamics:
 
     def _pivot(self, motion, acting):
         force, through = acting.force, self._scene.through
-        arm = minus(self._scene.center, through)
-        moment = cross(arm, apply(transposed(motion.R), force))
+        arm, turning = minus(self._scene.center, through), acting.turning
+        if self._path is not None:    # of the pivot
+            accelerated = along(self._path, motion.time)[2]
+            force = minus(force, scaled(self._scene.mass, accelerated))
+        moment = plus(cross(arm, apply(transposed(motion.R), force)),
+                      cross(self._momentum(motion.omega), turning))
         growth = self._growth(motion.omega, plus(acting.couple, moment))
         lever = _carried(motion.omega, growth, arm)
+        lever = plus(lever, cross(turning, cross(motion.omega, arm)))
         held = minus(scaled(self._scene.mass, apply(motion.R, lever)), force)
-        if not any(through):    # the body's origin is held
+        if not any(through) and self._path is None:    # the body's origin is held
             return NOTHING, growth, held, NOTHING, motion.position
-        of_origin = scaled(-1.0, apply(motion.R, _carried(motion.omega, growth, through)))
+        lever = plus(_carried(motion.omega, growth, through),
+                     cross(turning, cross(motion.omega, through)))
+        of_origin = scaled(-1.0, apply(motion.R, lever))
+        if self._path is not None:
+            of_origin = plus(of_origin, accelerated)
         return of_origin, growth, held, NOTHING, plus(motion.position, apply(motion.R, through))
 
     def _hinge(self, motion, acting):

@@ -36,10 +36,10 @@ def rates(p, states, out):
     for k in range(len(states)):
         now = load_state(states[k])
         q, axes, omega = now.orientation, scene.frame_axes, now.angular_velocity
-        of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
         reference = scene.center if scene.kind == FREE else scene.through
+        of_point = plus(now.velocity, rotate(*q, *cross(omega, reference)))
         place = plus(now.position, rotate(*q, *reference))
-        work, heat, torque = acting(p, multiply(*q, *axes), rotate_back(*axes, *omega), of_center,
+        work, heat, torque = acting(p, multiply(*q, *axes), rotate_back(*axes, *omega), of_point,
                                     rotate_back(*axes, *angular_momentum(scene, omega)), now.time,
                                     place)
         taken = rotate(*q, *_taken(scene, omega, rotate(*axes, *torque)))

@@ -15,9 +15,9 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.mechanics.parameters import FREE, HINGE, SCENE, TABLE
+from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, SCENE, TABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.numerics.vectors import cross, dot, plus, product, scaled
+from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, product, scaled
 from rigid_body_sim.scene.state import STATE
 
 
@@ -65,10 +65,23 @@ def angular_momentum(scene, omega):
 
 
 @compiled
+def carried_energy(scene, now):
+    """Return what a moving pivot adds to the kinetic energy about it, M u . (V - u/2), J.
+
+    u is the velocity of the pivot, V that of the centre of mass.
+    """
+    q, omega = now.orientation, now.angular_velocity
+    of_pivot = plus(now.velocity, rotate(*q, *cross(omega, scene.through)))
+    of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
+    return scene.mass * dot(of_pivot, minus(of_center, scaled(0.5, of_pivot)))
+
+
+@compiled
 def diagnose(p, state, out):
     """Fill `out` with the Diagnosis of a state.
 
-        kinetic     omega . I omega/2, and M V^2/2 with V = v + R (omega x c) of a body that moves
+        kinetic     omega . I omega/2, and M V^2/2 with V = v + R (omega x c) of a body that moves;
+                    of one whose pivot has the velocity u, M u . (V - u/2) more
         potential   the sum of the potentials of the effects
         L           R (I omega + h), h what parts carry inside the body
 
@@ -88,6 +101,8 @@ def diagnose(p, state, out):
     if scene.kind == FREE or scene.kind == TABLE:
         of_center = plus(now.velocity, rotate(*q, *cross(omega, scene.center)))
         kinetic += 0.5 * scene.mass * dot(of_center, of_center)
+    elif scene.kind == CARRIED:
+        kinetic += carried_energy(scene, now)
     momentum = with_parts(p, scene, now.time, momentum)
     # L^2 of the body components: the rotation to the world would only add its rounding
     store_diagnosis(out, Diagnosis(kinetic, potential(p, scene, q, now.position),

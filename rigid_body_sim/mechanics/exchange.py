@@ -16,8 +16,8 @@ import numpy as np
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import booking, parameters
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
-from rigid_body_sim.mechanics.energy import DIAGNOSIS
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.energy import DIAGNOSIS, carried_energy
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, WORK
 from rigid_body_sim.mechanics.panels import (
     COLUMNS,
     ENERGY,
@@ -30,7 +30,7 @@ from rigid_body_sim.mechanics.panels import (
 )
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE, STATE_SIZE, TIME
 
 RADIANS = 8.0            # of the fastest turn, in the longest panel
 UNMOVED = 1.0            # s, the first panel where nothing moves
@@ -62,6 +62,8 @@ class Actors:
         Whether anything exchanges energy or angular momentum with the body.
     breakpoints : list of float
         Times at which what acts jumps, s.
+    is_carried : bool
+        Whether the body is held at a pivot that moves.
     swing, drive : float
         Bounds of the rates (bounds.py), rad/s and rad/s^2.
     """
@@ -73,6 +75,8 @@ class Actors:
         self.breakpoints = sorted({time for actor in self._actors for time in actor.breakpoints})
         self._scene = parameters.parameters(scene)
         self._energies = energies(scene)
+        self.is_carried = self._frame.path is not None
+        self._numbers = parameters.scene_parameters(scene)
         self._kernels, self._held = None, {}
         found = self._acting(-math.inf)
         self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
@@ -92,11 +96,19 @@ class Actors:
     def rates(self, p, states):
         """Return the rates of the entries and |omega| at states (n, 14), shape (n, 6)."""
         if self._kernels is None:
-            source = _source(self._acting(-math.inf))
+            source = _source(self._acting(-math.inf), self._frame.path is not None)
             self._kernels = specialise(booking, acting=source)
         out = np.empty((len(states), COLUMNS))
         self._kernels.rates(p, states, out)
         return out
+
+    def carried(self, vector):
+        """Return M u . V - M u^2/2 of a state (J), u the velocity of the pivot.
+
+        The bearing's force M V' - F has the power M u . V' - F . u. The first is the rate of this
+        less M u' . (V - u), and that is done by the torque of scene/effects/carrying.py.
+        """
+        return carried_energy(self._numbers, STATE.load(vector.tolist()))
 
     def sizes(self, vector):
         """Return the sizes of energy (J) and momentum (kg m^2/s) of a state."""
@@ -158,7 +170,12 @@ class Exchange:
         if self._time < time:    # a part of the next panel
             sums = sums.copy()
             self._lay(self._time, time, time, time - self._time, sums)
-        return sums[:ENTRIES_SIZE].copy()
+        entries = sums[:ENTRIES_SIZE].copy()
+        if self._actors.is_carried:
+            now = np.empty((1, STATE_SIZE))
+            self._states(np.array([time]), now)
+            entries[WORK] += self._actors.carried(now[0]) - self._actors.carried(self._start)
+        return entries
 
     def _lay(self, t, until, end, length, sums):
         """Lay the panels that end not later than a time, in a stretch where parameters hold.
@@ -217,14 +234,16 @@ def _edges(t, until, end, length, most):
     return edges if edges[-1] <= until else edges[:-1]
 
 
-def _source(acting):
+def _source(acting, carried):
     """Return the source of ``acting(p, q, omega, v, m, time, place)`` for what acts.
 
     It returns the power of what does work, minus the power of what makes heat, and the torque in
-    the frame. Energy that effects have as a potential is not exchanged.
+    the frame. Energy that effects have as a potential is not exchanged. At a pivot that moves,
+    what potentials and heat take of the bearing's work is not in it (`Actors.carried`).
     """
     lines, at, power, torques = [], parameters.SCENE.size, {'work': [], 'heat': []}, []
-    imports = ['from rigid_body_sim.numerics.vectors import cross, dot, plus']
+    turning, pulling = [], []    # extra rates of the axes, torques of potentials
+    imports = ['from rigid_body_sim.numerics.vectors import cross, dot, plus, scaled']
     for number, one in enumerate(acting):
         imports.append(imported(one.kernel, f'kernel_{number}'))
         values = ''.join(f'p[{at + k}], ' for k in range(len(one.values)))
@@ -232,12 +251,26 @@ def _source(acting):
         name = f'{one.gives}_{number}'
         field = ', time, *place' * one.in_field
         lines.append(f'    {name} = kernel_{number}({values}*q, *omega, *v{field})')
-        if one.gives == 'turning':    # what keeps L = R m: the torque m x u
-            lines.append(f'    {name} = cross(m, {name})')
+        if one.gives == 'turning':    # what keeps L = R m: the torque m x u, below
+            turning.append((name, at - len(one.values)))
         elif one.gives == 'torque' and not one.inner:
             torques.append(name)
-        if one.books in power:
+            if one.books == 'potential':
+                pulling.append(name)
+        if carried and one.gives == 'force':
+            if one.books != 'work':
+                power['work'].append(f'-dot({name}, v)')
+            if one.books == 'heat':
+                power['heat'].append(f'dot({name}, v)')
+        elif one.books in power:
             power[one.books].append(f'dot({name}, {"v" if one.gives == "force" else "omega"})')
+    # the axes turn with omega + u, and take the body through the potentials
+    for name, first in turning:
+        lines += [f'    {name} = plus({name}, scaled(p[{first}], {pull}))' for pull in pulling]
+        if pulling:
+            lines.append(f'    {name}_rate = {name}')
+        power['heat'] += [f'-dot({pull}, {name}_rate)' for pull in pulling]
+        lines.append(f'    {name} = cross(m, {name})')
     total = '(0.0, 0.0, 0.0)'
     for name in torques:
         total = name if total.startswith('(') else f'plus({total}, {name})'

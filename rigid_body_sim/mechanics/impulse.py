@@ -24,7 +24,7 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.mechanics.ledger import ENTRIES, Entries
-from rigid_body_sim.mechanics.parameters import FREE, HINGE, PIVOT, SCENE, TABLE
+from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, PIVOT, SCENE, TABLE
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, product, scaled
 from rigid_body_sim.scene.state import STATE
@@ -107,7 +107,10 @@ def apply_impulse(p, state, force, couple, out):
         reaction = (0.0, 0.0, along_table[2] - J[2])
     else:
         # M dV of the centre of mass: the bearing supplies what J does not
-        reaction = minus(scaled(scene.mass, rotate(*q, *cross(d, arm))), J)
+        pushed = scaled(scene.mass, rotate(*q, *cross(d, arm)))
+        reaction = minus(pushed, J)
+        if scene.kind == CARRIED:    # what moves the pivot does work, too
+            work += dot(pushed, plus(now.velocity, rotate(*q, *cross(omega, scene.through))))
         # the body's origin moves about what is held
         store_velocity(state, minus(now.velocity, rotate(*q, *cross(d, scene.through))))
     if scene.kind == HINGE:
@@ -153,7 +156,7 @@ def add_entries(response, entries):
 @compiled
 def _arm(scene):
     """Return r, from the point of reference to the centre of mass."""
-    if scene.kind == PIVOT or scene.kind == HINGE:
+    if scene.kind == PIVOT or scene.kind == HINGE or scene.kind == CARRIED:
         return minus(scene.center, scene.through)
     return ZERO
 

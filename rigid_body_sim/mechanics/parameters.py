@@ -16,6 +16,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
+CARRIED = len(Mechanism)    # a pivot that moves
 KINDS = {Mechanism.PLANE: FREE}    # between impacts a body over a plane is a free one
 NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
@@ -26,7 +27,7 @@ class SceneParameters(NamedTuple):
     Attributes
     ----------
     kind : float
-        FREE, PIVOT, HINGE or TABLE: the constraint's mechanism.
+        FREE, PIVOT, HINGE or TABLE, the constraint's mechanism, or CARRIED.
     mass : float
         kg.
     center : Vector
@@ -67,8 +68,9 @@ def scene_parameters(scene):
     """Return the SceneParameters of a scene."""
     body, constraint = scene.body, scene.constraint
     inertia, axis = constraint.inertia(body), constraint.axis
+    kind = KINDS.get(constraint.mechanism, constraint.mechanism)
     return SceneParameters(
-        kind=KINDS.get(constraint.mechanism, constraint.mechanism), mass=body.mass,
+        kind=kind if constraint.path is None else CARRIED, mass=body.mass,
         center=body.center_of_mass,
         moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
         hinge_axis=NO_AXIS if axis is None else axis,

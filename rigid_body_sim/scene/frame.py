@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.expressions.source import Kernel
 
 
 class Hinging(NamedTuple):
@@ -48,6 +49,8 @@ class Frame:
         From the reference point to the centre of mass, frame components, m.
     hinge : Hinging, optional
         Of a body that turns about one axis only.
+    path : Kernel, optional
+        Of a point of reference that moves as the scene says (expressions/path.py).
     """
 
     moves: bool
@@ -57,6 +60,12 @@ class Frame:
     point: tuple[float, float, float]
     arm: tuple[float, float, float]
     hinge: Hinging | None = None
+    path: Kernel | None = None
+
+    @property
+    def pushed(self) -> bool:
+        """Whether forces are asked for: they move the body, or work on what carries it."""
+        return self.moves or self.path is not None
 
     def from_body(self, vector: Sequence[float]) -> tuple[float, float, float]:
         """Return the frame components of a vector given in body components."""

@@ -22,6 +22,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
 from rigid_body_sim.scene.constraints.protocol import Constraint
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
+from rigid_body_sim.scene.effects.carrying import Carrying
 from rigid_body_sim.scene.effects.protocol import Contact, Effect, Vector
 from rigid_body_sim.scene.expressions.expression import (
     PARAMETERS,
@@ -265,13 +266,15 @@ def _scene(mapping, where):
     """Return the validated scene of a mapping."""
     check(mapping, scene_schema(), where)
     body = _body(mapping['body'], f'{where}: body')
-    constraint = _constraint(mapping['constraint'], body, f'{where}: constraint')
+    parameters = checked_parameters(mapping.get('parameters', {}), f'{where}: parameters')
+    constraint = _constraint(mapping['constraint'], body, parameters, f'{where}: constraint')
     start = _start(mapping['initial'], body, constraint, f'{where}: initial')
     constraint = constraint.begun(start)
-    parameters = checked_parameters(mapping.get('parameters', {}), f'{where}: parameters')
     effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
                              f'{where}: effects'))
-    _refuse_parts_beside_turning(effects, body, constraint, f'{where}: effects')
+    if constraint.path is not None:
+        effects = *effects, Carrying.of(constraint, body)
+    _refuse_beside_turning(effects, body, constraint, f'{where}: effects')
     initial = constraint.initial(start, body, f'{where}: initial')
     about = printable(' '.join(mapping.get('about', '').split()))
     return Scene(mapping['scene'], about, body, constraint, effects, initial,
@@ -372,7 +375,7 @@ def _part(mapping, where):
     return bodies.hole(part) if M < 0.0 else part, at, turn
 
 
-def _constraint(value, body, where):
+def _constraint(value, body, parameters, where):
     kind, settings = (value, None) if isinstance(value, str) else \
         next(iter(value.items())) if len(value) == 1 else (None, None)
     if kind not in CONSTRAINTS:
@@ -391,6 +394,7 @@ def _constraint(value, body, where):
     if not isinstance(settings, dict):
         raise BadInput(where, f'got {yaml_text.brief(settings)}', constraint.usage)
     check(settings, constraint.SCHEMA, f'{where}.{kind}')
+    settings = with_expressions(settings, constraint.SCHEMA, parameters)
     return constraint.from_scene(settings, body, f'{where}.{kind}')
 
 
@@ -420,12 +424,17 @@ def _effects(entries, body, constraint, parameters, where):
         yield effect.from_scene(settings, body, constraint, at)
 
 
-def _refuse_parts_beside_turning(effects, body, constraint, where):
-    """Refuse a rotor beside internal dissipation, which would not turn the rotor's momentum."""
+def _refuse_beside_turning(effects, body, constraint, where):
+    """Refuse a rotor or a moving pivot beside internal dissipation.
+
+    It would not turn the rotor's momentum, nor the velocity that the pivot gives the body.
+    """
     carrying = [effect.name for effect in effects if effect.momentum is not None]
+    frame = constraint.frame(body)
+    if frame.path is not None:
+        carrying.append('a pivot that moves')
     if not carrying:
         return
-    frame = constraint.frame(body)
     for effect in effects:
         if effect.acting is not None and any(one.gives == 'turning'
                                              for one in effect.acting(frame, 0.0)):

@@ -123,6 +123,28 @@ CASES = {
         "frame: world}}, {potential: {energy: '0.1*angle^2 + 0.03*x*y'}}, {spring: {at: "
         '[0.1, 0.2, 0.3], anchor: [1, 0, 0], stiffness: 2, length: 0.3, damping: 0.1}',
         '{orientation: [0.1, -0.4, 0.2, 0.888], angle: 1.0, rate: 2.0}', 1.0),
+    # the pivot moves: seen from it, -M a acts at the centre of mass
+    'on a moving pivot': (
+        SKEW, "{pivot: {motion: ['0.3*sin(2*t)', 0, 'A*cos(w*t)'], at: [0.1, 0.02, -0.05]}}",
+        'A: 0.05, w: 20.0', 'gravity: {g: 9.81}', TURNING, 1.0),
+    'the same in its own axes': (
+        SKEW, '{pivot: {at: [0.1, 0.02, -0.05]}}', 'A: 0.05, w: 20.0',
+        "gravity: {g: 9.81}}, {force: {value: ['1.3*1.2*sin(2*t)', 0, '1.3*A*w^2*cos(w*t)'], "
+        'frame: world}', TURNING, 1.0),
+    'in a lift': (
+        SKEW, "{pivot: {motion: [0, 0, '1.5*t^2']}}", '', 'gravity: {g: 9.81}', TURNING, 1.0),
+    'under more weight': (SKEW, 'pivot', '', 'gravity: {g: 12.81}', TURNING, 1.0),
+    'all on a moving pivot': (
+        SKEW, "{pivot: {motion: ['0.3*sin(2*t)', '0.1*t^2', '0.05*cos(20*t)'], "
+        'at: [0.1, 0.02, -0.05]}}', '', "gravity: {g: [1, 2, -9.8]}}, {drag: {linear: 0.7, "
+        'quadratic: 0.3, angular: 0.01}}, {spring: {at: [0.1, 0.2, 0.3], anchor: [1, 0, 0], '
+        "stiffness: 2, length: 0.3, damping: 0.1}}, {force: {value: ['sin(t)', x, '-vz'], "
+        "at: [0.1, 0, 0], books: heat}}, {potential: {energy: '0.1*qx*y + x*z'}}, "
+        '{rotor: {axis: [1, 2, 3], momentum: 0.1}', TURNING, 1.0),
+    'heat at a pivot': (SKEW, 'pivot', '', 'gravity: {g: 9.81}}, {internal_dissipation: '
+                        '{coefficient: 0.5}', TURNING, 1.0),
+    'heat in a field': (SKEW, 'free', '', 'magnetic: {moment: [1, 2, 3], field: [0.3, 0.1, 0.2]}},'
+                        ' {internal_dissipation: {coefficient: 0.5}', TURNING, 1.0),
     'four at once': (
         SKEW, 'free', '', 'gravity: {g: 9.81}}, {spring: {at: [0.1, 0, 0.3], anchor: [0, 0, 1], '
         'stiffness: 4.0}}, {drag: {linear: 0.1, angular: 0.01}}, '
@@ -146,7 +168,7 @@ def run(name, method='dop8'):
 
 
 BY_TWO = ('four at once', 'body axes', 'reaction wheels on a tip', 'all of drag',
-          'everything on a hinge')
+          'everything on a hinge', 'on a moving pivot', 'heat at a pivot')
 BY_SERIES = 'gyrostat on a tip', 'top in a world that is turned'
 
 if __name__ == '__main__':

@@ -15,6 +15,7 @@ from scene import language_cases
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import runnable
+from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.ensemble import ensemble
@@ -123,22 +124,30 @@ def test_a_pivot_off_the_origin_is_one_at_the_origin_of_other_axes(found):
     assert np.abs(point).max() < 1e-15
 
 
+SHAKEN = {
+    'force': ('{hinge: {axis: [0, 1, 0]}}',
+              ", {force: {value: [0, 0, 'A*w^2*cos(w*t)'], frame: world}}", '{angle: 0.1}'),
+    'pivot': ("{pivot: {motion: [0, 0, 'A*cos(w*t)']}}", '', '{tilt: 0.1}')}
+
+
 @pytest.mark.without_numba
+@pytest.mark.parametrize('by', SHAKEN)
 @pytest.mark.parametrize(('amplitude', 'stands'), [(0.05, True), (0.02, False)])
-def test_kapitzas_pendulum_stands_where_the_averaged_formula_says(amplitude, stands):
-    """In the frame of a pivot that shakes with A cos(w t) the force m A w^2 cos(w t) acts.
+def test_kapitzas_pendulum_stands_where_the_averaged_formula_says(amplitude, stands, by):
+    """The pivot shakes with A cos(w t), or in its axes the force m A w^2 cos(w t) acts.
 
     Averaged over the shaking, upright is stable if (A w)^2 > 2 g l; then it swings slowly with
     (A w)^2/(2 l^2) - g/l, else it falls so (Landau, Lifshitz, Mechanics, section 30). 2 g l is
     19.6 here, beside 100 and 16.
     """
+    constraint, effect, initial = SHAKEN[by]
     scene = parse_scene(
         f"""scene: kapitza
 parameters: {{A: {amplitude}, w: 200.0}}
 body: {{mass: 1.0, inertia: [1.0e-9, 1.0e-9, 1.0e-9], center_of_mass: [0, 0, 1]}}
-constraint: {{hinge: {{axis: [0, 1, 0]}}}}
-effects: [{{gravity: {{g: 9.8}}}}, {{force: {{value: [0, 0, 'A*w^2*cos(w*t)'], frame: world}}}}]
-initial: {{angle: 0.1}}
+constraint: {constraint}
+effects: [{{gravity: {{g: 9.8}}}}{effect}]
+initial: {initial}
 """)
     square = (amplitude * 200.0) ** 2 / 2 - 9.8
     slow = math.sqrt(abs(square))
@@ -149,6 +158,55 @@ initial: {{angle: 0.1}}
     averaged = 0.1 * (np.cos if stands else np.cosh)(slow * times)
     # the shaking itself is A/l of the angle
     assert np.abs(angle - averaged).max() < 0.02
+
+
+@pytest.mark.parametrize(('moving', 'at_rest'), [
+    ('on a moving pivot', 'the same in its own axes'), ('in a lift', 'under more weight')])
+def test_seen_from_a_moving_pivot_its_acceleration_is_a_force(found, moving, at_rest):
+    one, other = (np.array(found[case]['state'][1:8]) for case in (moving, at_rest))
+    assert np.abs(one - other).max() < 2e-13
+
+
+def test_a_moving_pivot_is_where_the_scene_says(found):
+    now = np.array(found['on a moving pivot']['state'])
+    arm = rotate(*now[1:5], 0.1, 0.02, -0.05)
+    place = 0.3 * math.sin(2.0), 0.0, 0.05 * math.cos(20.0)
+    assert np.abs(now[8:11] + arm - place).max() < 1e-15
+
+
+@pytest.mark.without_numba
+def test_the_drive_of_a_pivot_does_the_work_of_its_force():
+    """The ledger's work is the integral of the reaction (Newton's law) times the velocity."""
+    scene = parse_scene(language_cases.text('all on a moving pivot'), [
+        'force.books=work', 'force.value=[0, 0, 0]'])
+    simulation, dynamics = Simulation(scene, 'dop8', accuracy=1e-12, rate=1.0), Dynamics(scene)
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    times = (np.arange(20)[:, np.newaxis] + 0.5 + 0.5 * nodes).ravel() / 20
+    powers = [dynamics.balance(vector).force
+              @ (0.6 * math.cos(2 * t), 0.2 * t, -math.sin(20 * t))
+              for t, vector in zip(times, simulation.states(times).vector, strict=True)]
+    work = np.tile(weights, 20) @ powers / 40
+    simulation.advance(1)
+    assert simulation.ledger()['work'] == pytest.approx(work, abs=1e-13)
+
+
+@pytest.mark.without_numba
+def test_commands_on_a_moving_pivot_are_booked():
+    scene = parse_scene(language_cases.text('on a moving pivot'))
+    simulation = Simulation(scene, 'dop8', accuracy=1e-12, rate=10.0)
+    simulation.advance(3)
+    simulation.impulse(force=(0.1, 0.3, 0.0), torque=(0.0, 0.01, 0.0))
+    simulation.hold(force=(0.1, 0.0, 0.4), torque=(0.0, 0.01, 0.0))
+    simulation.advance(3)
+    ledger = simulation.ledger()
+    assert abs(ledger['energy_residual']) < 5e-15
+    assert ledger['momentum_residual'] < 5e-15
+
+
+@pytest.mark.parametrize('case', ['heat at a pivot', 'heat in a field'])
+def test_heat_at_constant_momentum_is_taken_from_the_whole_energy(found, case):
+    """T + U falls along the extra rate c (m x omega + Gamma): the heat is a square."""
+    assert found[case]['ledger']['dissipated'] > 0.1
 
 
 def test_the_momentum_of_a_gyrostat_counts_its_rotor(found):
@@ -199,6 +257,19 @@ def scene_of(effect, constraint='free', parameters=''):
 def test_what_does_not_fit_gets_one_line(effect, parameters, words):
     with pytest.raises(BadInput, match=re.escape(words)) as refusal:
         scene_of(effect, parameters=parameters)
+    assert str(refusal.value).isprintable()
+
+
+@pytest.mark.parametrize(('motion', 'effect', 'words'), [
+    ("[0, 0, 'abs(t)']", 'drag: {linear: 1}', 'pivot.motion: has abs; a path without kinks'),
+    ("[0, 0, 'x']", 'drag: {linear: 1}', "pivot.motion.2: got 'x': x is not known here"),
+    ("[0, 0, '1/t']", 'drag: {linear: 1}', 'the place at time 0 is [0.0, 0.0, inf]'),
+    ("[0, 0, 'sqrt(t)']", 'drag: {linear: 1}', 'the velocity at time 0 is'),
+    ("[0, 0, 't']", 'internal_dissipation: {coefficient: 1}', 'stands beside a pivot that moves'),
+    ('[0, 0]', 'drag: {linear: 1}', 'needs at least 3 entries')])
+def test_a_path_that_no_pivot_can_take_gets_one_line(motion, effect, words):
+    with pytest.raises(BadInput, match=re.escape(words)) as refusal:
+        scene_of(effect, f'{{pivot: {{motion: {motion}}}}}')
     assert str(refusal.value).isprintable()
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import (
+    carried,
     euler,
     field,
     flying,
@@ -74,8 +75,11 @@ class Equations:
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         acting = self._acting(-np.inf)
-        in_field, on_hinge = any(one.in_field for one in acting), self._axis is not None
-        if on_hinge:
+        path, on_hinge = self.frame.path, self._axis is not None
+        in_field = path is not None or any(one.in_field for one in acting)
+        if path is not None:
+            self.kind = carried
+        elif on_hinge:
             self.kind = hinged_field if in_field else hinged
             self._moment = moment_on_hinge(scene)
         else:
@@ -86,7 +90,11 @@ class Equations:
         if self.kind is turning and any(one.gives == 'turning' for one in acting):
             self.groups = turning.APART
         self.calls = calls = list(_calls(acting, fixed))
-        self.parameter_count = fixed + sum(len(one.values) for one in acting)
+        for call in calls:
+            if call.gives == 'turning':
+                call.fall([one for one in calls if one.pulls])
+        count = fixed + sum(len(one.values) for one in acting)
+        self.parameter_count = count + (len(path.values) if path is not None else 0)
         self.in_field = in_field
         self.modes, self.gripping, self.grip = [], [], 0.0
         at = fixed
@@ -105,6 +113,8 @@ class Equations:
                        'axes_rate': _axes_rate(calls, state)}
         if self.kind in (flying, field):
             sources['force'] = force_source(calls, state)
+        if path is not None:
+            sources['path'] = path_source(path, count)
         self.kernels = specialise(self.kind, **sources)
         self.write = f'{self.kernels.__name__}:write'
         self._fixed, self._held = self._constants(), {}
@@ -141,7 +151,7 @@ class Equations:
         euler.EQUATION.store(fixed, euler.EquationParameters(
             euler=share, inverse=inverse, moments=moments, axes=frame.axes,
             point=frame.from_body(frame.point), start=euler.NO_START, mass=frame.mass,
-            moves=float(frame.moves)))
+            moves=float(frame.pushed)))
         if hinge:
             hinged.PARAMETERS.part('axis').store(fixed, self._axis)
         return fixed
@@ -171,9 +181,10 @@ class Equations:
     def parameters(self, fixed, time):
         """Return the parameters that hold just after a time.
 
-        The fixed ones, then the values of all that acts.
+        The fixed ones, then the values of all that acts, then those of a pivot's path.
         """
-        return np.array([*fixed, *(value for one in self._acting(time) for value in one.values)])
+        acting = (value for one in self._acting(time) for value in one.values)
+        return np.array([*fixed, *acting, *(self.frame.path.values if self.frame.path else ())])
 
 
 def moment_on_hinge(scene):
@@ -196,7 +207,8 @@ class _Call:
 
     def __init__(self, acting, number, at):
         module, _, self.function = acting.kernel.partition(':')
-        self.gives = acting.gives
+        self.gives, self._first = acting.gives, at
+        self.pulls = acting.gives == 'torque' and acting.books == 'potential'
         self.name = f'{self.function}_{module.rpartition(".")[2]}'
         self.imported = imported(acting.kernel, self.name)
         values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
@@ -213,6 +225,18 @@ class _Call:
                 f'    {self.y} = m3 * {ux} - m1 * {uz}',
                 f'    {self.z} = m1 * {uy} - m2 * {ux}',
             ]
+
+    def fall(self, pulls):
+        """Let the axes turn with the torque of potentials, too: c Gamma, c the first value."""
+        if not pulls:
+            return
+        own, *rest = self.lines
+        moved = [f'    {name} = {name} + p[{self._first}] * ({" + ".join(parts)})'
+                 for name, parts in zip(self.turns, zip(*((one.x, one.y, one.z) for one in pulls),
+                                                        strict=True), strict=True)]
+        self.lines = [*(line for one in pulls for line in one.lines), own, *moved, *rest]
+        self.imported = '\n'.join(dict.fromkeys([*(one.imported for one in pulls),
+                                                 self.imported]))
 
 
 def _calls(acting, at):
@@ -239,6 +263,13 @@ def _kernel(name, calls, results, state=STATE):
 
 def _sums(calls):
     return [' + '.join(getattr(call, axis) for call in calls) or '0.0' for axis in 'xyz']
+
+
+def path_source(path, at):
+    """Return the source of ``path(p, t)``; its values stand in p from the place `at` on."""
+    values = ''.join(f'p[{at + k}], ' for k in range(len(path.values)))
+    return '\n'.join([imported(path.name, 'along_path'), '', '', '@compiled', 'def path(p, t):',
+                      f'    return along_path({values}t)', ''])
 
 
 def torque_source(calls, state=STATE):

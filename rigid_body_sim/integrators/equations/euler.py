@@ -51,7 +51,7 @@ class EquationParameters(NamedTuple):
     mass : float
         kg.
     moves : float
-        1 of a free body, 0 where the point of reference is held.
+        1 where the point of reference moves, 0 where it is held in its place.
     """
 
     euler: Vector

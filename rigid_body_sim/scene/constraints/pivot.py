@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pivot: a point of the body stays where it is, and the body turns about it in all directions."""
 
+import dataclasses
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics import rotations
-from rigid_body_sim.numerics.vectors import cross, minus
+from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene import initial
 from rigid_body_sim.scene.bodies import Body, Inertia, moved, refuse_beyond, square_of
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
+from rigid_body_sim.scene.expressions import path, tree
+from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
+from rigid_body_sim.scene.expressions.source import TIME, Kernel
+from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import VECTOR, mapping_of
 from rigid_body_sim.scene.state import State
@@ -18,7 +25,8 @@ from rigid_body_sim.scene.state import State
 class Pivot(Constraint):
     """``constraint: pivot``. The reference point is the body's origin.
 
-    With a point `at` that is not the origin it is a :class:`DisplacedPivot`.
+    With a point `at` that is not the origin it is a :class:`DisplacedPivot`, with a `motion` a
+    :class:`MovingPivot`.
     """
 
     kind: ClassVar[str] = 'pivot'
@@ -30,7 +38,9 @@ class Pivot(Constraint):
 
     @classmethod
     def variant(cls, body: Body, settings: Any) -> type[Constraint]:
-        """Return DisplacedPivot where settings are given."""
+        """Return DisplacedPivot or MovingPivot where settings are given."""
+        if isinstance(settings, dict) and 'motion' in settings:
+            return MovingPivot
         return DisplacedPivot if settings else cls
 
     def initial(self, start: Start, body: Body, where: str) -> State:
@@ -85,3 +95,70 @@ class DisplacedPivot(Constraint):
     def inertia(self, body: Body) -> Inertia:
         """Return the tensor about the point `at`."""
         return moved(body.about_center, body.mass, self.arm(body), 1.0)
+
+
+@dataclass(frozen=True)
+class MovingPivot(Constraint):
+    """``constraint: {pivot: {motion: [e, e, e], at: [x, y, z]}}``: the pivot moves, whatever acts.
+
+    The point `at` (body axes, m; default: the body's origin) is at `initial.position` +
+    `motion(t)` in the world; the components of `motion` are expressions of the time t (s), in m,
+    without kinks. The bearing takes what force that needs, and the ledger books its work.
+    """
+
+    trees: tuple[tree.Node, ...]
+    parameters: tuple[tuple[str, float], ...]
+    at: Vector = (0.0, 0.0, 0.0)
+    kind: ClassVar[str] = 'moving_pivot'
+    usage: ClassVar[str] = 'pivot: {motion: [0, 0, "0.01*cos(300*t)"]}'
+    SCHEMA: ClassVar[dict | None] = mapping_of(['motion'], motion=EXPRESSIONS, at=VECTOR)
+    INITIAL: ClassVar[dict] = Pivot.INITIAL
+    mechanism: ClassVar[Mechanism] = Mechanism.POINT
+
+    @classmethod
+    def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Any:
+        """Return the pivot on its path."""
+        x, y, z = map(float, settings.get('at', (0.0, 0.0, 0.0)))
+        refuse_beyond(body.mass * square_of((x, y, z)), where)
+        where = f'{where}.motion'
+        trees = tuple(one.tree(f'{where}.{place}', TIME)
+                      for place, one in enumerate(settings['motion']))
+        kinks = path.kinks(trees)
+        if kinks:
+            raise BadInput(where, f'has {", ".join(kinks)}',
+                           'a path without kinks: where it has one the pivot would strike the '
+                           'body')
+        found = cls(trees, settings['motion'][0].parameters, (x, y, z))
+        for what, vector in zip(('place', 'velocity', 'acceleration'),
+                                path.along(found.path, 0.0), strict=True):
+            if not all(map(math.isfinite, vector)):
+                raise BadInput(where, f'the {what} at time 0 is {list(vector)}',
+                               'a path that is finite')
+        return found
+
+    @property
+    def path(self) -> Kernel:
+        """The path of the pivot, without `initial.position`."""
+        return path.path(self.trees, self.parameters)
+
+    def initial(self, start: Start, body: Body, where: str) -> State:
+        """Return the state as it is given, with the pivot on its path."""
+        start.refuse_spin_without_moment(self.inertia(body), where)
+        place, velocity, _ = path.along(self.path, 0.0)
+        arm = rotations.rotate(*start.orientation, *self.at)
+        carried = cross(arm, rotations.rotate(*start.orientation, *start.omega))
+        return State.of(0.0, start.orientation, start.omega,
+                        minus(plus(start.position, place), arm), plus(velocity, carried))
+
+    def point(self, body: Body) -> Vector:
+        """Return the point `at`."""
+        return self.at
+
+    def inertia(self, body: Body) -> Inertia:
+        """Return the tensor about the point `at`."""
+        return moved(body.about_center, body.mass, self.arm(body), 1.0) if any(self.at) \
+            else body.about_origin
+
+    def frame(self, body: Body) -> Frame:
+        """Return the frame about the point, with its path."""
+        return dataclasses.replace(super().frame(body), path=self.path)

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Protocol, Self
 
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body, Inertia
+from rigid_body_sim.scene.expressions.source import Kernel
 from rigid_body_sim.scene.frame import Frame, turned_back
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
@@ -133,6 +134,11 @@ class Constraint(Protocol):
     @property
     def axis(self) -> Vector | None:
         """Unit vector of the only axis the body can turn about, body axes; None if it has more."""
+        return None
+
+    @property
+    def path(self) -> Kernel | None:
+        """The path of the point that it holds (expressions/path.py); None if it stays."""
         return None
 
     @property

@@ -10,7 +10,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.numerics.vectors import apply, cross, scaled, transposed
+from rigid_body_sim.numerics.vectors import apply, cross, plus, scaled, transposed
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
@@ -53,6 +53,9 @@ class Drag(Effect):
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and couple; a coefficient of zero does not act."""
+        if frame.path is not None:    # the kernels of a shape know a moving pivot
+            return ShapedDrag(*(_matrix(c, '') for c in (self.linear, self.angular, 0.0, 0.0))
+                              ).acting(frame, time)
         acting = []
         if self.linear and frame.moves:
             acting.append(Acting(f'{__name__}:force', (self.linear,), 'force', 'heat'))
@@ -139,7 +142,11 @@ class ShapedDrag(Effect):
             if not any(map(any, matrix)):
                 continue
             values = square, *_flat(matrix, frame)
-            if frame.moves:
+            if frame.path is not None:
+                values = *values, *frame.arm
+                acting.append(Acting(f'{__name__}:carried_force', values, 'force', 'heat'))
+                acting.append(Acting(f'{__name__}:carried_moment', values, 'torque', 'heat'))
+            elif frame.moves:
                 acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat'))
             elif any(frame.arm):
                 acting.append(Acting(f'{__name__}:shaped_moment', (*values, *frame.arm),
@@ -177,6 +184,24 @@ def shaped_moment(square, a, b, c, d, e, f, g, h, i, rx, ry, rz,
     """Return r x F for the velocity omega x r, N m."""
     v = cross((wx, wy, wz), (rx, ry, rz))
     return cross((rx, ry, rz), shaped(square, a, b, c, d, e, f, g, h, i, v))
+
+
+@compiled
+def carried_force(square, a, b, c, d, e, f, g, h, i, rx, ry, rz,
+                  qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the force at r from a pivot with the velocity v, N, world components."""
+    of_center = plus(rotate_back(qx, qy, qz, qw, vx, vy, vz),
+                     cross((wx, wy, wz), (rx, ry, rz)))
+    return rotate(qx, qy, qz, qw, *shaped(square, a, b, c, d, e, f, g, h, i, of_center))
+
+
+@compiled
+def carried_moment(square, a, b, c, d, e, f, g, h, i, rx, ry, rz,
+                   qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return the moment of that force about the pivot, N m."""
+    of_center = plus(rotate_back(qx, qy, qz, qw, vx, vy, vz),
+                     cross((wx, wy, wz), (rx, ry, rz)))
+    return cross((rx, ry, rz), shaped(square, a, b, c, d, e, f, g, h, i, of_center))
 
 
 @compiled

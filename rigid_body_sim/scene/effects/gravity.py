@@ -57,14 +57,17 @@ class Gravity(Effect):
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the weight, or its torque about the constraint; nothing without either."""
         weight = frame.mass * self.g
-        if weight == 0.0 or not (frame.moves or any(frame.arm)):
+        if weight == 0.0:
             return ()
-        if frame.moves:
-            return Acting('rigid_body_sim.scene.effects.elementary:constant',
-                          (0.0, 0.0, -weight), 'force', 'potential'),
-        values = tuple(weight * r for r in frame.arm)
-        return Acting('rigid_body_sim.scene.effects.elementary:moment_of_weight', values, 'torque',
-                      'potential'),
+        found = []
+        if frame.pushed:
+            found.append(Acting('rigid_body_sim.scene.effects.elementary:constant',
+                                (0.0, 0.0, -weight), 'force', 'potential'))
+        if any(frame.arm):
+            values = tuple(weight * r for r in frame.arm)
+            found.append(Acting('rigid_body_sim.scene.effects.elementary:moment_of_weight',
+                                values, 'torque', 'potential'))
+        return tuple(found)
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the weight."""
@@ -123,12 +126,16 @@ class GravityVector(Effect):
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the weight, or its torque about the constraint."""
         weight = scaled(frame.mass, self.g)
-        if not any(weight) or not (frame.moves or any(frame.arm)):
+        if not any(weight):
             return ()
-        if frame.moves:
-            return Acting('rigid_body_sim.scene.effects.elementary:constant', weight, 'force',
-                          'potential'),
-        return Acting(f'{__name__}:moment', (*frame.arm, *weight), 'torque', 'potential'),
+        found = []
+        if frame.pushed:
+            found.append(Acting('rigid_body_sim.scene.effects.elementary:constant', weight,
+                                'force', 'potential'))
+        if any(frame.arm):
+            found.append(Acting(f'{__name__}:moment', (*frame.arm, *weight), 'torque',
+                                'potential'))
+        return tuple(found)
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the weight."""

@@ -9,6 +9,10 @@ double bracket dissipation", Commun. Math. Phys. 175, 1996): with m = I omega in
 The momentum L = R m stays in the world when the axes turn with omega + c m x omega. `omega` means
 I^-1 m everywhere, in states and in the energy; the axes' own rate differs from it by c m x omega,
 the motion of the inner parts that make the heat.
+
+A potential of the attitude, whose torque is Gamma, is part of the energy that falls: the extra
+rate is u = c (m x omega + Gamma), along which T + U falls fastest at constant L, and the heat is
+u^2/c.
 """
 
 from dataclasses import dataclass
@@ -29,14 +33,14 @@ class InternalDissipation(Effect):
     """``internal_dissipation: {coefficient: c}``; c in 1/(kg m^2/s), positive.
 
     Near the axis of the largest moment a wobble about axis i dies out at the rate
-    c L^2 (1/I_i - 1/I_max), 1/s. It acts on free bodies only: at a pivot the momentum about it is
-    not the body's own.
+    c L^2 (1/I_i - 1/I_max), 1/s. At a pivot m and I are those about it: the rest of what acts
+    changes L, the dissipation does not.
     """
 
     coefficient: float
     name: ClassVar[str] = 'internal_dissipation'
     SCHEMA: ClassVar[dict] = mapping_of(['coefficient'], coefficient=POSITIVE)
-    mechanisms: ClassVar = (Mechanism.FREE,)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,

@@ -24,6 +24,9 @@ Vector = tuple[float, float, float]
 class Acting:
     """A force, a torque or a turning rate that acts as long as its values hold.
 
+    In a frame with a `path` an effect gives both: the torque about the point that moves, and the
+    force, whose part of the work of what moves it the ledger books.
+
     Attributes
     ----------
     kernel : str
@@ -33,9 +36,10 @@ class Acting:
         returns three components.
     values : tuple of floats
     gives : str
-        ``force`` (N, world components, at the centre of mass; only where ``frame.moves``),
+        ``force`` (N, world components, at the centre of mass; only where ``frame.pushed``),
         ``torque`` (N m, frame components, about the reference point) or ``turning`` (rad/s, frame
-        components, an extra rate at which the axes turn under a constant angular momentum).
+        components, an extra rate at which the axes turn under a constant angular momentum; its
+        first value is a c, and c times the torque of all potentials is added to it).
     books : str
         Where the ledger writes the power: ``potential`` (the view `potential` has the energy),
         ``work`` (done on the body) or ``heat`` (taken from it).

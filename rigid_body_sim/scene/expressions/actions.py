@@ -76,7 +76,7 @@ def force(trees, axes, parameters, at, frame, books):
     """
     arm = minus(frame.from_body(at), frame.from_body(frame.point))
     found = []
-    if frame.moves:
+    if frame.pushed:
         lines = Lines(dict(parameters))
         components = ', '.join(lines.of(*trees))
         found.append(_acting(lines, trees, frame, _to_world(lines, components, axes, frame),
@@ -139,7 +139,7 @@ def pulls(energy, parameters, frame, turn=None):
         turn = [tree.minus(one, tree.times(tree.number(part), along))
                 for one, part in zip(turn, frame.hinge.axis, strict=True)]
     found, moved = [], any(one is not tree.ZERO for one in place)
-    if frame.moves and moved:
+    if frame.pushed and moved:
         lines = Lines(dict(parameters))
         found.append(_acting(lines, place, frame, f'({", ".join(lines.of(*place))})', 'force',
                              'potential'))

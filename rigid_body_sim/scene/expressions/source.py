@@ -153,11 +153,13 @@ def prelude(lines, used, frame):
         Gets the values that are needed.
     used : set of str
         Of STATE_NAMES.
-    frame : Frame
+    frame : Frame or None
+        None where only the time is used.
     """
-    axes = [lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes)]
-    ax, ay, az, aw = axes
     found = []
+    if frame is not None:
+        axes = [lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes)]
+        ax, ay, az, aw = axes
     if used & {*PLACE, *VELOCITY}:
         point = ', '.join(lines.value(f'point{k}', part)
                           for k, part in enumerate(frame.from_body(frame.point)))
@@ -183,7 +185,7 @@ def prelude(lines, used, frame):
     if used & {*PLACE}:
         found.append(f'    {_names(PLACE)} = minus((x, y, z), rotate(qx, qy, qz, qw, {point}))')
     if used & {*VELOCITY}:
-        drift = '(vx, vy, vz)' if frame.moves else '(0.0, 0.0, 0.0)'
+        drift = '(vx, vy, vz)' if frame.pushed else '(0.0, 0.0, 0.0)'
         found.append(f'    {_names(VELOCITY)} = minus({drift}, rotate(qx, qy, qz, qw, '
                      f'*cross((wx, wy, wz), ({point}))))')
     return found

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Carrying: what the acceleration of a moving pivot does to a body, seen from the pivot.
+
+In axes that move with the pivot, whose acceleration is a, the force -M a acts at the centre of
+mass. A scene does not list this effect: a pivot with a `motion` brings it along.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from rigid_body_sim.scene.bodies import Body
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Effect
+from rigid_body_sim.scene.expressions import actions, path, tree
+from rigid_body_sim.scene.frame import Frame
+
+
+@dataclass(frozen=True)
+class Carrying(Effect):
+    """The torque of -M a about a pivot with the acceleration a.
+
+    Attributes
+    ----------
+    trees : tuple of 3 Nodes
+        -M a, world axes, N.
+    parameters : tuple of (str, float)
+    center : tuple of 3 floats
+        The centre of mass, body axes, m.
+    """
+
+    trees: tuple[tree.Node, ...]
+    parameters: tuple[tuple[str, float], ...]
+    center: tuple[float, float, float]
+    name: ClassVar[str] = 'carrying'
+    SCHEMA: ClassVar[dict] = {}
+    mechanisms: ClassVar = (Mechanism.POINT,)
+
+    @classmethod
+    def of(cls, constraint: Constraint, body: Body) -> Self:
+        """Return the effect of a moving pivot."""
+        mass = tree.number(-body.mass)
+        forces = tuple(tree.times(mass, one) for one in path.accelerations(constraint.trees))
+        return cls(forces, constraint.parameters, body.center_of_mass)
+
+    def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
+        """Return the torque; none of a pivot at the centre of mass, and none in a fixed frame."""
+        if frame.path is None:
+            return ()
+        found = tuple(one for one in actions.force(self.trees, 'world', self.parameters,
+                                                   self.center, frame, 'work')
+                      if one.gives == 'torque')
+        # a motion in closed form sees that something acts, even if it turns nothing
+        return found or (Acting('rigid_body_sim.scene.effects.elementary:constant',
+                                (0.0, 0.0, 0.0), 'torque', 'work'),)
