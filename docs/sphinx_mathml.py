@@ -10,13 +10,21 @@ import re
 from docutils import nodes
 from latex2mathml.converter import convert
 
-FUNCTION = re.compile(r'<m[io]>(sin|cos|tan|arctan|sn|max|min|sign)</m[io]>')
+# browsers draw no bold but by a style, and the dot of a derivative too small to be seen
+CHANGES = ((re.compile(r'<m[io]>(sin|cos|tan|cot|arctan|sn|max|min|sign)</m[io]>'),
+            r'<mo lspace="0.17em" rspace="0.17em">\1</mo>'),
+           (re.compile('<mi mathvariant="bold">'),
+            '<mi mathvariant="normal" style="font-weight: bold">'),
+           (re.compile('<mo>(&#x002D9;|&#x000A8;)</mo></mover>'),
+            r'<mo style="font-size: 150%; font-weight: bold">\1</mo></mover>'))
 
 
 def mathml(latex, display):
     """Return an equation as MathML; names of functions keep off their neighbours."""
-    return FUNCTION.sub(r'<mo lspace="0.17em" rspace="0.17em">\1</mo>',
-                        convert(latex, display=display))
+    equation = convert(latex, display=display)
+    for pattern, better in CHANGES:
+        equation = pattern.sub(better, equation)
+    return equation
 
 
 def visit_math(translator, node):
