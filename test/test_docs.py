@@ -9,6 +9,10 @@ import sys
 import pytest
 
 from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.integrators.marching import contact
+from rigid_body_sim.mechanics import events
+from rigid_body_sim.motions import sliding_sphere
+from rigid_body_sim.scene.effects import EFFECTS
 from rigid_body_sim.scene.scene import load_scene, scene_names
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
@@ -18,6 +22,7 @@ from figures import tables  # noqa: E402
 
 README = DOCS.parent / 'README.md'
 PAGES = sorted(DOCS.rglob('*.md'))
+HANDOUTS = [path for path in PAGES if path.parent.name == 'systems' and path.stem != 'index']
 # scenes whose kernels other tests compile anyway; one function makes the other tables too
 QUICK = {'inertia_tensors', 'kater_pendulum', 'symmetric_top', 'chandler_wobble', 'asymmetric_top',
          'heavy_top', 'fast_top'}
@@ -102,6 +107,74 @@ def test_commands_of_the_page_exist_and_their_overrides_hold(path):
         overrides = re.findall(r'--set (?:"([^"]+)"|(\S+))', line)
         if scene and scene[1] in scene_names():
             load_scene(scene[1], [quoted or plain for quoted, plain in overrides])
+
+
+def test_every_effect_has_its_law_and_keys_on_the_page_of_scenes():
+    text = (DOCS / 'scenes.md').read_text()
+    for name, effect in EFFECTS.items():
+        rows = [line.split(' | ') for line in text.splitlines() if line.startswith(f'| `{name}`')]
+        assert rows and all(len(row) == 4 and all(row) for row in rows), name
+        for key in effect.SCHEMA['properties']:
+            assert any(f'`{key}`' in row[2] or f'`{key}:' in row[2] for row in rows), (name, key)
+
+
+def test_every_event_is_on_the_page_of_scenes():
+    names = {*events.WATCHED, *sliding_sphere.EVENTS, *contact.BEGAN.values()}
+    source = pathlib.Path(contact.__file__).read_text()
+    names |= set(re.findall(r"_events.append\(\([^']*'([^']+)'", source))
+    assert {'impact', 'lift-off', 'rest', 'flip'} <= names
+    text = (DOCS / 'scenes.md').read_text()
+    for name in names:
+        assert f'`{name}`' in text, name
+
+
+def test_every_handout_has_all_its_parts():
+    """Question, labelled body, scene, symbols with units, steps, both columns, what to try."""
+    for path in HANDOUTS:
+        text = path.read_text()
+        head, *parts = re.split(r'^## (.*)\n', text, flags=re.MULTILINE)
+        assert re.match(r'# .*\?\n', head), path.stem
+        assert f'](../images/body_{path.stem}.png)' in head, path.stem
+        assert re.search(r'^Scenes?: \[`', head, re.MULTILINE), path.stem
+        titles, bodies = parts[::2], parts[1::2]
+        assert titles == ['Symbols', 'From the law to the result', 'Theory and measurement',
+                          'Try it'], path.stem
+        symbols, steps, table, tries = bodies
+        rows = [re.split(r' *(?<!\\)\| *', line.strip('| ')) for line in symbols.split('\n')
+                if line.startswith('|')]
+        assert rows[0] == ['symbol', 'meaning', 'unit'] and len(rows) > 3, path.stem
+        assert all(len(row) == 3 and all(row) for row in rows), path.stem
+        assert len(re.findall(r'^\d\. ', steps, re.MULTILINE)) >= 2, path.stem
+        assert '$$' in steps, path.stem
+        assert '| predicted | measured |' in table, path.stem
+        assert '\npython -m rigid_body_sim ' in tries, path.stem
+
+
+def test_every_handout_names_its_source():
+    """A section of the notes that the index lists, or authors with a year."""
+    index = (DOCS / 'systems' / 'index.md').read_text()
+    sections = [row.split(' | ')[0].strip('| ').lower()
+                for row in index.splitlines() if row.startswith('| ')]
+    for path in HANDOUTS:
+        steps = path.read_text().partition('## From the law to the result\n\n')[2]
+        source = ' '.join(steps.partition('\n\n')[0].split())
+        cited = re.findall(r'"([^"]+)"', source) if source.startswith('Notes, ') else []
+        if cited:
+            first = cited[0].lower().replace('→', 'to')
+            assert any(first in section or section in first for section in sections), path.stem
+        else:
+            assert re.search(r'[A-Z]\. [A-Z].*\b(18|19|20)\d\d\b', source), path.stem
+
+
+def test_figures_of_the_gallery_name_their_processor_date_and_command():
+    """Once for all pages of systems, which show no times of computing."""
+    index = (DOCS / 'systems' / 'index.md').read_text()
+    assert re.search(r'`make figures`.*AMD EPYC.*\b20\d\d\b', index, re.DOTALL)
+    for path in HANDOUTS:
+        text = path.read_text()
+        assert not re.search(r'CPU|\d (µs|us|ns)\b|processor', text), path.stem
+        for scene in re.findall(r'<!-- check_scenes: (\w+) -->', text):
+            assert scene in text.replace(f'check_scenes: {scene}', ''), path.stem
 
 
 def test_a_picture_of_other_numbers_than_the_scene_s_says_so():

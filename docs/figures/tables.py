@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of docs/systems/*.md and docs/corrections.md, made from the results of check_scenes.
 
-A page marks the place of a table by ``<!-- check_scenes: SCENE -->``, or ``<!-- corrections -->``;
-the lines up to ``<!-- end -->`` are generated. Numbers have the digits that their tolerance
+A page marks the place of a table by ``<!-- check_scenes: SCENE -->``, by ``<!-- check_scenes: SCENE
+only WORD; WORD -->`` for the rows that begin with these words, or by ``<!-- corrections -->``; the
+lines up to ``<!-- end -->`` are generated. Numbers have the digits that their tolerance
 guarantees, so they are the same on every machine.
 """
 
@@ -17,7 +18,8 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent
-MARK = re.compile(r'(<!-- (check_scenes: (\w+)|corrections) -->\n).*?(<!-- end -->)', re.DOTALL)
+MARK = re.compile(
+    r'(<!-- (check_scenes: (\w+)(?: only ([^>]*?))?|corrections) -->\n).*?(<!-- end -->)', re.DOTALL)
 ERRATA = (      # section of the notes, subject, scene, and the quantity that tells the two apart
     ('Symmetric top (no gravity)', 'Ω = ω3 (I3 − I1)/**I1**, not /I3', 'symmetric_top',
      'Omega of omega round e3 in the body'),
@@ -71,15 +73,18 @@ def filled(text, scenes=None):
         scene = match[3]
         if scenes is not None and scene not in scenes:
             return match[0]
-        return (match[1] + ('\n'.join(scene_table(scene)) if scene else '\n'.join(corrections()))
-                + '\n' + match[4])
+        only = tuple(match[4].split('; ')) if match[4] else ('',)
+        lines = scene_table(scene, only) if scene else corrections()
+        return match[1] + '\n'.join(lines) + '\n' + match[5]
     return MARK.sub(table, text)
 
 
-def scene_table(scene):
-    """Return the lines of the table of a scene."""
+def scene_table(scene, only=('',)):
+    """Return the lines of the table of a scene: the rows that begin with one of these words."""
     lines = ['| quantity | predicted | measured | tolerance |', '|---|---|---|---|']
     for title, quantity in rows(scene).items():
+        if not title.startswith(only):
+            continue
         digits = digits_of(quantity)
         relation = '≤ ' if quantity.bound else ''
         measured = shown(quantity.measured, digits)

@@ -11,6 +11,8 @@ from notices import without_notices
 
 from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.study import check_scenes
+from rigid_body_sim.study.scenes import driven_body
+from rigid_body_sim.study.scenes.experiment import Experiment
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
@@ -50,6 +52,12 @@ def test_scene_is_confirmed_by_both_ways(name, capsys):
             assert row['error_as_written'] > 1e3 * row['tolerance']
     kept.check(f'theory_{name}', {quantity: {key: row.get(key) for key in KEPT}
                                   for quantity, row in rows.items()})
+
+
+def test_a_changed_scene_without_a_closed_form_is_integrated():
+    axial = Experiment(load_scene('driven_body'), 'exact')
+    assert axial.variant(driven_body.ASYMMETRIC).method == 'dop8'
+    assert axial.variant({'torque.value': [0.0, 0.0, 0.1]}).method == 'exact'
 
 
 def test_inertia_by_quadrature_and_by_a_blow(capsys):

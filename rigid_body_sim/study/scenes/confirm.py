@@ -8,11 +8,10 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.scenes import inertia_tensors
-from rigid_body_sim.study.scenes.experiment import Experiment
+from rigid_body_sim.study.scenes.experiment import SMOOTH, Experiment
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 
-SMOOTH = 'dop8'
 TIMES = 41      # number of times at which two ways are compared
 
 

@@ -4,9 +4,11 @@
 import numpy as np
 from scipy.optimize import brentq
 
+from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
+SMOOTH = 'dop8'
 ACCURACY = 1e-13    # rad in 100 s, far below the tolerances
 NODES = 17          # number of nodes of the interpolation that is differentiated
 
@@ -29,11 +31,15 @@ class Experiment:
         self._accuracy = accuracy
 
     def variant(self, changes, texts=()):
-        """Return the same experiment with changes to the scene, {key.path: numbers or text}."""
+        """Return the same experiment with changes to the scene, {key.path: numbers or text}.
+
+        A changed scene that the method cannot run is integrated by the smooth method.
+        """
         overrides = [f'{key}={np.asarray(value).tolist()}' for key, value in changes.items()]
         overrides += [f'{key}={text}' for key, text in dict(texts).items()]
-        return Experiment(
-            parse_scene(self.scene.text, overrides, self.scene.name), self.method, self._accuracy)
+        scene = parse_scene(self.scene.text, overrides, self.scene.name)
+        method = self.method if self.method in methods_for(scene) else SMOOTH
+        return Experiment(scene, method, self._accuracy)
 
     def states(self, times):
         """Return the States at times (s)."""
