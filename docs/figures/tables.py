@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of docs/systems/*.md and docs/corrections.md, made from the results of check_scenes.
 
-A page marks the place of a table by ``<!-- check_scenes: SCENE -->``, by ``<!-- check_scenes: SCENE
-only WORD; WORD -->`` for the rows that begin with these words, or by ``<!-- corrections -->``; the
+A page marks the place of a table by ``<!-- check_scenes: SCENE -->`` or ``<!-- corrections -->``;
+``<!-- check_scenes: SCENE only WORD; WORD -->`` takes the rows that begin with these words. The
 lines up to ``<!-- end -->`` are generated. Numbers have the digits that their tolerance
 guarantees, so they are the same on every machine.
 """
@@ -19,7 +19,8 @@ from rigid_body_sim.study.scenes.confirm import confirm, confirm_shapes
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent
 MARK = re.compile(
-    r'(<!-- (check_scenes: (\w+)(?: only ([^>]*?))?|corrections) -->\n).*?(<!-- end -->)', re.DOTALL)
+    r'(<!-- (check_scenes: (\w+)(?: only ([^>]*?))?|corrections) -->\n).*?(<!-- end -->)',
+    re.DOTALL)
 ERRATA = (      # section of the notes, subject, scene, and the quantity that tells the two apart
     ('Symmetric top (no gravity)', 'Ω = ω3 (I3 − I1)/**I1**, not /I3', 'symmetric_top',
      'Omega of omega round e3 in the body'),
