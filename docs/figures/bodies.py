@@ -40,7 +40,9 @@ class Labelled(NamedTuple):
     lengths : dict of str to ((x, y, z), (x, y, z))
         Labels of lengths between two points, body axes, m.
     arrows : dict of str to ((x, y, z), (x, y, z))
-        Label to point and direction, body axes; drawn as long as the body reaches.
+        Label to point and direction, body axes; a unit is drawn as long as the body reaches.
+    inwards : bool
+        Whether the arrows end at their points and come from their directions.
     vertical : bool
         Whether to show the weight.
     axes : str
@@ -53,29 +55,31 @@ class Labelled(NamedTuple):
     points: Mapping = NONE
     lengths: Mapping = NONE
     arrows: Mapping = NONE
+    inwards: bool = False
     vertical: bool = False
     axes: str = '123'
 
 
 O = (0.0, 0.0, 0.0)
-TOP = {'points': {'O': O, 'C': (0.0, 0.0, 0.1)}, 'lengths': {'l': (O, (0.0, 0.0, 0.1))},
-       'vertical': True, 'view': (14.0, -70.0)}
+TOP = {'points': {'O': O, 'C': (0.0, 0.0, 0.1)},
+       'lengths': {'l': ((-0.06, 0.0, 0.0), (-0.06, 0.0, 0.1))}, 'vertical': True,
+       'view': (14.0, -70.0), 'axes': '13'}
 BODIES = {
     'billiard_ball': Labelled(
         'billiard_follow', view=(8.0, -80.0), axes='', points={'C': O},
         lengths={'a': (O, (0.0, 0.0, -0.028575)), 'h': (O, (0.0, 0.0, 0.02))},
-        arrows={'cue: M v$_0$': ((-0.0571, 0.0, 0.02), (1.0, 0.0, 0.0))}),
+        arrows={'M v$_0$': ((-0.03, 0.0, 0.02), (-1.0, 0.0, 0.0))}, inwards=True),
     'kater_pendulum': Labelled(
         'kater_pendulum', ('initial.angle=0.35',), view=(4.0, -88.0), axes='', vertical=True,
         points={'Q': O, 'C': (0.0, 0.0, -0.4), 'P': (0.0, 0.0, -1.0)},
         lengths={'l': ((0.14, 0.0, 0.0), (0.14, 0.0, -0.4)),
                  "l'": ((-0.2, 0.0, 0.0), (-0.2, 0.0, -1.0))}),
     'baseball_bat': Labelled(
-        'baseball_bat', view=(80.0, -90.0), axes='',
+        'baseball_bat', view=(42.0, -55.0), axes='',
         points={'hand': O, 'C': (0.55, 0.0, 0.0)},
         lengths={'l': ((0.0, 0.12, 0.0), (0.55, 0.12, 0.0)),
                  'd': ((0.0, -0.14, 0.0), (0.6227, -0.14, 0.0))},
-        arrows={'F': ((0.6227, -0.42, 0.0), (0.0, 1.0, 0.0))}),
+        arrows={'F': ((0.6227, -0.03, 0.0), (0.0, -0.6, 0.0))}, inwards=True),
     'driven_body': Labelled('driven_body', arrows={'Γ': (O, (0.0, 0.0, 1.0))}, axes='12'),
     'free_body': Labelled('free_body'),
     'symmetric_top': Labelled('symmetric_top'),
@@ -89,7 +93,7 @@ BODIES = {
     'sleeping_top': Labelled('sleeping_top', **TOP),
     'fast_top': Labelled('fast_top', **TOP),
     'degenerate': Labelled('thin_rod', points={'C': O},
-                           lengths={'L': ((0.0, 0.0, -0.5), (0.0, 0.0, 0.5))}),
+                           lengths={'L': ((-0.1, 0.0, -0.5), (-0.1, 0.0, 0.5))}),
     'inertia_tensors': Labelled('sphere', points={'C': O}),
     'rolling_disk': Labelled('rolling_disk', vertical=True, points={'C': O},
                              lengths={'R': (O, (0.5, 0.0, 0.0))}),
@@ -123,15 +127,26 @@ def draw(name):
         _arrow(axes, start, vector, *style)
         seen.append([start, start + 1.2 * vector])
 
+    omega, named = scene.initial.angular_velocity, 'ω'
     for surface in drawing.surfaces:
         _fill(axes, surface, world(surface.vertices))
     for k in map(int, about.axes):
-        arrow(np.zeros(3), 1.25 * turn.apply(np.eye(3)[k - 1]), f'e$_{k}$', GREY, 1.0)
-    omega = scene.initial.angular_velocity
+        # the label of an axis that omega hides stands beyond that of omega
+        hidden = omega[k - 1] > 0.999 * np.linalg.norm(omega) > 0.0
+        arrow(np.zeros(3), 1.25 * turn.apply(np.eye(3)[k - 1]), '' if hidden else f'e$_{k}$',
+              GREY, 1.0)
+        named += f', e$_{k}$' if hidden else ''
     if np.any(omega):
-        arrow(np.zeros(3), 1.5 * turn.apply(omega / np.linalg.norm(omega)), 'ω', ORANGE)
+        arrow(np.zeros(3), 1.5 * turn.apply(omega / np.linalg.norm(omega)), named, ORANGE)
     for text, (at, direction) in about.arrows.items():
-        arrow(world(at), turn.apply(direction), text, GREEN)
+        vector = turn.apply(direction)
+        if about.inwards:
+            start = world(at) + vector
+            axes.text(*(start + 0.12 * vector), text, color=GREEN, fontsize=12, zorder=9,
+                      ha='right')
+            arrow(start, -vector, '', GREEN, 2.0, 0.25)
+        else:
+            arrow(world(at), vector, text, GREEN)
     if about.vertical:
         center = world(scene.body.center_of_mass)
         arrow(center, np.array([0.0, 0.0, -0.7]), 'M g', BLACK)
@@ -149,7 +164,7 @@ def draw(name):
     middles, half = 0.5 * (least + most), 0.5 * (most - least).max()
     axes.set(**{f'{k}lim': (middle - half, middle + half)
                 for k, middle in zip('xyz', middles, strict=True)})
-    axes.set_box_aspect((1.0, 1.0, 1.0), zoom=1.1)
+    axes.set_box_aspect((1.0, 1.0, 1.0), zoom=1.0)
     axes.view_init(*about.view)
     axes.set_axis_off()
     return figure
@@ -170,6 +185,6 @@ def _fill(axes, surface, vertices):
         linewidths=0.0, zorder=1))
 
 
-def _arrow(axes, start, vector, text, color, width=2.0):
-    axes.quiver(*start, *vector, color=color, linewidth=width, arrow_length_ratio=0.13, zorder=6)
+def _arrow(axes, start, vector, text, color, width=2.0, head=0.13):
+    axes.quiver(*start, *vector, color=color, linewidth=width, arrow_length_ratio=head, zorder=6)
     axes.text(*(start + 1.12 * vector), text, color=color, fontsize=12, zorder=9)

@@ -36,7 +36,7 @@ def draw():
         omega = [float(-start * np.sin(TILT)), 0.0, SPIN]
         e3 = instruments.axes(run('heavy_top', f'initial.angular_velocity={omega}').states(
             np.linspace(0.0, 1.6, 800)))[:, :, 2]
-        axes[1].plot(e3[:, 0], e3[:, 1], label=name, **line | {'linestyle': '-', 'linewidth': 1.2})
+        axes[1].plot(e3[:, 0], e3[:, 1], label=name, **line | {'linewidth': 1.2})
     axes[1].plot(0.0, 0.0, 'k+')
     axes[1].set_aspect('equal')
     label(axes[1], 'e$_3$ along x', 'e$_3$ along y', loc='upper left', bbox_to_anchor=(0.98, 1.0))

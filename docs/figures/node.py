@@ -13,6 +13,7 @@ from figures.style import BLACK, BLUE, GREY, ORANGE, label, panels
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / 'node.json'
 COLOURS = {'floor': GREY, 'node': BLUE, 'node, recording': ORANGE}
+MARKERS = {'floor': 'o', 'node': 's', 'node, recording': '^'}
 HATCHES = {'floor': None, 'node': None, 'node, recording': '//'}
 
 
@@ -28,8 +29,10 @@ def draw():
         cost.bar(at, [one['tick_us'] for one in found], 0.25, color=colour, hatch=HATCHES[row],
                  edgecolor='white', label=row)
         lateness.vlines(at, [one['p50'] for one in found], [one['p99'] for one in found],
-                        color=colour, linewidth=3.0, label=row)
+                        color=colour, linewidth=3.0)
         lateness.plot(at, [one['p50'] for one in found], color=BLACK, marker='_', linestyle='')
+        lateness.plot(at, [one['p99'] for one in found], color=colour, marker=MARKERS[row],
+                      linestyle='', label=row)
     for axes in (cost, lateness):
         axes.set_xticks(places, names, fontsize=8)
         axes.set_axisbelow(True)
@@ -37,5 +40,6 @@ def draw():
     lateness.set_yticks([30, 100, 300, 1000], ['30', '100', '300', '1000'])
     lateness.minorticks_off()
     label(cost, '', 'processor time of a tick (µs)')
-    label(lateness, '', 'lateness, p50 to p99 (µs)', legend=False)
+    label(lateness, '', 'lateness, p50 to p99 (µs)', loc='lower center', ncols=3,
+          bbox_to_anchor=(0.5, 1.0), columnspacing=1.0, handlelength=1.0)
     return figure

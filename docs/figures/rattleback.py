@@ -3,8 +3,10 @@
 
 import numpy as np
 
-from figures.style import GREY, LINES, label, panels, run
+from figures.style import BLACK, GREY, LINES, label, panels, run
 from rigid_body_sim.study.scenes.convex_body import normals
+
+LIGHT = '#E69F00'    # light beside black, in grey too
 
 
 def draw():
@@ -17,10 +19,10 @@ def draw():
         left.plot(times, states.angular_velocity[:, 2], label=f'started at {spin:g} rad/s', **line)
         if spin < 0.0:
             n = normals(states)
-            right.plot(times, np.degrees(np.arcsin(n[:, 0])), label='pitch', linewidth=0.6,
-                       color=line['color'])
             right.plot(times, np.degrees(np.arcsin(n[:, 1])), label='roll', linewidth=0.6,
-                       color=LINES[1]['color'])
+                       color=LIGHT)
+            right.plot(times, np.degrees(np.arcsin(n[:, 0])), label='pitch', linewidth=0.6,
+                       color=BLACK)
     left.axhline(0.0, color=GREY, linewidth=0.8)
     label(left, 'time (s)', 'spin ω$_3$ (rad/s)', loc='lower center', bbox_to_anchor=(0.5, 1.0),
           ncols=2)

@@ -12,7 +12,7 @@ def draw():
     """Return the figure."""
     figure, (axes,) = panels()
     times = np.linspace(0.05, 150.0, 3000)
-    for name, share, line in (('falling_top', '0.999', LINES[1] | {'linestyle': '-'}),
+    for name, share, line in (('falling_top', '0.999', LINES[1]),
                               ('sleeping_top', '1.001', LINES[0])):
         axes.semilogy(times, instruments.beta(run(name).states(times)),
                       label=f'P$_γ$² = {share} · 4 I$_1$Mgl', **line)

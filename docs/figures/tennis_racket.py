@@ -17,7 +17,8 @@ def draw():
         axes[0].plot(times, omega[:, k], label=f'ω$_{k + 1}$', **line)
     interval = theory.time_between_flips((1.0, 2.0, 3.0), (0.01, 5.0, 0.01))
     axes[0].axvspan(0.5 * interval, 1.5 * interval, color='#eeeeee', linewidth=0)
-    axes[0].annotate('between flips:\n2 K(k)/λ', (interval, 1.2), ha='center', fontsize=8)
+    axes[0].annotate('between flips:\n2 K(k)/λ', (interval, 1.2), ha='center', fontsize=8,
+                     bbox={'facecolor': '#eeeeee', 'linewidth': 0, 'pad': 1.0})
     label(axes[0], 'time (s)', 'ω in the body (rad/s)', ncols=3, loc='upper center',
           bbox_to_anchor=(0.5, 1.14))
     early = times < 1.9

@@ -26,7 +26,7 @@ def draw(results):
     """Return the Figure of a list of results (work_precision.py), a panel for each problem."""
     columns = min(2, len(results))
     rows = math.ceil(len(results) / columns)
-    figure = Figure(figsize=(7.6 * columns, 4.9 * rows), dpi=110, layout='constrained')
+    figure = Figure(figsize=(4.6 * columns, 3.5 * rows + 1.6), dpi=160, layout='constrained')
     FigureCanvasAgg(figure)
     looks = {}    # method -> number; a method looks the same in all panels
     for peers in (False, True):
@@ -37,6 +37,10 @@ def draw(results):
         panel(axes, result, looks)
     for axes in figure.axes[len(results):]:
         axes.remove()
+    seen = {name: handle for axes in figure.axes
+            for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(seen.values(), seen.keys(), loc='outside lower center', ncols=2 * columns,
+                  frameon=False, fontsize=8, handlelength=3.0, labelspacing=0.3)
     return figure
 
 
@@ -44,7 +48,7 @@ def panel(axes, result, looks):
     """Draw one problem; `looks` gives the number that selects a method's colour and marker."""
     floor = result['floor']
     axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
-    axes.text(0.01, floor, 'half an ulp on the inputs', ha='left', va='top', fontsize=7.5,
+    axes.text(0.99, LEAST / 3.0, 'grey: half an ulp on the inputs', ha='right', fontsize=8,
               transform=axes.get_yaxis_transform())
     ours = [line for line in result['lines'] if not line['is_peer']]
     peers = [line for line in result['lines'] if line['is_peer']]
@@ -58,24 +62,22 @@ def panel(axes, result, looks):
                       [point['cpu']['most'] - t for t, point in zip(times, line['points'])]]
             errors = [min(MOST, max(LEAST, point['error'])) for point in line['points']]
             single = line['control'] == 'none'
-            size = 15 if line['name'] == 'exact' else 9 if single else 3 if fixed else 5
+            size = 13 if line['name'] == 'exact' else 8 if single else 2.5 if fixed else 4
             axes.errorbar(
                 times, errors, xerr=spread, linestyle=':' if fixed else dashes, color=colour,
                 label=line['name'], marker='*' if single else MARKERS[k % len(MARKERS)],
                 markersize=size, markerfacecolor=colour if filled else 'white',
-                linewidth=2.4 if line['name'] in leading else 0.9, elinewidth=0.6,
+                linewidth=2.0 if line['name'] in leading else 0.8, elinewidth=0.6,
                 zorder=4 if single else 3)
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.set_ylim(LEAST / 4.0, MOST)
-    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 76),
-                   fontsize=10, loc='left')
+    axes.set_title(textwrap.fill(f'{result["problem"]}: {result["about"]}'.rstrip(': '), 50),
+                   fontsize=9, loc='left')
     axes.set_xlabel('CPU seconds per simulated second')
     axes.set_ylabel(f'error of the attitude after {result["duration"]:g} s (rad)')
     axes.grid(color='#dddddd', linewidth=0.5)
     axes.spines[['top', 'right']].set_visible(False)
-    axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5,
-                handlelength=3.0, labelspacing=0.3)
 
 
 def family(name):
