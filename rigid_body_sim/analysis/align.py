@@ -29,7 +29,7 @@ def aligned(recording, topics, progress=None):
             all(blocks or not left[name] for name, blocks in waiting.items())
             or sum(len(part['log_time']) for part in waiting[topic]) > LARGEST
         ):
-            # what comes later of a topic has a log time of at least its last one
+            # later messages of a topic have at least the log time of its last one
             until = min(
                 (
                     waiting[name][-1]['log_time'][-1] - 1

@@ -25,18 +25,18 @@ def analyze(path, folder, short=False, shared_page=None):
     path : path-like
         A recording's folder or an .mcap file.
     folder : path-like
-        Where the report goes; made if need be, its files replaced.
+        Where the report goes; it is created if it does not exist, and its files are replaced.
     short : bool
         Only numbers and the overview figure.
     shared_page : list, optional
-        Gets what page.write_page needs, and no page is written here.
+        Receives what page.write_page needs; no page is written then.
 
     Raises
     ------
     BadInput
         Where there is no recording of a simulation, or the folder cannot be written.
     """
-    # a terminal shows what is being done from the first moment to the last
+    # the progress bar stays visible from the first moment to the last
     with tqdm(
         desc=f'{path}: opening', unit=' messages', unit_scale=True, disable=None, leave=False
     ) as bar:
@@ -87,14 +87,14 @@ def _spectrum(measured):
 def _ledger(source):
     """Return the ledger of a Source, or None.
 
-    A recording of others tells no commands, and without them there is no balance.
+    A recording by another program has no journal of commands, so its energy cannot be balanced.
     """
     from rigid_body_sim.analysis.ledger import ledger
     return ledger(source) if source.run else None
 
 
 def _figures(folder, measured, found, more, short):
-    """Write what there is to look at; return the paths."""
+    """Write figures and page; return their paths."""
     # matplotlib takes a second to import
     from rigid_body_sim.analysis import figures
     if short:

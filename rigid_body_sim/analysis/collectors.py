@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept of a stream of millions of numbers: few enough to draw, and true ones.
+"""Samples kept of a stream of millions of numbers: few enough to draw, each an original value.
 
 Each collector takes blocks in the order of time (``add``) and holds a bounded amount of memory.
 """
@@ -17,9 +17,9 @@ class Curve:
     Parameters
     ----------
     count : int
-        How many samples will come, about.
+        Approximate number of samples to come.
     points : int
-        How many to keep of each curve, about; up to that many all are kept.
+        Approximate number to keep of each curve; a shorter curve is kept whole.
     """
 
     def __init__(self, count, points=32768):
@@ -74,7 +74,7 @@ class Curve:
 
 
 class Samples:
-    """Every so manieth sample, all columns: for pictures of the motion in space.
+    """Every n-th sample with all columns, for pictures of the motion in space.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class Samples:
 
 
 class Head:
-    """The first samples, all columns, as many as are wanted.
+    """The first `keep` samples with all columns.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording against its rerun: the same bits, or where they part and by how much."""
+"""Compare a recording with its rerun: the same bits, or where and by how much they differ."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME
 
-# topic -> column of the message, what of the rerun it should be
+# topic -> column of the message, and the quantity of the rerun that it should equal
 QUANTITIES = {
     'pose': (('orientation', 'pose.orientation'), ('position', 'pose.position')),
     'angular_velocity': (('angular_velocity', 'vector'),),
@@ -24,7 +24,7 @@ GAP, SPAN = 1000, 100_000
 
 
 class Comparison:
-    """Takes stretches of a recording.
+    """Compares stretches of a recording with the rerun.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def within(largest, limit):
 
 
 def _angle(p, q):
-    """Return the angles between attitudes, also where they are tiny.
+    """Return the angles between attitudes, accurate also where they are tiny.
 
     The chord of two quaternions is 2 sin(angle / 4).
     """

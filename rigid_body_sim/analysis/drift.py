@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Residuals of conserved quantities, from the first tick of the segment in which they are kept."""
+"""Residuals of conserved quantities, relative to the first tick of each segment."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ MOST_LEVELS = 100
 
 
 class Residual:
-    """Takes values of a quantity that is constant in some segments of the history.
+    """Residual of a quantity that is constant in some segments of the history.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class Residual:
         Least scale of the residual, in the unit of the quantity; it is relative to the largest of
         that and its size at the segment's start.
     count : int
-        How many values will come, about.
+        Approximate number of values to come.
     size : int
         Number of components; the residual of a vector is the length of its change, that of a
         number has a sign.
@@ -55,7 +55,7 @@ class Residual:
             self.greatest, values.max(axis=0)
         )
         places = self._history.at(stamps)
-        # for each value, which one before it (-1: of an earlier block) is the first of its segment
+        # index of the first value of the segment of each value (-1: in an earlier block)
         begins = np.flatnonzero(np.diff(places, prepend=self._place))
         which = np.searchsorted(begins, np.arange(len(values)), side='right') - 1
         references = np.concatenate([values[begins], [self._reference]])[which]
@@ -74,7 +74,7 @@ class Residual:
         self.last_residual = float(residuals[-1])
 
     def _note_levels(self, times, values, places):
-        """Note where stretches begin in which the quantity is constant, and at what value."""
+        """Note where the quantity begins to be constant, and its value there."""
         for time, value, place in zip(times.tolist(), values, places.tolist(), strict=True):
             self.stretches += bool(self._kept[place])
             if self._kept[place] and len(self.levels) < MOST_LEVELS:

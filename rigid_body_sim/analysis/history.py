@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What happened in a run, from the journal of its recording.
 
-There are marks for people, and segments in which nothing was changed from outside.
+It consists of marks, which figures show, and of segments without a change from outside.
 """
 
 import dataclasses
@@ -66,7 +66,7 @@ class Segment:
             self.scene.constraint.mechanism is Mechanism.FREE)
 
     def _keeps(self, harmless):
-        """Return whether all that acts between impulses is harmless, a function of an Acting."""
+        """Return whether `harmless` is true of everything that acts between impulses."""
         if self.scene is None or self.held or self.scene.constraint.mechanism is Mechanism.PLANE:
             return False
         frame = self.scene.constraint.frame(self.scene.body)

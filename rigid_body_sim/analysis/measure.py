@@ -14,13 +14,13 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS
 
 HAVE_STAMPS = ('pose', 'angular_velocity')
-LARGEST = 1e150     # its square is finite
+LARGEST = 1e150     # the square of this is finite
 UNIT = 1e-6
 """Largest error of the square of a quaternion's length; single precision is off by 1e-7."""
 
 
 class Measured:
-    """All that is measured of one Source.
+    """Everything that is measured in one Source.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Measured:
             self._take_motion(stretch['pose'], stretch['angular_velocity'])
 
     def _take_motion(self, pose, omega):
-        """Take the ticks of which both messages are here: those with the same header stamp."""
+        """Take the ticks that have both messages, matched by their header stamps."""
         _, mine, theirs = np.intersect1d(
             pose['header.stamp'], omega['header.stamp'], assume_unique=True, return_indices=True
         )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What follows from attitude and angular velocity together, tick by tick.
+"""Quantities that follow from attitude and angular velocity together, tick by tick.
 
-World axes, Euler angles, conserved momenta, slip.
+These are omega in world axes, Euler angles, conserved momenta, and slip.
 """
 
 import warnings
@@ -142,7 +142,7 @@ class Conserved:
         )
 
     def of(self, attitude, angular_velocity):
-        """Return it, (n,) or (n, 3), for attitudes and angular velocities (body axes)."""
+        """Return the momentum, (n,) or (n, 3), of attitudes and angular velocities (body)."""
         momentum = attitude.apply(angular_velocity @ self._inertia)
         return momentum[:, 2] if self._vertical else momentum
 

@@ -82,7 +82,7 @@ class Moving:
 def moving(measured):
     """Return the Moving of a Measured, or None.
 
-    It has the whole recording where its samples are dense enough to be played, else its beginning.
+    It holds the whole recording if the samples are dense enough to be played, else the beginning.
     """
     if measured.motion is None or not measured.motion.samples.columns():
         return None

@@ -2,7 +2,7 @@
 """report.html: the report to look at, in one file that works without a network.
 
 The verdict comes first, then the moving body, then the curves that matter; the rest is folded.
-Plotly and the numbers are carried compressed, and a figure is drawn when it comes into sight.
+Plotly and the numbers are embedded compressed, and a figure is drawn once it is scrolled to.
 """
 
 import base64
@@ -62,7 +62,7 @@ def write_page(path, bodies):
 
 
 def _carried(name, text):
-    """Return the element that carries a text to page.js."""
+    """Return the HTML element that passes a text to page.js."""
     packed = base64.b64encode(gzip.compress(text.encode(), 9, mtime=0)).decode()
     return f'<script type="application/gzip" id="{name}">{packed}</script>'
 
@@ -109,7 +109,7 @@ def _section(number, packed, name, measured, found, spectrum, balance):
 
 
 def _verdict(found):
-    """Return the HTML of what the numbers come to, in a sentence or two."""
+    """Return the HTML of the verdict, in a sentence or two."""
     names = {'energy': 'energy', 'angular_momentum_squared': 'L²'}
     kept = {name: found[key]['largest_residual'] for key, name in names.items()
             if found[key]['largest_residual'] is not None}
@@ -152,7 +152,7 @@ def _between(found):
 
 
 def heading_of(moves):
-    """Return a line that says what of a Moving is shown."""
+    """Return a line that says which part of a Moving is shown."""
     return f'The body from {moves.times[0]:.6g} to {moves.times[-1]:.6g} s: {moves.drawing.about}'
 
 
@@ -206,7 +206,7 @@ def _layout(figure, height, **more):
 
 
 def thinned(x, y):
-    """Return a curve of at most MOST_POINTS points: of each stretch its least and largest."""
+    """Return a curve of at most MOST_POINTS points: the least and largest of each stretch."""
     if len(x) <= MOST_POINTS:
         return x, y
     stretch = -(-len(x) // (MOST_POINTS // 2))
@@ -306,7 +306,7 @@ def _spectra(spectrum):
     import plotly.graph_objects as go
     from plotly.subplots import make_subplots
     figure = make_subplots(2, 1, shared_xaxes=True, vertical_spacing=0.03)
-    # what is much higher is not sent along
+    # frequencies far above are not sent to the page
     last = int(np.searchsorted(spectrum.frequencies, 4.0 * spectrum.top))
     for row, axes in enumerate(spectrum.amplitudes, 1):
         seen = spectrum.seen(axes)[:last - 1].astype(np.float32)

@@ -193,7 +193,7 @@ def lateness(measured):
     if not len(late):
         return None
     edges = (np.append(late[:, 0], late[-1, 1]) - measured.source.start) * 1e-9
-    # what is less than a microsecond is noise of the clock
+    # below a microsecond there is only noise of the clock
     columns = [
         (name, np.maximum(np.append(late[:, k], late[-1, k]) * 1e-3, 1.0))
         for name, k in (('p50', 2), ('p99', 3), ('max', 4))

@@ -25,7 +25,7 @@ LEGEND = {
     'frameon': False,
     'handlelength': 2.5,
 }
-# up to so many times the band, the residual is about round-off, and the band is named
+# a residual up to this many times the band is about round-off, and the band is labelled
 ROUND_OFF = 20
 
 
@@ -86,7 +86,7 @@ def space(one):
         axes.plot_wireframe(
             *np.moveaxis(net, 2, 0), rstride=2, cstride=3, linewidth=0.35, color=color, label=name
         )
-    # as points, for a path may begin anew anywhere
+    # as points, since a path may be interrupted anywhere
     points = axes.scatter(*one.path.T, c=one.times, cmap='viridis', s=3.0, depthshade=False)
     for set_label, label in zip(
         (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), one.axes, strict=True

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording of a recording that was played: its log times are not the stamps of the simulation.
+"""Recordings of a recording that was played back: log times are not the simulation's stamps.
 
 ``ros2 bag play`` publishes the messages as they were, so the stamps in their headers stay;
-``ros2 bag record`` logs the times at which they came.
+``ros2 bag record`` logs the times at which they arrived.
 """
 
 import numpy as np
@@ -65,7 +65,7 @@ class Restamped:
         return 'header.stamp' in columns or self.topics[topic].count == len(self._stamps)
 
     def blocks(self, topics, progress=None):
-        """Yield what Recording.blocks does."""
+        """Yield blocks as Recording.blocks does."""
         done = dict.fromkeys(topics, 0)
         for topic, columns in self._recording.blocks(topics, progress=progress):
             count = len(columns['log_time'])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run, run again from its journal alone: the same scene, commands and ticks."""
+"""A recorded run that is simulated again from its journal: same scene, commands and ticks."""
 
 import json
 
@@ -37,7 +37,7 @@ class Rerun:
     recorded : dict
         What the recorded simulation was asked for, and its method.
     simulation : Simulation
-        As it stands now.
+        In its present state.
 
     Raises
     ------
@@ -77,7 +77,7 @@ class Rerun:
 
     def _simulation(self, text, asked):
         asked = {**asked, **self._method}
-        # what auto chose then, not what it would choose now
+        # the method that auto chose then, not the one it would choose now
         settled = None
         if not self._method and asked['expected_error'] is not None:
             settled = Settled(asked['method'], asked['tolerance'], asked['expected_error'],
@@ -184,7 +184,7 @@ class Rerun:
         self._given = tick - 1
 
     def _act(self):
-        """Do what was done at the present tick, in its order; return whether anything was."""
+        """Repeat what was done at the present tick, in order; return whether anything was done."""
         acted = False
         while self._actions and self._actions[-1]['tick'] == self.simulation.tick:
             acted = True

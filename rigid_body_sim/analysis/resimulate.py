@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `resimulate`: run a recording's scene and commands again and compare, bit for bit.
 
-With another method or accuracy: what that would have changed in this very run.
+With another method or accuracy it shows what that would have changed in this run.
 """
 
 import json
@@ -77,7 +77,7 @@ def tolerance(rerun, comparison):
 
 
 def broken_promises(rerun):
-    """Return why other bits are allowed, a list of texts; where it is empty bits are promised.
+    """Return the reasons why the bits may differ; an empty list means that the bits are promised.
 
     A recording promises its bits to every program of the same version of the arithmetic, on any
     machine. SciPy's methods promise theirs on the same machine only, with the same versions.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording holds of one simulated body: its topics, how it was made, what happened to it.
+"""One simulated body of a recording: its topics, how it was made, what happened to it.
 
 A recording may hold several bodies, each in a namespace of its own, and it may come from ``ros2
 bag record``: then there is no journal, and the scene is known only if its topic was recorded.
@@ -25,7 +25,7 @@ EVERY_TICK = {
     'energy': 'std_msgs/msg/Float64',
     'angular_momentum_squared': 'std_msgs/msg/Float64',
 }
-# topic of every tick -> its columns of numbers, and how many numbers each has
+# topic of every tick -> its columns, and how many numbers each has
 COLUMNS = {
     'pose': {'pose.orientation': (4,), 'pose.position': (3,)},
     'angular_velocity': {'vector': (3,)},
@@ -157,7 +157,7 @@ def _run(recording, topics, entries, start, end):
         if begin.get('made_by') in UNPACED
         else float(json.loads(begin.get('parameters', '{}')).get('real_time_factor', 1.0))
     )
-    # commands without a journal: nobody knows at which tick they acted
+    # without a journal the ticks at which commands acted are unknown
     held = not entries and bool({'cmd_wrench', 'cmd_impulse'} & set(topics))
     events = recording.decoded(topics['events']) if 'events' in topics else ()
     rate = run['rate'] if run else _estimated_rate(recording, topics)
@@ -167,9 +167,9 @@ def _run(recording, topics, entries, start, end):
 
 @contextlib.contextmanager
 def journal_of(where):
-    """Turn any error that a strange journal causes into BadInput.
+    """Turn any error that a malformed journal causes into BadInput.
 
-    A journal is read as if we wrote it, but anybody may have written it.
+    A journal is read as if this package wrote it, but another program may have.
     """
     try:
         yield

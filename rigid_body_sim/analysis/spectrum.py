@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.analysis.lines import predicted_lines
 
 FEWEST = 64
-PADDING = 4         # zeros that are added, times the length: a finer curve
-SMALLEST = 1e-9     # amplitude that is shown, of the largest
+PADDING = 4         # zero padding, as a multiple of the length, for a finer curve
+SMALLEST = 1e-9     # smallest amplitude that is shown, relative to the largest
 SEARCH = 1.5
 """Distance from its prediction within which a line is looked for, in units of 1/length."""
 RISES = 30.0
@@ -73,7 +73,7 @@ class Spectrum:
 
     @property
     def top(self):
-        """The frequency (Hz) up to which there is something to see.
+        """The highest frequency (Hz) that is worth showing.
 
         Up to it lie the predicted lines and all amplitudes above a thousandth of the largest.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the analysis says of a recording: as data (report.json) and as a few lines for people."""
+"""The results of an analysis, as data (report.json) and as a short report."""
 
 import collections
 

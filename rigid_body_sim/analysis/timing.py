@@ -12,9 +12,9 @@ import numpy as np
 
 from rigid_body_sim.messages.timeline import NANOSECONDS
 
-SLEW = 5e-4                 # s a second: what adjusts clocks gently changes them by no more
+SLEW = 5e-4                 # s per second: a clock that is slewed changes by no more
 STANDSTILL = 100_000_000    # ns; a node that is further behind slips (realtime/ticking.py)
-FEWEST = 20                 # ticks in a group, which else takes a second
+FEWEST = 20                 # fewest ticks in a group, which otherwise lasts a second
 BINS = 100_000              # of 1 us: up to STANDSTILL
 
 
@@ -92,7 +92,7 @@ class Punctuality:
         if self._last_time is None:
             self._last_time, self._paced_until = times[0], stamps[0]
         self._running += int(times[-1] - self._last_time) - stood
-        # by the stamps, for ticks that are missing here were run all the same
+        # counted by stamps, since ticks that are missing here were still run
         self._advanced += float(stamps[-1] - self._paced_until) * self._rate
         self._last_time, self._paced_until = times[-1], stamps[-1]
         late = np.maximum(behind - self._schedule, 0)
@@ -117,7 +117,7 @@ class Punctuality:
         measured = int(self._counts.sum())
         if measured:
             ranks = np.cumsum(self._counts)
-            # the upper edge of a bin: a percentile is never said to be smaller than it was
+            # the upper edge of a bin, so that a percentile is never reported too small
             p50, p99 = (
                 min((int(np.searchsorted(ranks, share * measured)) + 1) * 1e-6, self._worst * 1e-9)
                 for share in (0.5, 0.99)

@@ -31,9 +31,9 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene
 
 FINEST_ACCURACY = 1e-15
-STIFF = 10.0    # times the rotation rate: faster dissipation is stiff
+STIFF = 10.0    # multiple of the rotation rate above which dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
-OFTEN = 13      # unknowns of the equations that have most
+OFTEN = 13      # largest number of unknowns of the equations
 KEPT = 64       # choices
 HORIZON = 100.0
 """Time over which an accuracy holds where no duration is given, s."""
@@ -41,7 +41,7 @@ HORIZON = 100.0
 
 @functools.cache
 def _say_what_is_slow():
-    """Say once, in one line on stderr, what a missing numba costs."""
+    """Warn once, in one line on stderr, what a missing numba costs."""
     if jit.numba is None:
         logging.getLogger('rigid_body_sim').warning(
             'numba is not installed: the same bits, about a hundred times slower; '
@@ -55,7 +55,7 @@ def methods_for(scene):
 
 @dataclass(frozen=True)
 class Choice:
-    """A method made ready for a scene.
+    """A method prepared for a scene.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Choice:
 
     @property
     def settled(self):
-        """What `auto` chose, as `choose` takes it again; None of a method that was named."""
+        """The choice of `auto`, as `choose` accepts it again; None if a method was named."""
         if self.expected_error is None:
             return None
         return trial.Settled(self.method, self.tolerance, self.expected_error, self.met_until)
@@ -223,7 +223,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
         if found and (integrator == 'exact' or settled
                       or found.error <= max(accuracy, found.floor)):
             prototype = Exact(scene, found.motion, found.scene)
-            # the forecast of a closed form decides nothing: it is made when somebody asks
+            # the forecast of a closed form decides nothing, so it is made on demand
             find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
             return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
                           _known(settled) if settled else find)
@@ -252,7 +252,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
 
 
 def _known(settled):
-    """Return what makes the Forecast of a choice that was settled."""
+    """Return a function that makes the Forecast of a settled choice."""
     return functools.partial(Forecast, settled.expected_error, settled.met_until)
 
 
@@ -276,7 +276,7 @@ def _closed_form(scene, horizon):
     nearly = nearly_absorbing(scene, horizon)
     if nearly is None:
         return None
-    # a torque adds to the angle that the body turns over
+    # a torque adds to the angle that the body turns
     floor = (measured.floor(scene, horizon)
              + 0.5 * measured.HALF_ULP * drive(scene, None) * horizon * horizon)
     return _Closed(*nearly, floor)

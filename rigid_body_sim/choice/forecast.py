@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run of a scene may err by: trial runs with strikes, and how far rounding is magnified.
+"""The expected error of a run: trial runs with strikes, and the magnification of rounding.
 
-A motion magnifies what is lost on its way by rounding, whatever solves it. How much shows when the
-start is moved: with G the change of the attitude for changes of the start, and D half an ulp of
-each of its numbers,
+A motion magnifies rounding errors, whatever method solves it. Moving the start shows by how much:
+with G the derivative of the attitude by the start, and D half an ulp of each of its numbers,
 
     conditioning = |G D| (Frobenius) = sqrt(mean |G D s|^2) over signs s
 
-which finite differences along a few orthogonal rows of signs give.
+which is estimated by finite differences along a few orthogonal rows of signs.
 """
 
 import math
@@ -29,16 +28,16 @@ from rigid_body_sim.numerics.rotations import angle_between, normalised
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-LOOKS = 24               # times at which runs are compared
+LOOKS = 24               # number of times at which runs are compared
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
          (1, -1, -1, 1, 1, -1, -1))
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
-MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # by how many half ulps the start is moved
-LINEAR = 0.03            # rad: beyond it a change is no longer in proportion to its cause
+MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
+LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 
 class Forecast(NamedTuple):
-    """What a run is expected to err by.
+    """The expected error of a run.
 
     Attributes
     ----------
@@ -136,7 +135,7 @@ def _pushed(scene, strike, vector):
 
 
 def struck_rate(scene):
-    """Return what the strikes of a scene add to the rate of its body (rad/s), about."""
+    """Return approximately what the strikes of a scene add to the rate of its body (rad/s)."""
     total, start = 0.0, scene.initial.vector
     for strike in strikes(scene):
         after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
@@ -171,7 +170,7 @@ def momenta_apart(scene, states, others):
 def rounding(scene, states, times):
     """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,).
 
-    What a torque adds to the rate counts twice: the moment that it meets is rounded, too.
+    A rate that a torque adds counts twice, since the moment of inertia is rounded, too.
     """
     rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
     fastest = np.maximum.accumulate(rates)
@@ -182,7 +181,7 @@ def rounding(scene, states, times):
 
 
 def conditioning(scene, prototype, times, states):
-    """Return what half an ulp on each number of the start does to the attitude, rad, shape (n,).
+    """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
 
     Parameters
     ----------
@@ -204,7 +203,7 @@ def conditioning(scene, prototype, times, states):
 
 
 def lost(scene, prototype, times, states):
-    """Return what rounding does to the attitude of a run, rad, shape (n,).
+    """Return the error of the attitude of a run by rounding, rad, shape (n,).
 
     Each strike starts the motion anew, with roundings of its own: squares add up.
 
@@ -228,7 +227,7 @@ def _moved(scene, start, signs, many):
     if tuple(inertia.axes) != IDENTITY and min(inertia.moments) > 0.0:
         size = np.full(3, hypot3(*size.tolist()))    # components along the principal axes mix
     if scene.constraint.axis is not None:
-        vector[ANGULAR_VELOCITY] *= 1.0 + by[4]      # it stays along the hinge
+        vector[ANGULAR_VELOCITY] *= 1.0 + by[4]      # the rotation stays along the hinge
     else:
         vector[ANGULAR_VELOCITY] += by[4:] * size
     return vector
@@ -260,8 +259,8 @@ def forecast(errors, times, accuracy, horizon):
 def of_exact(scene, prototype, own, accuracy, horizon):
     """Return the Forecast of a motion in closed form.
 
-    It errs by rounding, magnified, and by `own` (rad, at the horizon) where it is the closed form
-    of a scene that is nearly this one.
+    Its error is magnified rounding, plus `own` (rad, at the horizon) if it is the closed form of a
+    scene that is nearly this one.
     """
     times = looks(horizon)
     states = run(scene, prototype, scene.initial.vector, times)

@@ -46,7 +46,7 @@ def _free_directions(scene):
 
 
 def pace(scene):
-    """Return a bound of the rate of a body (rad/s): that at the start and what weight adds."""
+    """Return a bound of the rate of a body (rad/s): its start's plus what weight adds."""
     return hypot3(*scene.initial.angular_velocity) + swing_rate(scene)
 
 
@@ -67,7 +67,7 @@ def rows(scene):
 def pick(scene, able, accuracy, horizon):
     """Return (method, tolerance, expected error in rad) of the cheapest good method.
 
-    Where no method was measured to meet it, the most accurate one is taken.
+    If no method was measured to meet the accuracy, the most accurate one is taken.
 
     Parameters
     ----------

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trial runs of a choice on the scene itself: a motion may magnify errors, which no table knows.
+"""Trial runs of a choice on the scene itself, since a motion may magnify errors.
 
 The chosen method runs from the scene's start, strikes included, and again with a tolerance a
-thousand times finer; the difference is the error of the choice. Where the error is too large, the
-tolerance is made finer by as much, until that helps no more. The angular momentum of a slim body
-errs more than its attitude, by the quotient of its moments: it counts too, so that the ledger
-balances. Both runs lose the same digits of the
-start: what that does to the attitude is added (forecast.py).
+thousand times finer; the difference is the error of the choice. If the error is too large, the
+tolerance is made finer by the same factor, until that no longer helps. The angular momentum of a
+slim body has a larger error than its attitude, by the quotient of its moments: it counts too, so
+that the ledger balances. Both runs lose the same digits of the start; the effect of that on the
+attitude is added (forecast.py).
 """
 
 import math
@@ -22,18 +22,18 @@ from rigid_body_sim.mechanics.bounds import drive
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
-LONGER = 10.0   # times that: up to there a trial goes on to a strike
-STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
-FINER = 1e-3    # the tolerance of the run that a choice is compared with, over its own
-FINER_ONES = FINER, 0.03, 0.3    # where a run that much finer takes too much work
+LONGER = 10.0   # multiple of the span up to which a trial goes on to a strike
+STEPS, STEPS_PER_RADIAN = 5000, 20    # most work of a trial run: three times that of the finest
+FINER = 1e-3    # tolerance of the run that a choice is compared with, relative to its own
+FINER_ONES = FINER, 0.03, 0.3    # the same, where such a run takes too much work
 TRIES = 5       # largest number of tolerances
-MOMENTA = 0.1   # share at which relative errors of the angular momentum count as errors, rad
+MOMENTA = 0.1   # weight of relative errors of the angular momentum as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
-MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
+MAGNIFIED = 1e-5    # rad: rounding magnified beyond this shows in the errors themselves
 
 
 class Settled(NamedTuple):
-    """What `auto` chose.
+    """The choice of `auto`.
 
     Attributes
     ----------
@@ -55,17 +55,17 @@ class Settled(NamedTuple):
 def settle(scene, able, accuracy, horizon):
     """Return the Settled choice that meets an accuracy on this scene.
 
-    A method that takes many more steps than the motion asks for is no method for the scene: the
-    next one is tried. Where none meets the accuracy, the most accurate method of the table is
-    taken. The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a
-    part of a long horizon, and errors are taken to grow in proportion to time.
+    A method that takes many more steps than the motion requires is unsuitable, and the next one is
+    tried. If none meets the accuracy, the most accurate method of the table is taken. The
+    parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a
+    long horizon, and errors are taken to grow in proportion to time.
 
     Raises
     ------
     NotConverged
         No method follows the scene.
     """
-    # a method that was not measured on such scenes is for those who name it
+    # a method that was not measured on such scenes is used only if it is named
     left, failed = [name for name in able if measured.rows(scene).get(name)], None
     while left:
         method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
@@ -139,7 +139,7 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
 
 
 def _pace(scene):
-    """Return a bound of the rate of a body (rad/s), about, with what strikes add."""
+    """Return an approximate bound of the rate of a body (rad/s), strikes included."""
     return measured.pace(scene) + forecast.struck_rate(scene)
 
 

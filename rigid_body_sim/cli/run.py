@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `run`, which `make run` calls: the node for a while, then a report on its recording.
+"""The command `run` (of `make run`): run the node for a while, then report on its recording.
 
 The node is a process of its own, so nothing here disturbs its ticks; modules that take long to
 import are imported when it has ended.
@@ -63,13 +63,13 @@ def _next_steps(path):
 
 
 def _node(options, name):
-    """Run the node to its end; return its exit status, and the signal that ended it or None."""
+    """Run the node until it ends; return its exit status, and the signal that ended it or None."""
     parameters = {'scene': options.scene, 'rate': options.rate, 'duration': options.duration,
                   'recording.directory': FOLDER, 'recording.name': name}
     assignments = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
     command = [sys.executable, '-m', 'rigid_body_sim', 'sim_node', '--ros-args', *assignments]
     with forwarding() as forwarder:
-        # a demonstration does not open a door to the network
+        # a demonstration stays off the network
         environment = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', **os.environ}
         process = subprocess.Popen(command, env=environment,
                                    stdout=sys.stderr if options.json else None)
@@ -94,7 +94,7 @@ def forwarding():
 class Forwarder:
     """Passes signals on to a child process.
 
-    A signal that came before the child was there is passed on when it is.
+    A signal that arrives before the child has started is passed on once it has.
 
     Attributes
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `scenes`: what ships, which effects each lists, which methods can run it."""
+"""The command `scenes`: list the scenes, their effects, and the methods that can run them."""
 
 import sys
 

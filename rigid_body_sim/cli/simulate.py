@@ -35,7 +35,7 @@ PARTS = ('orientation', 'angular_velocity', 'position', 'velocity')
 def interruptible():
     """Yield a list that gets the number of each signal that asks to end (SIGINT, SIGTERM, SIGHUP).
 
-    The signals end nothing by themselves: the caller finishes what it is doing and looks.
+    The signals end nothing by themselves: the caller finishes its work and then checks the list.
     """
     asked = []
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
@@ -54,7 +54,7 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
     Parameters
     ----------
     simulation : Simulation
-        Just made.
+        A new one, at tick 0.
     ticks : int
     recording : SimulationRecording, optional
         Gets the states at all ticks, the first one included.
@@ -118,7 +118,7 @@ def main(arguments=None):
 
 
 def _run(options):
-    # from the first moment on: to choose a method and to compile it may take seconds
+    # shown at once, since choosing and compiling a method may take seconds
     with tqdm(desc='setting up', unit=' ticks', unit_scale=True, disable=None,
               leave=False) as bar:
         return _simulate(options, bar)
@@ -171,14 +171,14 @@ def _simulate(options, bar):
 
 
 def _parameters(options):
-    """Return what was asked, by the names that the node's parameters have."""
+    """Return the settings by the names of the node's parameters."""
     return {'scene': options.scene, 'scene_overrides': options.set, 'rate': options.rate,
             'integrator': options.integrator, 'accuracy': options.accuracy,
             'step': options.step, 'duration': options.duration, 'publish': options.publish}
 
 
 def _writing(options):
-    """Return how the files are to be written; raise BadInput where that makes no sense."""
+    """Return the settings of the Writer; raise BadInput if they contradict each other."""
     for name in ('split_bytes', 'split_seconds'):
         if not 0.0 <= getattr(options, name) <= LONGEST * 4.0:
             raise BadInput(f'--{name.replace("_", "-")}', f'got {getattr(options, name):g}',
@@ -192,7 +192,7 @@ def _plain(state):
 
 
 def _tell(result, scene, output):
-    """Print the outcome for people."""
+    """Print a summary of the run."""
     state, ledger, cost = result['state'], result['ledger'], result['cost']
     print(f'{scene.name} by {result["method"]["method"]}: {cost["ticks"]} ticks, '
           f't = {state["time"]!r} s, in {cost["run"]:.3f} s')

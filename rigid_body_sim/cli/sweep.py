@@ -15,7 +15,7 @@ from rigid_body_sim.sweeps.plan import DONE
 from rigid_body_sim.sweeps.sweep import forecast, sweep
 
 CONNECTING = 10.0    # longest wait for a scheduler, s
-SHOWN = 3            # texts of runs that failed
+SHOWN = 3            # number of error texts of failed runs to print
 PART = 2**22         # runs whose status is read at once
 
 
@@ -73,7 +73,7 @@ def _client(address):
         return
     need('distributed')
     import distributed
-    # what the loss of a scheduler means stands in a line of ours; these would add tracebacks
+    # a line of ours explains the loss of a scheduler; these loggers would add tracebacks
     for name in ('distributed', 'distributed.client', 'asyncio', 'tornado.application'):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
@@ -127,7 +127,7 @@ def _failed(found):
 
 
 def _tell(found, seconds, options):
-    """Print what became of a sweep."""
+    """Print the outcome of a sweep."""
     status, dims = found['status'], found['status'].dims
     failed, texts = _failed(found)
     result = {'runs': int(status.size), 'failed': failed, 'seconds': seconds,

@@ -75,7 +75,7 @@ def article(name):
 
 
 def _surface(surface):
-    """Return what is drawn of a scene.surfaces.Surface."""
+    """Return the drawn Surface of a scene.surfaces.Surface."""
     size = {'ellipsoid': [surface.size], 'torus': surface.size[:2]}
     drawn = surfaces.SURFACES[OF_SURFACE.get(surface.kind, surface.kind)](
         *size.get(surface.kind, surface.size[:1]))
@@ -93,7 +93,7 @@ def _is_hole(part):
 
 
 def _about_parts(parts, shaped):
-    """Return what is drawn of a composite, in words."""
+    """Return a description of the drawn parts of a composite."""
     count, holes = len(shaped), sum(map(_is_hole, parts))
     left_out = [f'{number} {name}{"s" if number > 1 else ""}' for number, name in (
         (holes, 'hole'), (len(parts) - count - holes, 'shapeless part')) if number]

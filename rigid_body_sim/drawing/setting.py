@@ -46,7 +46,7 @@ class Ground(NamedTuple):
 
 
 def ground_of(scene, reach):
-    """Return the Ground: the table or plane, or else a level just below all that turns."""
+    """Return the Ground: the table or plane, or else a level plane just below the moving body."""
     start = float(start_of(scene)[2])
     mechanism = scene.constraint.mechanism if scene else None
     if mechanism is Mechanism.PLANE:

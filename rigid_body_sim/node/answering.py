@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests that fail are answered, and the node goes on.
+"""Answers to failing requests, so that the node goes on.
 
-An exception in the callback of a service leaves rclpy's executor, which would end the process:
-anybody could stop the simulation by a request that does not fit, such as a lifecycle transition
-from another state. Here the response goes out as it was made, which says `success: false` for
-each service with such a field, and a line in the log says why.
+An exception in the callback of a service propagates out of rclpy's executor and would end the
+process: anybody could stop the simulation by an unsuitable request, such as a lifecycle transition
+from another state. Here the default response is sent instead, which says `success: false` for each
+service with such a field, and a line in the log says why.
 """
 
 import functools
 
 
 class Answering:
-    """What a node class inherits, before rclpy's, so that its services answer every request."""
+    """A base class, to be listed before rclpy's, whose services answer every request."""
 
     def create_service(self, srv_type, srv_name, callback, **options):
         """Create a service as rclpy.node.Node does."""
@@ -19,7 +19,7 @@ class Answering:
                                       **options)
 
     def answer_all(self):
-        """Have the services that rclpy made by itself answer too."""
+        """Make the services that rclpy created itself answer too."""
         for service in self.services:
             if not hasattr(service.callback, 'answers'):
                 service.callback = self._answered(service.callback, service.service_name)

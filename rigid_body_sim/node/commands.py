@@ -4,8 +4,8 @@
 ``cmd_wrench`` is held until it is replaced or times out, ``cmd_impulse`` (N s and N m s) acts
 once. Both are geometry_msgs/WrenchStamped. The frame_id is the name of the body's frame or of the
 world's; an empty one means the world. The stamp is ignored. Messages become rows
-(simulation/command_rows.py) as soon as they are taken; whether the body takes the numbers is for
-the simulation to say, at the tick.
+(simulation/command_rows.py) as soon as they are taken; the simulation decides at the tick whether
+the body can take the numbers.
 """
 
 import collections
@@ -132,12 +132,12 @@ class Commands:
         )
 
     def take(self):
-        """Take what has come if the bell rang; only the tick thread calls this and `look`."""
+        """Take new messages if the bell rang; only the tick thread calls this and `look`."""
         if not self._bell.silent():
             self.look()
 
     def look(self):
-        """Take all that has come."""
+        """Take all new messages."""
         found = 0
         for kind, take in self._takers:
             taken = list(itertools.islice(iter(take, None), DEPTH))
@@ -149,11 +149,11 @@ class Commands:
 
     @property
     def lost(self) -> int:
-        """Messages that never came, because more than DEPTH waited or for another reason."""
+        """Number of messages that never arrived, because more than DEPTH waited or otherwise."""
         return sum(gaps.lost for gaps in self._gaps.values())
 
     def collect(self) -> np.ndarray:
-        """Return the rows that wait, in their order; they wait no more."""
+        """Return the waiting rows in order, and empty the queue."""
         rows = self._rows[0] if len(self._rows) == 1 else np.concatenate(self._rows)
         self._rows, self.waiting = [], 0
         return rows
@@ -164,7 +164,7 @@ class Commands:
             mismatch.look()
 
     def remove(self):
-        """Remove from the node what it would not find by itself."""
+        """Remove from the node what rclpy does not remove itself."""
         self._bell.remove()
 
     def _receive(self, kind, messages):
@@ -220,7 +220,7 @@ class Commands:
     def refuse(self, topic: str, reason: str, got: str, remedy: str = ''):
         """Count a command that is not applied, and report it with what would be right.
 
-        Without a remedy that is the shell command that sends a right one.
+        Without a remedy the report shows a shell command that sends a valid one.
         """
         self.refusals[reason] += 1
         self.report(topic, reason, got, remedy or self._example(topic))

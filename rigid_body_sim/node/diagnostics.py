@@ -3,7 +3,7 @@
 
 It is published once a second of real time, whatever the simulated clock does.
 
-Numbers have the 17 digits that give the double back. OK, WARN and ERROR follow bounds that are
+Numbers have 17 digits, which identify the double. OK, WARN and ERROR follow bounds that are
 parameters.
 """
 
@@ -126,7 +126,7 @@ class Diagnostics:
     def _timing(self):
         ticker, settings = self._ticker, self._settings
         ticks, running = ticker.latest
-        # a rate needs a stretch of time: the first ticks of all come in a burst
+        # a rate needs some time: the very first ticks come in a burst
         if running - self._before['running'] >= SHORTEST or ticks == self._before['ticks']:
             new_ticks, new_running = self._since('ticks', ticks), self._since('running', running)
             self.rate = new_ticks / new_running * 1e9 if new_running > 0 else 0.0

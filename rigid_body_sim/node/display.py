@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The state for pages that show it: the latest tick's messages at the pace of a picture.
+"""The latest state for browser pages, at the rate of a display.
 
-A page that subscribed to the topics of every tick would have each of a thousand messages a second
-sent once more, of which it draws sixty. So the bytes of the last tick are sent again on hidden
-topics, ``~/_display/pose`` and so on, while somebody listens there: best effort, the last message
-only, never recorded.
+A page that subscribed to the topics of every tick would receive a thousand messages a second and
+draw sixty. So the bytes of the latest tick are published again on hidden topics,
+``~/_display/pose`` and so on, while somebody subscribes to them: best effort, depth 1, never
+recorded.
 """
 
 import time

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A doorbell: it tells the tick thread that messages wait in its subscriptions.
 
-So the tick thread need not look into them at every tick.
-
-To look costs the tick thread as much as to publish a message. While nothing comes, the executor,
-which sleeps anyhow, waits for the first message and rings; the messages stay where they are. From
-then on the tick thread looks at every tick, until nothing has come for a while.
+Checking the subscriptions costs the tick thread as much as publishing a message, so it does not
+check them at every tick. While nothing arrives, the executor, which sleeps anyhow, waits for the
+first message and rings; the messages stay in the subscriptions. From then on the tick thread
+checks at every tick, until nothing has arrived for a while.
 """
 
 import contextlib
@@ -39,14 +38,14 @@ class Doorbell(Waitable):
     # -- the tick thread
 
     def silent(self):
-        """Return whether a look can be spared at this tick."""
+        """Return whether the subscriptions need not be checked at this tick."""
         if self._rung:
             return False
         self._unheard += 1
         return self._unheard % GLANCE != 0
 
     def answer(self, found):
-        """Note what a look has found: how many messages."""
+        """Note how many messages a check has found."""
         if found:
             self._in_vain = 0
         elif self._rung:
@@ -58,7 +57,7 @@ class Doorbell(Waitable):
                     executor.wake()
 
     def remove(self):
-        """Take it off the node."""
+        """Remove the doorbell from the node."""
         self._node.remove_waitable(self)
 
     # -- the executor: see rclpy.waitable.Waitable
@@ -75,7 +74,7 @@ class Doorbell(Waitable):
         self._kept.close()
 
     def get_num_entities(self):
-        """Return what it adds to the wait set: nothing once it has rung."""
+        """Return the number of entities to wait for: none once it has rung."""
         self._listening = not self._rung
         return NumberOfEntities(num_subs=len(self._handles) if self._listening else 0)
 

@@ -59,7 +59,7 @@ class Engine:
                 'a node cannot follow the /clock that it publishes',
             )
         if settings.record:
-            need_mcap()     # before kernels are compiled for a run that could not begin
+            need_mcap()     # checked before kernels are compiled for a run that could not begin
         self._node, self._settings = node, settings
         self._entities_before, self.commands = set(_entities(node)), None
         try:
@@ -78,7 +78,7 @@ class Engine:
         frames = frames_of(node, settings)
         outputs = state_topics.chosen(settings.publish)
         messages = state_topics.scene_messages(outputs, simulation.scene, frames)
-        # before anything is offered: who finds the topics finds them alive
+        # done before anything is advertised: whoever finds the topics finds them alive
         rehearse(simulation, messages)
         self.commands = Commands(node, frames)
         described = robot_description.TOPIC in settings.publish
@@ -121,7 +121,7 @@ class Engine:
         )
 
     def _prepare(self, changes):
-        """Return a simulation as the parameters say, with changes.
+        """Return the simulation that the parameters, with changes, describe.
 
         This may take a while, so it is done before the tick that needs it.
         """
@@ -176,7 +176,7 @@ class Engine:
     # -- parameters
 
     def _before_change(self, changes):
-        """Refuse changes that cannot be; make ready what takes long."""
+        """Refuse impossible changes; prepare what takes long."""
         self._prepared = None
         if SIMULATION_PARAMETERS & set(changes):
             simulation = self._prepare(changes)
@@ -185,7 +185,7 @@ class Engine:
             self._prepared = simulation, messages
 
     def _after_change(self, changes):
-        """Have the changes take effect at a tick, where they are recorded."""
+        """Apply the changes at a tick, where they are recorded."""
         if not changes:
             return
         prepared, self._prepared = self._prepared, None
@@ -233,7 +233,7 @@ class Engine:
         return status
 
     def remove(self):
-        """Take away from the node all that the engine gave it, after :meth:`close`."""
+        """Remove from the node everything that the engine added, after :meth:`close`."""
         if self.commands is not None:
             self.commands.remove()
         for entity in set(_entities(self._node)) - self._entities_before:
@@ -247,7 +247,7 @@ class Engine:
                     break
 
     def _report(self):
-        """Print how it went."""
+        """Print the report of the run."""
         session, ticker, balance = self.session, self.ticker, self.session.balance
         ticks, running = ticker.latest
         late, recording = ticker.lateness.summary(), self.journal.status
@@ -277,7 +277,7 @@ def _entities(node):
 
 
 def _result_soon(future):
-    """Return the result of a Future, or None if it is not there soon."""
+    """Return the result of a Future, or None if it takes too long."""
     try:
         return future.result(ANSWER_WITHIN)
     except concurrent.futures.TimeoutError:

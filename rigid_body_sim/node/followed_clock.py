@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Time as /clock tells it, for the tick thread."""
+"""The time of /clock, for the tick thread."""
 
 import threading
 
@@ -24,11 +24,11 @@ class Followed:
         )
 
     def now(self):
-        """Return what /clock said last, ns; 0 before it said anything."""
+        """Return the latest time on /clock, ns; 0 before its first message."""
         return self._clock.now().nanoseconds
 
     def close(self):
-        """Hear no more of the clock."""
+        """Stop following the clock."""
         self._handle.unregister()
 
     def wait(self, _):

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages that never came, by the numbers that publishers give to theirs.
+"""Lost messages, counted by the publishers' sequence numbers.
 
-What finds the queue of a subscription full drives out the oldest message there, in silence (the
-middleware's event for lost messages tells nothing of it). But each publisher numbers its messages
-from 1 on, and the number comes along with each; not so the publisher's name. So the numbers that
-are expected next are kept, one for each publisher. One that nobody expects is a gap, or a
-publisher that is new: who publishes is then looked up. If a gap is put down to the wrong one of
-several publishers, the next number of the other one makes up for it: what was lost of all together
-is right. What is lost in the moment in which a publisher comes or goes is not noticed.
+A message that arrives at a full subscription queue silently evicts the oldest one (the
+middleware's event for lost messages does not report it). But each publisher numbers its messages
+from 1 on, and a message carries its number, though not the name of its publisher. So the next
+expected number of each publisher is kept. An unexpected number means a gap or a new publisher, and
+then the publishers are looked up. If a gap is attributed to the wrong one of several publishers,
+the next number of the other one compensates it, so the total is right. Messages lost while a
+publisher appears or disappears are not noticed.
 """
 
 NUMBER = 'publication_sequence_number'
 
 
 class Gaps:
-    """Counts what is missing between the messages of a topic.
+    """Counts the missing messages of a topic.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Gaps:
         self.lost = 0
 
     def look(self, numbers):
-        """Look at the numbers of some messages, in their order.
+        """Take the sequence numbers of some messages, in order.
 
         A number is None where the middleware gives none.
         """
@@ -49,12 +49,12 @@ class Gaps:
         publishers, expected = self._publishers(), self._expected
         if publishers != self._known:
             self._known = publishers
-            # of those that went nothing is expected, but nobody knows which number that is
+            # which number belonged to a publisher that left is unknown
             expected.clear()
         passed = max((one for one in expected if one < number), default=None)
         if len(expected) >= max(len(publishers), 1):
             if passed is not None:
                 self.lost += number - passed
-            # the gap's, or the one that was not heard for the longest time
+            # that of the gap, or of the publisher that was silent for longest
             expected.remove(expected[0] if passed is None else passed)
         expected.append(number + 1)

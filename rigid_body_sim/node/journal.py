@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recording of a node: messages, commands with their ticks, and what a rerun needs.
+"""The recording of a node: messages, commands with their ticks, and all that a rerun needs.
 
 Entries of the journal topic, beside those of the recorder itself: ``state`` (see
 about.state_entry), ``commands`` (``tick``, and ``commands``: in their order, with ``topic``,
@@ -76,7 +76,7 @@ class Journal:
                 settings.recordings.add(self.path)
                 break
             except BadInput:
-                # another node of this name may have begun its recording in this moment
+                # another node of this name may have begun its recording meanwhile
                 if settings['recording.name'] or not self.path.exists() or attempt == ATTEMPTS - 1:
                     raise
         self._record_tick = self._recorder.tick

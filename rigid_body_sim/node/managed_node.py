@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node whose life others manage (ROS 2 lifecycle).
+"""The managed node (ROS 2 lifecycle).
 
-configure makes the scene, topics, services and recording; activate lets time pass, deactivate
-stops it (commands wait, as in a pause), cleanup closes the recording and takes everything away.
+configure creates the scene, topics, services and recording; activate lets time pass, deactivate
+stops it (commands wait, as in a pause), cleanup closes the recording and removes everything.
 Parameters that are fixed while the node runs can change before configure.
 """
 
@@ -17,7 +17,7 @@ INACTIVE = 'inactive'
 
 
 class ManagedNode(Answering, LifecycleNode):
-    """An engine made by configure, run by activate, held by deactivate, taken away by cleanup.
+    """An engine created by configure, run by activate, paused by deactivate, removed by cleanup.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class ManagedNode(Answering, LifecycleNode):
             raise
 
     def on_configure(self, state):
-        """Make everything; after one line about a wrong parameter the node stays unconfigured."""
+        """Create everything; a wrong parameter gets one line and leaves the node unconfigured."""
         try:
             self.engine = Engine(self, self.settings, self._stop.request)
         except (BadInput, NotConverged) as refusal:
@@ -64,18 +64,18 @@ class ManagedNode(Answering, LifecycleNode):
         return super().on_deactivate(state)
 
     def on_cleanup(self, state):
-        """Close the recording, take everything away."""
+        """Close the recording and remove everything."""
         self.close()
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state):
-        """Close the recording, take everything away, and end the process."""
+        """Close the recording, remove everything, and end the process."""
         self.close()
         self._stop.request()
         return TransitionCallbackReturn.SUCCESS
 
     def close(self):
-        """End ticks and recording, and say how it went; return the exit status."""
+        """End ticks and recording, and report; return the exit status."""
         if self.engine is None:
             return 0
         engine, self.engine = self.engine, None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The quality of service that a recording says its topics were offered with, as rclpy wants it."""
+"""The recorded quality of service of a topic, as an rclpy profile."""
 
 import yaml
 from rclpy.duration import Duration

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameter overrides of a command line, made such that the last one of a name wins.
+"""Parameter overrides of a command line, merged so that the last one of a name wins.
 
-rcl keeps one value of each type for a name: of ``rate: 500`` in a file and ``-p rate:=200.5`` it
-keeps both, and rclpy takes the integer, whichever came last. And rclpy prefers what a file says
-of a node by its name to a later ``-p``. So the overrides are merged here, before rcl reads them:
-nothing is read as a value, only moved, so types stay what rcl makes of them.
+rcl keeps one value of each type for a name: given ``rate: 500`` in a file and ``-p rate:=200.5``
+it keeps both, and rclpy takes the integer, whichever came last. rclpy also prefers an entry of a
+file for the node's own name to a later ``-p``. So the overrides are merged here, before rcl reads
+them. Values are moved as text, so rcl decides on their types.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ TEXT = 'tag:yaml.org,2002:str'
 
 @contextlib.contextmanager
 def settled(arguments):
-    """Yield arguments that give each parameter once, and the names that are meant for any node.
+    """Yield arguments that set each parameter once, and the names that are meant for any node.
 
     A command line that cannot be understood stays as it is, for rcl to refuse in its own words.
 

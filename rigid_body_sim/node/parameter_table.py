@@ -118,8 +118,8 @@ class Entry:
 
     def descriptor(self, fixed):
         """Return the ROS descriptor: type, range, whether it is fixed for good."""
-        # a list is declared before it has its value, so rclpy must not hold it fixed: Settings
-        # refuses the change itself
+        # a list is declared before it has its value, so rclpy must not treat it as read-only:
+        # Settings refuses the change itself
         read_only = fixed and not self.changeable and not isinstance(self.default, tuple)
         descriptor = ParameterDescriptor(
             description=self.about, additional_constraints=self.limits, read_only=read_only
@@ -152,7 +152,7 @@ NUMBER = re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?')
 
 
 def number_of(value):
-    """Return the number that a text writes; whatever else it is stays as it is.
+    """Return the number in a text; return anything else unchanged.
 
     The YAML of ``ros2 param set`` and of launch files takes ``1e-9`` for a text.
     """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of the node: the table declares, checks, changes and documents them.
 
-rclpy ignores overrides of unknown names, refuses an integer where a double is meant, and would let
-a deleted parameter go. So the overrides are read here, checked by the same rules that hold later
-for ``set_parameters``, and declared already converted. docs/reference/parameters.md shows the
-table; ``python -m rigid_body_sim.node.parameters`` prints config/sim_node.yaml.
+rclpy ignores overrides of unknown names, refuses an integer for a double, and lets parameters be
+deleted. So the overrides are read here, checked by the same rules that hold later for
+``set_parameters``, and declared already converted. docs/reference/parameters.md shows the table;
+``python -m rigid_body_sim.node.parameters`` prints config/sim_node.yaml.
 """
 
 import textwrap
@@ -110,7 +110,7 @@ class Settings:
                 self._refuse_unknown(name, declared, ())
 
     def on_change(self, before, after):
-        """Set what a change does from now on.
+        """Register the functions that a change calls.
 
         Parameters
         ----------
@@ -189,7 +189,7 @@ class Settings:
 
 
 def _nearest(name, known):
-    """Return what to say of an unknown name."""
+    """Return the error text for an unknown name."""
     near = nearest(name, known)
     return f'did you mean {near}?' if near else f'the parameters are {", ".join(ENTRIES)}'
 

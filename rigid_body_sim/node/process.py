@@ -35,11 +35,11 @@ def run(make_node, arguments, stop):
         0, or 2 after one line about bad input or what ROS refuses, or 1 after one line about a
         failure.
     """
-    # its complaint about arguments would come in two lines, and ours says the same
+    # its error about arguments takes two lines, and ours says the same
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         with overrides.settled(arguments) as (settled, shared):
-            # the first argument is taken for the program's name
+            # rclpy takes the first argument for the program's name
             rclpy.init(args=['', *settled], signal_handler_options=SignalHandlerOptions.NO)
     except Exception as error:  # rclpy has a class of its own for each fault of the command line
         say(f'ROS arguments: {_one_line(error)}; see --help')
@@ -66,7 +66,7 @@ def run(make_node, arguments, stop):
 
 
 def _spin(node, stop):
-    """Serve the node until it should end; whatever happens, close it."""
+    """Serve the node until it should end; close it in any case."""
     status = GOOD
     executor = SingleThreadedExecutor()
     try:

@@ -17,7 +17,7 @@ STRONGEST = {'RELIABILITY': 'reliable', 'DURABILITY': 'transient_local'}
 
 
 def publishers_of(node, topic):
-    """Return who publishes to a topic now, a set of identities."""
+    """Return the identities of a topic's present publishers, a set."""
     return {
         bytes(publisher.endpoint_gid)
         for publisher in node.get_publishers_info_by_topic(node.resolve_topic_name(topic))
@@ -25,7 +25,7 @@ def publishers_of(node, topic):
 
 
 def publisher_mismatch(node, topic):
-    """Return event callbacks that report, once a policy, subscribers that ask for too much."""
+    """Return event callbacks that report, once for each policy, subscribers that ask for more."""
     return PublisherEventCallbacks(
         incompatible_qos=_Mismatch(
             node,
@@ -39,10 +39,10 @@ def publisher_mismatch(node, topic):
 
 
 class SubscriptionMismatch:
-    """Says once a policy of which a publisher to a topic offers less than this node asks for.
+    """Warns, once for each policy, of a publisher that offers less than this node asks for.
 
-    It looks at the publishers there are: an event of the subscription would wake the executor for
-    every message that comes.
+    It inspects the present publishers: an event of the subscription would wake the executor for
+    every message.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class SubscriptionMismatch:
         )
 
     def look(self):
-        """Look at the publishers there are now."""
+        """Inspect the present publishers."""
         for offered in (publisher.qos_profile for publisher in self._publishers()):
             for policy, weak, strong in (
                 (

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rehearsal before the clock starts: no tick then does anything for the first time.
+"""A warm-up before the clock starts, so that no tick does anything for the first time.
 
 Kernels are compiled, or loaded from the cache, when they are first called, and modules are
-imported when they are first needed. The rehearsal therefore runs the session itself, with a
-simulation of its own and with outputs that lead nowhere: through ticks made one by one and ahead,
-commands, a reset, a balance.
+imported when they are first needed. The warm-up therefore runs the session itself, with a
+simulation of its own and without publishing: single and prefetched ticks, commands, a reset, a
+balance.
 """
 
 import types
@@ -27,12 +27,12 @@ COMMANDS = np.array(
 
 
 def rehearse(simulation, messages):
-    """Run ticks as a node will run them, on a simulation of its own, before any clock starts.
+    """Run ticks as a node will run them, on a separate simulation, before any clock starts.
 
     Parameters
     ----------
     simulation : Simulation
-        It stays as it is.
+        It is not changed.
     messages : state_topics.SceneMessages
         Makes the messages of its scene.
     """
@@ -57,7 +57,7 @@ def _rehearse(simulation, messages):
     session.begin()
     _run(session)
     if trial.scene.accepts_commands:
-        # twice: the second time they meet a body that is already commanded
+        # twice, so that the second ones meet a body that is already commanded
         for rows in (COMMANDS, COMMANDS, LET_GO):
             queue.put(rows)
             _run(session)
@@ -67,7 +67,7 @@ def _rehearse(simulation, messages):
 
 def _run(session):
     session.want_balance()
-    # the last of these ticks are made ahead
+    # the last of these ticks are prefetched
     for _ in range(QUIET + 4):
         session.run_tick(True)
 
@@ -83,14 +83,14 @@ class _Queue:
         self._rows, self.waiting = rows, len(rows)
 
     def take(self):
-        """Nothing else comes."""
+        """Do nothing: no other command arrives."""
 
     def collect(self):
         self.waiting = 0
         return self._rows
 
     def refuse(self, topic, reason, got, remedy=None):
-        """Hear that the body has an axis of zero moment and cannot take a torque about it."""
+        """Ignore that the body has an axis of zero moment and cannot take a torque about it."""
 
 
 class _Nowhere:

@@ -68,15 +68,14 @@ class ReplayNode(Answering, Node):
             total=None if options.loop else round(seconds, 3), unit=' s', disable=None, leave=False
         )
         self._started = start
-        # it also gives the executor, which a request to end does not wake, a reason to look
+        # it also wakes the executor, which a request to end does not
         self.create_timer(
             PROGRESS_PERIOD, self._show, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
         if options.start:
             self._publish_latched(names, start)
         quicken()
-        # this thread and the one that reads hold the interpreter at times: what delays them then
-        # delays messages
+        # this thread and the reading one hold the interpreter at times, and then delay messages
         ask_for_priority(options.rate <= MOST_REAL_TIME, PRIORITY - 1)
         self.player.start()
 
@@ -97,7 +96,7 @@ class ReplayNode(Answering, Node):
         return self.create_publisher(message_type, topic.name, offered_qos(topic.qos))
 
     def _publish_latched(self, names, start):
-        """Publish what a late subscriber to latched topics would have got at the start."""
+        """Publish the latched messages that a late subscriber would have received at the start."""
         for name in names:
             profile = self._sending[name].qos_profile
             if profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
@@ -115,7 +114,7 @@ class ReplayNode(Answering, Node):
         return response
 
     def _played(self):
-        """Return where in the recording the player is, s from its start."""
+        """Return the player's position in the recording, s from its start."""
         return (self.player.now - self._recording.start_time) / NANOSECONDS
 
     def _show(self):
@@ -124,7 +123,7 @@ class ReplayNode(Answering, Node):
             self._progress.refresh()
 
     def close(self):
-        """End the thread, wait for subscribers, and say how it went; return the exit status."""
+        """End the thread, wait for subscribers, and report; return the exit status."""
         player = self.player
         ended = not player.is_alive()
         player.stop()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node that runs from its start to its end."""
+"""The plain node, which runs from its start to its end."""
 
 from rclpy.node import Node
 
@@ -40,7 +40,7 @@ class SimulationNode(Answering, Node):
             raise
 
     def close(self):
-        """End ticks and recording, and say how it went; return the exit status."""
+        """End ticks and recording, and report; return the exit status."""
         if self.engine is None:
             return 0
         return self.engine.close()

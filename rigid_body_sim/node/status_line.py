@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One line that tells how the node is doing."""
+"""A status line of the node."""
 
 import contextlib
 import os
@@ -18,8 +18,8 @@ WRITTEN_EVERY = 10.0
 class StatusLine:
     """Draws one line on a terminal again and again; elsewhere writes one every ten seconds.
 
-    Under ``ros2 launch`` and in a file a line only shows once it has ended, and stays. There it
-    goes to stdout, as the report does; on a terminal it goes to stderr.
+    Under ``ros2 launch`` and in a file a line is shown only once it is complete, and it stays.
+    There it goes to stdout like the report; on a terminal it goes to stderr.
     """
 
     def __init__(self, node, engine):
@@ -43,7 +43,7 @@ class StatusLine:
 
     def _draw(self):
         with contextlib.suppress(OSError, ValueError):    # the terminal may be gone
-            # a line that is wider would go on in the next one, where no \r brings it back
+            # a wider line would wrap, and \r could not return to its start
             line = self._text()[: os.get_terminal_size(sys.stderr.fileno()).columns - 1]
             sys.stderr.write('\r' + line.ljust(self._width))
             sys.stderr.flush()
@@ -51,12 +51,12 @@ class StatusLine:
 
     def _write(self):
         tick = self._engine.session.next_tick
-        if tick != self._tick_told:    # a node that is paused has nothing to tell
+        if tick != self._tick_told:    # a paused node has nothing to report
             self._tick_told = tick
             tell(f'{self._name}: {self._text()}')
 
     def close(self):
-        """Leave the last line as it is."""
+        """Keep the last line on the terminal."""
         if self._width:
             with contextlib.suppress(OSError, ValueError):
                 sys.stderr.write('\n')
@@ -64,7 +64,7 @@ class StatusLine:
 
 
 def draws(stream):
-    """Return whether a stream is a terminal that somebody looks at, on which a line can change.
+    """Return whether a stream is an interactive terminal, on which a line can be redrawn.
 
     ``ros2 launch`` with ``emulate_tty`` gives its nodes a terminal that has no size, and is not
     the one that controls them.

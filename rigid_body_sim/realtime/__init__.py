@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tick thread and what runs in it: deadlines, sessions, playback, how a process ends.
+"""The tick thread: deadlines, sessions, playback, and the end of a process.
 
 Nothing here needs ROS: publishers, subscriptions and clocks are handed in by ``node``. It may
 import everything below ``node``.

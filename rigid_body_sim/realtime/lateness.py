@@ -11,7 +11,7 @@ BINS = 20_000
 class Lateness:
     """A histogram of lateness. One thread adds, another may read.
 
-    The last bin holds all that was later than 20 ms; the greatest is kept as it is.
+    The last bin counts everything later than 20 ms; the greatest lateness is kept exactly.
     """
 
     def __init__(self):
@@ -46,7 +46,7 @@ class Lateness:
         if not total:
             return {'count': 0, 'p50': 0.0, 'p99': 0.0, 'max': 0.0}
         ranks = np.cumsum(counts)
-        # the upper edge of a bin: a percentile is never said to be smaller than it was
+        # the upper edge of a bin, so that a percentile is never reported too small
         p50, p99 = (
             min((int(np.searchsorted(ranks, share * total)) + 1) * 1000, worst)
             for share in (0.5, 0.99)

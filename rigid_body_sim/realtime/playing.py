@@ -2,8 +2,8 @@
 """Playback of a recording: one thread reads ahead, one publishes each message when it is due.
 
 The instant of a message is that of the first one plus the difference of their log times over the
-rate, on the monotonic clock of the machine; it does not depend on when other messages went out, so
-nothing drifts, in no number of loops. A loop begins where the one before ended.
+rate, on the monotonic clock of the machine; it does not depend on when other messages were sent,
+so nothing drifts, however many loops are played. A loop begins where the one before ended.
 """
 
 import itertools
@@ -44,11 +44,11 @@ class Reading(threading.Thread):
         self._batches = queue.Queue(BATCHES)
 
     def run(self):
-        """Read to the end."""
+        """Read until the end."""
         try:
             period = self.end_time - self.start_time
             for number in itertools.count() if self._loop else (0,):
-                # where the messages of this loop stand, counted from the start of the first one
+                # offset of this loop from the start of the first one
                 self._read(number * period - self.start_time)
         except Exception as failure:        # the other thread passes it on
             self._batches.put(failure)
@@ -77,7 +77,7 @@ class Reading(threading.Thread):
 
 
 class Player(threading.Thread):
-    """Publishes what is read.
+    """Publishes messages as they become due.
 
     Parameters
     ----------
@@ -129,11 +129,11 @@ class Player(threading.Thread):
         self._paused = False
 
     def stop(self):
-        """End soon."""
+        """Ask the thread to end."""
         self._stopping = True
 
     def run(self):
-        """Publish to the end."""
+        """Publish until the end."""
         try:
             ask_for_priority(self._rate <= MOST_REAL_TIME)
             self._reading.start()
@@ -144,7 +144,7 @@ class Player(threading.Thread):
             self._at_end()
 
     def _play(self, messages):
-        first = next(messages, None)        # reading takes its time; only then the clock starts
+        first = next(messages, None)        # the clock starts once the first messages are read
         self._origin = time.monotonic_ns()
         for position, message in itertools.chain([first] if first else (), messages):
             if message.log_time < self.now or not self.loops:
@@ -178,7 +178,7 @@ class Player(threading.Thread):
         return None
 
     def _idle(self):
-        """Stand still until resumed; the clock tells the same time meanwhile."""
+        """Wait until resumed; /clock shows the same time meanwhile."""
         since = time.monotonic_ns()
         while self._paused and not self._stopping:
             self._tell_clock(self.now)

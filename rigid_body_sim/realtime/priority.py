@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a thread that keeps deadlines asks of the system and of the interpreter."""
+"""Settings of the system and the interpreter for a thread that keeps deadlines."""
 
 import contextlib
 import ctypes
@@ -45,7 +45,7 @@ def ask_for_priority(real_time, priority=PRIORITY):
 
 
 def _ask_for_slice(nanoseconds):
-    """Ask for a slice of that length in normal scheduling, 0 for the usual one.
+    """Ask for a time slice of this length in normal scheduling; 0 means the usual one.
 
     Anybody may ask. Linux before 6.12 ignores it.
     """
@@ -63,7 +63,7 @@ def _ask_for_slice(nanoseconds):
 
 def quicken():
     """Keep pauses of the interpreter short, just before the thread that keeps deadlines starts."""
-    # what is there now stays: the collector need not look at it again
+    # present objects stay alive: the collector need not look at them again
     gc.collect()
     gc.freeze()
     sys.setswitchinterval(SWITCH_INTERVAL)

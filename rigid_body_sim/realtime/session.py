@@ -6,10 +6,10 @@ take effect; then commands, in the order in which they came; then the state is p
 recorded. So whatever reaches the node between two ticks takes effect at the next one, and is
 recorded with its number.
 
-While the body is left to itself, states and messages of the ticks to come are made ahead, many at
-once, after a tick has been published: the next ones have only to send them. The simulation then
-stays behind; whatever needs it (a request, a command, an event, a balance) has it catch up with
-the present tick, and what was made ahead is dropped. The bits are the same either way.
+While nothing disturbs the body, states and messages of coming ticks are prefetched, many at once,
+after a tick has been published, so that the next ticks only send them. The simulation object then
+lags behind. A request, a command, an event or a balance makes it catch up with the present tick,
+and the prefetched messages are dropped. The bits are the same either way.
 """
 
 import collections
@@ -63,8 +63,7 @@ class Session:
         Stamps of the ticks; None before the first one.
     finished : bool
     balance : dict
-        The ledger as it was when :meth:`want_balance` was last heard, with its ``tick`` and
-        ``time``.
+        The ledger at the last request by :meth:`want_balance`, with its ``tick`` and ``time``.
     event_counts : collections.Counter
         Events so far, by name.
     prediction : prediction.Prediction
@@ -149,7 +148,7 @@ class Session:
             self._look_ahead(tick)
 
     def _present(self, tick):
-        """Go to a tick that was not made ahead, report its events, return its entry."""
+        """Advance to a tick that was not prefetched, report its events, return its entry."""
         self._catch_up()
         if self.simulation.events:
             self._report_events()
@@ -157,20 +156,20 @@ class Session:
         return entry
 
     def _catch_up(self):
-        """Have the simulation stand at the tick that is being run; drop what was made ahead."""
+        """Bring the simulation to the tick that is being run; drop prefetched messages."""
         self._ahead.clear()
         if self._tick > self.simulation.tick:
             self.simulation.advance(self._tick - self.simulation.tick)
 
     def _look_ahead(self, tick):
-        """Make the messages of the ticks after this one, up to the next event."""
+        """Prefetch the messages of the ticks after this one, up to the next event."""
         self._catch_up()
         try:
             states = self.simulation.foresee(
                 min(AHEAD, math.ceil(AHEAD * 1000.0 / self.simulation.rate))
             )
         except NotConverged:
-            # said when its tick comes, if it comes
+            # reported at its tick, if the run gets there
             states = ()
         if len(states):
             self._ahead.extend(self._messages(states.vector, tick + 1))
@@ -216,7 +215,7 @@ class Session:
                 future.set_exception(refusal)
 
     def reset(self):
-        """Put the state back; called at a tick. Held wrenches end with it."""
+        """Reset the state; called at a tick. Held wrenches end with it."""
         self.simulation.reset()
         self._release_tick = None
         self._disturbed()
@@ -287,7 +286,7 @@ class Session:
     # -- commands
 
     def _command(self, tick):
-        """Give the commands that wait to the simulation; let go of a wrench whose time is over."""
+        """Apply the waiting commands; release a wrench that has timed out."""
         self.simulation.forget_past()
         if self._commands.waiting:
             self._take_effect(tick, self._commands.collect())
@@ -323,7 +322,7 @@ class Session:
         self._journal.commands(tick, self.stamp, rows)
 
     def _disturbed(self):
-        """Compare theory with the motion from here on, and wait for quiet before looking ahead."""
+        """Start a new comparison with theory, and wait for a while before prefetching again."""
         self._look_ahead_from = self._tick + QUIET
         simulation = self.simulation
         self.prediction = Prediction(
@@ -331,7 +330,7 @@ class Session:
         )
 
     def _report_refusal(self, topic, reason, got, remedy):
-        """Tell of a refused command, once a second for each topic and reason."""
+        """Report a refused command, at most once a second for each topic and reason."""
         now = time.monotonic_ns()
         told, silent = self._reports.get((topic, reason), (-REPORT_EVERY, 0))
         if now - told < REPORT_EVERY:

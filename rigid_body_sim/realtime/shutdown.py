@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a node's process ends: within a second of a signal, and losing nothing.
+"""The end of a node's process: within a second of a signal, and without loss.
 
-Signals reach a thread of their own by way of a pipe, because Python runs signal handlers only
-between two bytecodes of the main thread, and that one waits in the executor. The first signal asks
-for the end; more of them change nothing. This module imports nothing that takes time, so that
-signals are in order before the rest is loaded.
+A thread of its own receives signals through a pipe, because Python runs signal handlers only
+between two bytecodes of the main thread, which waits in the executor. The first signal asks for
+the end; later ones change nothing. This module imports nothing slow, so that signals are handled
+before the rest is loaded.
 """
 
 import contextlib
@@ -21,7 +21,7 @@ The recorder is a process of its own and finishes its file in any case.
 
 
 class Stop:
-    """The wish to end, by a signal or by the program itself."""
+    """A request to end, by a signal or by the program itself."""
 
     def __init__(self):
         self._event = threading.Event()
@@ -36,7 +36,7 @@ class Stop:
         return self._event.is_set()
 
     def on_request(self, wake):
-        """Register what wakes the main thread."""
+        """Register a function that wakes the main thread."""
         self._wake = wake
         if self.wanted:
             wake()

@@ -3,11 +3,11 @@
 
 The mean rate is therefore exact, however late single ticks are.
 
-Tick k is due at a fixed instant of the monotonic clock (or of /clock). A late tick is caught up
-with: the next ones follow at once. A tick that comes more than a whole period late is an overrun.
-``skip_publish`` then leaves out messages until it has caught up; with either policy, when the
-backlog passes a tenth of a second, the schedule slips: simulated time falls behind, and this is
-counted.
+Tick k is due at a fixed instant of the monotonic clock (or of /clock). After a late tick the next
+ones follow at once. A tick that comes more than a whole period late is an overrun.
+With the policy ``skip_publish`` messages are then left out until the thread has caught up. With
+either policy the schedule slips when the backlog passes a tenth of a second: simulated time falls
+behind, and this is counted.
 """
 
 import collections
@@ -41,7 +41,7 @@ class Steady:
 
     @staticmethod
     def wait(nanoseconds):
-        """Sleep for that long, or for LONGEST_SLEEP if that is less."""
+        """Sleep for this time, at most for LONGEST_SLEEP."""
         time.sleep(min(nanoseconds * 1e-9, LONGEST_SLEEP))
 
 

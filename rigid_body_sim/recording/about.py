@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every recording says about its run, whether the node writes it or `simulate`.
+"""What a recording says about its run; the node and `simulate` write the same.
 
 It is enough to understand the recording and to run it again. ``about`` goes into metadata.yaml
 (custom_data), into a metadata record of each file and into the journal (entry ``begin``); the

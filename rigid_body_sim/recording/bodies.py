@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording holds of one simulated body: scene, states, events, commands.
+"""One simulated body of a recording: scene, states, events, commands.
 
 Several bodies may have been recorded together, each in a namespace of its own.
 """
@@ -35,7 +35,7 @@ TYPES = {**{name: OUTPUTS[name].type for name in ('pose', 'angular_velocity', 'o
 
 
 class Event(typing.NamedTuple):
-    """Something that the simulation noted.
+    """An event that the simulation noted.
 
     `time` in seconds since the recording's start, `log_time` in ns; `name` (``flip``, ...),
     `message` for people, `values`, a dict of texts.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording keeps of the commands of a tick.
+"""The messages in which a recording keeps the commands of a tick.
 
-Each is kept as the message that it came as, and all of them as one entry of the journal.
+Each is kept as the message that arrived, and all of them as one entry of the journal.
 """
 
 import dataclasses
@@ -39,7 +39,7 @@ class CommandMessages:
 
     def __init__(self, names, journal):
         self._topics, self._journal = names.topics, journal
-        # all but the stamp and the six doubles at the end, for each of the frames
+        # all but the stamp and the six doubles at the end, for each frame
         blanks = [cdr.encode(WRENCH_TYPE, {'header': {'frame_id': name}})
                   for name in names.frames]
         self._around = [(blank[:_STAMP.start], blank[_STAMP.stop:-_NUMBERS_SIZE])

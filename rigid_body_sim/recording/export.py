@@ -179,7 +179,7 @@ def export(path, folder, form, topics=None, bar=None):
             bar.reset(sum(topic.count for topic in chosen))
         part = folder.with_name(f'.{folder.name}.part')
         try:
-            shutil.rmtree(part, ignore_errors=True)     # of an export that was killed
+            shutil.rmtree(part, ignore_errors=True)     # the rest of an export that was killed
             part.mkdir(parents=True)
         except OSError as error:
             raise BadInput(str(folder), f'cannot be made ({error.strerror})',

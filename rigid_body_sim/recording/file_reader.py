@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One file of a recording: mcap/reading.py, whose errors become the lines that people read."""
+"""One file of a recording, read by mcap/reading.py; errors become BadInput with a remedy."""
 
 import contextlib
 
@@ -50,7 +50,7 @@ class FileReader(reading.FileReader):
 
 @contextlib.contextmanager
 def readable(path, remedy='an undamaged recording; "recover" keeps what can be read of it'):
-    """Turn what goes wrong with an MCAP file into BadInput; `remedy` is for a damaged one."""
+    """Turn errors of an MCAP file into BadInput; `remedy` is for a damaged file."""
     try:
         yield
     except InvalidMagic as error:

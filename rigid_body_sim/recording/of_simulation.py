@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recording of a simulation that runs without ROS: the one that the node would write.
+"""The recording of a simulation without ROS: the same as the node would write.
 
 ``simulate`` writes it, and ``view`` while its page is open.
 """
@@ -40,7 +40,7 @@ class SimulationRecording:
         The command that records.
     simulation : Simulation
     parameters : dict
-        What the command was told.
+        All settings of the command.
     publish : sequence of str
         Topics beside those of every tick, by the names of state_topics.ON_REQUEST.
     commanded : bool
@@ -144,7 +144,7 @@ class SimulationRecording:
         simulation : Simulation
             It begins its scene and has the rate of the one before.
         changed : dict
-            The parameters that are others now, by their names.
+            The parameters that changed, by name.
         """
         self._take(simulation)
         self._entry('parameters', tick=simulation.tick, changed=changed,

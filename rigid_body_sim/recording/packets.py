@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the node and its recorder process say to each other over two pipes.
+"""The packets that the node and its recorder process exchange over two pipes.
 
 To the recorder: packets. Each has a tag and the length of what follows, then
 
@@ -60,7 +60,7 @@ def tick_fields(sizes):
 
 @dataclasses.dataclass
 class Report:
-    """How the recorder stands.
+    """The state of the recorder.
 
     Attributes
     ----------

@@ -2,9 +2,9 @@
 """The recorder process: takes packets from a pipe, writes the recording, outlives the node.
 
 The Recorder (recorder.py) starts ``python -m rigid_body_sim.recording.process PACKETS REPORTS``
-(two file descriptors). The process ends when the pipe is closed, by the node's last word or by its
-death, and leaves a complete recording either way. It sleeps between looks at the pipe, so that the
-node's writing never wakes it: 50 times a second, whatever the rate.
+(two file descriptors). The process ends when the pipe is closed, by the node or by its death, and
+leaves a complete recording either way. It sleeps between looks at the pipe, so that the node's
+writing never wakes it: 50 times a second, whatever the rate.
 """
 
 import json
@@ -47,7 +47,7 @@ class RecorderProcess:
         self._writer = None
         self.report = Report()
         self._expected = 1          # number of the next numbered message
-        # number of the next tick expected, stamp of the last one taken (ns), ticks missing so far
+        # next tick expected, stamp of the last one taken (ns), and ticks missing so far
         self._next_tick = self._last_tick = self._dropped = 0
         self._retry_at = self._flush_at = self._ask_at = 0.0
         self._asked_for = 0
@@ -264,7 +264,7 @@ class RecorderProcess:
             self._tell()
 
     def _end(self, ticks):
-        """Take the sender's last word: how many ticks there were."""
+        """Take the END packet: how many ticks there were."""
         self._ended = True
         if ticks > self._next_tick and not self.report.error:
             try:
@@ -291,7 +291,7 @@ class RecorderProcess:
 def main(descriptor_in, descriptor_out):
     """Run the process on its two pipes."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        # they are for the node; this process ends when the pipe does
+        # these signals are for the node; this process ends with the pipe
         signal.signal(number, signal.SIG_IGN)
     if os.sched_getscheduler(0) != os.SCHED_OTHER:
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))

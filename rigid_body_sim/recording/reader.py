@@ -18,7 +18,7 @@
     recording.journal()                             # commands, resets, gaps, full states
 
 Memory stays bounded by the largest chunk (and by what a method returns), also for files from
-strangers: what such a file claims is checked before it is believed.
+strangers: the sizes that such a file claims are checked first.
 """
 
 import json
@@ -95,7 +95,7 @@ class Recording:
         Log times of the first and the last message, ns.
     message_count : int
     about : dict of str to str
-        What the recorder left (of ours: scene, parameters, version, machine); empty if nothing.
+        What the recorder wrote about the run (scene, parameters, version, machine); may be empty.
 
     Raises
     ------
@@ -341,7 +341,7 @@ class Recording:
 
 
 def _bodies():
-    """Return the module: who reads topics only need not wait for numba."""
+    """Return the module `bodies`; reading topics alone does not wait for numba."""
     from rigid_body_sim.recording import bodies
     return bodies
 

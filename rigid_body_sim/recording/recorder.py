@@ -48,7 +48,7 @@ _RESTART = 1.0              # s between restarts
 
 @dataclasses.dataclass(frozen=True)
 class Status:
-    """How the recording stands.
+    """The state of the recording.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Recorder:
         self._journal = journal.name
         self._tick_size = sum(size for _, size in ticking)
         self._tick_length = packets.TICK_HEAD.size - packets.HEAD.size + self._tick_size
-        self._lock = threading.Lock()           # of all below, held for microseconds
+        self._lock = threading.Lock()           # guards everything below; held for microseconds
         # (last number, packet); number 0 for what may be lost
         self._waiting = collections.deque()
         # bytes; of the first packet, bytes already in the pipe
@@ -331,7 +331,7 @@ class Recorder:
         return self._status()
 
     def _look_after(self):
-        """Pump, look, and start a new recorder where there is none."""
+        """Send what waits, read reports, and start a new recorder if none is alive."""
         with self._lock:
             self._look()
             self._pump()
@@ -380,7 +380,7 @@ class Recorder:
         return self._status()
 
     def _end(self, deadline):
-        """Say the last word and wait for the recorder to end."""
+        """Send the END packet and wait for the recorder to end."""
         with self._lock:
             self._append(0, packets.json_packet(packets.END, {'ticks': self._ticks}))
         while self._process.poll() is None and time.monotonic() < deadline:

@@ -20,7 +20,7 @@ from rigid_body_sim.recording.writer import ABOUT
 
 @dataclasses.dataclass
 class Recovered:
-    """What became of one file.
+    """The result of recovering one file.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ def recover_file(path, expected=None):
 
 
 class _Beside:
-    """The file that is written beside a damaged one; gone at the end if it did not replace it."""
+    """A file written beside a damaged one; deleted at the end unless it replaced it."""
 
     def __init__(self, path):
         self._path, self._part = path, path.with_name(f'.{path.name}.part')
@@ -185,7 +185,7 @@ class _Beside:
                 os.link(self._path, original)
             except FileExistsError:
                 continue
-            except OSError:     # a file system without links
+            except OSError:     # a file system without hard links
                 if original.exists():
                     continue
                 os.rename(self._path, original)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a recorder goes on after its predecessor died.
+"""How a recorder goes on after its predecessor died.
 
 The files it left are made whole, and what they hold is not recorded again.
 """

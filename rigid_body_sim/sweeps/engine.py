@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine of a sweep: pieces of work go to an executor, and what becomes of them is noted.
+"""The engine of a sweep: it hands pieces of work to an executor and collects the outcomes.
 
 Which piece runs where and when has no influence on any bit of the result.
 """
@@ -29,11 +29,11 @@ FIRST_PIECE, FIRST_QUICK = 16, 2**15
 states in closed form and no more."""
 PATIENCE = 5.0
 """Between two looks at the workers, s."""
-LOOK = 0.2    # s, within which a forecast is measured
+LOOK = 0.2    # time within which a forecast is measured, s
 
 
 class Stopped(RuntimeError):
-    """The workers are gone, or the disk refuses; what is done is in the store."""
+    """The workers are gone, or the disk refuses; finished blocks are in the store."""
 
 
 def cores():
@@ -119,7 +119,7 @@ def run(workers, pieces, submit, take, window):
     Raises
     ------
     Stopped, BadInput, KeyboardInterrupt
-        What runs is waited for and taken first, so nothing of it is lost.
+        Running pieces are waited for and taken first, so that none is lost.
     """
     pending = set()
     try:
@@ -147,7 +147,7 @@ def run(workers, pieces, submit, take, window):
 
 
 def _result(future):
-    """Return what a Future has; what a person can mend becomes a line."""
+    """Return the result of a Future; errors that the user can mend become one line."""
     try:
         return future.result()
     except BadInput:
@@ -170,7 +170,7 @@ def _result(future):
 
 
 def seconds_a_run(plan, patience=LOOK):
-    """Return what a run takes on one core, s, measured on some runs of the middle.
+    """Return the time of a run on one core, s, measured on some runs from the middle.
 
     Kernels are compiled on the way, so that workers on this machine find them.
     """

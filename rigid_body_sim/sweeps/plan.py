@@ -29,7 +29,7 @@ STATUSES = {NOT_RUN: 'not_run', DONE: 'done', GAVE_UP: 'method_gave_up',
 METHOD_NAMES = ('exact', *METHODS)
 DOUBLE = np.dtype(float)
 TRIES = 64
-GOLDEN = 0.5 * (5.0 ** 0.5 - 1.0)    # its multiples spread evenly
+GOLDEN = 0.5 * (5.0 ** 0.5 - 1.0)    # multiples of this number spread evenly
 RUN = 'run'
 TEXT = 'status_text'
 _PLACE = re.compile(r'initial\.(angular_velocity|position|velocity)(?:\.([0-2])|\[([0-2])\])?')
@@ -61,7 +61,7 @@ class Variable:
 
     @property
     def fill(self):
-        """What a run that failed has."""
+        """The value in a run that failed."""
         return math.nan if self.dtype.kind == 'f' else NOT_RUN
 
     @property
@@ -125,7 +125,7 @@ class Plan:
 
     @property
     def is_quick(self):
-        """Whether all runs are states in closed form of one scene, and no more is asked."""
+        """Whether all runs are states in closed form of one scene, and nothing else is kept."""
         return (self.choice.method == 'exact' and not self.slow and self.starts_alone_differ
                 and self.wants <= {'final', 'states', 'minimum', 'maximum'})
 
@@ -214,7 +214,7 @@ def starts_alone_differ(scene, integrator):
     if integrator in ('auto', 'exact'):
         motion = absorbing_motion(scene)
         return motion is not None and motion.takes is None
-    # whether internal dissipation is stiff, the start decides
+    # whether internal dissipation is stiff depends on the start
     return scene.inner_dissipation == 0.0
 
 
@@ -235,7 +235,7 @@ def _direct_places(keys):
             found[key] = PLACES[_WHOLE[key]]
     taken = [place for part in found.values() for place in range(part.start, part.stop)]
     others = [key for key in keys if key.startswith('initial') and key not in found]
-    # two ways to say one thing take each other's place: such scenes are read one by one
+    # two keys with one meaning replace each other: such scenes are read one by one
     return found if len(set(taken)) == len(taken) and not others else {}
 
 

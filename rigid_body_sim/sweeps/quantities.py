@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quantities whose minimum and maximum a sweep keeps, and the units of all that it may hold.
+"""Quantities whose minimum and maximum a sweep keeps, and the units of all variables.
 
 They are made of + - * and square roots alone, which are rounded once on every machine.
 """
@@ -14,7 +14,7 @@ from rigid_body_sim.scene.state import AXES, PLACES, STATE_SIZE, UNITS
 
 @dataclass(frozen=True)
 class Quantity:
-    """What can be said of a state.
+    """A quantity of a state.
 
     Attributes
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Some runs of a plan computed, on one core: what a worker does.
+"""The work of one worker: some runs of a plan, computed on one core.
 
 Each run has the bits that ``ensemble`` gives it alone, whichever runs stand beside it. A run that
 fails is NaN, with its status and a line that says why; the others go on.
@@ -78,7 +78,7 @@ class Run:
 
 @dataclass
 class Block:
-    """What some runs gave.
+    """The results of some runs.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Block:
 
 
 def room(plan, count):
-    """Return (arrays, states): room for the results of so many runs.
+    """Return (arrays, states): memory for the results of this many runs.
 
     Where all of the states is kept, the arrays of its parts are views of `states`, shape
     (runs, times, 14), and nothing is copied; else `states` is None.
@@ -206,7 +206,7 @@ class _Work:
         try:
             scene = self.scene(place, self.plan.slow)
         except BadInput:
-            # the template's start may not fit these parameters: ask with all keys of each run
+            # the template's start may not suit these parameters, so all keys of each run are read
             self.one_by_one(where)
             return
         if not self.starts_alone_differ(scene):
@@ -237,7 +237,7 @@ class _Work:
             self.many(scene, starts, where)
 
     def starts_alone_differ(self, scene):
-        """Return what plans.starts_alone_differ says of a scene."""
+        """Return whether runs of a scene differ in their starts alone."""
         return (self.plan.starts_alone_differ if scene is self.plan.template else
                 plans.starts_alone_differ(scene, self.plan.spec.integrator))
 
@@ -305,7 +305,7 @@ class _Work:
                       simulation)
 
     def keep(self, scene, choice, starts, states, events, where, struck=None):
-        """Put what the plan keeps of some runs into the arrays.
+        """Store the kept results of some runs in the arrays.
 
         Parameters
         ----------
@@ -349,7 +349,7 @@ class _Work:
         arrays['tolerance'][where] = math.nan if choice.tolerance is None else choice.tolerance
         alone = self.starts_alone_differ(scene)
         arrays['expected_error'][where] = _expected(choice, scene, starts, alone)
-        # what overflows does so at the start or grows with time
+        # an overflow shows at the start or grows with time
         if not np.isfinite(states[:, ::max(1, states.shape[1] - 1)]).all():
             places = np.arange(self.size)[where]
             for k in np.flatnonzero(~np.isfinite(states).all(axis=(1, 2))).tolist():
@@ -359,7 +359,7 @@ class _Work:
             self.keep_functions(None if struck else choice, starts, states, where)
 
     def keep_events(self, one, events, where):
-        """Put the times of an event into the arrays."""
+        """Store the times of an event in the arrays."""
         arrays, word = self.block.arrays, plans.word(one.what)
         for place, told in zip(np.arange(self.size)[where].tolist(), events, strict=True):
             times = [event.time for event in told if event.name == one.what]
@@ -372,7 +372,7 @@ class _Work:
             arrays[f'{word}_count'][place] = len(times)
 
     def keep_functions(self, choice, starts, states, where):
-        """Put what functions of the user's own return into the arrays."""
+        """Store the results of the user's functions in the arrays."""
         arrays = self.block.arrays
         for k, place in enumerate(np.arange(self.size)[where].tolist()):
             if arrays['status'][place] != plans.DONE:
@@ -389,7 +389,7 @@ class _Work:
                     for key, value in told.items():
                         arrays[key][place] = value
                 except Exception as error:
-                    # whatever a function of the user's own does wrong concerns this run alone
+                    # an error in a user's function affects this run alone
                     self.fail(slice(place, place + 1), plans.FUNCTION_FAILED,
                               f'{name}: {type(error).__name__}: {error}')
 

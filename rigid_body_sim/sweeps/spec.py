@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a sweep is told, checked: scene, vary, sample, times, keep (docs/sweeps.md shows how).
+"""The checked spec of a sweep: scene, vary, sample, times, keep (see docs/sweeps.md).
 
 ::
 
@@ -137,7 +137,7 @@ def read(spec):
 
 
 def again(text, functions):
-    """Return the Spec that :attr:`Spec.text` and its functions are of."""
+    """Return the Spec with this :attr:`Spec.text` and these functions."""
     return _checked(json.loads(text), 'sweep', pathlib.Path(), functions)
 
 
@@ -189,7 +189,7 @@ def _checked(mapping, where, folder, functions=None):
 
 
 def fingerprint(spec):
-    """Return what the results depend on, as a dict of texts: the words, and the functions."""
+    """Return everything that the results depend on, as a dict of texts: words and functions."""
     words = {key: json.dumps(value) for key, value in json.loads(spec.text).items()}
     return words | {f'function {name}': _digest(function)
                     for name, function in spec.functions.items()}

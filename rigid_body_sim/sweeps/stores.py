@@ -35,7 +35,7 @@ DONE_ARRAY = 'progress/done'
 
 
 def versions():
-    """Return what programs must have in common to make the same bits of a sweep."""
+    """Return the versions that programs must share to make the same bits of a sweep."""
     return {'rigid_body_sim': about.version(), 'arithmetic': arithmetic.version()}
 
 
@@ -61,7 +61,7 @@ def store_at(path):
 
 
 class Store:
-    """What both kinds share: to be made once, whole; the check that a spec is that of the store.
+    """The common part of both kinds: created once and whole, and checked against its spec.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ class ZarrStore(Store):
         self._array(DONE_ARRAY)[number] = 1
 
     def finish(self):
-        """Remove what writers that were killed left behind."""
+        """Remove the unfinished files of writers that were killed."""
         for path in self.path.rglob('*.partial'):
             path.unlink(missing_ok=True)
 
@@ -287,7 +287,7 @@ class ParquetStore(Store):
         """Do nothing: a block is done when its file is there."""
 
     def finish(self):
-        """Remove what writers that were killed left behind."""
+        """Remove the unfinished files of writers that were killed."""
         for path in self.path.glob('.*.partial'):
             path.unlink(missing_ok=True)
 
@@ -315,7 +315,7 @@ def _columns(name, values):
 
 
 def _fitting(attrs):
-    """Return attributes without those that say nothing."""
+    """Return attributes without the empty ones."""
     return {name: value for name, value in attrs.items() if value != ''}
 
 

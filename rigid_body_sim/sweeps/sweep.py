@@ -35,7 +35,7 @@ if typing.TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a sweep would take.
+    """The expected cost of a sweep.
 
     Attributes
     ----------
@@ -93,14 +93,14 @@ def sweep(spec, executor=None, store=None, *, progress: bool = False) -> 'xarray
 
 
 def prepared(spec):
-    """Return the Plan of a spec, with what its functions return."""
+    """Return the Plan of a spec, with the results of its functions."""
     read = specs.read(spec)
     plan = Plan(read)
     return Plan(read, outputs_of(plan)) if read.functions else plan
 
 
 def forecast(spec, executor=None) -> Forecast:
-    """Return what a sweep would take: some runs are tried, for less than a second."""
+    """Return the expected cost of a sweep: some runs are tried, for less than a second."""
     plan = prepared(spec)
     workers = engine.Workers(executor)
     seconds = engine.seconds_a_run(plan, patience=0.5) * plan.spec.size / workers.count
@@ -143,7 +143,7 @@ def _to_memory(plan, workers, bar):
 
 
 def _to_store(plan, workers, store, bar):
-    """Run what a store lacks of a plan; return the Dataset."""
+    """Run the blocks that a store lacks; return the Dataset."""
     runs = 1
     if not store.path.exists():
         runs = engine.block_runs(plan, engine.seconds_a_run(plan), workers.count)
@@ -197,7 +197,7 @@ def _task(plan, store=None, layout=None):
 
 
 def _advance(bar, outcome):
-    """Show what was done; tell how many runs failed."""
+    """Advance the progress bar; show how many runs failed."""
     bar.failed = getattr(bar, 'failed', 0) + outcome.failed
     if bar.failed:
         bar.set_postfix_str(f'{bar.failed} failed', refresh=False)

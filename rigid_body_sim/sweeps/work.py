@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a worker is told, and what it does: text and numbers travel, no objects of ours."""
+"""The task of a worker; it is sent as text and numbers, without objects of the package."""
 
 import json
 import pathlib
@@ -19,7 +19,7 @@ _STORES = {}
 
 @dataclass(frozen=True)
 class Task:
-    """What all blocks of a sweep have in common.
+    """The data that all blocks of a sweep share.
 
     Attributes
     ----------
@@ -47,14 +47,14 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of some runs.
+    """The outcome of some runs.
 
     Attributes
     ----------
     first, stop, number : int
         The runs, and the number of their block.
     seconds : float
-        What they took.
+        Their computing time.
     failed : int
         How many of them failed.
     block : Block or None

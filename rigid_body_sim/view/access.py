@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who may open the page: this machine, unless another host is named; then who has the token.
+"""Access to the page: from this machine; if another host is named, for whoever has the token.
 
 Any web page in a browser of this machine can reach a local port. So a request must name the host
-that it was served from: neither a foreign page (header Origin) nor a foreign name for this address
-(header Host) gets through. On another host's interface an address carries a random token, which
-the first answer keeps as a cookie.
+that it was served from: requests of a foreign page (header Origin) and under a foreign name
+(header Host) are refused. On another interface the address contains a random token, which the
+first answer stores as a cookie.
 """
 
 import contextlib
@@ -50,7 +50,7 @@ class Access:
 
     @contextlib.contextmanager
     def guarding(self):
-        """Make the server that viser starts meanwhile ask :meth:`allows` first."""
+        """Make a server that viser starts inside this context ask :meth:`allows` first."""
         from websockets.asyncio import server
         plain = server.serve
 

@@ -52,7 +52,7 @@ def _run(options):
     try:
         page.run()
     except BaseException as end:
-        # closed in here, where another Ctrl-C is not heard any more
+        # closed here, where another Ctrl-C is ignored
         page.close()
         if isinstance(end, KeyboardInterrupt):
             return command_line.GOOD

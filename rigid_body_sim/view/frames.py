@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames: what a page shows of one moment, whoever it comes from.
+"""Frames: the data that a page shows of one moment, from any source.
 
 A *source* gives frames: a simulation (live.py), a node (node_source.py), a recording (player.py).
 """
@@ -27,7 +27,7 @@ class Frame(NamedTuple):
     vector : array (14,)
         The state (scene.state).
     trail : array (n, 14)
-        States since the last frame, the present one last: what a trace passes through.
+        States since the last frame, the present one last, for the traces.
     wrench : Wrench
         The held command.
     energy, energy_residual, momentum_residual : float
@@ -50,7 +50,7 @@ class Frame(NamedTuple):
 
 
 class Arrows(NamedTuple):
-    """Vectors in world axes: what turns the body and what acts on it.
+    """Vectors in world axes: motion, momentum, and what acts on the body.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Arrows(NamedTuple):
 
 
 class Mechanics:
-    """What is computed of a scene's states to draw them.
+    """The quantities that are computed from states for drawing.
 
     The point of reference of L is the centre of mass of a free body and of a body on a table, and
     the body's fixed point or hinge otherwise.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hand: what a mouse does to a body, as commands.
+"""The hand: the mouse's actions on a body, as commands.
 
 A drag is a damped spring from the grabbed point of the body to the cursor. Its force F acts at the
 grabbed point g; the command is that force at the centre of mass c and the couple (g - c) x F. A
@@ -34,7 +34,7 @@ about it by millions of turns.
 
 
 class Hand:
-    """Turns what a mouse does into rows of commands (simulation.command_rows).
+    """Turns actions of the mouse into rows of commands (simulation.command_rows).
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Hand:
         return self._row(IMPULSE, vector, point, np.asarray(impulse, float))
 
     def felt_mass(self, vector, point, direction):
-        """Return the mass (kg) that a push along a unit vector at a point feels, or None."""
+        """Return the effective mass (kg) at a point along a unit vector, or None."""
         force, couple = self._at_center(vector, point, np.asarray(direction, float))
         after = vector.copy()
         apply_impulse(self._mechanics.packed, after, force, couple, np.empty(RESPONSE_SIZE))
@@ -101,7 +101,7 @@ class Hand:
 
 
 def release():
-    """Return the row that lets go."""
+    """Return the row that releases the body."""
     return LET_GO.copy()
 
 

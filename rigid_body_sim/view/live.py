@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The source that is a simulation of its own: the page's end of the pipe to runner.py."""
+"""A simulation as a source: the page's end of the pipe to runner.py."""
 
 import math
 import multiprocessing
@@ -38,7 +38,7 @@ class Live:
     method : str
         The method that runs the scene.
     messages : list of str
-        What went wrong since the page last looked; the page empties it.
+        Errors since the page last looked; the page empties the list.
     speed : float
         Simulated seconds per second of the clock.
     expected : dict
@@ -105,6 +105,6 @@ class Live:
 
 
 def pace_for(scene):
-    """Return the speed to begin with: real time, or what turns a slow body in some seconds."""
+    """Return the initial speed: real time, or faster so that a slow body turns in some seconds."""
     rate = float(np.linalg.norm(scene.initial.angular_velocity))
     return 10.0 ** round(-math.log10(rate)) if 0.0 < rate < SLOWEST else 1.0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mouse on the body: drags and clicks of a page, as requests for its loop.
 
-viser tells of them in its own thread; here they are only written down, in their order.
+viser reports them in its own thread; here they are only noted, in order.
 """
 
 from typing import NamedTuple
@@ -13,14 +13,14 @@ from rigid_body_sim.scene.state import ORIENTATION, POSITION
 
 
 class Pull(NamedTuple):
-    """A drag as it is now: the grabbed point and the cursor, on the page."""
+    """A drag in progress: the grabbed point and the cursor, on the page."""
 
     grabbed: np.ndarray
     cursor: np.ndarray
 
 
 class Mouse:
-    """What the mouse does to the body of a page.
+    """The mouse's actions on the body of a page.
 
     Attributes
     ----------

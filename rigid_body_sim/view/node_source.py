@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The source that is a running node: its topics drawn, and the mouse published as its commands.
+"""A running node as a source: its topics are drawn, and the mouse publishes its commands.
 
-The node sends the latest state at the pace of a picture (node/display.py); of a node without these
-topics, as of a replayed recording, those of every tick are taken. Subscriptions keep one message
-and are best effort; nothing is spun, the page's loop takes the latest message of each when it
-draws. What the mouse holds is sent again at every frame; if the page is gone, the node's
-``command_timeout`` lets go.
+The node sends the latest state at the rate of a display (node/display.py); for a node without
+these topics, such as a replay, those of every tick are used. Subscriptions keep one message and
+are best effort. Nothing is spun: the page's loop takes the latest message of each when it draws. A
+held wrench is sent again at every frame; if the page is gone, the node's ``command_timeout``
+releases it.
 """
 
 import math
@@ -95,7 +95,7 @@ class NodeSource:
                                                                    profile)
 
     def _subscribe_to_states(self, namespace):
-        """Subscribe to what the node sends for pages, or else to the topics of every tick."""
+        """Subscribe to the node's topics for pages, or else to those of every tick."""
         shown = {name: display.topic_of(name).replace('~', self._name) for name in STATES}
         deadline = time.monotonic() + DISPLAY_WITHIN
         while not all(map(self._node.count_publishers, shown.values())):
@@ -163,7 +163,7 @@ class NodeSource:
             if row[KIND] == IMPULSE:
                 self._struck.publish(message)
             else:
-                # letting go is holding nothing
+                # a release is a wrench of zero
                 self._held.publish(message)
                 self._wrench = Wrench(tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist()))
 

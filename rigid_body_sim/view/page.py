@@ -24,11 +24,11 @@ NUMBERS_EVERY = 0.2
 
 def serve(access, port):
     """Return a viser server."""
-    # it prints an address that lacks our token
+    # viser prints an address without our token
     with access.guarding(), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=access.host, port=port, label='rigid_body_sim',
                                    verbose=False)
-    # a page may ask for a tunnel to the outside even without the button: it gets none
+    # a page can ask for a tunnel to the outside even without the button: it is refused
     server.request_share_url = lambda verbose=True: None
     return server
 
@@ -84,7 +84,7 @@ class Page:
             time.sleep(max(due - time.monotonic(), 0.0))
 
     def turn(self):
-        """Do what is due: requests, frames, the mouse."""
+        """Handle what is due: requests, frames, the mouse."""
         while not self.panel.requests.empty():
             self._do(*self.panel.requests.get())
         text = self.panel.edited() if self._source.edits else None
@@ -107,7 +107,7 @@ class Page:
             self._numbers()
 
     def _begin(self):
-        """Put the scene that the source has begun on the stage."""
+        """Show the scene that the source has begun."""
         self._generation = self._source.generation
         for stage in self._stages:
             stage.remove()
@@ -147,7 +147,7 @@ class Page:
         self.panel.draw(frame, arrows, self._source.expected)
 
     def _push(self):
-        """Give the commands of the mouse to the body."""
+        """Apply the commands of the mouse to the body."""
         if not self._source.pushes:
             return
         stage, vector = self._stages[0], self.frame.vector
@@ -177,7 +177,7 @@ class Page:
             self._source.command(self._hand.strike(vector, point, mass * speed * direction))
 
     def _do(self, name, value):
-        """Do what a control of the panel asks for."""
+        """Execute the request of a control of the panel."""
         source = self._source
         if name == 'choose':
             try:
@@ -195,7 +195,7 @@ class Page:
             self._theme(value)
 
     def close(self):
-        """Let go of the body, end the source and the server."""
+        """Release the body, end the source and the server."""
         if self._pulling:
             self._source.command(hand.release())
         self._source.close()

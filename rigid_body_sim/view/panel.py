@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The panel beside the picture: what is shown, how fast, what the mouse does, what was measured.
+"""The panel beside the picture: controls of display, speed and mouse, and measured values.
 
 Controls never act by themselves: they put requests into a queue that the page's loop empties, so
 that everything happens in one thread.
@@ -52,7 +52,7 @@ def aim(client, preset='3/4'):
         place = place_of(client, preset)
         if np.allclose(place, aimed[0], rtol=1e-3):
             return
-        # the page itself begins at the preset, which may come after what was sent first
+        # the page itself begins at the preset, which may arrive after the first messages
         if any(np.allclose(client.camera.position, one, atol=1e-3)
                for one in (aimed[0], PRESETS[preset])):
             aimed[0] = place
@@ -214,7 +214,7 @@ class Panel:
         return text()
 
     def say(self, problem):
-        """Show a line that says what is wrong."""
+        """Show an error line."""
         style = 'padding:0.3em 1em;color:#c00;font-size:0.9em'
         self._problem.content = f'<div style="{style}">{html.escape(problem)}</div>'
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The source that is a recording: its states at any time, with marks where something happened."""
+"""A recording as a source: its states at any time, with marks where something happened."""
 
 import contextlib
 import math
@@ -61,7 +61,7 @@ class Player:
         if not self._paused:
             self._time += (now - self._last) * self.speed
             if self._time > self.end:
-                self.seek(0.0)    # it plays again
+                self.seek(0.0)    # playing again after the end
         self._last = now
         if self._time == self._shown:
             return []
@@ -101,13 +101,13 @@ class Player:
             self.seek(0.0)
 
     def close(self):
-        """There is nothing to end."""
+        """Do nothing: there is nothing to close."""
 
 
 def states_of(path):
     """Return times (s), states (n, 14), energies (J) and the Source of a recording's first body.
 
-    `path` may also be an open Recording. Of more than MOST_STATES states every so manieth is kept.
+    `path` may also be an open Recording. Of more than MOST_STATES states every n-th is kept.
     """
     opened = contextlib.nullcontext(path) if hasattr(path, 'topics') else Recording(path)
     with opened as recording:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulation in a process of its own, at the pace of the clock, told what to do through a pipe.
+"""A simulation in a process of its own, at the pace of the clock, controlled through a pipe.
 
 The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
 Frame)``, ``('scene', About)``, ``('refused', text)`` and ``('failed', text)`` back. So a method
@@ -35,7 +35,7 @@ LAST_TIME = 1e9
 
 
 class About(NamedTuple):
-    """What the page learns of a scene that begins: its YAML text, the method and its notes."""
+    """Description of a scene that begins: its YAML text, the method and its notes."""
 
     text: str
     method: str
@@ -97,7 +97,7 @@ class Runner:
         self._restarted()
 
     def _record(self, simulation):
-        """Have the recording, if there is one, go on with a simulation that begins."""
+        """Continue the recording, if there is one, with a simulation that begins."""
         if self._recording:
             simulation.follow(self._simulation, keep_state=False)
             changed = {'scene': simulation.scene.name}
@@ -123,7 +123,7 @@ class Runner:
                                  'it ends here; "recover" keeps all up to here'))
 
     def _write_present(self):
-        """Record the present tick, after all that took effect at it."""
+        """Record the present tick, after everything that took effect at it."""
         simulation, states = self._simulation, States(self._simulation.vector[None].copy())
         self._take_events()
         self._write(lambda recording: recording.ticks(simulation.tick, states))
@@ -136,7 +136,7 @@ class Runner:
         self._write(lambda recording: recording.note(events))
 
     def _go(self, ticks):
-        """Go on by a number of ticks, and record those that are left behind."""
+        """Advance by a number of ticks, and record those that are passed."""
         simulation = self._simulation
         if not ticks or self._recording is None:
             simulation.advance(ticks)
@@ -144,12 +144,12 @@ class Runner:
         first = simulation.tick + 1
         self._write_present()
         states = simulation.advance_through(ticks)
-        # what the mouse does now still acts at the last one
+        # actions of the mouse still take effect at the last one
         self._take_events()
         self._write(lambda recording: recording.ticks(first, States(states.vector[:-1])))
 
     def close(self):
-        """Do what the page asked for last, and finish the recording, if there is one."""
+        """Execute the last requests of the page, and finish the recording, if there is one."""
         with contextlib.suppress(EOFError, OSError):
             while self._pipe.poll():
                 self.told(*self._pipe.recv())
@@ -158,7 +158,7 @@ class Runner:
             self._write(lambda recording: recording.close())
 
     def _rehearse(self, scene):
-        """Compile what the first command needs, before the mouse comes."""
+        """Compile what the first command needs, before the mouse is used."""
         simulation = Simulation(scene, **self._settings)
         simulation.command(np.array([(HOLD, BODY, *ZERO, 1e-9, 0.0, 0.0)]))
         simulation.advance()
@@ -196,7 +196,7 @@ class Runner:
             self._restarted()
 
     def _advance(self, seconds):
-        """Go on by some seconds of the clock, and send the frame."""
+        """Advance by some seconds of the clock, and send the frame."""
         if self._simulation is None:
             return
         steps, self._steps = self._steps, 0
@@ -216,7 +216,7 @@ class Runner:
         self._cost = 0.8 * self._cost + 0.2 * took
 
     def _move(self, until):
-        """Bring the motion to a time (s), which need not be a tick's, and send the frame."""
+        """Advance the motion to any time (s), not only that of a tick, and send the frame."""
         simulation = self._simulation
         origin = simulation.time_at(0)
         self._go(max(int((until - origin) * simulation.rate) - simulation.tick, 0))

@@ -227,7 +227,7 @@ class Stage:
                 handle.visible = visible
 
     def move_with(self, other):
-        """Stand in the world where another stage has it."""
+        """Use the position of another stage."""
         self._root.position = other._root.position
 
     def to_world(self, point):
@@ -235,5 +235,5 @@ class Stage:
         return (np.asarray(point, float) - self._offset) * self.unit
 
     def remove(self):
-        """Take everything off the page."""
+        """Remove everything from the page."""
         self._root.remove()

@@ -97,7 +97,7 @@ def pack(position, compression, compressed, records, channels, times, offsets, s
     channels, times, offsets : arrays
         One element a message: its channel number, log time (ns) and offset in `records`.
     sure : bool
-        Whether a checksum is to vouch for the records.
+        Whether to write a checksum over the records.
     """
     start, end = int(times.min()), int(times.max())
     checksum = zlib.crc32(records) if sure else 0

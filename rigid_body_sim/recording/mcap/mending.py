@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A cut or damaged file made whole.
 
-Where only the end is missing, what is missing of the last chunk's indexes, and the tail, are
-written behind what is whole: nothing else moves, and a full disk needs room for an index only.
-Where more is wrong, the file is written anew beside the old one: what is whole byte by byte, what
-is damaged as it could be read (rescue.py). Why not reading all of it by `mcap.stream_reader` and
-writing it anew by `mcap.writer`: that takes 15 times as long (bench/recordings.py), and it ends at
-the first record that is damaged.
+Where only the end is missing, the missing indexes of the last chunk and the tail are appended:
+nothing else moves, and a full disk needs room for an index only. Where more is wrong, the file is
+rewritten beside the old one: whole parts byte by byte, damaged ones as far as they can be read
+(rescue.py). Why not reading all of it by `mcap.stream_reader` and writing it anew by
+`mcap.writer`: that takes 15 times as long (bench/recordings.py), and it ends at the first record
+that is damaged.
 """
 
 import os
@@ -34,7 +34,7 @@ _BLOCK = 2**22
 
 
 class Losses(typing.NamedTuple):
-    """What could not be kept of a file.
+    """What was lost from a file.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Losses(typing.NamedTuple):
 
 
 class Mended(typing.NamedTuple):
-    """What became of a file: its Contents now, and the Losses; None where it was whole."""
+    """The result of mending a file: its Contents, and the Losses (None if it was whole)."""
 
     contents: Contents
     losses: Losses
@@ -82,7 +82,7 @@ def mend(stream, texts, beside, expected=None):
     Raises
     ------
     OSError
-        Where the disk refuses. The file may be mended again then.
+        If the disk refuses. The file may be mended again afterwards.
     Damaged
         Where the mended file does not read back.
     mcap.exceptions.InvalidMagic, mcap.exceptions.UnsupportedCompressionError
@@ -266,7 +266,7 @@ class _Composer:
         self.contents.add_chunk(found.index())
 
     def _rescued(self, found, doubtful):
-        """Write what was rescued of a chunk as a chunk."""
+        """Write the rescued part of a chunk as a chunk."""
         if len(found.offsets):
             data, records, offsets = found.compressed, found.records, found.offsets
             if not found.sure and any(opcode in DESCRIPTIONS for opcode, _, _ in found.others):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A damaged chunk read by what is left of it.
+"""Reading a damaged chunk by what is left of it.
 
 A chunk says most things about itself twice: its length in the record's head, before its data and
 in the file's index; its compression by name and by the first bytes of its data; its checksum over
@@ -44,7 +44,7 @@ _INDEX_HEAD = 15        # bytes of a message index before its entries
 
 @dataclasses.dataclass
 class Rescued:
-    """What was read of a damaged chunk.
+    """The readable part of a damaged chunk.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ def rescue(source, offset, hint=None, cut=False):
                    length - CHUNK_FIXED - len(name)]
         if hint is not None:
             lengths.append(hint.compressed_size)
-        # what speaks for it: at least two of these must
+        # signs that this is a chunk; at least two have to be present
         votes = ((opcode == Opcode.CHUNK) + (name_length == len(name)) * bool(name)
                  + 2 * (hint is not None and hint.compression == name)
                  + (lengths[0] == lengths[1]))
@@ -185,7 +185,7 @@ def _packed(source, begin, name, lengths, claims, cut):
         return None
     claimed, checksum = claims
     room = min(LARGEST_CHUNK, source.size - begin)
-    for length in dict.fromkeys([*sorted(lengths), room]):      # the shortest that will do
+    for length in dict.fromkeys([*sorted(lengths), room]):      # the shortest that suffices
         if not 0 < length <= room:
             continue
         data = source.read(begin, length)

@@ -109,7 +109,7 @@ def read_summary(stream):
 
 
 class Told(typing.NamedTuple):
-    """What a whole summary tells of a file that may be damaged before it.
+    """What a whole summary says about a file that may be damaged before it.
 
     Attributes
     ----------
