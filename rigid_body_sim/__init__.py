@@ -11,7 +11,7 @@
 import importlib
 import typing
 
-if typing.TYPE_CHECKING:  # what type checkers and editors read
+if typing.TYPE_CHECKING:  # for type checkers and editors
     __version__: str
     from rigid_body_sim.errors import BadInput, NotConverged
     from rigid_body_sim.recording.reader import Recording
@@ -44,7 +44,7 @@ def __getattr__(name):
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
     if name in ('Simulation', 'Recording'):
-        # The rooms of these classes lie below the one that draws, so they get their method here.
+        # These classes lie in rooms below the one that draws, so they get the method here.
         value.view = _view
     globals()[name] = value
     return value

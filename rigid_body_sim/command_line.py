@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all commands share.
+"""The common parts of all commands.
 
-These are the parser, the exit statuses, JSON with 17 digits, Ctrl-C, and the line about what
-takes long. Nothing here takes long to import.
+These are the parser, the exit statuses, JSON with 17 digits, Ctrl-C, and the line about slow
+steps. Importing this module is fast.
 """
 
 import argparse
@@ -50,16 +50,16 @@ def run(function, arguments):
         print('interrupted', file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
-        # the reader of our output has gone: nothing is left to tell it
+        # the reader of the output has gone: nothing can be told to it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return GOOD
 
 
 def interruptible(function, *arguments):
-    """Call a function; Ctrl-C ends the process in one line, wherever it strikes.
+    """Call a function; Ctrl-C ends the process with one line, whenever it comes.
 
-    It may strike in an import, before a command could handle it, and in libraries that make
-    another error of it or print it. The function may still handle SIGINT in its own way.
+    It may come during an import, before a command could handle it, or in libraries that turn it
+    into another error or print it. The function may still handle SIGINT in its own way.
     """
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         # in the background, or within a program that has a way of its own
@@ -70,7 +70,7 @@ def interruptible(function, *arguments):
         if heard and sys.exc_info()[0] is not None:
             return    # the command is ending already, and may finish what it has to
         if not heard:
-            # what threads and destructors say from here on is about the interrupt
+            # messages of threads and destructors from here on are about the interrupt
             sys.unraisablehook = threading.excepthook = lambda _: None
             threading.Thread(target=_insist, name='interrupt', daemon=True).start()
         heard.append(number)
@@ -87,7 +87,7 @@ def interruptible(function, *arguments):
             raise
         with contextlib.suppress(OSError, ValueError):
             print('interrupted', file=sys.stderr)
-        # in here: to free what a compiler was interrupted at may crash
+        # left here, because freeing what a compiler was interrupted at may crash
         _leave(INTERRUPTED)
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -110,11 +110,11 @@ def _leave(status):
 
 @contextlib.contextmanager
 def deaf_children():
-    """Start child processes here that do not hear Ctrl-C.
+    """Start child processes here that ignore Ctrl-C.
 
     The terminal sends it to all processes of a command; the parent alone answers, and ends its
-    children. What is ignored stays so in a child, forked or not; a mask does not, as
-    multiprocessing changes it. Only a main thread can do this.
+    children. An ignored signal stays ignored in a child, forked or not; a signal mask does not,
+    since multiprocessing changes it. Only a main thread can do this.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -32,7 +32,7 @@ class BadInput(ValueError):
 
 
 class NotConverged(ArithmeticError):
-    """A method gave up: it says at which time and why, instead of returning NaN."""
+    """A method gave up; the text says at which time and why."""
 
 
 def optional(package):

@@ -2,7 +2,8 @@
 """The version of the arithmetic: two programs of one version make the same bits.
 
 digests.json holds digests of the states of all scenes and methods. `make test` asserts them on
-whatever machine it runs, so their own digest names all that leads from a scene to its states.
+whatever machine it runs, so their own digest identifies everything that leads from a scene to its
+states.
 """
 
 import functools

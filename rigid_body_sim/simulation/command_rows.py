@@ -47,8 +47,8 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
     Raises
     ------
     BadInput
-        If these are not three numbers each, or the frame is unknown. Whether a body can take the
-        numbers is for the simulation to say (admission.py).
+        If these are not three numbers each, or the frame is unknown. The simulation decides
+        whether a body can take the numbers (admission.py).
     """
     try:
         force, torque = tuple(map(float, force)), tuple(map(float, torque))
@@ -75,7 +75,7 @@ def _shown(vector):
 
 
 def wrench_of(row: np.ndarray) -> Wrench:
-    """Return the Wrench that a row holds from its tick on: the zero wrench if it lets go."""
+    """Return the Wrench that a row holds from its tick on: the zero wrench for a release."""
     force, torque = tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist())
     return Wrench(force, torque, FRAMES[int(row[AXES])]) if any(force + torque) else Wrench()
 

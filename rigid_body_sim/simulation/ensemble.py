@@ -40,7 +40,7 @@ class Ensemble(Sequence):
     columns : tuple of str
         Names of the parts that it holds.
     events : list of list of Event, or None
-        What happened to each body, where that was asked for; the ticks are None.
+        The events of each body, if they were asked for; their ticks are None.
     choices : list of (Choice, array of int)
         Each method that was chosen, and the numbers of its bodies; empty for a part of an
         Ensemble.
@@ -101,7 +101,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     columns : sequence of str, optional
         Parts to keep, of ``time, orientation, angular_velocity, position, velocity``; default all.
     out : array (bodies, n, width), optional
-        Where the states go, for example a ``numpy.memmap``; the width is 14, or that of `columns`.
+        Array for the states, for example a ``numpy.memmap``; the width is 14, or that of
+        `columns`.
     events : bool
         Whether to look for events too, up to the last time.
     memory : float, optional
@@ -138,7 +139,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     groups = [(integrator if isinstance(integrator, Choice) else
                choose(one, integrator, accuracy, horizon=horizon), bodies)
               for one, bodies in _alike(scenes, starts)]
-    # a bar that is not shown would take as long as the states of a hundred bodies
+    # even a hidden bar takes as long as the states of a hundred bodies
     bar = tqdm(total=len(starts), unit=' bodies', leave=False) if progress else None
     report = _silent if bar is None else bar.update
     with contextlib.nullcontext() if bar is None else bar:
@@ -286,7 +287,7 @@ def _of_body(error, bodies):
 
 
 def _events(choice, start, times):
-    """Return what happens to one body from its start to the last time."""
+    """Return the events of one body from its start to the last time."""
     begin, end = float(start[0]), float(times.max(initial=start[0]))
     return [Event(None, time, name, values)
             for time, name, values in choice.solver(start, Wrench()).events(begin, end)]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened: its tick (the first at or after it), time (s), name and values."""
+    """An event: its tick (the first at or after it), time (s), name and values."""
 
     tick: int
     time: float
@@ -34,8 +34,7 @@ class Span:
 
         `after` never falls from call to call.
         """
-        # A solver looks for events once, going forward: what an earlier look found beyond `until`
-        # is kept.
+        # A solver looks for events once, going forward; events found beyond `until` are kept.
         if until > self._looked_until:
             self._told += self.solver.events(self._looked_until, until, tick)
             self._looked_until = until

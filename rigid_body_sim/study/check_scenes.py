@@ -61,8 +61,8 @@ def _check(options):
 def _tables(held, overrides):
     """Yield the tables of the systems in order, with progress on a terminal.
 
-    Several are shared between two processes, held bodies in one and the others in another, so
-    that neither compiles what the other does.
+    Several systems are divided between two processes, held bodies in one and the others in the
+    other, so that no kernel is compiled twice.
     """
     with contextlib.ExitStack() as stack:
         if len(held) == 1:
@@ -73,7 +73,7 @@ def _tables(held, overrides):
                        for _ in range(2)]
             for worker in workers:
                 stack.callback(worker.shutdown, cancel_futures=True)
-            # called first: whatever ends this early does not wait for what nobody reads
+            # called first, so that an early end does not wait for results that nobody reads
             stack.push(_end_children)
             with command_line.deaf_children():
                 futures = [workers[held[name]].submit(_table, name, overrides) for name in held]
@@ -142,7 +142,7 @@ def _plain(row):
 
 
 def _number(value):
-    """Return a float or a list of floats; other than finite ones become names, as JSON needs."""
+    """Return a float or a list of floats; values that are not finite become names, for JSON."""
     return [_finite(entry) for entry in np.ravel(value)] if np.ndim(value) else _finite(value)
 
 

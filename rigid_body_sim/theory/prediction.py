@@ -39,7 +39,7 @@ from rigid_body_sim.theory.expectations import Interval, Relaxing, Rolling, Stea
 
 
 def expectation(scene, state):
-    """Return what theory expects of a scene from a state on, or None if it says nothing.
+    """Return the expectation of theory for a scene from a state on, or None if it has none.
 
     The object has ``note``, ``look`` and ``compared`` (expectations.py).
     """
@@ -170,10 +170,10 @@ def _nutation(scene, state):
 
 
 class Prediction:
-    """The prediction for one undisturbed motion, compared with what was seen of it.
+    """The prediction for one undisturbed motion, compared with the motion.
 
-    The prediction is made when it is first needed: under a stream of commands most motions end
-    before that. Any thread may ask for it.
+    The prediction is computed when it is first needed, since under a stream of commands most
+    motions end before that. Any thread may ask for it.
 
     Parameters
     ----------

@@ -2,7 +2,8 @@
 """Small rocking of a rattleback that spins slowly: frequencies and growth of both modes.
 
 The equations of rolling without slip are linear in the tilts about the spin n about the vertical:
-M p'' + n G p' + (K + n^2 L) p = 0. They are made here from the full equations by differences.
+M p'' + n G p' + (K + n^2 L) p = 0. Here they are derived from the full equations by finite
+differences.
 
 Source: T. R. Kane and D. A. Levinson, Int. J. Non-Linear Mech. 17 (1982) 175 (the body and its
 motion); A. Garcia and M. Hubbard, Proc. R. Soc. Lond. A 418 (1988) 165.
@@ -10,7 +11,7 @@ motion); A. Garcia and M. Hubbard, Proc. R. Soc. Lond. A 418 (1988) 165.
 
 import numpy as np
 
-STEP = 1e-5    # of the differences
+STEP = 1e-5    # step of the differences
 
 
 def modes(body, surface, g, spin):

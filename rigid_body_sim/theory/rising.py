@@ -7,8 +7,8 @@ h(theta) height of the centre of mass, r from the centre of mass to the point of
 
 Jellett's integral lambda = -(I omega) . r is kept by any friction on a spherical foot. Of all
 motions with the same lambda the one of least energy at an inclination has omega parallel to r: it
-does not slip, and E = lambda^2/(2 r.I r) + m g h. Friction can only bring a top nearer to the
-least of that. So a top that stands on its heavy end is left if A/C > 1 - e and it spins fast
+does not slip, and E = lambda^2/(2 r.I r) + m g h. Friction can only lower the energy towards the
+minimum of this. So a top that stands on its heavy end is left if A/C > 1 - e and it spins fast
 enough; it can end on its stem if A/C < 1 + e, else it stops on the way.
 
 While a fast top slips, A Omega theta' = F h and Omega h is kept: with F = mu m g it passes from

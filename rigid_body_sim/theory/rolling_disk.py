@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A disk or hoop that rolls without slip, and how one ends that friction of its contour slows.
+"""A disk or hoop that rolls without slip, and the end of one that is slowed by its contour.
 
 Symbols: m mass, R radius, A moment across the axis, C along it, theta from the vertical to the
 axis, s = phi' sin(theta) with phi' the precession, w3 the spin, g gravity.
@@ -43,7 +43,7 @@ def speed_of_upright_stability(A, C, m, R, g):
 
 
 def precession_with_centre_at_rest(theta, A, m, R, g):
-    """Return the precession (rad/s) at which the centre stays where it is and w3 = 0.
+    """Return the precession (rad/s) at which the centre rests and w3 = 0.
 
     W^2 = m g R/(A sin(theta)); for a disk that lies almost flat 4 g/(R theta).
     """

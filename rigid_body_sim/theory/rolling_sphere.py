@@ -24,7 +24,7 @@ def routh_constant(w3, theta, A, C, m, R, a):
 
 
 def swing(theta, s, w3, A, C, m, R, a, g):
-    """Return how a Routh sphere swings from a turning point of theta.
+    """Return the other turning point of a Routh sphere, and the time to it.
 
     Returns
     -------

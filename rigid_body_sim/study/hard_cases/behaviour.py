@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Groups 4, 7, 8, 9 and 10: what must hold exactly, or by a law, rather than by a reference."""
+"""Groups 4, 7, 8, 9 and 10: checked by exact statements or laws rather than by a reference."""
 
 import functools
 import hashlib
@@ -46,7 +46,7 @@ def _same_bits(*vectors):
 
 def million_ticks():
     """Compare one jump of 1e6 s, a million ticks of 1 s, and times out of order."""
-    # the body turns slowly, because only its 4000 flips cost time
+    # the body turns slowly, since only its 4000 flips cost time
     scene = load_scene('tennis_racket', ['initial.angular_velocity=[0.0001, 0.05, 0.0001]'])
     ticking, jumping, shuffled = (Simulation(scene, rate=1.0) for _ in range(3))
     last = ticking.advance_through(1_000_000)[-1].vector
@@ -217,7 +217,7 @@ def energy_is_no_proof():
     text = ('scene: beside\nbody: {{mass: 1.0, inertia: [3.0, 4.0, 6.0]}}\n'
             'constraint: {0}\neffects: {1}\n'
             'initial: {{angular_velocity: [2.0, 0.7, 1.0000000000000002]}}\n')
-    # held at its centre of mass the body turns like a free one, by the kernels of any top
+    # held at its centre of mass the body turns like a free one, by the kernels of tops
     exact = Simulation(parse_scene(text.format('free', '[]')))
     stepped = Simulation(
         parse_scene(text.format('pivot', '[gravity: {g: 9.81}]')), 'rk4', step=1e-3)

@@ -24,7 +24,7 @@ def _passed(run, seconds):
 
 
 def never_rises(scene, seconds, ended):
-    """Ask for the largest rise of the excess over L^2/(2 I_max), and for what remains of it.
+    """Ask for the largest rise of the excess over L^2/(2 I_max), and for the excess at the end.
 
     The remainder counts if the excess must have ended.
     """
@@ -63,7 +63,7 @@ def leaves(scene, seconds, expected):
 
 
 def cancel(impulses):
-    """Ask what opposite angular impulses (N m s, body axes) leave of a change in omega (rad/s).
+    """Ask for the change of omega (rad/s) that opposite angular impulses (N m s, body) leave.
 
     Each is added to omega in turn, and omega is compared 0.1 s later.
     """

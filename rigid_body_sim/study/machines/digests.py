@@ -7,8 +7,8 @@
     python -m rigid_body_sim.study.machines.digests --json    # the digests of this machine
     python -m rigid_body_sim.study.machines.digests --write   # store them: another arithmetic
 
-Whoever changes the arithmetic on purpose rewrites the file and says so in CHANGELOG.rst:
-recordings made before then resimulate within a tolerance, no longer to the bit.
+After an intended change of the arithmetic, rewrite the file and note it in CHANGELOG.rst: earlier
+recordings then resimulate within a tolerance, no longer to the bit.
 """
 
 import hashlib

@@ -165,7 +165,7 @@ def _inclinations(states):
 
 
 def tippe_top(run):
-    """Yield Jellett's integral, the time to turn over, the groups, and what comes of sticking."""
+    """Yield Jellett's integral, the time to turn over, the groups, and the effect of sticking."""
     A, C, m, g, R, a = _top(run)
     times = np.linspace(0.0, 3.0, 1501)
     states = run.states(times)

@@ -73,7 +73,7 @@ class Body:
         return np.diag(self.moments) - mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)), arm
 
     def refuse_what_joints_lack(self):
-        """Raise RefusedError for what the joints of an engine cannot do."""
+        """Raise RefusedError for scenes that the joints of an engine cannot represent."""
         if self.inner:
             raise RefusedError('internal dissipation: it has no such effect')
         if np.abs(self.damping - self.damping[0, 0] * np.eye(3)).max() > 0.0:

@@ -13,8 +13,8 @@ def of(scene):
     Raises
     ------
     RefusedError
-        If something jumps later: a peer's user would stop there and start anew, which is no line
-        of a sweep.
+        If something jumps later: a user of the peer would stop there and start again, which does
+        not fit a sweep of settings.
     """
     if any(effect.name == 'strike' and effect.time > 0.0 for effect in scene.effects):
         raise RefusedError('a strike on the way: the harness gives peers smooth motions only')
