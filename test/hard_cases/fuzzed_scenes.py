@@ -64,8 +64,8 @@ EXPRESSIONS = ('-k*wx', '0.1*sin(w0*t)', 'k*tanh(Wz/w0)', 'exp(-t)*qx', 'k/(1 + 
                'sqrt(k*k + y*y)', 'log(k)*qw', 'k*cos(z)', 'max(wx, wy) - k', 'abs(Wx)', 'k^0.5',
                'w0/(x - k)', 'tan(k*t)', 'where(z < k, -w0*z, 0)', 'k*sign(sin(w0*t))',
                '-k*sign(wz)', 'min(k*qx, w0)*(qy >= 0)', '-k*wy*abs(wy)')
-OF_HINGE = ('-k*sin(angle)', '-k*rate', 'k*sign(rate)', 'where(angle > k, w0, -w0)', 'max(rate, 0)*k',
-            'k*qx', 'w0*exp(wz)', 'abs(angle)')
+OF_HINGE = ('-k*sin(angle)', '-k*rate', 'k*sign(rate)', 'where(angle > k, w0, -w0)',
+            'max(rate, 0)*k', 'k*qx', 'w0*exp(wz)', 'abs(angle)')
 ENERGIES = ('0.5*k*(z - 1)^2', 'k*qx^2*qw', '-k/sqrt(x^2 + y^2 + z^2)', 'k*cos(x*w0)', 'k*log(z)',
             'exp(k*y)', 'w0*(qx*qz - qy*qw)')
 

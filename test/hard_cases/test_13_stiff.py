@@ -187,7 +187,7 @@ ENDLESS = {
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize('method, parts', ENDLESS.values(), ids=ENDLESS)
+@pytest.mark.parametrize(('method', 'parts'), ENDLESS.values(), ids=ENDLESS)
 def test_what_python_does_between_marches_counts_as_work(method, parts, monkeypatch):
     monkeypatch.setattr(work, 'MOST', 1e6)
     monkeypatch.setattr(work, 'PATIENCE', 1e8)

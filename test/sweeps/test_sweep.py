@@ -298,7 +298,8 @@ def test_full_disk_is_one_line_and_the_sweep_goes_on(tmp_path):
         'scene': 'tennis_racket',
         'vary': {'initial.angular_velocity.0': {'linspace': [0, 1, 4000]}},
         'times': 1.0, 'keep': ['final']}))
-    in_memory = sweep(spec)    # kernels are compiled here: the cache would not take them on a full disk
+    # kernels are compiled here: the cache would not take them on a full disk
+    in_memory = sweep(spec)
     full = command(spec, '--output', store, preexec_fn=lambda: resource.setrlimit(
         resource.RLIMIT_FSIZE, (20_000, 20_000)))
     assert full.returncode == 1 and full.stderr.count('\n') == 1, full.stderr
