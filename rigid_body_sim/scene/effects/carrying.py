@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.constraints.pivot import MovingPivot
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.expressions import actions, path, tree
 from rigid_body_sim.scene.frame import Frame
@@ -36,7 +37,7 @@ class Carrying(Effect):
     mechanisms: ClassVar = (Mechanism.POINT,)
 
     @classmethod
-    def of(cls, constraint: Constraint, body: Body) -> Self:
+    def of(cls, constraint: MovingPivot, body: Body) -> Self:
         """Return the effect of a moving pivot."""
         mass = tree.number(-body.mass)
         forces = tuple(tree.times(mass, one) for one in path.accelerations(constraint.trees))
