@@ -14,6 +14,9 @@ import re
 
 from rigid_body_sim.cli.subcommands import COMMANDS
 from rigid_body_sim.messages import state_topics
+from rigid_body_sim.scene.constraints import DisplacedPivot, Hinge, MovingPivot, Plane
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.effects import EFFECTS
 
 FOLDER = pathlib.Path(__file__).resolve().parent / 'reference'
 MARK = re.compile(r'(<!-- table: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
@@ -43,9 +46,65 @@ def commands():
                       *(f'| `{name}` | {about} |' for name, (_, about) in COMMANDS.items())])
 
 
+WHERE = {Mechanism.FREE: 'free', Mechanism.POINT: 'pivot', Mechanism.AXIS: 'hinge',
+         Mechanism.TABLE: 'table', Mechanism.PLANE: 'table, with a surface'}
+
+
+def effects():
+    """Return the effects: law, where they may act, and each key with unit, axes and default."""
+    lines = []
+    for name, effect in EFFECTS.items():
+        schema = effect.SCHEMA
+        where = '; '.join(word for kind, word in WHERE.items() if kind in effect.mechanisms)
+        often = ' A scene may list several.' if effect.repeatable else ''
+        lines += [f'### {name}', '', f'`{schema["description"]}`', '', f'On: {where}.{often}', '',
+                  *_keys(schema), '']
+    return '\n'.join(lines).rstrip()
+
+
+def constraints():
+    """Return the constraints that take settings."""
+    lines = []
+    for name, one in (('pivot', DisplacedPivot), ('pivot with motion', MovingPivot),
+                      ('hinge', Hinge), ('table', Plane)):
+        schema = one.SCHEMA
+        lines += [f'### {name}', '', schema['description'] + '.', '', *_keys(schema), '']
+    return '\n'.join(lines).rstrip()
+
+
+def _keys(schema):
+    """Return the rows of a table of keys."""
+    rows = ['| key | takes | meaning | default |', '|---|---|---|---|']
+    for key, one in schema['properties'].items():
+        default = 'needed' if key in schema['required'] else f'`{one["default"]}`' \
+            if 'default' in one else ''
+        rows.append(f'| `{key}` | {_takes(one)} | {one["description"].replace("|", "&#124;")} '
+                    f'| {default} |')
+    return rows
+
+
+def _takes(schema):
+    """Return what a key takes, in words."""
+    if 'enum' in schema:
+        return ' or '.join(f'`{word}`' for word in schema['enum'])
+    kinds = [schema['type']] if isinstance(schema['type'], str) else schema['type']
+    number = ('number above 0' if 'exclusiveMinimum' in schema else
+              'number from 0 on' if 'minimum' in schema else 'number')
+    number = f'{number} or expression' if schema.get('expression') else number
+    words = [number] * ('number' in kinds)
+    if 'array' in kinds:
+        entry = schema['items']
+        inner = ('vectors' if entry['type'] == 'array' else 'expressions'
+                 if entry.get('expression') else 'numbers')
+        size = schema.get('maxItems')
+        words.append(f'{size or "a list of"} {inner}')
+    return ' or '.join(words)
+
+
 def filled(text):
     """Return a page with its tables made anew."""
-    tables = {'parameters': parameters, 'topics': topics, 'commands': commands}
+    tables = {'parameters': parameters, 'topics': topics, 'commands': commands,
+              'effects': effects, 'constraints': constraints}
     return MARK.sub(lambda match: f'{match[1]}{tables[match[2]]()}\n{match[3]}', text)
 
 

@@ -74,7 +74,7 @@ def test_every_page_is_in_the_site():
         assert page in listed | {'index'} or page.startswith('systems/'), page
 
 
-@pytest.mark.parametrize('page', ['topics', 'commands', 'parameters'])
+@pytest.mark.parametrize('page', ['topics', 'commands', 'parameters', 'effects'])
 def test_tables_of_the_reference_are_those_of_the_package(page):
     if page == 'parameters':
         pytest.importorskip('rclpy')

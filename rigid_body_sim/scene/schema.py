@@ -30,6 +30,15 @@ def mapping_of(required: Iterable[str] = (), **properties: Schema) -> Schema:
             'additionalProperties': False}
 
 
+def described(schema: Schema, text: str, default: Any = None) -> Schema:
+    """Return a schema with what it means: the law of an effect; unit, axes and sign of a key.
+
+    docs/reference/effects.md and the JSON Schema of scene files have these words.
+    """
+    found = {**schema, 'description': text}
+    return found if default is None else {**found, 'default': default}
+
+
 def check(value: Any, schema: Schema, where: str) -> None:
     """Check a part of a scene against a schema; every number must be finite.
 

@@ -15,7 +15,7 @@ from rigid_body_sim.scene.bodies import IDENTITY, Body, refuse_beyond, square_of
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.frame import Frame, Hinging
 from rigid_body_sim.scene.initial import Start
-from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
+from rigid_body_sim.scene.schema import NUMBER, VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import State
 
 
@@ -34,8 +34,14 @@ class Hinge(Constraint):
     zero: tuple[float, float, float, float] = IDENTITY
     kind: ClassVar[str] = 'hinge'
     usage: ClassVar[str] = 'hinge: {axis: [x, y, z], through: [x, y, z]}'
-    SCHEMA: ClassVar[dict | None] = mapping_of(['axis'], axis=VECTOR, through=VECTOR,
-                                               distance=NUMBER)
+    SCHEMA: ClassVar[dict | None] = described(mapping_of(
+        ['axis'],
+        axis=described(VECTOR, 'a direction, body axes'),
+        through=described(VECTOR, "m, a point of the axis from the body's origin, body axes",
+                          [0, 0, 0]),
+        distance=described(NUMBER, 'm, from the centre of mass along body z, square to the axis; '
+                                   'in place of through')),
+        'the body turns about an axis that is fixed in it and in the world')
     INITIAL: ClassVar[dict] = {**initial.ORIENTATION, 'angle': NUMBER, 'rate': NUMBER,
                                **initial.PLACE}
     mechanism: ClassVar[Mechanism] = Mechanism.AXIS

@@ -17,7 +17,7 @@ from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.expressions.source import TIME, Kernel
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import State
 
 
@@ -68,7 +68,9 @@ class DisplacedPivot(Constraint):
     at: Vector = (0.0, 0.0, 0.0)
     kind: ClassVar[str] = 'displaced_pivot'
     usage: ClassVar[str] = 'pivot: {at: [x, y, z]}'
-    SCHEMA: ClassVar[dict | None] = mapping_of(['at'], at=VECTOR)
+    SCHEMA: ClassVar[dict | None] = described(mapping_of(
+        ['at'], at=described(VECTOR, "m, from the body's origin, body axes")),
+        'the point `at` is held at initial.position')
     INITIAL: ClassVar[dict] = Pivot.INITIAL
     mechanism: ClassVar[Mechanism] = Mechanism.POINT
 
@@ -111,7 +113,11 @@ class MovingPivot(Constraint):
     at: Vector = (0.0, 0.0, 0.0)
     kind: ClassVar[str] = 'moving_pivot'
     usage: ClassVar[str] = 'pivot: {motion: [0, 0, "0.01*cos(300*t)"]}'
-    SCHEMA: ClassVar[dict | None] = mapping_of(['motion'], motion=EXPRESSIONS, at=VECTOR)
+    SCHEMA: ClassVar[dict | None] = described(mapping_of(
+        ['motion'],
+        motion=described(EXPRESSIONS, 'm, world axes: expressions of t'),
+        at=described(VECTOR, "m, from the body's origin, body axes", [0, 0, 0])),
+        'the point `at` is at initial.position + motion(t); the work of the drive is booked')
     INITIAL: ClassVar[dict] = Pivot.INITIAL
     mechanism: ClassVar[Mechanism] = Mechanism.POINT
 

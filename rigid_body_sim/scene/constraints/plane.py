@@ -14,7 +14,7 @@ from rigid_body_sim.scene.bodies import IDENTITY, Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import State
 
 SINKS = 1e-9    # of the size: a body that is said to lie that much too deep lies on the plane
@@ -42,8 +42,11 @@ class Plane(Constraint):
     axes: tuple[float, float, float, float] = IDENTITY
     kind: ClassVar[str] = 'table'
     usage: ClassVar[str] = 'table: {normal: [0, 0, 1], restitution: 0.5}'
-    SCHEMA: ClassVar[dict | None] = mapping_of(
-        normal=VECTOR, restitution={'type': 'number', 'minimum': 0, 'maximum': 1})
+    SCHEMA: ClassVar[dict | None] = described(mapping_of(
+        normal=described(VECTOR, 'a direction upwards, world axes', [0, 0, 1]),
+        restitution=described({'type': 'number', 'minimum': 0, 'maximum': 1},
+                              'normal velocity after an impact over that before it', 0)),
+        'a body with a surface flies, slides, rolls or rests over a plane through the origin')
     INITIAL: ClassVar[dict] = {**initial.ORIENTATION, **initial.TILT, **initial.TURNING,
                                **initial.PLACE, **initial.MOTION, 'rolling': {'type': 'boolean'}}
     mechanism: ClassVar[Mechanism] = Mechanism.PLANE

@@ -9,7 +9,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Contact, Effect
-from rigid_body_sim.scene.schema import POSITIVE, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,11 @@ class AirFilm(Effect):
 
     coefficient: float
     name: ClassVar[str] = 'air_film'
-    SCHEMA: ClassVar[dict] = mapping_of(['viscosity'], viscosity=POSITIVE)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['viscosity'],
+        viscosity=described(POSITIVE, 'Pa s')),
+        "Moffatt's viscous layer under a disk that leans by a: a force -c u/sin a, u as "
+        'in rolling_friction; booked as heat')
     mechanisms: ClassVar = (Mechanism.PLANE,)
 
     @classmethod

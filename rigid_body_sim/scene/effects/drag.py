@@ -15,10 +15,11 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import MATRIX, mapping_of
+from rigid_body_sim.scene.schema import MATRIX, described, mapping_of
 
 COEFFICIENT = {**MATRIX, 'type': ['number', 'array'], 'minimum': 0}
 KEYS = 'linear', 'angular', 'quadratic', 'angular_quadratic'
+SHAPED = 'a number or a symmetric matrix in body axes'
 SYMMETRY = 1e-12    # share of a matrix: what rounding may spoil
 
 
@@ -36,7 +37,13 @@ class Drag(Effect):
     linear: float
     angular: float
     name: ClassVar[str] = 'drag'
-    SCHEMA: ClassVar[dict] = mapping_of(**dict.fromkeys(KEYS, COEFFICIENT))
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        linear=described(COEFFICIENT, f'C in N s/m, {SHAPED}', 0),
+        angular=described(COEFFICIENT, f'K in N m s, {SHAPED}', 0),
+        quadratic=described(COEFFICIENT, f'D in N s^2/m^2, {SHAPED}', 0),
+        angular_quadratic=described(COEFFICIENT, f'Q in N m s^2, {SHAPED}', 0)),
+        'F = -(C + |v| D) v at the centre of mass, Gamma = -(K + |omega| Q) omega; '
+        'booked as heat')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
 
     @classmethod

@@ -11,7 +11,7 @@ from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.expressions.functions import side
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import POSITIVE, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,11 @@ class DryFriction(Effect):
 
     torque: float
     name: ClassVar[str] = 'dry_friction'
-    SCHEMA: ClassVar[dict] = mapping_of(['torque'], torque=POSITIVE)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['torque'],
+        torque=described(POSITIVE, 'N m')),
+        'the torque -torque sign(rate) about the hinge; at rest it bears up to that; '
+        'booked as heat')
     mechanisms: ClassVar = (Mechanism.AXIS,)
 
     @classmethod

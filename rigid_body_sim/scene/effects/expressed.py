@@ -12,7 +12,7 @@ from rigid_body_sim.scene.expressions import actions, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
 from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import mapping_of
+from rigid_body_sim.scene.schema import described, mapping_of
 
 
 def trees_of(value: list[Expression], where: str) -> tuple[tree.Node, ...]:
@@ -78,7 +78,13 @@ class PotentialEnergy(Effect):
     energy: tree.Node
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'potential'
-    SCHEMA: ClassVar[dict] = mapping_of(['energy'], energy=EXPRESSION)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['energy'],
+        energy=described(
+            EXPRESSION,
+            'U in J, an expression of x y z, qx qy qz qw, or the angle of a hinge')),
+        "F = -dU/d(x, y, z) at the body's origin, and the torque -dU by a turn about it; "
+        'booked as potential')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 

@@ -11,7 +11,7 @@ from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.expressions import actions, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,15 @@ class Force(Effect):
     books: str
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'force'
-    SCHEMA: ClassVar[dict] = mapping_of(
-        ['value'], value=EXPRESSIONS, at=VECTOR, frame={'enum': ['body', 'world']},
-        books={'enum': ['work', 'heat']})
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['value'],
+        value=described(EXPRESSIONS, 'N, numbers or expressions'),
+        at=described(
+            VECTOR,
+            "m, from the body's origin, body axes; the centre of mass if left out"),
+        frame=described({'enum': ['body', 'world']}, 'axes of the components', 'body'),
+        books=described({'enum': ['work', 'heat']}, 'where the ledger has its power', 'work')),
+        'F = value at a point of the body')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 

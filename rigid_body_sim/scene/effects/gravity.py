@@ -23,7 +23,7 @@ from rigid_body_sim.scene.effects.protocol import (
     Vector,
 )
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
 FIELD = {**VECTOR, 'type': ['number', 'array'], 'minimum': 0}
 
@@ -40,7 +40,10 @@ class Gravity(Effect):
 
     g: float
     name: ClassVar[str] = 'gravity'
-    SCHEMA: ClassVar[dict] = mapping_of(['g'], g=FIELD)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['g'],
+        g=described(FIELD, 'm/s^2, along -z of the world; or the field as a vector, world axes')),
+        'F = M g at the centre of mass; booked as potential')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
 
     @classmethod

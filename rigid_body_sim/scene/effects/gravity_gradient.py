@@ -14,7 +14,7 @@ from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import POSITIVE, VECTOR, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, VECTOR, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,14 @@ class GravityGradient(Effect):
     toward: tuple[float, ...]
     most: float
     name: ClassVar[str] = 'gravity_gradient'
-    SCHEMA: ClassVar[dict] = mapping_of(['mu', 'position'], mu=POSITIVE, position=VECTOR)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['mu', 'position'],
+        mu=described(POSITIVE, 'G M in m^3/s^2'),
+        position=described(
+            VECTOR,
+            'm, of the centre of mass from the attracting point, world axes')),
+        'Gamma = (3 mu/r^3) n x I n about the centre of mass, n = position/r; booked as '
+        'potential')
     mechanisms: ClassVar = (Mechanism.FREE,)
 
     @classmethod

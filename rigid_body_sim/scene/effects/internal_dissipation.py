@@ -23,7 +23,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import POSITIVE, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 
 ENDED = 2.0 ** -54    # rad
 
@@ -39,7 +39,11 @@ class InternalDissipation(Effect):
 
     coefficient: float
     name: ClassVar[str] = 'internal_dissipation'
-    SCHEMA: ClassVar[dict] = mapping_of(['coefficient'], coefficient=POSITIVE)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['coefficient'],
+        coefficient=described(POSITIVE, 'c in 1/(kg m^2/s)')),
+        "m' = m x (omega + u) + Gamma, the axes turn with omega + u, u = c (m x omega + "
+        'Gamma of potentials): heat u^2/c at a constant L')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT)
 
     @classmethod

@@ -14,7 +14,7 @@ from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,12 @@ class Magnetic(Effect):
     most: float
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'magnetic'
-    SCHEMA: ClassVar[dict] = mapping_of(['moment', 'field'], moment=VECTOR, field=EXPRESSIONS)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['moment', 'field'],
+        moment=described(VECTOR, 'm in A m^2, body axes'),
+        field=described(EXPRESSIONS, 'B in T, world axes: numbers or expressions of x y z')),
+        'U = -m . B: the torque m x B, and the force of a field that is not uniform; '
+        'booked as potential')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 

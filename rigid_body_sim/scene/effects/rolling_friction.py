@@ -8,7 +8,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Contact, Effect
-from rigid_body_sim.scene.schema import mapping_of
+from rigid_body_sim.scene.schema import described, mapping_of
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
 
@@ -26,7 +26,11 @@ class RollingFriction(Effect):
     dry: float
     viscous: float
     name: ClassVar[str] = 'rolling_friction'
-    SCHEMA: ClassVar[dict] = mapping_of(dry=COEFFICIENT, viscous=COEFFICIENT)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        dry=described(COEFFICIENT, 'C, a share of the normal force N', 0),
+        viscous=described(COEFFICIENT, 'c in N s/m', 0)),
+        "a force against the velocity u of the point of contact over the body's surface: "
+        'C N and c u; booked as heat')
     mechanisms: ClassVar = (Mechanism.PLANE,)
 
     @classmethod

@@ -27,7 +27,7 @@ from rigid_body_sim.scene.effects.protocol import (
     Vector,
 )
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import NUMBER, POSITIVE, VECTOR, mapping_of
+from rigid_body_sim.scene.schema import NUMBER, POSITIVE, VECTOR, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,15 @@ class Rotor(Effect):
     momentum_at_start: float
     torque: float
     name: ClassVar[str] = 'rotor'
-    SCHEMA: ClassVar[dict] = mapping_of(
-        ['axis'], axis=VECTOR, momentum=NUMBER, inertia=POSITIVE, rate=NUMBER, torque=NUMBER)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['axis'],
+        axis=described(VECTOR, 'a direction, body axes'),
+        momentum=described(NUMBER, 'kg m^2/s, as seen from the body'),
+        inertia=described(POSITIVE, 'kg m^2, not in that of the body'),
+        rate=described(NUMBER, 'rad/s at time 0, as seen from space'),
+        torque=described(NUMBER, 'N m, of the motor on the rotor', 0)),
+        "Gamma = -omega x h a - h' a, with a along axis; h = momentum, or h = inertia "
+        'rate + torque t')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 

@@ -16,7 +16,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Contact, Effect
 from rigid_body_sim.scene.painleve import painleve_bound
-from rigid_body_sim.scene.schema import POSITIVE, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,14 @@ class SlidingFriction(Effect):
     mu: float
     g: float
     name: ClassVar[str] = 'sliding_friction'
-    SCHEMA: ClassVar[dict] = mapping_of(['mu'], mu={'type': 'number', 'minimum': 0}, g=POSITIVE)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['mu'],
+        mu=described(
+            {'type': 'number', 'minimum': 0},
+            'coefficient; with a surface .inf rolls, come what may'),
+        g=described(POSITIVE, 'm/s^2 that presses a ball without a surface on the table')),
+        'Coulomb: a body that slips has the force mu N against the velocity of its lowest '
+        'point; booked as heat')
     mechanisms: ClassVar = (Mechanism.TABLE, Mechanism.PLANE)
 
     @classmethod

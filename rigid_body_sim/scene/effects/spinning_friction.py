@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Contact, Effect
-from rigid_body_sim.scene.schema import POSITIVE, mapping_of
+from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,11 @@ class SpinningFriction(Effect):
 
     radius: float
     name: ClassVar[str] = 'spinning_friction'
-    SCHEMA: ClassVar[dict] = mapping_of(['radius'], radius=POSITIVE)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['radius'],
+        radius=described(POSITIVE, 'm')),
+        'a patch of contact: the couple mu N radius against the spin about the normal; '
+        'booked as heat')
     mechanisms: ClassVar = (Mechanism.PLANE,)
 
     @classmethod

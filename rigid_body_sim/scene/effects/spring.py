@@ -11,7 +11,7 @@ from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
+from rigid_body_sim.scene.schema import NUMBER, VECTOR, described, mapping_of
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
 
@@ -37,9 +37,17 @@ class Spring(Effect):
     damper: tuple[tree.Node, ...]
     at: tuple[float, float, float] | None    # None of a torsion spring
     name: ClassVar[str] = 'spring'
-    SCHEMA: ClassVar[dict] = mapping_of(
-        ['stiffness'], at=VECTOR, anchor=VECTOR, stiffness=COEFFICIENT,
-        damping=COEFFICIENT, length=COEFFICIENT, angle=NUMBER)
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        ['stiffness'],
+        at=described(VECTOR, "m, from the body's origin, body axes"),
+        anchor=described(VECTOR, 'm, world axes'),
+        stiffness=described(COEFFICIENT, 'k in N/m; on a hinge N m/rad'),
+        damping=described(COEFFICIENT, 'c in N s/m; on a hinge N m s', 0),
+        length=described(COEFFICIENT, 'l in m; with 0 the damping acts on all of v', 0),
+        angle=described(NUMBER, 'phi in rad, from initial.orientation about the axis', 0)),
+        'U = k (|d| - l)^2/2 with d from anchor to point, F = -c (d.v/|d|) d/|d| as heat; '
+        'on a hinge, without at and anchor, U = k (angle - phi)^2/2 and the torque -c '
+        'rate')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 

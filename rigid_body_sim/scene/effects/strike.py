@@ -14,7 +14,7 @@ from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Effect, as_floats
-from rigid_body_sim.scene.schema import NUMBER, VECTOR, mapping_of
+from rigid_body_sim.scene.schema import NUMBER, VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import ORIENTATION
 
 
@@ -39,9 +39,16 @@ class Strike(Effect):
     time: float
     frame: str
     name: ClassVar[str] = 'strike'
-    SCHEMA: ClassVar[dict] = mapping_of(
-        impulse=VECTOR, speed=NUMBER, point=VECTOR, height=NUMBER, distance=NUMBER,
-        time={'type': 'number', 'minimum': 0}, frame={'enum': ['world', 'body']})
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        impulse=described(VECTOR, 'N s; on a table speed may stand in its place'),
+        speed=described(NUMBER, 'm/s of a ball along x after the strike: J = M speed'),
+        point=described(VECTOR, "m, from the body's origin, body axes"),
+        height=described(NUMBER, 'm, above the middle of a ball on the table, in place of point'),
+        distance=described(NUMBER, 'm, from a hinge toward the centre of mass, in place of point'),
+        time=described({'type': 'number', 'minimum': 0}, 's', 0),
+        frame=described({'enum': ['world', 'body']}, 'axes of impulse', 'world')),
+        'the impulse J at a point and a time; the bearing or the table gives what J does '
+        'not')
     mechanisms: ClassVar = tuple(Mechanism)
     repeatable: ClassVar[bool] = True
 

@@ -17,7 +17,7 @@ from rigid_body_sim.scene.effects.expressed import ExpressedTorque
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull, as_floats
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.frame import Frame
-from rigid_body_sim.scene.schema import VECTOR, mapping_of
+from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,18 @@ class Torque(Effect):
     values: tuple[tuple[float, ...], ...]
     frame: str
     name: ClassVar[str] = 'torque'
-    SCHEMA: ClassVar[dict] = mapping_of(
-        value=EXPRESSIONS, books={'enum': ['work', 'heat']},
-        values={'type': 'array', 'items': VECTOR, 'minItems': 1},
-        times={'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
-        frame={'enum': ['body', 'world']})
+    SCHEMA: ClassVar[dict] = described(mapping_of(
+        value=described(EXPRESSIONS, 'N m, numbers or expressions'),
+        books=described({'enum': ['work', 'heat']}, 'where the ledger has its power', 'work'),
+        values=described(
+            {'type': 'array', 'items': VECTOR, 'minItems': 1},
+            'N m, one vector for each of times'),
+        times=described(
+            {'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
+            's, rising'),
+        frame=described({'enum': ['body', 'world']}, 'axes of the components', 'body')),
+        'the couple Gamma = value; with times and values, values[i] from times[i] on and '
+        'none before')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 

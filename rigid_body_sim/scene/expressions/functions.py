@@ -8,6 +8,8 @@ from rigid_body_sim.numerics import functions
 
 LEVELS = 11
 """Of the continued fraction of tanh: to round-off for |x| < 1."""
+EVEN = 2.0 ** 53
+"""From here on every double is an even integer."""
 
 
 @compiled
@@ -37,8 +39,12 @@ def raised(x, y):
     """Return x to the power y, for any exponent; NaN where it is not real."""
     if x > 0.0:
         return functions.power(x, y)
+    if x != x or y != y:
+        return math.nan
     if x == 0.0:
         return 0.0 if y > 0.0 else 1.0 if y == 0.0 else math.inf
+    if not abs(y) < EVEN:
+        return functions.power(-x, y)
     if y != math.floor(y):
         return math.nan
     size = functions.power(-x, y)

@@ -31,6 +31,8 @@ def test_it_is_accurate(function, reference, most, width):
     (functions.raised(-2.0, 3.0), -8.0), (functions.raised(-2.0, 2.0), 4.0),
     (functions.raised(-2.0, 0.5), math.nan), (functions.raised(0.0, 2.0), 0.0),
     (functions.raised(0.0, -1.0), math.inf), (functions.raised(0.0, 0.0), 1.0),
+    (functions.raised(-2.0, math.inf), math.inf), (functions.raised(-0.5, 1e300), 0.0),
+    (functions.raised(-1.0, math.nan), math.nan), (functions.raised(0.0, math.nan), math.nan),
     (functions.side(0.0, 2.0), 1.0), (functions.side(0.0, -2.0), -1.0),
     (functions.side(0.0, 0.0), 0.0), (functions.side(0.0, math.nan), 0.0),
     (functions.side(1.0, -2.0), 1.0), (functions.side(-1.0, 2.0), -1.0)])
