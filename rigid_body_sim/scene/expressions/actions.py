@@ -12,6 +12,7 @@ from rigid_body_sim.scene.effects.protocol import Acting, Potential
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import (
     ATTITUDE,
+    IDENTITY,
     PLACE,
     RATES,
     TIME,
@@ -94,6 +95,8 @@ def _to_frame(lines, components, axes, frame):
     """Return the text of components along the frame's axes."""
     if axes == 'world':
         return f'rotate_back(qx, qy, qz, qw, {components})'
+    if frame.axes == IDENTITY:
+        return f'({components})'
     turn = ', '.join(lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes))
     return f'rotate_back({turn}, {components})'
 

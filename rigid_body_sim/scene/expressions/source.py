@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from rigid_body_sim.compilation.templates import module_of
 from rigid_body_sim.scene.expressions import tree
 
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
 TIME, PLACE, VELOCITY = ('t',), ('x', 'y', 'z'), ('vx', 'vy', 'vz')
 ATTITUDE, RATES, WORLD_RATES = (('qx', 'qy', 'qz', 'qw'), ('wx', 'wy', 'wz'), ('Wx', 'Wy', 'Wz'))
 HINGE = ('angle', 'rate')
@@ -157,7 +158,8 @@ def prelude(lines, used, frame):
         None where only the time is used.
     """
     found = []
-    if frame is not None:
+    own = frame is not None and frame.axes == IDENTITY    # the frame's axes are the body's
+    if frame is not None and not own:
         axes = [lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes)]
         ax, ay, az, aw = axes
     if used & {*PLACE, *VELOCITY}:
@@ -165,9 +167,11 @@ def prelude(lines, used, frame):
                           for k, part in enumerate(frame.from_body(frame.point)))
     if used & {*ATTITUDE, 'angle'}:
         found.append(
-            f'    {_names(ATTITUDE)} = multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})')
+            f'    {_names(ATTITUDE)} = ' + ('qx, qy, qz, qw' if own else
+                                            f'multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})'))
     if used & {*RATES, 'rate'}:
-        found.append(f'    {_names(RATES)} = rotate({", ".join(axes)}, wx, wy, wz)')
+        found.append(f'    {_names(RATES)} = '
+                     + ('wx, wy, wz' if own else f'rotate({", ".join(axes)}, wx, wy, wz)'))
     if used & {*HINGE}:
         n = [lines.value(f'hinge{k}', part) for k, part in enumerate(frame.hinge.axis)]
     if 'rate' in used:
