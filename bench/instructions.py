@@ -10,7 +10,8 @@ scene lists drag besides and must take more; otherwise the counting would miss e
 compiled for a generic x86-64, because callgrind does not know the newest instructions. The
 benchmark takes a minute. Then effects in expressions are counted beside the same ones written by
 hand: a step may take 1.3 times as many. The exit status is 1 if an absent effect costs more than
-1 %, a listed one less, or an expression more than 1.3. It needs valgrind; without it nothing is counted, and one line says so.
+1 %, a listed one less, or an expression more than 1.3. It needs valgrind; without it nothing is
+counted, and one line says so.
 """
 
 import argparse

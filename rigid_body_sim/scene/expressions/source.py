@@ -167,8 +167,9 @@ def prelude(lines, used, frame):
                           for k, part in enumerate(frame.from_body(frame.point)))
     if used & {*ATTITUDE, 'angle'}:
         found.append(
-            f'    {_names(ATTITUDE)} = ' + ('qx, qy, qz, qw' if own else
-                                            f'multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})'))
+            f'    {_names(ATTITUDE)} = ' + (
+                'qx, qy, qz, qw' if own else
+                f'multiply(qx, qy, qz, qw, -{ax}, -{ay}, -{az}, {aw})'))
     if used & {*RATES, 'rate'}:
         found.append(f'    {_names(RATES)} = '
                      + ('wx, wy, wz' if own else f'rotate({", ".join(axes)}, wx, wy, wz)'))
