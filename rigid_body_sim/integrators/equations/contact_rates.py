@@ -28,7 +28,7 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Vector
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations import contact_rest, contact_states
+from rigid_body_sim.integrators.equations.contact_rest import holds_still
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
@@ -81,7 +81,6 @@ ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns, store_row = CONTACT.load, UNKNOWNS.load, ROW.store
 RATES = ROW.part('rates').size
-holds_still, store_state = contact_rest.holds_still, contact_states.store_state
 
 
 class Contact(NamedTuple):
@@ -214,12 +213,12 @@ def _shared(c, heat, dx, dy):
 
 
 @compiled_inline
-def _in_flight(c, now, at, F, torque):
+def _in_flight(c, now, at, push):
     """Return the Contact of a FLIGHT: none."""
     # a gap that shrinks no faster than rounding is that of a body that has just lifted off
     shrinks = now.u[2] + dot(at.axes[2], at.carried) < -ROUNDING * c.swift
     normal = now.gap if shrinks else max(now.gap, 0.0)
-    return Contact(ZERO, Push(F, torque, ZERO, ZERO), scaled(1.0 / c.mass, F),
+    return Contact(ZERO, push, scaled(1.0 / c.mass, push.force),
                    (now.u[0], now.u[1], 0.0), now.u, normal, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
@@ -282,19 +281,6 @@ def _creeping(p, c, now, at, push, v, speed, film):
 
 
 @compiled_inline
-def _touching(p, c, now, at, F, T, v):
-    """Return the Contact of a phase in which the body touches the plane."""
-    viscous, wrung, speed, film = couples(c, at.axes[2], at.moved)
-    gyroscopic = cross(at.omega, apply(c.inertia, at.omega))
-    push = Push(F, plus(minus(T, gyroscopic), viscous), viscous, wrung)
-    if c.mode == ROLLING:
-        return _rolling(c, at, push, v, speed, film)
-    if c.mode == CREEPING:
-        return _creeping(p, c, now, at, push, v, speed, film)
-    return _slipping(c, now, at, push, v, speed, film)
-
-
-@compiled_inline
 def _motion(c, at, speed):
     """Return how far a body in contact is from lying flat, or from standing still (watched)."""
     gamma = at.axes[2]
@@ -328,33 +314,41 @@ def _resting(p, c, now, at):
 
 
 @compiled
-def rate(p, y, k):
+def rate(p, y, k):    # long: an inner function that holds all phases would be compiled twice
     """Fill a row k with the rates of the unknowns y."""
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
+    e3 = at.axes[2]
     if c.mode == RESTING:
         store_row(k, _resting(p, c, now, at))
         return
     v = _centre(c, now, at)
     F, T, work, heat = _applied(p, c, at.q, at.omega, v)
+    torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
     gap, motion = 0.0, 1.0
     if c.mode == FLIGHT:
-        contact = _in_flight(c, now, at, F,
-                             minus(T, cross(at.omega, apply(c.inertia, at.omega))))
-        torque, gap = contact.push.torque, v[2] + dot(at.axes[2], at.carried)
+        contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))
+        gap = v[2] + dot(e3, at.carried)
     else:
-        contact = _touching(p, c, now, at, F, T, v)
-        motion = _motion(c, at, contact.speed)
+        viscous, wrung, speed, film = couples(c, e3, at.moved)
+        push = Push(F, plus(torque, viscous), viscous, wrung)
+        if c.mode == ROLLING:
+            contact = _rolling(c, at, push, v, speed, film)
+        elif c.mode == CREEPING:
+            contact = _creeping(p, c, now, at, push, v, speed, film)
+        else:
+            contact = _slipping(c, now, at, push, v, speed, film)
+        motion = _motion(c, at, speed)
         torque = plus(contact.push.torque,
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
     turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch), T))
-    x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
     rolled = (c.rolling_viscous * contact.speed * contact.speed
               + c.rolling * contact.f[2] * contact.speed)
     entries = Exchanged(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
-                      heat, work, turn, contact.spun)
+                        heat, work, turn, contact.spun)
+    x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
     rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), apply(c.inverse, torque),
                      contact.growth, (contact.v[0], contact.v[1]), gap, 1.0, entries)
     watched = Watched(contact.normal, contact.grip, contact.firmness, c.until - now.time, motion)
@@ -372,18 +366,3 @@ def stays(p, y):
     c, now = load_contact(p), load_unknowns(y)
     F, T, _, _ = _applied(p, c, now.q, ZERO, ZERO)
     return holds_still(c, posture(c, now.q, now.omega), F, T)
-
-
-@compiled
-def write(p, y, row, time, start, out):
-    """Fill the state vector `out` at a time, and behind it the entries of the ledger.
-
-    Parameters
-    ----------
-    row : array
-        Work space.
-    start : tuple of 2 floats
-        Where the centre of mass was at the start of the course, axes of the plane, m.
-    """
-    rate(p, y, row)
-    store_state(load_contact(p), y, row, time, start, out)

@@ -42,18 +42,17 @@ NOTHING = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0.0)
 
 
 @compiled
-def store_state(c, y, row, time, start, out):
+def write(p, y, row, time, start, out):
     """Fill the state vector `out` from the unknowns and a row of their rates.
 
     Behind it, where there is room, stand the entries of the ledger and the heat by its cause.
 
     Parameters
     ----------
-    c : ContactParameters
     start : tuple of 2 floats
         Where the centre of mass was at the start of the course, axes of the plane, m.
     """
-    now, arm, v = load_unknowns(y), load_lever(row), load_velocity(row)
+    c, now, arm, v = load_contact(p), load_unknowns(y), load_lever(row), load_velocity(row)
     q, spent = now.q, now.ledger
     gap = now.gap if c.mode == FLIGHT else 0.0
     place = start[0] + now.place[0], start[1] + now.place[1], gap - arm[2]

@@ -19,7 +19,7 @@ from rigid_body_sim.integrators.equations.contact_impacts import (
     velocity_of_lowest,
 )
 from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
-from rigid_body_sim.integrators.equations.contact_states import read
+from rigid_body_sim.integrators.equations.contact_states import read, write
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
@@ -337,7 +337,7 @@ class _Phase:
     """
 
     def __init__(self, bound, p, y, tolerance, work, length):
-        self._bound, self.p, self._work, kernels = bound, p, work, bound.kernels
+        self._bound, self.p, self._work = bound, p, work
         self.begin = float(y[TIME])
         self._meta = np.zeros(contact_march.META)
         self._meta[contact_march.TOLERANCE] = tolerance
@@ -347,7 +347,8 @@ class _Phase:
         self.front = np.zeros(contact_march.POINT)
         self._store, self._sizes = np.empty((8, contact_march.POINT)), np.empty(64)
         self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
-        kernels.begin(p, work, self.front, self._meta, y)
+        bound.rates.rate(p, y, work[0])
+        bound.kernels.begin(p, work[0], self.front, self._meta, y)
 
     @property
     def status(self):
@@ -394,12 +395,14 @@ class _Phase:
 
     def write(self, elapsed, time, place, out):
         """Fill `out` with the state at a time that the march has passed."""
-        if not self._meta[contact_march.STEPS]:
-            self._bound.rates.write(self.p, self.front[:SIZE], self._work[0], time, place, out)
-            return
-        self._bound.kernels.at(self.p, self._work, self._store, self._sizes, self._meta,
-                               self._cursor, elapsed, self._y)
-        self._bound.rates.write(self.p, self._y, self._work[0], time, place, out)
+        y = self.front[:SIZE]
+        if self._meta[contact_march.STEPS]:
+            y = self._y
+            self._bound.kernels.at(self.p, self._work, self._store, self._sizes, self._meta,
+                                   self._cursor, elapsed, y)
+        row = self._work[0]
+        self._bound.rates.rate(self.p, y, row)
+        write(self.p, y, row, time, place, out)
 
 
 def _length(p, rates, y, row):

@@ -14,7 +14,7 @@ bracketed and refined to round-off. Each look is a step of the method, of full o
 
 import math
 
-from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
@@ -61,13 +61,14 @@ DEAD = 2.0 ** -56            # slip below that share of the speeds is none
 
 
 @compiled
-def begin(p, w, front, meta, y):
-    """Set the first point of a phase from its unknowns and choose its first step."""
+def begin(p, row, front, meta, y):
+    """Set the first point of a phase from its unknowns and choose its first step.
+
+    `row` holds the rates there.
+    """
     for n in range(SIZE):
         front[n], front[LOST + n] = y[n], 0.0
-    rate(p, y, w[0])
-    pace = w[0, PACE]
-    grown, slip = load_omega(w[0]), load_u(w[0])
+    grown, slip, pace = load_omega(row), load_u(row), row[PACE]
     fastest = meta[RATE] * pace + math.sqrt(dot(grown, grown)) / meta[RATE]
     if p[MODE] == SLIDING:
         fastest += hypot(slip[0], slip[1]) / pace
@@ -77,19 +78,37 @@ def begin(p, w, front, meta, y):
 
 
 @compiled
-def march(p, w, phase, sizes, front, meta, target):
+def march(p, w, phase, sizes, front, meta, target):    # long: as contact_step.first_zero
     """Move the front on until its time is past the target, the phase ends, or no room is left."""
     y, lost = front[:LOST], front[LOST:]
     mode = p[MODE]
     rate(p, y, w[0])
     while (meta[STATUS] == RUNNING and y[TIME] <= target and meta[STEPS] < len(sizes)
            and (meta[STORED] < len(phase) or len(phase) == KEPT)):
-        h, good = _accepted(p, w, y, lost, meta)
+        h = meta[PLANNED]
+        good, planned = False, h
+        for _ in range(TRIALS):
+            bad = step_from(p, w, y, lost, h)
+            error = error_of(w, h, (meta[RATE], meta[SPEED], meta[LENGTH])) + bad
+            allowed = meta[TOLERANCE] * (w[FRESH, TIME] - y[TIME]) + FLOOR
+            good = error <= allowed
+            planned = h * _factor(error, allowed)
+            if good:
+                break
+            h = planned
         if not good or (mode != SLIDING and not w[FRESH, TIME] > y[TIME]):
             meta[STATUS] = FAILED
             break
         rate(p, w[FRESH], w[END])
-        part, ends = _first_event(p, w, y, lost, h)
+        ends, part = 0, h
+        for k in range(WATCHES):
+            if _falls(w, k):
+                at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
+                # the rows are those of the last look: put them back
+                step_from(p, w, y, lost, h)
+                rate(p, w[FRESH], w[END])
+                if 0.0 < at <= part:
+                    part, ends = at, k + 1
         if ends:
             step_from(p, w, y, lost, part)
         _keep(phase, front, meta)
@@ -99,6 +118,7 @@ def march(p, w, phase, sizes, front, meta, target):
             w[END, PACE] <= DEAD * p[SWIFT])
         for n in range(SIZE):
             y[n], lost[n] = w[FRESH, n], w[TRIED, n]
+        meta[PLANNED] = planned
         meta[COUNT] += 1.0
         if ends:
             meta[STATUS] = _named(mode, ends)
@@ -111,55 +131,23 @@ def march(p, w, phase, sizes, front, meta, target):
                 w[0, n] = w[END, n]
 
 
-@compiled
-def _accepted(p, w, y, lost, meta):
-    """Make the first step from y that is accurate enough, and plan the next.
-
-    Returns
-    -------
-    h : float
-        The step, in row FRESH.
-    good : bool
-        Whether one is accurate enough.
-    """
-    h = meta[PLANNED]
-    scales = meta[RATE], meta[SPEED], meta[LENGTH]
-    for _ in range(TRIALS):
-        bad = step_from(p, w, y, lost, h)
-        error = error_of(w, h, scales) + bad
-        allowed = meta[TOLERANCE] * (w[FRESH, TIME] - y[TIME]) + FLOOR
-        factor = SHRINK
-        if error < math.inf:
-            factor = min(GROWTH, max(SHRINK, SAFETY * power(
-                allowed / max(error, 1e-9 * allowed), 1.0 / (dop8.ORDER - 1))))
-        planned = h * factor
-        if error <= allowed:
-            meta[PLANNED] = planned
-            return h, True
-        h = planned
-    return h, False
+@compiled_inline
+def _factor(error, allowed):
+    """Return the factor by which the next step is longer."""
+    if not error < math.inf:
+        return SHRINK
+    return min(GROWTH, max(SHRINK, SAFETY * power(
+        allowed / max(error, 1e-9 * allowed), 1.0 / (dop8.ORDER - 1))))
 
 
-@compiled
-def _first_event(p, w, y, lost, h):
-    """Return the part of a step h at which a phase ends, and 1 + the number that ends it.
-
-    They are h and 0 where none does. The rows hold the step, before and after.
-    """
-    part, ends = h, 0
-    for k in range(WATCHES):
-        below = w[END, WATCHED + k] < 0.0
-        for i in range(1, STAGES):
-            below |= w[i, WATCHED + k] < 0.0
-        from_below = w[0, WATCHED + k] <= 0.0
-        if below and not (from_below and (k == STOPS or w[END, WATCHED + k] >= 0.0)):
-            at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
-            # the rows are those of the last look: put them back
-            step_from(p, w, y, lost, h)
-            rate(p, w[FRESH], w[END])
-            if 0.0 < at <= part:
-                part, ends = at, k + 1
-    return part, ends
+@compiled_inline
+def _falls(w, k):
+    """Return whether a watched number k falls below zero within the step in the rows."""
+    below = w[END, WATCHED + k] < 0.0
+    for i in range(1, STAGES):
+        below |= w[i, WATCHED + k] < 0.0
+    from_below = w[0, WATCHED + k] <= 0.0
+    return below and not (from_below and (k == STOPS or w[END, WATCHED + k] >= 0.0))
 
 
 @compiled
@@ -197,7 +185,28 @@ def at(p, w, phase, sizes, meta, cursor, time, y):
     `cursor`, shape (2, POINT), holds the ends of the step in which the last answer lay.
     """
     if not (meta[PLACED] >= 0.0 and cursor[0, TIME] <= time < cursor[1, TIME]):
-        _place(p, w, phase, sizes, meta, cursor, time)
+        low, high = 0, int(meta[STORED]) - 1
+        while low < high:
+            middle = (low + high + 1) // 2
+            if phase[middle, TIME] <= time:
+                low = middle
+            else:
+                high = middle - 1
+        first = low * meta[STRIDE]
+        if not (first <= meta[PLACED] + 1.0 and meta[PLACED] >= 0.0 and cursor[1, TIME] <= time):
+            for n in range(POINT):
+                cursor[1, n] = phase[low, n]
+            meta[PLACED] = first - 1.0
+        while True:
+            meta[PLACED] += 1.0
+            for n in range(POINT):
+                cursor[0, n] = cursor[1, n]
+            rate(p, cursor[0], w[0])
+            step_from(p, w, cursor[0, :LOST], cursor[0, LOST:], sizes[int(meta[PLACED])])
+            for n in range(SIZE):
+                cursor[1, n], cursor[1, LOST + n] = w[FRESH, n], w[TRIED, n]
+            if cursor[1, TIME] > time or meta[PLACED] + 1.0 >= meta[STEPS]:
+                break
     values, lost, began = cursor[0, :LOST], cursor[0, LOST:], cursor[0, TIME]
     if time <= began:
         for n in range(SIZE):
@@ -210,33 +219,6 @@ def at(p, w, phase, sizes, meta, cursor, time, y):
         _step_to(p, w, values, lost, sizes[int(meta[PLACED])], cursor[1, TIME], time)
     for n in range(SIZE):
         y[n] = w[FRESH, n]
-
-
-@compiled
-def _place(p, w, phase, sizes, meta, cursor, time):
-    """Put the cursor on the step in which a time lies: steps from a kept point are made again."""
-    low, high = 0, int(meta[STORED]) - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if phase[middle, TIME] <= time:
-            low = middle
-        else:
-            high = middle - 1
-    first = low * meta[STRIDE]
-    if not (first <= meta[PLACED] + 1.0 and meta[PLACED] >= 0.0 and cursor[1, TIME] <= time):
-        for n in range(POINT):
-            cursor[1, n] = phase[low, n]
-        meta[PLACED] = first - 1.0
-    while True:
-        meta[PLACED] += 1.0
-        for n in range(POINT):
-            cursor[0, n] = cursor[1, n]
-        rate(p, cursor[0], w[0])
-        step_from(p, w, cursor[0, :LOST], cursor[0, LOST:], sizes[int(meta[PLACED])])
-        for n in range(SIZE):
-            cursor[1, n], cursor[1, LOST + n] = w[FRESH, n], w[TRIED, n]
-        if cursor[1, TIME] > time or meta[PLACED] + 1.0 >= meta[STEPS]:
-            break
 
 
 @compiled

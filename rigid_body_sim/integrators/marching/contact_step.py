@@ -152,7 +152,7 @@ def look(p, w, y, lost, h, k):
 
 
 @compiled
-def first_zero(p, w, y, lost, h, k, begin):
+def first_zero(p, w, y, lost, h, k, begin):    # long: a caller of a step compiles it once more
     """Return the part of the step h at which a watched number first falls below zero.
 
     Parameters
@@ -168,54 +168,34 @@ def first_zero(p, w, y, lost, h, k, begin):
     """
     low, value_low = 0.0, begin
     least, at = math.inf, 0.0
+    high, value_high = -1.0, 0.0
     for n in range(1, PARTS + 1):
         part = h * n / PARTS
         value = look(p, w, y, lost, part, k)
         if value < 0.0:
-            return _refined(p, w, (y, lost), k, (low, value_low), (part, value))
+            high, value_high = part, value
+            break
         if value < least:
             least, at = value, part
         low, value_low = part, value
-    # the least of the values may hide a dip
-    left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
-    part, value = _dip(p, w, (y, lost), k, left, right)
-    if part < 0.0:
-        return -1.0
-    return _refined(p, w, (y, lost), k, (left, least), (part, value))
-
-
-@compiled
-def _dip(p, w, start, k, left, right):
-    """Return a part at which a watched number is below zero, and the number; -1, 0 if none is.
-
-    Golden section looks for its least value between two parts.
-    """
-    y, lost = start
-    for _ in range(SEARCHES):
-        first = right - GOLDEN * (right - left)
-        second = left + GOLDEN * (right - left)
-        one, other = (look(p, w, y, lost, first, k), look(p, w, y, lost, second, k))
-        if one < 0.0:
-            return first, one
-        if other < 0.0:
-            return second, other
-        if one < other:
-            right = second
-        else:
-            left = first
-    return -1.0, 0.0
-
-
-@compiled
-def _refined(p, w, start, k, above, below):
-    """Return the first part at which a watched number is negative, to round-off.
-
-    The Illinois method, kept within the bracket, until no double lies between. `above` and
-    `below` are its ends, each a part and the number there.
-    """
-    y, lost = start
-    low, value_low = above
-    high, value_high = below
+    if high < 0.0:
+        # the least of the values may hide a dip: golden section around it
+        left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
+        for _ in range(SEARCHES):
+            first = right - GOLDEN * (right - left)
+            second = left + GOLDEN * (right - left)
+            one, other = (look(p, w, y, lost, first, k), look(p, w, y, lost, second, k))
+            if one < 0.0 or other < 0.0:
+                high, value_high = (first, one) if one < 0.0 else (second, other)
+                low, value_low = max(0.0, at - h / PARTS), least
+                break
+            if one < other:
+                right = second
+            else:
+                left = first
+        if high < 0.0:
+            return -1.0
+    # Illinois, kept within the bracket, until no double lies between
     side = 0
     for n in range(BISECTIONS):
         middle = 0.5 * (low + high)
