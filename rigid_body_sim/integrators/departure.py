@@ -22,7 +22,14 @@ from rigid_body_sim.numerics.functions import cos, exp, hypot, hypot3, log, sin
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.state import STATE, TIME
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    ORIENTATION,
+    POSITION,
+    STATE,
+    TIME,
+    VELOCITY,
+)
 
 NEAR = 1e-9      # of omega, the other components: their products are below half an ulp
 FOLDS = 20.0     # by e, until the other components of omega are that small
@@ -158,10 +165,10 @@ class Departure:
         ax, ay, az, aw = self._frame.axes
         place = plus(self._place, scaled(elapsed, self._drift))
         out[TIME] = time
-        out[1:5] = multiply(*q, -ax, -ay, -az, aw)
-        out[5:8] = rotate(ax, ay, az, aw, *omega)
-        out[8:11] = minus(place, rotate(*q, *self._point))
-        out[11:14] = minus(self._drift, rotate(*q, *cross(tuple(omega), self._point)))
+        out[ORIENTATION] = multiply(*q, -ax, -ay, -az, aw)
+        out[ANGULAR_VELOCITY] = rotate(ax, ay, az, aw, *omega)
+        out[POSITION] = minus(place, rotate(*q, *self._point))
+        out[VELOCITY] = minus(self._drift, rotate(*q, *cross(tuple(omega), self._point)))
 
 
 def _times_exp(value, exponent):

@@ -15,8 +15,9 @@ import numpy as np
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.root import root
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
 RADIANS_BETWEEN_LOOKS = 0.2
 RADIANS_BLIND = 3.0
@@ -78,7 +79,7 @@ def _momentum_along_middle_axis(inertia):
     order = np.argsort(inertia.moments)
 
     def components(vector):
-        omega = rotate_back(*inertia.axes, *vector[5:8])
+        omega = rotate_back(*inertia.axes, *vector[ANGULAR_VELOCITY])
         return [(float(inertia.moments[k]), omega[k]) for k in order]
 
     def share(vector):
@@ -100,14 +101,14 @@ def _momentum_along_middle_axis(inertia):
 
 def _rise_of_third_axis(vector):
     """Return the rate at which the height of body axis 3 grows, over |omega|."""
-    wx, wy, wz = vector[5:8]
+    wx, wy, wz = vector[ANGULAR_VELOCITY]
     size = hypot3(wx, wy, wz)
-    return rotate(*vector[1:5], wy, -wx, 0.0)[2] / size if size > 0.0 else 0.0
+    return rotate(*vector[ORIENTATION], wy, -wx, 0.0)[2] / size if size > 0.0 else 0.0
 
 
 def _rate_about(axis):
     def rate(vector):
-        return axis[0] * vector[5] + axis[1] * vector[6] + axis[2] * vector[7]
+        return dot(axis, vector[ANGULAR_VELOCITY])
 
     return rate
 
@@ -145,7 +146,7 @@ class Watcher:
         self._solver.state(time, self._vector)
         vector = self._vector.tolist()
         # the time s in which rate s + drive s^2/2 is that angle
-        rate = hypot3(*vector[5:8]) + self._swing
+        rate = hypot3(*vector[ANGULAR_VELOCITY]) + self._swing
         self._spacing = min(self._longest, 2.0 * RADIANS_BETWEEN_LOOKS / max(
             rate + math.sqrt(rate * rate + 2.0 * RADIANS_BETWEEN_LOOKS * self._drive), 1e-300))
         return [watch.value(vector) for watch in self._watched]

@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
+from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, WORK, apply_impulse
 from rigid_body_sim.mechanics.parameters import SCENE
 from rigid_body_sim.numerics.rotations import rotate
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+from rigid_body_sim.scene.state import ORIENTATION, STATE, STATE_SIZE
 from rigid_body_sim.simulation.command_rows import (
     AXES,
     BODY,
@@ -39,8 +40,20 @@ TAKEN, NOT_FINITE, NOT_SOLVABLE, TOO_MUCH_WORK, TOO_FAST = range(5)
 SCENE_REFUSES = 'the scene refuses commands'
 REASONS = ('', 'not finite', 'the body cannot take it', 'too large', 'the body cannot take it')
 """The reason of each verdict, as events and diagnostics name it."""
-_F, _T, _Q, _W = FORCE.start, TORQUE.start, ORIENTATION.start, ANGULAR_VELOCITY.start
+_F, _END = FORCE.start, TORQUE.stop
 load_moments = SCENE.part('moments').load
+load_q, load_omega = STATE.part('orientation').load, STATE.part('angular_velocity').load
+
+
+class Push(NamedTuple):
+    """Force and torque of a command (N and N m, or N s and N m s)."""
+
+    force: Vector
+    torque: Vector
+
+
+PUSH = layout(Push)
+load_push, store_push = PUSH.load, PUSH.store
 
 
 class Refusal(NamedTuple):
@@ -125,7 +138,7 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
         row = rows[k]
         impulse = row[KIND] == IMPULSE
         acts, finite = False, True
-        for j in range(_F, _T + 3):
+        for j in range(_F, _END):
             acts = acts or row[j] != 0.0
             finite = finite and math.isfinite(row[j])
         _to_world(row, start, 1.0 if impulse else rate, alone)
@@ -138,7 +151,8 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
             total[j] = sums[j] + alone[j]
         _apply(p, start, total, trial, trial_exchange)
         work = trial_exchange[WORK]
-        turn = max(abs(trial[_W]), abs(trial[_W + 1]), abs(trial[_W + 2])) / rate
+        wx, wy, wz = load_omega(trial)
+        turn = max(abs(wx), abs(wy), abs(wz)) / rate
         verdicts[k], amounts[k] = TAKEN, 0.0
         if not finite:
             verdicts[k] = NOT_FINITE
@@ -165,13 +179,13 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
 @compiled
 def _to_world(row, start, share, out):
     """Fill out, shape (6,), with force and torque of a row divided by `share`, in world axes."""
-    fx, fy, fz, tx, ty, tz = row[_F], row[_F + 1], row[_F + 2], row[_T], row[_T + 1], row[_T + 2]
+    force, torque = load_push(row, _F)
     if row[AXES] == BODY:
-        qx, qy, qz, qw = start[_Q], start[_Q + 1], start[_Q + 2], start[_Q + 3]
-        fx, fy, fz = rotate(qx, qy, qz, qw, fx, fy, fz)
-        tx, ty, tz = rotate(qx, qy, qz, qw, tx, ty, tz)
-    out[0], out[1], out[2] = fx / share, fy / share, fz / share
-    out[3], out[4], out[5] = tx / share, ty / share, tz / share
+        q = load_q(start)
+        force, torque = rotate(*q, *force), rotate(*q, *torque)
+    (fx, fy, fz), (tx, ty, tz) = force, torque
+    store_push(out, Push((fx / share, fy / share, fz / share),
+                         (tx / share, ty / share, tz / share)))
 
 
 @compiled

@@ -64,12 +64,38 @@ class EquationParameters(NamedTuple):
     moves: float
 
 
+class Unknowns(NamedTuple):
+    """The unknowns of a body that turns and flies; one that only turns has the first two.
+
+    Attributes
+    ----------
+    q : Quaternion
+        Frame -> world.
+    omega : Vector
+        Frame components, rad/s.
+    place, drift : Vector
+        Position (m) and velocity (m/s) of the point of reference, world axes.
+    time : float
+        s; where time or place matters.
+    """
+
+    q: Quaternion
+    omega: Vector
+    place: Vector
+    drift: Vector
+    time: float
+
+
+OMEGA, PLACE, DRIFT, CLOCK = (layout(Unknowns).part(name).first
+                              for name in ('omega', 'place', 'drift', 'time'))
 EQUATION = layout(EquationParameters)
 EULER, INVERSE, MOMENTS, MASS, MOVES = (
     EQUATION.part(name).first for name in ('euler', 'inverse', 'moments', 'mass', 'moves'))
 FIXED = EQUATION.size
 NO_START = Start(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-load_equation = EQUATION.load
+load_equation, load_mass = EQUATION.load, EQUATION.part('mass').load
+load_euler, load_inverse, load_moments = (EQUATION.part(name).load
+                                          for name in ('euler', 'inverse', 'moments'))
 load_start, store_start = EQUATION.part('start').load, EQUATION.part('start').store
 load_state, store_state = STATE.load, STATE.store
 
@@ -80,11 +106,8 @@ def taken(p, tx, ty, tz):
 
     There is none about an axis of zero moment, as that of a thin rod.
     """
-    return (
-        (tx if p[INVERSE] > 0.0 else 0.0),
-        (ty if p[INVERSE + 1] > 0.0 else 0.0),
-        (tz if p[INVERSE + 2] > 0.0 else 0.0),
-    )
+    ix, iy, iz = load_inverse(p)
+    return tx if ix > 0.0 else 0.0, ty if iy > 0.0 else 0.0, tz if iz > 0.0 else 0.0
 
 
 @compiled
@@ -122,8 +145,8 @@ def unit(qx, qy, qz, qw, cx, cy, cz, cw):
 @compiled
 def settled(y, c):
     """Return the unknowns and what their sums have lost, with q brought back to norm 1."""
-    q, lost = unit(y[0], y[1], y[2], y[3], c[0], c[1], c[2], c[3])
-    return (*q, *y[4:]), (*lost, *c[4:])
+    q, lost = unit(*y[:OMEGA], *c[:OMEGA])
+    return (*q, *y[OMEGA:]), (*lost, *c[OMEGA:])
 
 
 @compiled

@@ -14,7 +14,13 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Vector, layout
-from rigid_body_sim.integrators.equations.euler import EquationParameters, load_start, write_state
+from rigid_body_sim.integrators.equations.euler import (
+    OMEGA,
+    PLACE,
+    EquationParameters,
+    load_start,
+    write_state,
+)
 from rigid_body_sim.numerics.exponential import decay
 from rigid_body_sim.numerics.vectors import plus, scaled
 
@@ -73,4 +79,4 @@ def write(p, time, y, out):
     """Fill `out`, the state vector of a body that turns as in turning.py and falls."""
     begin, fall = load_start(p), load_fall(p)
     place, velocity = fallen(begin.place, begin.drift, fall.a, fall.slowing, time - begin.time)
-    write_state(p, time, y[:4], y[4:7], place, velocity, out)
+    write_state(p, time, y[:OMEGA], y[OMEGA:PLACE], place, velocity, out)

@@ -13,22 +13,21 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import (
+    CLOCK,
     MASS,
     MOVES,
     attitude_rate,
     load_start,
     read_state,
 )
-from rigid_body_sim.integrators.equations.flying import write  # noqa: F401 - another one
+from rigid_body_sim.integrators.equations.flying import GROUPS, write  # noqa: F401 - of flying.py
 
 settled = euler.settled    # one of the template's kernels
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND
 
-UNKNOWNS = 14
-GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
-"""Nothing is ever in doubt about the clock: it belongs to no group."""
+UNKNOWNS = CLOCK + 1    # nothing is ever in doubt about the clock: it belongs to no group
 
 
 @compiled
@@ -43,8 +42,7 @@ def start(p, vector, point, at):
 @compiled
 def rate(p, y):
     """Return the rates of the unknowns."""
-    qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
-    x, y_, z, vx, vy, vz, t = y[7], y[8], y[9], y[10], y[11], y[12], y[13]
+    qx, qy, qz, qw, wx, wy, wz, x, y_, z, vx, vy, vz, t = y
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
     fx, fy, fz = force(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
     free = p[MOVES] / p[MASS]

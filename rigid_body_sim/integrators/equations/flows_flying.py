@@ -7,7 +7,12 @@ in a kick the force changes its velocity; both sums carry what they lose (Kahan)
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import INVERSE, MASS
+from rigid_body_sim.integrators.equations.euler import (
+    MASS,
+    OMEGA,
+    PLACE,
+    load_inverse,
+)
 from rigid_body_sim.numerics.double_double import add_double
 
 rotation_drift = UNBOUND
@@ -21,13 +26,12 @@ force = UNBOUND
 @compiled
 def drift(p, y, c, h):
     """Return (y, c) after the body has moved freely for a time h."""
-    z, lost = rotation_drift(p, y[:7], c[:7], h)
+    x1, x2, x3, v1, v2, v3 = y[PLACE:]
+    l1, l2, l3, m1, m2, m3 = c[PLACE:]
+    z, lost = rotation_drift(p, y[:PLACE], c[:PLACE], h)
     (x1, l1), (x2, l2), (x3, l3) = (
-        add_double(y[7], c[7], h * y[10]),
-        add_double(y[8], c[8], h * y[11]),
-        add_double(y[9], c[9], h * y[12]),
-    )
-    return (*z, x1, x2, x3, y[10], y[11], y[12]), (*lost, l1, l2, l3, c[10], c[11], c[12])
+        add_double(x1, l1, h * v1), add_double(x2, l2, h * v2), add_double(x3, l3, h * v3))
+    return (*z, x1, x2, x3, v1, v2, v3), (*lost, l1, l2, l3, m1, m2, m3)
 
 
 @compiled
@@ -51,18 +55,15 @@ def kick_with_heat(p, y, c, h):
     fx, fy, fz = force(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     q1, q2, q3, q4 = rotation_turned(y, half * ux, half * uy, half * uz)
-    w1, w2, w3 = (
-        w1 + half * p[INVERSE] * tx,
-        w2 + half * p[INVERSE + 1] * ty,
-        w3 + half * p[INVERSE + 2] * tz,
-    )
+    i1, i2, i3 = load_inverse(p)
+    w1, w2, w3 = w1 + half * i1 * tx, w2 + half * i2 * ty, w3 + half * i3 * tz
     v1, v2, v3 = v1 + half * fx / p[MASS], v2 + half * fy / p[MASS], v3 + half * fz / p[MASS]
     tx, ty, tz = torque(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     fx, fy, fz = force(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, v1, v2, v3)
     z, c = _added(p, y, c, h, tx, ty, tz, fx, fy, fz)
     q1, q2, q3, q4 = rotation_turned(y, h * ux, h * uy, h * uz)
-    return (q1, q2, q3, q4, *z[4:]), (0.0, 0.0, 0.0, 0.0, *c[4:])
+    return (q1, q2, q3, q4, *z[OMEGA:]), (0.0, 0.0, 0.0, 0.0, *c[OMEGA:])
 
 
 @compiled
@@ -71,9 +72,11 @@ def _added(p, y, c, h, tx, ty, tz, fx, fy, fz):
 
     More than eight arguments: torque and force stay scalars in registers.
     """
-    z, lost = rotation_added(p, y[:7], c[:7], h, tx, ty, tz)
+    x1, x2, x3, v1, v2, v3 = y[PLACE:]
+    l1, l2, l3, m1, m2, m3 = c[PLACE:]
+    z, lost = rotation_added(p, y[:PLACE], c[:PLACE], h, tx, ty, tz)
     mass = p[MASS]
-    v1, l1 = add_double(y[10], c[10], h * fx / mass)
-    v2, l2 = add_double(y[11], c[11], h * fy / mass)
-    v3, l3 = add_double(y[12], c[12], h * fz / mass)
-    return (*z, y[7], y[8], y[9], v1, v2, v3), (*lost, c[7], c[8], c[9], l1, l2, l3)
+    v1, m1 = add_double(v1, m1, h * fx / mass)
+    v2, m2 = add_double(v2, m2, h * fy / mass)
+    v3, m3 = add_double(v3, m3, h * fz / mass)
+    return (*z, x1, x2, x3, v1, v2, v3), (*lost, l1, l2, l3, m1, m2, m3)

@@ -15,7 +15,7 @@ c carries what the sums of q and omega have lost (Kahan) from flow to flow.
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import INVERSE, MOMENTS
+from rigid_body_sim.integrators.equations.euler import OMEGA, load_inverse, load_moments
 from rigid_body_sim.integrators.equations.free_turn import turned_freely
 from rigid_body_sim.numerics.double_double import add_double
 from rigid_body_sim.numerics.rotations import from_rotation_vector, multiply, normalised
@@ -49,28 +49,26 @@ def kick_with_heat(p, y, c, h):
     tx, ty, tz = torque(p, q1, q2, q3, q4, w1, w2, w3, 0.0, 0.0, 0.0)
     ux, uy, uz = turning(p, q1, q2, q3, q4, w1, w2, w3, 0.0, 0.0, 0.0)
     a1, a2, a3, a4 = turned(y, half * ux, half * uy, half * uz)
-    w1, w2, w3 = (
-        w1 + half * p[INVERSE] * tx,
-        w2 + half * p[INVERSE + 1] * ty,
-        w3 + half * p[INVERSE + 2] * tz,
-    )
+    i1, i2, i3 = load_inverse(p)
+    w1, w2, w3 = w1 + half * i1 * tx, w2 + half * i2 * ty, w3 + half * i3 * tz
     tx, ty, tz = torque(p, a1, a2, a3, a4, w1, w2, w3, 0.0, 0.0, 0.0)
     ux, uy, uz = turning(p, a1, a2, a3, a4, w1, w2, w3, 0.0, 0.0, 0.0)
     z, c = added(p, y, c, h, tx, ty, tz)
     q1, q2, q3, q4 = turned(y, h * ux, h * uy, h * uz)
-    return (q1, q2, q3, q4, z[4], z[5], z[6]), (0.0, 0.0, 0.0, 0.0, c[4], c[5], c[6])
+    return (q1, q2, q3, q4, *z[OMEGA:]), (0.0, 0.0, 0.0, 0.0, *c[OMEGA:])
 
 
 @compiled
 def turned(y, rx, ry, rz):
     """Return the attitude turned by a rotation vector of the frame."""
-    return normalised(*multiply(y[0], y[1], y[2], y[3], *from_rotation_vector(rx, ry, rz)))
+    return normalised(*multiply(*y[:OMEGA], *from_rotation_vector(rx, ry, rz)))
 
 
 @compiled
 def added(p, y, c, h, tx, ty, tz):
     """Return (y, c) with what a torque (frame) adds to omega in a time h."""
-    w1, l1 = add_double(y[4], c[4], h * tx / p[MOMENTS] if p[MOMENTS] > 0.0 else 0.0)
-    w2, l2 = add_double(y[5], c[5], h * ty / p[MOMENTS + 1] if p[MOMENTS + 1] > 0.0 else 0.0)
-    w3, l3 = add_double(y[6], c[6], h * tz / p[MOMENTS + 2] if p[MOMENTS + 2] > 0.0 else 0.0)
-    return (y[0], y[1], y[2], y[3], w1, w2, w3), (c[0], c[1], c[2], c[3], l1, l2, l3)
+    (w1, w2, w3), (l1, l2, l3), (i1, i2, i3) = y[OMEGA:], c[OMEGA:], load_moments(p)
+    w1, l1 = add_double(w1, l1, h * tx / i1 if i1 > 0.0 else 0.0)
+    w2, l2 = add_double(w2, l2, h * ty / i2 if i2 > 0.0 else 0.0)
+    w3, l3 = add_double(w3, l3, h * tz / i3 if i3 > 0.0 else 0.0)
+    return (*y[:OMEGA], w1, w2, w3), (*c[:OMEGA], l1, l2, l3)

@@ -10,7 +10,11 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import (
+    CLOCK,
+    DRIFT,
     MASS,
+    OMEGA,
+    PLACE,
     attitude_rate,
     read_state,
     write_state,
@@ -21,8 +25,8 @@ omega_rate = UNBOUND
 axes_rate = UNBOUND
 force = UNBOUND
 
-UNKNOWNS = 13
-GROUPS = ((0, 4, True), (4, 7, False), (7, 10, False), (10, 13, False))
+UNKNOWNS = CLOCK
+GROUPS = ((0, OMEGA, True), (OMEGA, PLACE, False), (PLACE, DRIFT, False), (DRIFT, CLOCK, False))
 
 
 @compiled
@@ -37,8 +41,7 @@ def start(p, vector, point, at):
 @compiled
 def rate(p, y):
     """Return the rates of the unknowns."""
-    qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
-    vx, vy, vz = y[10], y[11], y[12]
+    qx, qy, qz, qw, wx, wy, wz, _, _, _, vx, vy, vz = y
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
     fx, fy, fz = force(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz)
     return (
@@ -52,4 +55,4 @@ def rate(p, y):
 @compiled
 def write(p, time, y, out):
     """Fill `out`, the state vector."""
-    write_state(p, time, y[:4], y[4:7], y[7:10], y[10:13], out)
+    write_state(p, time, y[:OMEGA], y[OMEGA:PLACE], y[PLACE:DRIFT], y[DRIFT:CLOCK], out)

@@ -22,7 +22,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
-from rigid_body_sim.integrators.equations.euler import EULER, MOMENTS
+from rigid_body_sim.integrators.equations.euler import OMEGA, load_euler, load_moments
 from rigid_body_sim.numerics.double_double import (
     add,
     add_double,
@@ -46,7 +46,8 @@ def turned_freely(p, y, c, h):
     """
     S, left = np.empty((7, TERMS)), h
     for _ in range(MOST_SPANS):
-        fastest = max(abs(y[4]), abs(y[5]), abs(y[6]))
+        w1, w2, w3 = y[OMEGA:]
+        fastest = max(abs(w1), abs(w2), abs(w3))
         if not abs(left) * fastest > REACH:
             return _span(p, y, c, left, S)    # also what is not a number
         span = math.copysign(REACH / fastest, left)
@@ -66,14 +67,15 @@ def _span(p, y, c, h, S):
     per = 1.0 / h if h != 0.0 else 0.0
     d1, d2, d3 = per * d1, per * d2, per * d3
     back = -_gained(p, y, c, d1, d2, d3)
-    q1, e1 = add_double(y[0], c[0], (y[3] * r1 + (y[1] * r3 - y[2] * r2)) + y[0] * r4)
-    q2, e2 = add_double(y[1], c[1], (y[3] * r2 + (y[2] * r1 - y[0] * r3)) + y[1] * r4)
-    q3, e3 = add_double(y[2], c[2], (y[3] * r3 + (y[0] * r2 - y[1] * r1)) + y[2] * r4)
-    q4, e4 = add_double(y[3], c[3], y[3] * r4 - (y[0] * r1 + (y[1] * r2 + y[2] * r3)))
-    w1, f1 = add_double(w1, c[4] + back * (w1 + d1), d1)
-    w2, f2 = add_double(w2, c[5] + back * (w2 + d2), d2)
-    w3, f3 = add_double(w3, c[6] + back * (w3 + d3), d3)
-    return (q1, q2, q3, q4, w1, w2, w3), (e1, e2, e3, e4, f1, f2, f3)
+    e1, e2, e3, e4, f1, f2, f3 = c
+    s1, e1 = add_double(q1, e1, (q4 * r1 + (q2 * r3 - q3 * r2)) + q1 * r4)
+    s2, e2 = add_double(q2, e2, (q4 * r2 + (q3 * r1 - q1 * r3)) + q2 * r4)
+    s3, e3 = add_double(q3, e3, (q4 * r3 + (q1 * r2 - q2 * r1)) + q3 * r4)
+    s4, e4 = add_double(q4, e4, q4 * r4 - (q1 * r1 + (q2 * r2 + q3 * r3)))
+    w1, f1 = add_double(w1, f1 + back * (w1 + d1), d1)
+    w2, f2 = add_double(w2, f2 + back * (w2 + d2), d2)
+    w3, f3 = add_double(w3, f3 + back * (w3 + d3), d3)
+    return (s1, s2, s3, s4, w1, w2, w3), (e1, e2, e3, e4, f1, f2, f3)
 
 
 @compiled
@@ -83,7 +85,7 @@ def _fill(p, a1, a2, a3, S):
     Return how many count.
     """
     S[0, 0], S[1, 0], S[2, 0], S[3, 0], S[4, 0], S[5, 0], S[6, 0] = a1, a2, a3, 0.0, 0.0, 0.0, 1.0
-    largest_turn, largest_change, small = 0.0, 0.0, 0
+    (e1, e2, e3), largest_turn, largest_change, small = load_euler(p), 0.0, 0.0, 0
     for n in range(1, TERMS):
         s1, s2, s3, x, y, z, w = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(n):
@@ -93,11 +95,7 @@ def _fill(p, a1, a2, a3, S):
             x, y = x + (r4 * u1 + (r2 * u3 - r3 * u2)), y + (r4 * u2 + (r3 * u1 - r1 * u3))
             z, w = z + (r4 * u3 + (r1 * u2 - r2 * u1)), w - (r1 * u1 + (r2 * u2 + r3 * u3))
         part, half = 1.0 / n, 0.5 / n
-        S[0, n], S[1, n], S[2, n] = (
-            part * p[EULER] * s1,
-            part * p[EULER + 1] * s2,
-            part * p[EULER + 2] * s3,
-        )
+        S[0, n], S[1, n], S[2, n] = part * e1 * s1, part * e2 * s2, part * e3 * s3
         S[3, n], S[4, n], S[5, n], S[6, n] = half * x, half * y, half * z, half * w
         change = max(abs(S[0, n]), abs(S[1, n]), abs(S[2, n]))
         turn = max(abs(S[3, n]), abs(S[4, n]), abs(S[5, n]), abs(S[6, n]))
@@ -119,10 +117,11 @@ def _gained(p, y, c, d1, d2, d3):
     sum I d (2 omega + d)/(2 sum I omega^2).
     """
     gain, low, twice = 0.0, 0.0, 0.0
+    moments = load_moments(p)
     for k in range(3):
-        moment, omega, d = p[MOMENTS + k], y[4 + k], d1 if k == 0 else d2 if k == 1 else d3
+        moment, omega, d = moments[k], y[OMEGA + k], d1 if k == 0 else d2 if k == 1 else d3
         a, al = multiply_double(*two_sum(2.0 * omega, d), moment)
-        a, al = multiply(a, al + 2.0 * moment * c[4 + k], d, 0.0)
+        a, al = multiply(a, al + 2.0 * moment * c[OMEGA + k], d, 0.0)
         gain, low = add(gain, low, a, al)
         twice += moment * omega * omega
     return 0.5 * gain / twice if twice > LEAST else 0.0

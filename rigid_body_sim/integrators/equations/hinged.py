@@ -24,12 +24,12 @@ from rigid_body_sim.integrators.equations.euler import (
 )
 from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.rotations import multiply
-from rigid_body_sim.numerics.vectors import dot
+from rigid_body_sim.numerics.vectors import dot, scaled
 from rigid_body_sim.scene.state import STATE
 
 torque = UNBOUND
 
-UNKNOWNS = 2
+UNKNOWNS = 2    # phi, phi'
 TURN = 2.0 * math.pi
 TWO_TURNS, REST = 4.0 * math.pi, 4.898587196589413e-16    # 4 pi as a sum of two doubles
 GROUPS = ((0, 1, True), (1, 2, False))
@@ -44,9 +44,9 @@ class HingedParameters(NamedTuple):
 
 
 PARAMETERS = layout(HingedParameters)
-AXIS, ATTITUDE = PARAMETERS.part('axis').first, PARAMETERS.part('attitude').first
 load_omega = STATE.part('angular_velocity').load
-load_axis, store_attitude = PARAMETERS.part('axis').load, PARAMETERS.part('attitude').store
+load_axis = PARAMETERS.part('axis').load
+load_attitude, store_attitude = PARAMETERS.part('attitude').load, PARAMETERS.part('attitude').store
 
 
 @compiled
@@ -61,23 +61,14 @@ def start(p, vector, point, at):
 def attitude(p, phi):
     """Return q at an angle."""
     s, c = sin(0.5 * phi), cos(0.5 * phi)
-    return multiply(
-        p[ATTITUDE],
-        p[ATTITUDE + 1],
-        p[ATTITUDE + 2],
-        p[ATTITUDE + 3],
-        s * p[AXIS],
-        s * p[AXIS + 1],
-        s * p[AXIS + 2],
-        c,
-    )
+    return multiply(*load_attitude(p), *scaled(s, load_axis(p)), c)
 
 
 @compiled
 def rate(p, y):
     """Return the rates of the unknowns."""
-    phi, speed = y[0], y[1]
-    nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
+    phi, speed = y
+    nx, ny, nz = load_axis(p)
     qx, qy, qz, qw = attitude(p, phi)
     tx, ty, tz = torque(p, qx, qy, qz, qw, speed * nx, speed * ny, speed * nz, 0.0, 0.0, 0.0)
     return speed, p[INVERSE] * (nx * tx + ny * ty + nz * tz)
@@ -92,15 +83,14 @@ def settled(y, c):
     """
     phi, lost = y[0], c[0]
     if phi > TURN:
-        return (phi - TWO_TURNS, y[1]), (lost - REST, c[1])
+        return (phi - TWO_TURNS, *y[1:]), (lost - REST, *c[1:])
     if phi < -TURN:
-        return (phi + TWO_TURNS, y[1]), (lost + REST, c[1])
+        return (phi + TWO_TURNS, *y[1:]), (lost + REST, *c[1:])
     return y, c
 
 
 @compiled
 def write(p, time, y, out):
     """Fill `out`, the state vector."""
-    nx, ny, nz = p[AXIS], p[AXIS + 1], p[AXIS + 2]
-    omega = (y[1] * nx, y[1] * ny, y[1] * nz)
-    write_state(p, time, attitude(p, y[0]), omega, load_start(p).place, (0.0, 0.0, 0.0), out)
+    write_state(p, time, attitude(p, y[0]), scaled(y[1], load_axis(p)), load_start(p).place,
+                (0.0, 0.0, 0.0), out)

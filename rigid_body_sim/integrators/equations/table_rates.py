@@ -20,13 +20,43 @@ with c = (1 + 1/k) mu N/M. All but SLIDING have t for their independent variable
 """
 
 
+from typing import NamedTuple
+
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, rotate
+from rigid_body_sim.numerics.vectors import plus
 
 RADIUS, RATIO, MASS, FRICTION, GRAVITY = range(5)    # as sliding_sphere.parameters
-MODE, WORLD_FORCE, WORLD_COUPLE, BODY_FORCE, BODY_COUPLE = 5, 6, 9, 12, 15
-PARAMETERS = 18
+
+
+class Pushed(NamedTuple):
+    """The parameters of a sphere that is pushed.
+
+    Attributes
+    ----------
+    sphere : tuple of 5 floats
+        Those of sliding_sphere.py.
+    mode : float
+    world_force, world_couple, body_force, body_couple : Vector
+        What holds in world axes and in body axes, N and N m.
+    """
+
+    sphere: tuple[float, float, float, float, float]
+    mode: float
+    world_force: Vector
+    world_couple: Vector
+    body_force: Vector
+    body_couple: Vector
+
+
+PUSHED = layout(Pushed)
+PARAMETERS = PUSHED.size
+MODE, WORLD_FORCE, WORLD_COUPLE, BODY_FORCE, BODY_COUPLE = (
+    PUSHED.part(name).first for name in ('mode', 'world_force', 'world_couple', 'body_force',
+                                         'body_couple'))
+load_pushed = PUSHED.load
 SLIDING, ROLLING, GLIDING, CREEPING = range(4)
 
 # unknowns: attitude, slip u, p, omega_z, place since the start, time since the start; then the
@@ -43,12 +73,11 @@ GROUPS = (
 
 
 @compiled
-def wrench(p, qx, qy, qz, qw):
+def wrench(p, q):
     """Return force and couple, world axes."""
-    fx, fy, fz = rotate(qx, qy, qz, qw, p[BODY_FORCE], p[BODY_FORCE + 1], p[BODY_FORCE + 2])
-    tx, ty, tz = rotate(qx, qy, qz, qw, p[BODY_COUPLE], p[BODY_COUPLE + 1], p[BODY_COUPLE + 2])
-    return (p[WORLD_FORCE] + fx, p[WORLD_FORCE + 1] + fy, p[WORLD_FORCE + 2] + fz,
-            p[WORLD_COUPLE] + tx, p[WORLD_COUPLE + 1] + ty, p[WORLD_COUPLE + 2] + tz)
+    given = load_pushed(p)
+    return (plus(given.world_force, rotate(*q, *given.body_force)),
+            plus(given.world_couple, rotate(*q, *given.body_couple)))
 
 
 @compiled
@@ -57,7 +86,7 @@ def drive(p, y):
 
     c is the largest deceleration of the slip that friction can give.
     """
-    fx, fy, fz, tx, ty, _ = wrench(p, y[0], y[1], y[2], y[3])
+    (fx, fy, fz), (tx, ty, _) = wrench(p, y[:U])
     a, k, M = p[RADIUS], p[RATIO], p[MASS]
     return (
         fx / M - ty / (k * M * a),
@@ -70,8 +99,9 @@ def drive(p, y):
 def motion(p, y):
     """Return v (x, y) and omega (x, y, z), world axes."""
     a, k = p[RADIUS], p[RATIO]
-    vx, vy = (y[6] + k * y[4]) / (1.0 + k), (y[7] + k * y[5]) / (1.0 + k)
-    return vx, vy, (y[5] - y[7]) / ((1.0 + k) * a), (y[6] - y[4]) / ((1.0 + k) * a), y[8]
+    ux, uy, px, py, wz = y[U:PLACE]
+    vx, vy = (px + k * ux) / (1.0 + k), (py + k * uy) / (1.0 + k)
+    return vx, vy, (uy - py) / ((1.0 + k) * a), (px - ux) / ((1.0 + k) * a), wz
 
 
 @compiled
@@ -81,13 +111,14 @@ def rate(p, y):
     Per unit of the independent variable.
     """
     a, k, M = p[RADIUS], p[RATIO], p[MASS]
-    fx, fy, _, tx, ty, tz = wrench(p, y[0], y[1], y[2], y[3])
+    (fx, fy, _), (tx, ty, tz) = wrench(p, y[:U])
+    slip_x, slip_y = y[U:P]
     gx, gy, c = drive(p, y)
     vx, vy, wx, wy, wz = motion(p, y)
     pace, ux, uy = 1.0, 0.0, 0.0
     if p[MODE] == SLIDING:
-        pace = hypot(y[4], y[5])
-        ux, uy = pace * gx - c * y[4], pace * gy - c * y[5]
+        pace = hypot(slip_x, slip_y)
+        ux, uy = pace * gx - c * slip_x, pace * gy - c * slip_y
     elif p[MODE] == GLIDING:
         ux, uy = gx, gy
     elif p[MODE] == CREEPING:
@@ -98,23 +129,15 @@ def rate(p, y):
     share = M * k / (1.0 + k)
     rubx, ruby = share * (ux - pace * gx), share * (uy - pace * gy)
     half = 0.5 * pace
-    qx, qy, qz, qw = multiply(half * wx, half * wy, half * wz, 0.0, y[0], y[1], y[2], y[3])
+    qx, qy, qz, qw = multiply(half * wx, half * wy, half * wz, 0.0, *y[:U])
     return (
-        qx,
-        qy,
-        qz,
-        qw,
-        ux,
-        uy,
+        qx, qy, qz, qw,
+        ux, uy,
         pace * (fx / M + ty / (M * a)),
         pace * (fy / M - tx / (M * a)),
         pace * tz / (k * M * a * a),
-        pace * vx,
-        pace * vy,
-        pace,
+        pace * vx, pace * vy, pace,
         pace * (fx * vx + fy * vy + tx * wx + ty * wy + tz * wz),
-        -(rubx * y[4] + ruby * y[5]),
-        pace * tx + a * ruby,
-        pace * ty - a * rubx,
-        pace * tz,
+        -(rubx * slip_x + ruby * slip_y),
+        pace * tx + a * ruby, pace * ty - a * rubx, pace * tz,
     )

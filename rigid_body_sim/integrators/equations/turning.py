@@ -15,6 +15,8 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import (
+    OMEGA,
+    PLACE,
     attitude_rate,
     load_start,
     read_state,
@@ -26,9 +28,9 @@ settled = euler.settled    # one of the template's kernels
 omega_rate = UNBOUND
 axes_rate = UNBOUND
 
-UNKNOWNS = 7
-GROUPS = ((0, 4, True), (4, 7, False))
-APART = ((0, 4, True), (4, 5, False), (5, 6, False), (6, 7, False))
+UNKNOWNS = PLACE
+GROUPS = ((0, OMEGA, True), (OMEGA, PLACE, False))
+APART = ((0, OMEGA, True), *((k, k + 1, False) for k in range(OMEGA, PLACE)))
 """Groups under internal dissipation: what leaves an axis is to be right while it is small."""
 
 
@@ -44,7 +46,7 @@ def start(p, vector, point, at):
 @compiled
 def rate(p, y):
     """Return the rates of the unknowns."""
-    qx, qy, qz, qw, wx, wy, wz = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
+    qx, qy, qz, qw, wx, wy, wz = y
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, 0.0, 0.0, 0.0)
     return (
         *attitude_rate(qx, qy, qz, qw, ax, ay, az),
@@ -57,4 +59,4 @@ def write(p, time, y, out):
     """Fill `out`, the state vector."""
     begin = load_start(p)
     place = plus(begin.place, scaled(time - begin.time, begin.drift))
-    write_state(p, time, y[:4], y[4:7], place, begin.drift, out)
+    write_state(p, time, y[:OMEGA], y[OMEGA:PLACE], place, begin.drift, out)

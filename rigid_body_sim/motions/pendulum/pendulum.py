@@ -31,8 +31,10 @@ Sources: Whittaker, Analytical Dynamics, section 44; NIST DLMF 22.19(i).
 """
 
 import math
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.motions.free_body.rotation import (
     CIRCULAR,
     HYPERBOLIC,
@@ -65,7 +67,16 @@ exchanged = takes = None
 PARAMETER_SIZE, ANCHOR_SIZE = anchor.PARAMETER_SIZE, anchor.ANCHOR_SIZE
 parameters, anchor = anchor.parameters, anchor.anchor
 
+
+class Reaction(NamedTuple):
+    """Force (N) and couple (N m) of the bearing on the body, world axes."""
+
+    force: Vector
+    couple: Vector
+
+
 load_state, store_state, store_row = STATE.load, STATE.store, COLUMNS.store
+store_reaction = layout(Reaction).store
 
 
 def absorbs(scene):
@@ -158,5 +169,4 @@ def reaction(parameters, state, out):
     force = plus(scaled(p.mass, rise), scaled(weight, gamma))
     momentum = plus(scaled(growth, p.momentum), scaled(squared, cross(n, p.momentum)))
     couple = plus(momentum, scaled(weight, cross(r, gamma)))
-    out[0], out[1], out[2] = rotate(*q, *force)
-    out[3], out[4], out[5] = rotate(*q, *couple)
+    store_reaction(out, Reaction(rotate(*q, *force), rotate(*q, *couple)))

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rules for the source of the package: short functions, named places, nothing asked by its name.
+
+The source is read, not run.
+"""
+
+import ast
+import functools
+import importlib
+import pathlib
+import pkgutil
+import re
+
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.scene import constraints, effects
+
+PACKAGE = pathlib.Path(__file__).resolve().parent.parent / 'rigid_body_sim'
+LINES, ARGUMENTS = 40, 8
+WHY_LINES, WHY_ARGUMENTS = 'More than forty lines:', 'More than eight arguments:'
+SCALARS = ('scene/effects/',)
+"""Where arguments are not counted: kernels of effects take the state as scalars, and their values
+behind it (scene/effects/protocol.py), for generated code hands them registers."""
+KERNELS = ('mechanics/', 'motions/', 'integrators/', 'simulation/admission.py')
+LANES = ('integrators/marching/taylor_march.py', 'integrators/marching/taylor_series.py',
+         'integrators/marching/batch_series.py', 'integrators/marching/batch.py',
+         'integrators/marching/contact_step.py')
+"""Where numbers count as places: rows of lanes of the vector unit, whose places are the orders of
+series, and stages of a tableau."""
+WIDEST = 3
+"""The last component of a vector or quaternion: a larger literal is a place in something flat."""
+
+
+@functools.cache
+def sources():
+    """Return (path below the package, lines, tree) of each source file."""
+    found = []
+    for path in sorted(PACKAGE.rglob('*.py')):
+        text = path.read_text()
+        found.append((path.relative_to(PACKAGE).as_posix(), text.splitlines(), ast.parse(text)))
+    return found
+
+
+def functions(tree, docstrings=()):
+    """Yield each function and the docstrings of it and of those around it."""
+    for child in ast.iter_child_nodes(tree):
+        around = docstrings
+        if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            around = (*docstrings, ' '.join((ast.get_docstring(child) or '').split()))
+            yield child, around
+        yield from functions(child, around)
+
+
+def code_lines(function, lines):
+    """Return how many lines a function has, without its docstring, comments and empty lines."""
+    first, skipped = function.body[0], range(0)
+    if ast.get_docstring(function) is not None:
+        skipped = range(first.lineno, first.end_lineno + 1)
+    return sum(1 for number in range(function.lineno, function.end_lineno + 1)
+               if number not in skipped and lines[number - 1].strip()
+               and not lines[number - 1].strip().startswith('#'))
+
+
+def test_a_long_function_says_why():
+    wrong = []
+    for path, lines, tree in sources():
+        for function, docstrings in functions(tree):
+            count = code_lines(function, lines)
+            if count > LINES and not any(WHY_LINES in text for text in docstrings):
+                wrong.append(f'{path}:{function.lineno} {function.name}: {count} lines, and no '
+                             f'"{WHY_LINES} ..." in its docstring')
+    assert wrong == []
+
+
+def test_a_function_of_many_arguments_says_why():
+    wrong = []
+    for path, _, tree in sources():
+        for function, docstrings in functions(tree):
+            given = function.args
+            names = [one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs)
+                     if one.arg not in ('self', 'cls')]
+            if len(names) > ARGUMENTS and not path.startswith(SCALARS) and not any(
+                    WHY_ARGUMENTS in text for text in docstrings):
+                wrong.append(f'{path}:{function.lineno} {function.name}: {len(names)} arguments, '
+                             f'and no "{WHY_ARGUMENTS} ..." in its docstring')
+    assert wrong == []
+
+
+def literals(index):
+    """Yield the whole numbers of an index that are places typed by hand."""
+    for one in index.elts if isinstance(index, ast.Tuple) else [index]:
+        ends = [one.lower, one.upper] if isinstance(one, ast.Slice) else [one]
+        for end in ends:
+            if isinstance(end, ast.BinOp) and isinstance(end.op, ast.Add) and isinstance(
+                    end.left, ast.Name) and isinstance(end.right, ast.Constant):
+                if end.left.id.isupper() or end.right.value > 1:
+                    yield end
+            if isinstance(end, ast.Constant) and isinstance(end.value, int) and end.value > WIDEST:
+                yield end
+
+
+def test_places_in_flat_arrays_have_names():
+    wrong = []
+    for path, lines, tree in sources():
+        if path.startswith(KERNELS) and path not in LANES:
+            wrong += [f'{path}:{part.lineno} {ast.unparse(part)}' for part in ast.walk(tree)
+                      if isinstance(part, ast.Subscript) and any(literals(part.slice))]
+    assert wrong == []
+
+
+def words():
+    """Return the words of effects, constraints and methods."""
+    found = set(METHODS)
+    for room in (effects, constraints):
+        for module in pkgutil.iter_modules(room.__path__):
+            made = importlib.import_module(f'{room.__name__}.{module.name}')
+            found |= {one.kind for one in vars(made).values()
+                      if isinstance(one, type) and isinstance(getattr(one, 'kind', None), str)}
+            found |= {one.name for one in vars(made).values()
+                      if isinstance(one, type) and isinstance(getattr(one, 'name', None), str)}
+    return found
+
+
+def test_nothing_is_asked_by_the_name_of_a_part():
+    """Outside study/, which is about named scenes, no rule compares with the word of a part."""
+    parts, wrong = words(), []
+    assert {'gravity', 'pivot', 'dop8'} <= parts
+    for path, _, tree in sources():
+        if path.startswith('study/'):
+            continue
+        for part in ast.walk(tree):
+            asked = []
+            if isinstance(part, ast.Compare) and all(
+                    isinstance(one, (ast.Eq, ast.NotEq, ast.In, ast.NotIn)) for one in part.ops):
+                asked = [part.left, *part.comparators]
+            elif isinstance(part, ast.match_case):
+                asked = [one.value for one in ast.walk(part.pattern)
+                         if isinstance(one, ast.MatchValue)]
+            elif isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute) and (
+                    part.func.attr == 'effect'):
+                asked = part.args
+            for one in asked:
+                named = [each.value for each in ast.walk(one) if isinstance(each, ast.Constant)]
+                wrong += [f'{path}:{part.lineno} asks for {name!r}' for name in named
+                          if isinstance(name, str) and name in parts]
+    assert wrong == []
+
+
+def test_nothing_is_found_by_looking_for_an_attribute():
+    wrong = [f'{path}:{part.lineno} {ast.unparse(part)}' for path, _, tree in sources()
+             if path.startswith(('scene/', *KERNELS, 'choice/', 'simulation/'))
+             for part in ast.walk(tree)
+             if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)
+             and part.func.id == 'hasattr']
+    assert wrong == []
+
+
+def test_a_reason_is_a_sentence():
+    for path, lines, _ in sources():
+        text = ' '.join(' '.join(lines).split())
+        for why in (WHY_LINES, WHY_ARGUMENTS):
+            for reason in re.findall(re.escape(why) + r' ([^"]*)', text):
+                assert len(reason.partition('.')[0]) > 15, path
