@@ -111,14 +111,7 @@ def _draw(axes, panel):
         axes.axhspan(-panel.band, panel.band, color='#e8e8e8', linewidth=0)
     for name, begin, end in panel.spans:
         axes.axvspan(begin, end, color=SHADE, linewidth=0)
-        axes.annotate(
-            name,
-            (begin, 1.0),
-            xycoords=('data', 'axes fraction'),
-            xytext=(3, -10),
-            textcoords='offset points',
-            fontsize=8,
-        )
+        _note(axes, name, (begin, 1.0), ('data', 'axes fraction'), (3, -10))
     for k, line in enumerate(panel.lines):
         axes.plot(
             line.x,
@@ -143,18 +136,15 @@ def _draw(axes, panel):
         limit = max(1.3 * largest, 1.5 * panel.band)
         axes.set_ylim(-limit, limit)
         if limit < ROUND_OFF * panel.band and len(panel.lines) == 1:
-            axes.annotate(
-                'round-off: 4 ulp',
-                (1.0, panel.band),
-                xycoords=('axes fraction', 'data'),
-                xytext=(4, 0),
-                textcoords='offset points',
-                va='center',
-                fontsize=8,
-                color=GREY,
-                annotation_clip=False,
-            )
+            _note(axes, 'round-off: 4 ulp', (1.0, panel.band), ('axes fraction', 'data'), (4, 0),
+                  va='center', color=GREY, annotation_clip=False)
     _finish(axes, len(panel.lines) > 1)
+
+
+def _note(axes, text, place, coordinates, offset, **style):
+    """Write a word beside a place, `offset` in points."""
+    axes.annotate(text, place, xycoords=coordinates, xytext=offset, textcoords='offset points',
+                  fontsize=8, **style)
 
 
 def _finish(axes, legend=True):

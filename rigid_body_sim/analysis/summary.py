@@ -11,6 +11,8 @@ TOLD = 6     # phases named in the short report
 def summary(measured, spectrum=None, balance=None):
     """Return all numbers as plain data.
 
+    More than forty lines: one entry for each number of the report.
+
     Parameters
     ----------
     measured : Measured
@@ -111,9 +113,20 @@ def lines(found):
         for line in found['lines']
         if line['measured'] is not None
     ]
+    others = _others(found)
+    if others:
+        text.append(f'  events   {", ".join(others)}')
+    if timing['lateness']:
+        text.append(_late(timing))
+    text.append(f'  drops    {_drops(found)}')
+    return text
+
+
+def _others(found):
+    """Return the counts of all events but flips, as words."""
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
     others += [f'{found["strikes"]} x strike'] if found['strikes'] else []
-    others += [
+    return others + [
         f'{found[kind]} {name}'
         for kind, name in (
             ('commands', 'ticks with commands'),
@@ -121,19 +134,15 @@ def lines(found):
         )
         if found[kind]
     ]
-    if others:
-        text.append(f'  events   {", ".join(others)}')
-    if timing['lateness']:
-        late = {name: value * 1e6 for name, value in timing['lateness'].items()}
-        rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
-        stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
-        text.append(
-            f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, '
-            f'max {late["max"]:.0f} us'
-            f'{rate}{stood}'
-        )
-    text.append(f'  drops    {_drops(found)}')
-    return text
+
+
+def _late(timing):
+    """Return the line that says how late messages were published."""
+    late = {name: value * 1e6 for name, value in timing['lateness'].items()}
+    rate = f'; {timing["achieved_rate"]:.3f} Hz achieved' if timing['achieved_rate'] else ''
+    stood = f'; stood still {timing["standstills"]} times' if timing['standstills'] else ''
+    return (f'  messages were published late by p50 {late["p50"]:.0f}, p99 {late["p99"]:.0f}, '
+            f'max {late["max"]:.0f} us{rate}{stood}')
 
 
 def _quantity(values, unit):

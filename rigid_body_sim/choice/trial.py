@@ -78,7 +78,10 @@ def settle(scene, able, accuracy, horizon):
 
 
 def _settled(scene, accuracy, horizon, method, tolerance, promised):
-    """Return what `settle` returns, for one method and the tolerance at which it begins."""
+    """Return what `settle` returns, for one method and the tolerance at which it begins.
+
+    More than forty lines: its helpers share the runs made so far, each of which is made once.
+    """
     time = min(horizon, _span(scene, horizon))
     if not time > 0.0:
         return Settled(method, tolerance, promised, horizon)

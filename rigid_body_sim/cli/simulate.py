@@ -124,12 +124,24 @@ def _run(options):
         return _simulate(options, bar)
 
 
-def _simulate(options, bar):
-    began = time.perf_counter()
-    scene = load_scene(options.scene, options.set)
+def _check_duration(options):
     if not (options.duration >= 0.0 and not options.duration * options.rate > LONGEST):
         raise BadInput('--duration', f'got {options.duration!r}',
                        f'seconds, not negative, at most {LONGEST / options.rate:g} at this rate')
+
+
+def _warn(simulation):
+    """Say what the scene's notes say, and that the accuracy is missed, if it is."""
+    for line in simulation.scene.notes:
+        print(f'{simulation.scene.name}: {line}', file=sys.stderr)
+    if simulation.missed:
+        print(f'{simulation.scene.name}: {simulation.missed}', file=sys.stderr)
+
+
+def _simulate(options, bar):
+    began = time.perf_counter()
+    scene = load_scene(options.scene, options.set)
+    _check_duration(options)
     simulation = Simulation(scene, options.integrator, options.accuracy, options.rate,
                             options.step, horizon=options.duration or HORIZON)
     ticks = Timeline(0, simulation.rate).ticks_in(options.duration)
@@ -153,10 +165,7 @@ def _simulate(options, bar):
     bar.close()
     cost = {'set_up': prepared - began, 'run': finished - prepared, 'ticks': simulation.tick,
             'messages': recording.messages if recording else 0}
-    for line in simulation.scene.notes:
-        print(f'{simulation.scene.name}: {line}', file=sys.stderr)
-    if simulation.missed:
-        print(f'{simulation.scene.name}: {simulation.missed}', file=sys.stderr)
+    _warn(simulation)
     result = {'state': _plain(simulation.state), 'ledger': simulation.ledger(),
               'method': about.run_of(simulation), 'events': dict(events), 'cost': cost}
     if options.json:

@@ -135,25 +135,9 @@ class Diagnostics:
             self._since('slipped', ticker.slipped),
             self._since('overruns', ticker.overruns),
         )
-        level, message = OK, 'paused' if ticker.paused else 'on time'
-        if overruns or lateness['p99'] > settings['diagnostics.lateness_warn']:
-            level, message = (
-                WARN,
-                f'{overruns} overruns in the last second, '
-                f'lateness p99 {lateness["p99"] * 1e6:.0f} us',
-            )
-        if slipped or lateness['p99'] > settings['diagnostics.lateness_error']:
-            level, message = (
-                ERROR,
-                f'it does not keep up: {self.rate:.6g} of {settings.rate:.6g} Hz; '
-                'lower rate, or publish and record less',
-            )
-        if ticker.waiting_for_clock:
-            level, message = WARN, 'waiting for the first message on /clock'
         return self._status(
             'timing',
-            level,
-            message,
+            *self._punctuality(lateness['p99'], overruns, slipped),
             {
                 'tick': self._session.next_tick - 1,
                 'rate': settings.rate,
@@ -171,6 +155,19 @@ class Diagnostics:
                 'scheduling': ticker.scheduling,
             },
         )
+
+    def _punctuality(self, late, overruns, slipped):
+        """Return level and message of lateness (p99, s), overruns and slips since the last one."""
+        ticker, settings = self._ticker, self._settings
+        if ticker.waiting_for_clock:
+            return WARN, 'waiting for the first message on /clock'
+        if slipped or late > settings['diagnostics.lateness_error']:
+            return ERROR, (f'it does not keep up: {self.rate:.6g} of {settings.rate:.6g} Hz; '
+                           'lower rate, or publish and record less')
+        if overruns or late > settings['diagnostics.lateness_warn']:
+            return WARN, (f'{overruns} overruns in the last second, '
+                          f'lateness p99 {late * 1e6:.0f} us')
+        return OK, 'paused' if ticker.paused else 'on time'
 
     def _command(self):
         queue = self._commands

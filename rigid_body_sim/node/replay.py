@@ -19,15 +19,12 @@ EXAMPLES = (
 FASTEST = 1e6
 
 
-def main(arguments=None):
-    """Run the command, and end the process with its exit status."""
-    arguments = sys.argv[1:] if arguments is None else arguments
-    own = arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
+def _parser():
+    """Return the parser of the command."""
     parser = command_line.parser(
         'replay',
         'Publish a recording again: its topics with their quality of service, /clock, and a '
-        'service '
-        '~/pause.',
+        'service ~/pause.',
         EXAMPLES,
     )
     parser.add_argument(
@@ -53,7 +50,14 @@ def main(arguments=None):
     parser.add_argument(
         '--json', action='store_true', help='print counts and timing errors as JSON at the end'
     )
-    options = parser.parse_args(own)
+    return parser
+
+
+def main(arguments=None):
+    """Run the command, and end the process with its exit status."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    own = arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
+    options = _parser().parse_args(own)
     with signals() as stop:
         try:
             recording = _opened(options)

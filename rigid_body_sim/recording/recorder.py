@@ -81,6 +81,8 @@ class Status:
 class Recorder:
     """Starts a recorder and feeds it.
 
+    More than eight arguments: all is settled at the start, and most have a default.
+
     Parameters are those of the Writer (writer.py), and `commands`: CommandTopics, for those who
     call :meth:`commands`.
 

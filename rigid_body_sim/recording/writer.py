@@ -45,6 +45,8 @@ ABOUT = 'rigid_body_sim'
 class Writer:
     """Writes a recording. Not thread-safe.
 
+    More than eight arguments: all is settled at the start, and most have a default.
+
     Parameters
     ----------
     path : path-like

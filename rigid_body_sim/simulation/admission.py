@@ -110,6 +110,9 @@ class Given(NamedTuple):
 def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
     """Take the commands of a tick, in their order.
 
+    More than eight arguments: compiled code is handed the arrays of a Given one by one.
+    More than forty lines: the verdicts share one trial.
+
     Parameters
     ----------
     p : array

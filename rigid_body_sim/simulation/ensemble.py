@@ -81,6 +81,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
              horizon: float = HORIZON) -> Ensemble:
     """Return the states of many bodies at many times.
 
+    More than eight arguments: one call is the whole interface; most are named and have a default.
+
     Parameters
     ----------
     scene : Scene, str or path

@@ -255,41 +255,43 @@ def word(name):
     return re.sub(r'\W+', '_', name)
 
 
-def _variables(plan):
-    keep, times = plan.spec.keep, plan.spec.times
-    found = []
-    for one in keep:
-        if one.kind == 'final':
-            found += [Variable(f'final_{part}', (_axis(part),), (len(AXES[part]),), attrs={
-                'long_name': f'{part.replace("_", " ")} at the last time', 'units': UNITS[part]})
+def _kept(plan, one):
+    """Return the Variables of one entry of `keep`."""
+    if one.kind == 'final':
+        return [Variable(f'final_{part}', (_axis(part),), (len(AXES[part]),), attrs={
+            'long_name': f'{part.replace("_", " ")} at the last time', 'units': UNITS[part]})
+            for part in one.what]
+    if one.kind == 'states':
+        return [Variable(part, ('time', _axis(part)), (len(plan.spec.times), len(AXES[part])),
+                         attrs={'long_name': part.replace('_', ' '), 'units': UNITS[part]})
                 for part in one.what]
-        elif one.kind == 'states':
-            found += [Variable(part, ('time', _axis(part)), (len(times), len(AXES[part])), attrs={
-                'long_name': part.replace('_', ' '), 'units': UNITS[part]}) for part in one.what]
-        elif one.kind == 'first':
-            found.append(Variable(f'first_{word(one.what)}', attrs={
-                'long_name': f'time of the first {one.what}, NaN if there is none',
-                'units': 's'}))
-        elif one.kind == 'all':
-            event = word(one.what)
-            found += [Variable(f'all_{event}', (event,), (one.most,), attrs={
-                'long_name': f'times of the first {one.most} {one.what} events',
-                'units': 's'}), Variable(f'{event}_count', dtype=np.dtype(np.int32), attrs={
-                    'long_name': f'number of {one.what} events', 'units': '1'})]
-        elif one.kind in ('minimum', 'maximum'):
-            quantity = QUANTITIES[one.what]
-            found.append(Variable(f'{one.kind}_{word(one.what)}', attrs={
-                'long_name': f'{one.kind} over the times of: {quantity.long_name}',
-                'units': quantity.unit}))
-        elif one.kind == 'residuals':
-            found += [Variable(f'{name}_residual', attrs={
-                'long_name': f'{name} residual of the ledger at the last time, relative',
-                'units': '1'}) for name in ('energy', 'momentum')]
-        else:
-            found += [Variable(name, (f'{name}_place',) if size is not None else (),
-                               () if size is None else (size,), attrs={
-                'long_name': f'by the function {one.what}'})
-                for name, size in plan.outputs.get(one.what, ())]
+    if one.kind == 'first':
+        return [Variable(f'first_{word(one.what)}', attrs={
+            'long_name': f'time of the first {one.what}, NaN if there is none', 'units': 's'})]
+    if one.kind == 'all':
+        event = word(one.what)
+        return [Variable(f'all_{event}', (event,), (one.most,), attrs={
+            'long_name': f'times of the first {one.most} {one.what} events', 'units': 's'}),
+            Variable(f'{event}_count', dtype=np.dtype(np.int32), attrs={
+                'long_name': f'number of {one.what} events', 'units': '1'})]
+    if one.kind in ('minimum', 'maximum'):
+        quantity = QUANTITIES[one.what]
+        return [Variable(f'{one.kind}_{word(one.what)}', attrs={
+            'long_name': f'{one.kind} over the times of: {quantity.long_name}',
+            'units': quantity.unit})]
+    if one.kind == 'residuals':
+        return [Variable(f'{name}_residual', attrs={
+            'long_name': f'{name} residual of the ledger at the last time, relative',
+            'units': '1'}) for name in ('energy', 'momentum')]
+    return [Variable(name, (f'{name}_place',) if size is not None else (),
+                     () if size is None else (size,),
+                     attrs={'long_name': f'by the function {one.what}'})
+            for name, size in plan.outputs.get(one.what, ())]
+
+
+def _variables(plan):
+    """Return the Variables of a plan: what is kept, and how each run went."""
+    found = [variable for one in plan.spec.keep for variable in _kept(plan, one)]
     names = [one.name for one in found]
     for place, name in enumerate(names):
         if name in names[:place] or name in plan.dims:

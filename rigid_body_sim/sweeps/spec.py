@@ -141,7 +141,8 @@ def again(text, functions):
     return _checked(json.loads(text), 'sweep', pathlib.Path(), functions)
 
 
-def _checked(mapping, where, folder, functions=None):
+def _check_words(mapping, where):
+    """Refuse a word that a sweep does not know, or the lack of one that it needs."""
     for key in mapping:
         if key not in WORDS:
             near = difflib.get_close_matches(str(key), WORDS, 1)
@@ -151,13 +152,10 @@ def _checked(mapping, where, folder, functions=None):
     for key in ('scene', 'keep'):
         if key not in mapping:
             raise BadInput(where, f'the key {key!r} is missing', f'give {key} (docs/sweeps.md)')
-    scene = _scene(mapping['scene'], f'{where}: scene', folder)
-    accuracy = _number(mapping.get('accuracy', 1e-12), f'{where}: accuracy')
-    integrator = mapping.get('integrator', 'auto')
-    vary = {str(key): _values(values, f'{where}: vary.{key}')
-            for key, values in _mapping(mapping.get('vary'), f'{where}: vary').items()}
-    sample, runs, seed = _sample(_mapping(mapping.get('sample'), f'{where}: sample'),
-                                 f'{where}: sample')
+
+
+def _check_keys(vary, sample, where):
+    """Refuse a sweep that changes nothing, a key twice, and what is no key of a scene."""
     if not vary and not sample:
         raise BadInput(where, 'neither vary nor sample names a key',
                        'give keys of the scene, for example vary: {body.mass: [1, 2]}')
@@ -168,6 +166,18 @@ def _checked(mapping, where, folder, functions=None):
         if '/' in key or key in ('run', 'time', 'axis', 'quaternion', 'block'):
             raise BadInput(f'{where}: {key}', 'is no key of a scene',
                            'a key path such as body.mass')
+
+
+def _checked(mapping, where, folder, functions=None):
+    _check_words(mapping, where)
+    scene = _scene(mapping['scene'], f'{where}: scene', folder)
+    accuracy = _number(mapping.get('accuracy', 1e-12), f'{where}: accuracy')
+    integrator = mapping.get('integrator', 'auto')
+    vary = {str(key): _values(values, f'{where}: vary.{key}')
+            for key, values in _mapping(mapping.get('vary'), f'{where}: vary').items()}
+    sample, runs, seed = _sample(_mapping(mapping.get('sample'), f'{where}: sample'),
+                                 f'{where}: sample')
+    _check_keys(vary, sample, where)
     times = _times(mapping.get('times', 0.0), f'{where}: times')
     known = dict(functions or {})
     keep = tuple(_kept(entry, f'{where}: keep.{place}', folder, known)

@@ -26,6 +26,8 @@ def routh_constant(w3, theta, A, C, m, R, a):
 def swing(theta, s, w3, A, C, m, R, a, g):
     """Return the other turning point of a Routh sphere, and the time to it.
 
+    More than eight arguments: the symbols of Routh's formulas.
+
     Returns
     -------
     other : float

@@ -176,7 +176,7 @@ class Stage:
         arrows = self.mechanics.arrows(frame.vector, frame.wrench)
         center = self.mechanics.center(frame.vector) / self.unit - self._about
         for key, value in arrows._asdict().items():
-            start = center if key == 'force' else np.zeros(3)
+            start = center if value is arrows.force else np.zeros(3)
             self._draw_arrow(key, start, value if self.shown.get(key) else np.zeros(3))
 
     def _draw_arrow(self, key, start, value):

@@ -314,8 +314,12 @@ def _resting(p, c, now, at):
 
 
 @compiled
-def rate(p, y, k):    # long: an inner function that holds all phases would be compiled twice
-    """Fill a row k with the rates of the unknowns y."""
+def rate(p, y, k):
+    """Fill a row k with the rates of the unknowns y.
+
+    More than forty lines: a function between this one and those of the phases would compile them
+    once more, half a second.
+    """
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
     e3 = at.axes[2]

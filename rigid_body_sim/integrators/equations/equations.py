@@ -67,6 +67,10 @@ class Equations:
     """
 
     def __init__(self, scene, wrench=None):
+        """Bind the kind of equations to what acts.
+
+        More than forty lines: each attribute is made from those before it.
+        """
         self.frame = scene.constraint.frame(scene.body)
         self._axis = scene.constraint.axis
         self._actors = [effect for effect in scene.effects if effect.acting is not None]

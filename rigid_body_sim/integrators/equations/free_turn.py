@@ -31,6 +31,7 @@ from rigid_body_sim.numerics.double_double import (
     two_sum,
 )
 
+W1, W2, W3, D1, D2, D3, D4 = range(7)    # rows of the series: of omega h, and of Delta
 REACH = 0.25                   # of M
 TERMS = 32
 ROUNDING = 2.0 ** -60          # of the largest term: smaller ones do not count
@@ -62,8 +63,8 @@ def _span(p, y, c, h, S):
     q1, q2, q3, q4, w1, w2, w3 = y
     d1, d2, d3, r1, r2, r3, r4 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(_fill(p, h * w1, h * w2, h * w3, S) - 1, 0, -1):
-        d1, d2, d3 = d1 + S[0, k], d2 + S[1, k], d3 + S[2, k]
-        r1, r2, r3, r4 = r1 + S[3, k], r2 + S[4, k], r3 + S[5, k], r4 + S[6, k]
+        d1, d2, d3 = d1 + S[W1, k], d2 + S[W2, k], d3 + S[W3, k]
+        r1, r2, r3, r4 = r1 + S[D1, k], r2 + S[D2, k], r3 + S[D3, k], r4 + S[D4, k]
     per = 1.0 / h if h != 0.0 else 0.0
     d1, d2, d3 = per * d1, per * d2, per * d3
     back = -_gained(p, y, c, d1, d2, d3)
@@ -84,21 +85,22 @@ def _fill(p, a1, a2, a3, S):
 
     Return how many count.
     """
-    S[0, 0], S[1, 0], S[2, 0], S[3, 0], S[4, 0], S[5, 0], S[6, 0] = a1, a2, a3, 0.0, 0.0, 0.0, 1.0
+    S[W1, 0], S[W2, 0], S[W3, 0] = a1, a2, a3
+    S[D1, 0], S[D2, 0], S[D3, 0], S[D4, 0] = 0.0, 0.0, 0.0, 1.0
     (e1, e2, e3), largest_turn, largest_change, small = load_euler(p), 0.0, 0.0, 0
     for n in range(1, TERMS):
         s1, s2, s3, x, y, z, w = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(n):
-            u1, u2, u3 = S[0, n - 1 - j], S[1, n - 1 - j], S[2, n - 1 - j]
-            s1, s2, s3 = s1 + S[1, j] * u3, s2 + S[2, j] * u1, s3 + S[0, j] * u2
-            r1, r2, r3, r4 = S[3, j], S[4, j], S[5, j], S[6, j]
+            u1, u2, u3 = S[W1, n - 1 - j], S[W2, n - 1 - j], S[W3, n - 1 - j]
+            s1, s2, s3 = s1 + S[W2, j] * u3, s2 + S[W3, j] * u1, s3 + S[W1, j] * u2
+            r1, r2, r3, r4 = S[D1, j], S[D2, j], S[D3, j], S[D4, j]
             x, y = x + (r4 * u1 + (r2 * u3 - r3 * u2)), y + (r4 * u2 + (r3 * u1 - r1 * u3))
             z, w = z + (r4 * u3 + (r1 * u2 - r2 * u1)), w - (r1 * u1 + (r2 * u2 + r3 * u3))
         part, half = 1.0 / n, 0.5 / n
-        S[0, n], S[1, n], S[2, n] = part * e1 * s1, part * e2 * s2, part * e3 * s3
-        S[3, n], S[4, n], S[5, n], S[6, n] = half * x, half * y, half * z, half * w
-        change = max(abs(S[0, n]), abs(S[1, n]), abs(S[2, n]))
-        turn = max(abs(S[3, n]), abs(S[4, n]), abs(S[5, n]), abs(S[6, n]))
+        S[W1, n], S[W2, n], S[W3, n] = part * e1 * s1, part * e2 * s2, part * e3 * s3
+        S[D1, n], S[D2, n], S[D3, n], S[D4, n] = half * x, half * y, half * z, half * w
+        change = max(abs(S[W1, n]), abs(S[W2, n]), abs(S[W3, n]))
+        turn = max(abs(S[D1, n]), abs(S[D2, n]), abs(S[D3, n]), abs(S[D4, n]))
         largest_change, largest_turn = max(largest_change, change), max(largest_turn, turn)
         small = (
             small + 1

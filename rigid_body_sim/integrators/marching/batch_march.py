@@ -44,7 +44,8 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
 
     Return (NOBODY, 0.0) or who failed, and when; (ANYBODY, 0.0) after so many rounds of steps:
     the next call with the same W and seats goes on. More than eight arguments: compiled code is
-    handed arrays and scalars, and one call marches all bodies.
+    handed arrays and scalars, and one call marches all bodies. More than forty lines: seats are
+    counted in local variables.
 
     Parameters
     ----------

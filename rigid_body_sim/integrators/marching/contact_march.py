@@ -78,8 +78,11 @@ def begin(p, row, front, meta, y):
 
 
 @compiled
-def march(p, w, phase, sizes, front, meta, target):    # long: as contact_step.first_zero
-    """Move the front on until its time is past the target, the phase ends, or no room is left."""
+def march(p, w, phase, sizes, front, meta, target):
+    """Move the front on until its time is past the target, the phase ends, or no room is left.
+
+    More than forty lines: each function that calls a step compiles it once more, half a second.
+    """
     y, lost = front[:LOST], front[LOST:]
     mode = p[MODE]
     rate(p, y, w[0])

@@ -152,8 +152,10 @@ def look(p, w, y, lost, h, k):
 
 
 @compiled
-def first_zero(p, w, y, lost, h, k, begin):    # long: a caller of a step compiles it once more
+def first_zero(p, w, y, lost, h, k, begin):
     """Return the part of the step h at which a watched number first falls below zero.
+
+    More than forty lines: each function that calls a step compiles it once more, half a second.
 
     Parameters
     ----------

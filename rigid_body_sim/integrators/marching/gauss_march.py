@@ -175,6 +175,8 @@ def _predict(p, S, y, last):
 def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
     """Solve the equations of the stages of a step by substitution.
 
+    More than eight arguments: scalars and tuples stay in registers where arrays would not.
+
     Parameters
     ----------
     h : float

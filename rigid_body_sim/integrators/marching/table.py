@@ -117,7 +117,7 @@ class TableCourse:
         gx, gy, c = table_rates.drive(p, y)
         if p[table_rates.FRICTION] * p[table_rates.GRAVITY] == 0.0:
             p[table_rates.MODE] = GLIDING
-        elif y[U] != 0.0 or y[U + 1] != 0.0:
+        elif any(y[U:P]):
             p[table_rates.MODE] = SLIDING
         elif hypot(gx, gy) <= c:
             p[table_rates.MODE] = ROLLING
@@ -165,7 +165,7 @@ class TableCourse:
         vx, vy, *omega = table_rates.motion(self._bound.parameters, y)
         q = normalised(*y[Q:U])
         out[STATE_TIME], out[ORIENTATION], out[ANGULAR_VELOCITY] = time, q, rotate_back(*q, *omega)
-        out[POSITION] = self._start[POSITION] + [y[PLACE], y[PLACE + 1], 0.0]
+        out[POSITION] = self._start[POSITION] + [*y[PLACE:CLOCK], 0.0]
         out[VELOCITY] = vx, vy, 0.0
 
 
@@ -196,7 +196,7 @@ class _Phase:
         self._kept, self._stride, self._count = [], 1, 0
         gx, gy, c = table_rates.drive(p, y)
         _, _, *omega = table_rates.motion(p, y)
-        pace = hypot(y[U], y[U + 1]) if self.mode == SLIDING else 1.0
+        pace = hypot(*y[U:P]) if self.mode == SLIDING else 1.0
         swift = c + hypot(gx, gy) + pace * hypot3(*omega)
         h = power(tolerance, 1.0 / bound.order) / (swift if swift > 0.0 else 1.0)
         if self.mode == CREEPING:
@@ -240,7 +240,7 @@ class _Phase:
                 high = part
             else:
                 low = part
-            pace = hypot(y[U], y[U + 1])
+            pace = hypot(*y[U:P])
             better = part - late / pace if pace > 0.0 else low
             better = better if low <= better <= high else 0.5 * (low + high)
             if abs(better - part) <= 1e-16 * high:
@@ -287,14 +287,14 @@ class _Phase:
         before, after = point[0], following[0]
         if self.mode == SLIDING:
             vx, vy, *omega = table_rates.motion(self._p, after)
-            slip, c = hypot(after[U], after[U + 1]), table_rates.drive(self._p, after)[2]
+            slip, c = hypot(*after[U:P]), table_rates.drive(self._p, after)[2]
             speed = hypot(vx, vy) + self._p[table_rates.RADIUS] * hypot3(*omega)
-            dead = slip < hypot(before[U], before[U + 1]) and slip <= DEAD * max(
+            dead = slip < hypot(*before[U:P]) and slip <= DEAD * max(
                 speed, c * (after[CLOCK] - self.begin)
             )
             return (*after[:U], 0.0, 0.0, *after[P:]) if dead else None
         if self.mode == CREEPING:
-            return after if after[U] != 0.0 or after[U + 1] != 0.0 else None
+            return after if any(after[U:P]) else None
         if self.mode == GLIDING or not self._bound.turns_with_body or self._grips(after):
             return None
         low, high = 0.0, following[3][1]

@@ -62,20 +62,23 @@ class DamagedRecords(Findings):
             return None
         if opcode == MESSAGE and self._with_length(offset, following):
             return following
-        damage = Damage(following - offset)
+        self.damages.append(self._lost(following - offset, is_index, rescued))
+        self._indexes_follow = is_index
+        self._drop()
+        self.end = following
+        return following
+
+    def _lost(self, size, is_index, rescued):
+        """Return the Damage of a record of which nothing is kept."""
+        damage = Damage(size, before=self._before)
         if is_index:
             damage.lost_bytes = damage.lost = 0
-            self._indexes_follow = True
         elif rescued is not None:
             damage.claimed = rescued.claimed if rescued.claimed <= LARGEST_CHUNK else 0
             damage.until = rescued.span[1]
             if rescued.expected is not None:
                 damage.lost = sum(rescued.expected.values())
-        damage.before = self._before
-        self.damages.append(damage)
-        self._drop()
-        self.end = following
-        return following
+        return damage
 
     def _following(self, offset, length, hint, is_index):
         """Return where the record behind a damaged one is; the file's size where there is none."""

@@ -117,22 +117,10 @@ def decompress(name, data, limit):
     return b''.join(pieces), length if records <= limit else 0
 
 
-def rescue(source, offset, hint=None, cut=False):
-    """Return what can be read of a damaged chunk, as Rescued; None where there is no chunk.
-
-    Parameters
-    ----------
-    source : FileBytes
-    offset : int
-    hint : mcap.records.ChunkIndex, optional
-        What the summary says of it.
-    cut : bool
-        Whether the file may end within the chunk.
-    """
-    head = source.read(offset, CHUNK_HEAD.size)
-    if len(head) < CHUNK_HEAD.size:
-        return None
-    opcode, length, start, stop, claimed, checksum, name_length = CHUNK_HEAD.unpack(head)
+def _best(source, offset, hint, cut):
+    """Return how a chunk is best read: (compression, data, records, sure, end), or None."""
+    opcode, length, _, _, claimed, checksum, name_length = CHUNK_HEAD.unpack(
+        source.read(offset, CHUNK_HEAD.size))
     best = None
     for name in ('zstd', 'lz4', ''):
         begin = offset + CHUNK_HEAD.size + len(name) + 8
@@ -153,6 +141,26 @@ def rescue(source, offset, hint=None, cut=False):
             best = name, data, records, sure, end
             if sure:
                 break
+    return best
+
+
+def rescue(source, offset, hint=None, cut=False):
+    """Return what can be read of a damaged chunk, as Rescued; None where there is no chunk.
+
+    Parameters
+    ----------
+    source : FileBytes
+    offset : int
+    hint : mcap.records.ChunkIndex, optional
+        What the summary says of it.
+    cut : bool
+        Whether the file may end within the chunk.
+    """
+    head = source.read(offset, CHUNK_HEAD.size)
+    if len(head) < CHUNK_HEAD.size:
+        return None
+    _, _, start, stop, claimed, checksum, _ = CHUNK_HEAD.unpack(head)
+    best = _best(source, offset, hint, cut)
     if best is None:
         return None
     name, data, records, sure, end = best

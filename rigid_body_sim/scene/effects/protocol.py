@@ -9,6 +9,7 @@ adds an effect step by step.
 import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
@@ -204,8 +205,10 @@ class Effect(Protocol):
     def __init_subclass__(cls, **options: Any) -> None:
         """Refuse a setting that has the name of a view: it would hide the view."""
         super().__init_subclass__(**options)
+        views = {name for name, view in vars(Effect).items()
+                 if isinstance(view, property | classmethod | FunctionType)}
         for name, kind in inspect.get_annotations(cls).items():
-            if isinstance(Effect.__dict__.get(name), property) and 'ClassVar' not in str(kind):
+            if name in views and 'ClassVar' not in str(kind):
                 raise TypeError(f'{cls.__name__}.{name} is a setting with the name of a view of '
                                 'the contract Effect: give it another name')
 

@@ -133,7 +133,10 @@ def derivatives(tree, variables):
 
 
 def _derivative(one, variable, rates):
-    """Return d(one)/d(variable), the derivatives of its arguments being known."""
+    """Return d(one)/d(variable), the derivatives of its arguments being known.
+
+    More than forty lines: a table of rules, one for each operation.
+    """
     op, args = one.op, one.args
     if op == 'number':
         return ZERO

@@ -230,7 +230,10 @@ def energy_is_no_proof():
 
 
 def cases():
-    """Yield the cases."""
+    """Yield the cases.
+
+    More than forty lines: a table, one entry a case.
+    """
     yield Case(
         4, 'a jump of 1e6 s, a million ticks, any order',
         'sums of time steps round; states that depend on the way do not repeat', million_ticks)

@@ -165,7 +165,10 @@ class Turning:
                      for pair, i in zip(((i2, i3), (i3, i1), (i1, i2)), given.moments)]
 
     def _series(self, state):
-        """Return the Taylor coefficients of q, omega and the directions."""
+        """Return the Taylor coefficients of q, omega and the directions.
+
+        More than forty lines: one recurrence, in which every series needs the others.
+        """
         bits, order = self.bits, self.order
         half = bits + 1
         series = [[x] for x in state]

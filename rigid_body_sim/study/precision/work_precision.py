@@ -47,6 +47,19 @@ def main(arguments=None):
     return command_line.run(_run, parser.parse_args(arguments))
 
 
+def _surroundings():
+    """Return when and where a study was made."""
+    return {
+        'made': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
+        'version': version(),
+        'machine': machine(),
+        'cores': os.cpu_count(),
+        'load': os.getloadavg(),
+        'interpreter': platform.python_implementation(),
+        'clock': 'time.process_time',
+    }
+
+
 def _run(options):
     problems = _problems(options)
     limit, repeats = (QUICK_LIMIT, QUICK_REPEATS) if options.quick else (FULL_LIMIT, FULL_REPEATS)
@@ -68,14 +81,8 @@ def _run(options):
         if not options.json:
             print('\n'.join(table.lines(results[-1])), end='\n\n', flush=True)
     found = {
-        'made': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
+        **_surroundings(),
         'took': time.time() - began,
-        'version': version(),
-        'machine': machine(),
-        'cores': os.cpu_count(),
-        'load': os.getloadavg(),
-        'interpreter': platform.python_implementation(),
-        'clock': 'time.process_time',
         'limit': limit,
         'repeats': repeats,
         'sample': measure.SAMPLE,

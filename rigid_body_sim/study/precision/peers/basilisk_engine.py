@@ -51,6 +51,10 @@ def _whole(duration, step):
 
 
 def _run(problem, given, method, step, tolerance):
+    """Return the Run of a scene.
+
+    More than forty lines: what builds the model, and what runs it, share the objects of the peer.
+    """
     from Basilisk.architecture import bskLogging
     from Basilisk.simulation import extForceTorque, spacecraft, svIntegrators
     from Basilisk.utilities import SimulationBaseClass

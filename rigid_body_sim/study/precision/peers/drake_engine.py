@@ -42,6 +42,10 @@ def runners(problem, reference):
 
 
 def _run(scene, numbers, step, scheme, accuracy):
+    """Return the Run of a scene.
+
+    More than forty lines: what builds the model, and what runs it, share the objects of the peer.
+    """
     from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
     from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
     from pydrake.systems.framework import DiagramBuilder

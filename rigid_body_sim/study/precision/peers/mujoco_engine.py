@@ -80,6 +80,10 @@ def _spaced(values):
 
 
 def _run(scene, numbers, integrator, step):
+    """Return the Run of a scene.
+
+    More than forty lines: what builds the model, and what runs it, share the objects of the peer.
+    """
     import mujoco
     try:
         model = mujoco.MjModel.from_xml_string(_text(scene, numbers, integrator, step))
