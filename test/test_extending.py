@@ -253,9 +253,10 @@ initial: {{euler_zyz: [0, 2.6, 0], rate: 1.0}}
     assert predicted_lines(mine) == predicted_lines(known) != ()
 
 
-def test_a_setting_with_the_name_of_a_view_is_refused():
-    with pytest.raises(TypeError, match='is a setting with the name of a view'):
-        type('Wind', (Effect,), {'__annotations__': {'uniform_field': tuple}})
+@pytest.mark.parametrize('name', ['uniform_field', 'momentum', 'grip', 'notes', 'from_scene'])
+def test_a_setting_with_the_name_of_a_view_is_refused(name):
+    with pytest.raises(TypeError, match=f'Wind.{name} is a setting with the name of a view'):
+        type('Wind', (Effect,), {'__annotations__': {name: tuple}})
 
 
 SPHERE = """scene: slowing

@@ -27,7 +27,8 @@ except ImportError:
 HAVE_NUMBA = numba is not None and not numba.config.DISABLE_JIT
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 KERNEL_SOURCES = ('compilation', 'numerics', 'scene', 'mechanics', 'motions', 'integrators',
-                  'simulation/admission.py', 'messages/tick_messages.py', 'sweeps/draws.py',
+                  'simulation/admission.py', 'simulation/command_rows.py',
+                  'messages/tick_messages.py', 'messages/timeline.py', 'sweeps/draws.py',
                   'study/hard_cases/trends.py')
 KEEP_UNUSED = 30 * 86400.0    # s
 

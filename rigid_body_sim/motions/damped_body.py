@@ -45,8 +45,8 @@ from rigid_body_sim.numerics.pairs import pair_of, times
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.vectors import scaled
-from rigid_body_sim.scene.bodies import ULPS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ('flip',)

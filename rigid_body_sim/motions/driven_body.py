@@ -36,8 +36,8 @@ from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rota
 from rigid_body_sim.numerics.vectors import across, cross, dot
 from rigid_body_sim.numerics.vectors import plus as sum_of
 from rigid_body_sim.numerics.vectors import scaled as stretched
-from rigid_body_sim.scene.bodies import ULPS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ()

@@ -34,8 +34,8 @@ from rigid_body_sim.numerics.phase import fraction, sin_cos
 from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, scaled
-from rigid_body_sim.scene.bodies import ULPS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE
 
 EVENTS = ('turning point',)

@@ -11,7 +11,7 @@ from typing import Any, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene import bodies, principal_axes
 from rigid_body_sim.scene.schema import NUMBER, QUATERNION, VECTOR, Schema
 from rigid_body_sim.scene.state import State
 
@@ -85,7 +85,7 @@ class Start:
         along = (rotations.rotate_back(*inertia.axes, *omega) if inertia.axes != bodies.IDENTITY
                  else omega)
         for k, moment in enumerate(inertia.moments):
-            if moment == 0.0 and abs(along[k]) > bodies.ULPS * max(abs(x) for x in omega):
+            if moment == 0.0 and abs(along[k]) > principal_axes.ULPS * max(abs(x) for x in omega):
                 raise BadInput(f'{where}.angular_velocity', f'spin {along[k]!r} rad/s about '
                                f'principal axis {k + 1}, whose moment is zero',
                                'that component must be 0: an axis without moment carries no '
@@ -141,7 +141,7 @@ def _omega(mapping: dict[str, Any], orientation: Sequence[float], inertia: bodie
     if way == 'angular_velocity_world':
         return x, y, z
     x, y, z = rotations.rotate_back(*inertia.axes, x, y, z)
-    slack, omega = bodies.ULPS * hypot3(x, y, z), []
+    slack, omega = principal_axes.ULPS * hypot3(x, y, z), []
     for k, (L, moment) in enumerate(zip((x, y, z), inertia.moments, strict=True)):
         if moment == 0.0 and abs(L) > slack:
             raise BadInput(f'{where}.angular_momentum', f'{L!r} kg m^2/s about principal axis '

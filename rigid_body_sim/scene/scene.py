@@ -17,7 +17,7 @@ from typing import Any
 import yaml
 
 from rigid_body_sim.errors import BadInput, nearest, printable
-from rigid_body_sim.scene import bodies, yaml_text
+from rigid_body_sim.scene import bodies, shapes, yaml_text
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
 from rigid_body_sim.scene.constraints.protocol import Constraint
@@ -343,7 +343,7 @@ def _mass(mapping, where):
         raise BadInput(f'{where}.density', 'stands without a shape',
                        'a density needs the volume of a shape: give mass')
     (name, dimensions), = mapping['shape'].items()
-    return float(mapping['density']) * bodies.EXTENTS[name](**dimensions)
+    return float(mapping['density']) * shapes.EXTENTS[name](**dimensions)
 
 
 def _tensor(inertia, where):

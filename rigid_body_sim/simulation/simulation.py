@@ -33,13 +33,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Overrides, Scene, changed_scene, load_scene
 from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, TIME, State, States
-from rigid_body_sim.simulation.admission import (
-    LARGEST_WORK,
-    Given,
-    admit,
-    refusals,
-    scene_refuses,
-)
+from rigid_body_sim.simulation.admission import Given, admit, refusals, scene_refuses
 from rigid_body_sim.simulation.command_rows import (
     HOLD,
     IMPULSE,
@@ -49,6 +43,7 @@ from rigid_body_sim.simulation.command_rows import (
     wrench_of,
 )
 from rigid_body_sim.simulation.spans import Event, Span
+from rigid_body_sim.simulation.strikes import Strikes
 
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
 LAST_TICK = 2**53
@@ -138,10 +133,7 @@ class Simulation:
         self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
         self._entries_size = entries_size(self.scene)
-        self._strikes = sorted(
-            (effect for effect in self.scene.effects if effect.as_impulse is not None),
-            key=lambda effect: effect.time,
-        )
+        self._strikes = Strikes(self.scene, self._mechanics)
         self._begin(self.choice, self.scene.initial.vector, 0)
 
     @functools.cached_property
@@ -246,7 +238,7 @@ class Simulation:
         solver, given = choice.solver(start, NOTHING_HELD), np.zeros(self._entries_size)
         spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
         if self._strikes:
-            spans = self._with_strikes(spans, 0.0, choice)
+            spans = self._strikes.follow(spans, 0.0, choice)
         spans[-1].solver.state(0.0, self.vector)
         self._diagnosed_tick = None
         self.choice, self.tick, self._beginning = choice, tick, start
@@ -665,35 +657,7 @@ class Simulation:
 
     def _spans_until(self, time):
         """Return the spans up to a time, with the scene's strikes on the way."""
-        return self._with_strikes(self._spans, time, self.choice)
-
-    def _with_strikes(self, spans, time, choice):
-        """Return spans and those that the scene's strikes up to a time begin."""
-        last = spans[-1]
-        while last.strikes < len(self._strikes) and self._strikes[last.strikes].time <= time:
-            strike = self._strikes[last.strikes]
-            at = max(strike.time, last.time)
-            struck, given = np.empty(STATE_SIZE), last.given + last.solver.exchanged(at)
-            last.solver.state(at, struck)
-            taken, work = impulse.push(
-                self._mechanics, struck, *strike.as_impulse(self.scene.body, struck), given
-            )
-            if not abs(work) <= LARGEST_WORK:
-                raise BadInput(
-                    f'{self.scene.name}: strike',
-                    f'at {at:g} s it would do a work of {work!r} J',
-                    f'at most {LARGEST_WORK:g} J: energies are doubles',
-                )
-            if not taken:
-                raise BadInput(
-                    f'{self.scene.name}: strike',
-                    f'at {at:g} s it has a torque about an axis of zero moment',
-                    'a point and an impulse without: such an axis takes no angular momentum',
-                )
-            solver = choice.solver(struck, last.wrench)
-            last = Span(at, solver, last.wrench, last.strikes + 1, given, struck)
-            spans = [*spans, last]
-        return spans
+        return self._strikes.follow(self._spans, time, self.choice)
 
     def _settle(self):
         """Begin a new span at the present tick, or none where the commands of the tick cancel."""

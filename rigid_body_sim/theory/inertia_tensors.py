@@ -2,7 +2,7 @@
 """Moments of inertia of simple bodies (notes, "Some inertia tensors").
 
 They are written as in the notes, M times a length squared times numbers, and independently of
-rigid_body_sim/scene/bodies.py, which they confirm. Symbols: M mass (kg), L length, R radius (m);
+rigid_body_sim/scene/shapes.py, which they confirm. Symbols: M mass (kg), L length, R radius (m);
 moments (I1, I2, I3) in kg m^2 about the centre of mass, axis 3 along z, unless a name says
 otherwise. Box, cylinder and ellipsoid are not in the notes: their source is Landau and Lifshitz,
 Mechanics, section 32, problem 2.

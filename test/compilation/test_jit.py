@@ -4,6 +4,7 @@
 The home folder need not be writable.
 """
 
+import ast
 import os
 import pathlib
 import re
@@ -85,6 +86,18 @@ def test_no_kernel_lives_where_the_cache_does_not_look():
     for path in set(PACKAGE.rglob('*.py')) - set(environment.kernel_sources()):
         assert not re.search(r'compilation\.(jit|templates) import (?!HAVE_NUMBA)|@compiled',
                              path.read_text()), path
+
+
+def test_constants_that_kernels_import_are_in_the_key_of_the_cache():
+    """A constant is compiled into the kernels: an edit to it must recompile them."""
+    sources, wrong = environment.kernel_sources(), []
+    for path in sources:
+        for part in ast.walk(ast.parse(path.read_text())):
+            if isinstance(part, ast.ImportFrom) and part.module.startswith('rigid_body_sim.'):
+                file = PACKAGE.joinpath(*part.module.split('.')[1:]).with_suffix('.py')
+                wrong += [f'{path.name}: {one.name} of {part.module}' for one in part.names
+                          if one.name.isupper() and file.exists() and file not in sources]
+    assert wrong == []
 
 
 @needs_numba

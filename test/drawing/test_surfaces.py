@@ -10,7 +10,7 @@ from rigid_body_sim.drawing.body import box_of, drawing_of
 from rigid_body_sim.drawing.setting import ground_of, reach_of
 from rigid_body_sim.messages import marker
 from rigid_body_sim.messages.shapes import CYLINDER, SPHERE
-from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene import shapes
 from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_names
 
 ROLLING = """
@@ -46,7 +46,7 @@ def test_a_drawn_solid_has_the_moments_of_its_shape(name):
     volume, center, inertia = solid_integrals(surface)
     assert volume > 0.0     # the triangles face outwards
     np.testing.assert_allclose(center, 0.0, atol=2e-3)
-    expected = np.diag(bodies.SHAPES[name](volume, **SOLIDS[name]))
+    expected = np.diag(shapes.SHAPES[name](volume, **SOLIDS[name]))
     # 48 chords round a circle, 24 along the meridian; measured up to 0.013 (the torus)
     np.testing.assert_allclose(inertia, expected, atol=0.02 * expected.max())
 

@@ -9,7 +9,7 @@ import pytest
 from rigid_body_sim.drawing.body import drawing_of
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.shapes import solids_of
-from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene import shapes
 from rigid_body_sim.scene.scene import parse_scene
 
 
@@ -57,11 +57,11 @@ def test_points_and_a_given_tensor_that_is_turned():
     ('ellipsoid', {'semi_axes': (1.0, 2.0, 3.0)}, 8 * math.pi),
     ('torus', {'radius': 2.0, 'tube': 1.0}, 4 * math.pi ** 2)])
 def test_a_density_is_per_volume_area_or_length(name, dimensions, extent):
-    assert bodies.EXTENTS[name](**dimensions) == pytest.approx(extent, rel=1e-15)
+    assert shapes.EXTENTS[name](**dimensions) == pytest.approx(extent, rel=1e-15)
 
 
 def test_every_shape_has_an_extent():
-    assert set(bodies.EXTENTS) == set(bodies.SHAPES)
+    assert set(shapes.EXTENTS) == set(shapes.SHAPES)
 
 
 def test_a_body_by_its_density():

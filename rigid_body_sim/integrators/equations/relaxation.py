@@ -15,7 +15,7 @@ import numpy as np
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene.bodies import eigenvectors
+from rigid_body_sim.scene.principal_axes import eigenvectors
 
 STIFF = 20.0    # times the rates of the motion: drag that is faster is stiff
 

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The balance of forces of a body above, or in contact with, a plane at one instant."""
 
+from rigid_body_sim.mechanics.contact.forces import Posture, Push, patch_of, system_of
 from rigid_body_sim.mechanics.contact.laws import (
-    System,
     departure,
     patch_departure,
     patch_slipping,
     patch_sticking,
-    patch_system,
     slipping,
     sticking,
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, FILMY, FLAT, FLATTER, LOW
-from rigid_body_sim.mechanics.contact.touch import couples, lever, response, spinning
+from rigid_body_sim.mechanics.contact.touch import couples, lever
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
@@ -76,17 +75,13 @@ class Standing:
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         viscous, wrung, _, _ = couples(c, gamma, moved)
         torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
-        carried = cross(omega, r)
-        b = plus(cross(apply(c.inverse, torque), r),
-                 plus(cross(omega, carried), cross(omega, moved)))
-        free = plus(apply(axes, b), scaled(1.0 / c.mass, rotate_back(*c.plane, *force)))
-        system = System(response(c, axes, r, wrung), free)
+        stands = Posture(None, omega, axes, r, cross(omega, r), moved)
+        push = Push(rotate_back(*c.plane, *force), torque, viscous, wrung)
         if c.patch > 0.0:
-            patch = patch_system(system, *spinning(c, axes, r, torque, wrung), c.patch)
-            f, twist = self._patch_force(patch, u, dot(gamma, omega), speed)
+            f, twist = self._patch_force(patch_of(c, stands, push), u, dot(gamma, omega), speed)
             viscous = plus(viscous, scaled(twist, gamma))
         else:
-            f = self._force(system, u, speed)
+            f = self._force(system_of(c, stands, push), u, speed)
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r
         return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r

@@ -34,11 +34,11 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
-from rigid_body_sim.motions.lagrange_top.anchor import (
+from rigid_body_sim.motions.lagrange_top.anchor import anchor_nutation
+from rigid_body_sim.motions.lagrange_top.means import NEVER
+from rigid_body_sim.motions.lagrange_top.nutation import (
     CIRCULAR,
-    NEVER,
     Nutation,
-    anchor_nutation,
     circular_functions,
     functions,
     hyperbolic_functions,
@@ -53,7 +53,7 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import quotient
 from rigid_body_sim.numerics.phase import COUNTABLE
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
-from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene import bodies, principal_axes
 from rigid_body_sim.scene.constraints import Pivot
 from rigid_body_sim.scene.state import STATE, StateView
 
@@ -130,7 +130,7 @@ def symmetry_axis(body):
             return 2, _turn_to(*(component / distance for component in center))
         return 2, bodies.IDENTITY
     local = rotate_back(*axes, *center)
-    slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else bodies.ULPS * distance
+    slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else principal_axes.ULPS * distance
     orders = (0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY
     for k, order in enumerate(orders):
         i, j = (k + 1) % 3, (k + 2) % 3

@@ -47,7 +47,7 @@ from rigid_body_sim.numerics.pairs import (
 from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import cross
-from rigid_body_sim.scene import bodies
+from rigid_body_sim.scene import principal_axes
 from rigid_body_sim.scene.state import STATE
 
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
@@ -127,7 +127,7 @@ def axle(scene):
     momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
     d = _root(_dot(side, side))
     size = hypot3(*body.center_of_mass) + hypot3(*point)
-    if d <= bodies.ULPS * size:
+    if d <= principal_axes.ULPS * size:
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
     return Axle(n, r, d, momentum, _dot(n, momentum))
 
@@ -227,7 +227,7 @@ def _position(down, side, orientation):
     gz = minus(top, rest)
     cosine, sine = over(_along(down, gx, gy, gz), norm), over(_along(side, gx, gy, gz), norm)
     size = root_of(plus(times(cosine, cosine), times(sine, sine)))
-    if size[0] <= bodies.ULPS:
+    if size[0] <= principal_axes.ULPS:
         size = NOTHING
     return cosine, sine, size
 

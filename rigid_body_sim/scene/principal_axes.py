@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Principal axes: the eigenvectors of a tensor, ordered and turned towards the body axes."""
+
+import math
+from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
+from itertools import permutations, product
+
+import numpy as np
+
+from rigid_body_sim.numerics.functions import hypot
+from rigid_body_sim.numerics.vectors import cross, dot
+
+PLANES = (0, 1), (0, 2), (1, 2)
+DIGITS, SWEEPS = 40, 20    # of the eigenvectors; four sweeps do for most tensors
+NEGLIGIBLE = Decimal('1e-70')    # square of an entry beside the product of the diagonal ones
+ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
+
+
+def eigenvectors(matrix):
+    """Return the eigenvalues and eigenvectors of a symmetric 3 x 3 matrix, with 40 digits.
+
+    Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR
+    iteration behind LAPACK does not (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
+    Decimal numbers mean the same on every machine; an extended double of the processor does not.
+    """
+    with localcontext(Context(prec=DIGITS, rounding=ROUND_HALF_EVEN)):
+        a = [[Decimal(entry) for entry in row] for row in matrix]
+        vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]    # in rows
+        for _ in range(SWEEPS):
+            turns = [_turn_away(a, vectors, i, j) for i, j in PLANES]
+            if not any(turns):
+                break
+        return ([float(a[k][k]) for k in range(3)],
+                [[float(x) for x in vector] for vector in vectors])
+
+
+def _turn_away(a, vectors, i, j):
+    """Make a[i][j] zero by a rotation in the plane of two axes; return whether it was not.
+
+    Source: Golub and Van Loan, Matrix Computations, section 8.5.2 (symmetric Schur decomposition).
+    """
+    if a[i][j] * a[i][j] <= NEGLIGIBLE * abs(a[i][i] * a[j][j]):
+        a[i][j] = a[j][i] = Decimal(0)
+        return False
+    ratio = (a[j][j] - a[i][i]) / (2 * a[i][j])
+    tangent = (1 if ratio >= 0 else -1) / (abs(ratio) + (1 + ratio * ratio).sqrt())
+    cosine = 1 / (1 + tangent * tangent).sqrt()
+    sine, k = tangent * cosine, 3 - i - j
+    a[i][i], a[j][j] = a[i][i] - tangent * a[i][j], a[j][j] + tangent * a[i][j]
+    a[i][j] = a[j][i] = Decimal(0)
+    a[i][k], a[j][k] = cosine * a[i][k] - sine * a[j][k], sine * a[i][k] + cosine * a[j][k]
+    a[k][i], a[k][j] = a[i][k], a[j][k]
+    first, second = vectors[i], vectors[j]
+    vectors[i] = [cosine * x - sine * y for x, y in zip(first, second, strict=True)]
+    vectors[j] = [sine * x + cosine * y for x, y in zip(first, second, strict=True)]
+    return True
+
+
+def nearest_to_the_body(moments, vectors):
+    """Return the moments and the axes (right-handed) that lie nearest to the body axes.
+
+    All orders and signs of the axes are compared.
+    """
+    def turned(order, signs):
+        return [[sign * entry for entry in vectors[k]]
+                for k, sign in zip(order, signs, strict=True)]
+
+    def trace(choice):
+        x, y, z = turned(*choice)
+        return x[0] + y[1] + z[2] if dot(cross(x, y), z) > 0.0 else -math.inf
+    order, signs = max(product(permutations(range(3)), product((1.0, -1.0), repeat=3)), key=trace)
+    return [moments[k] for k in order], turned(order, signs)
+
+
+def nearest_where_equal(moments, axes):
+    """Make moments equal that agree to rounding, and turn their axes towards the body axes."""
+    slack = ULPS * max(moments)
+    equal = [(i, j) for i, j in PLANES if abs(moments[i] - moments[j]) <= slack]
+    if len(equal) > 1:
+        return [(moments[0] + moments[1] + moments[2]) / 3.0] * 3, np.eye(3).tolist()
+    for i, j in equal:
+        moments[i] = moments[j] = (moments[i] + moments[j]) / 2.0
+        sine, cosine = axes[j][i] - axes[i][j], axes[i][i] + axes[j][j]
+        length = hypot(sine, cosine)
+        sine, cosine = sine / length, cosine / length
+        first, second = axes[i], axes[j]
+        axes[i] = [cosine * x + sine * y for x, y in zip(first, second, strict=True)]
+        axes[j] = [cosine * y - sine * x for x, y in zip(first, second, strict=True)]
+    return moments, axes
