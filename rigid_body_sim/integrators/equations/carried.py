@@ -14,6 +14,8 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import (
+    OMEGA,
+    PLACE,
     Start,
     attitude_rate,
     load_start,
@@ -28,9 +30,8 @@ omega_rate = UNBOUND
 axes_rate = UNBOUND
 path = UNBOUND    # (p, t) -> place, velocity and acceleration, nine floats
 
-UNKNOWNS = 8
-GROUPS = ((0, 4, True), (4, 7, False))
-"""Nothing is ever in doubt about the clock: it belongs to no group."""
+UNKNOWNS = PLACE + 1    # nothing is ever in doubt about the clock: it belongs to no group
+GROUPS = ((0, OMEGA, True), (OMEGA, PLACE, False))
 
 
 @compiled
@@ -50,10 +51,9 @@ def start(p, vector, point, at):
 @compiled
 def rate(p, y):
     """Return the rates of the unknowns."""
-    qx, qy, qz, qw, wx, wy, wz, t = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
-    along = path(p, t)
-    x, y_, z = plus(load_start(p).place, along[:3])
-    vx, vy, vz = along[3], along[4], along[5]
+    qx, qy, qz, qw, wx, wy, wz, t = y
+    x, y_, z, vx, vy, vz, _, _, _ = path(p, t)
+    x, y_, z = plus(load_start(p).place, (x, y_, z))
     ax, ay, az = axes_rate(p, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y_, z)
     return (
         *attitude_rate(qx, qy, qz, qw, ax, ay, az),
@@ -65,5 +65,6 @@ def rate(p, y):
 @compiled
 def write(p, time, y, out):
     """Fill `out`, the state vector."""
-    along = path(p, time)
-    write_state(p, time, y[:4], y[4:7], plus(load_start(p).place, along[:3]), along[3:6], out)
+    x, y_, z, vx, vy, vz, _, _, _ = path(p, time)
+    write_state(p, time, y[:OMEGA], y[OMEGA:PLACE], plus(load_start(p).place, (x, y_, z)),
+                (vx, vy, vz), out)
