@@ -94,8 +94,10 @@ SLOW = ('test/choice/test_choose.py', 'test/integrators/test_convex_body.py',
         'test/integrators/test_methods.py', 'test/integrators/test_gauss16.py',
         'test/integrators/test_dop8.py', 'test/integrators/test_smooth_scenes.py',
         'test/recording/test_recover.py', 'test/recording/test_flips.py',
-        'test/motions/test_relaxing.py', 'test/study/test_check_scenes.py')
-"""They take minutes in plain Python: they come after what takes seconds."""
+        'test/motions/test_relaxing.py', 'test/study/test_check_scenes.py',
+        'test/view/test_page.py', 'test/view/test_push_node.py', 'test/sweeps/test_killed.py')
+"""They take minutes in plain Python, or drive a browser: they come after what takes seconds."""
+FAR = SLOW[-3:]    # not near anything
 
 
 # ---------------------------------------------------------------------------- what is mutated
@@ -377,7 +379,8 @@ def attempts(mutant, near=False):
         return found + stages(mutant.file)
     of_own = stages(mutant.file)[:1] if found and in_kernels(mutant.file) else [
         stage for stage in stages(mutant.file) if not set(stage) & set(WIDER.get(room, ()))]
-    left = [[path for path in stage if path not in covering.noted_files()] for stage in of_own]
+    left = [[path for path in stage if path not in (*covering.noted_files(), *FAR)]
+            for stage in of_own]
     return found + [stage for stage in left if stage]
 
 

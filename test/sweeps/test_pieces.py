@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How a sweep is cut into pieces: by what is known of its speed, for workers to share evenly."""
+
+import types
+
+import pytest
+
+from rigid_body_sim.sweeps import engine
+
+
+def plan(size, quick=True, block=1000):
+    """Return what is asked of a Plan; `block` is the number of runs that fill a block."""
+    return types.SimpleNamespace(spec=types.SimpleNamespace(size=size), is_quick=quick,
+                                 bytes=engine.BLOCK_BYTES // block)
+
+
+def pieces(one, rates, workers=1):
+    rates = iter(rates)
+    return list(engine.pieces_in_memory(
+        one, types.SimpleNamespace(count=workers), lambda: next(rates, None)))
+
+
+@pytest.mark.parametrize('size', [1, 2, 7, 1000])
+@pytest.mark.parametrize('rate', [None, 0.01, 3.0, 1e9])
+@pytest.mark.parametrize('workers', [1, 3])
+def test_pieces_follow_one_another_to_the_end(size, rate, workers):
+    found = pieces(plan(size), [rate] * (size + 1), workers)
+    assert [number for _, _, number in found] == list(range(len(found)))
+    assert [first for first, _, _ in found] == [0, *(stop for _, stop, _ in found[:-1])]
+    assert found[-1][1] == size
+    assert all(stop > first for first, stop, _ in found)
+
+
+def test_a_piece_takes_a_second_a_fair_share_or_a_block_whatever_is_least():
+    sizes = [stop - first for first, stop, _ in pieces(plan(100_000), [None, 50.0, 200.0, 1e6])]
+    first = min(engine.FIRST_QUICK, 1000)
+    assert sizes[:4] == [first, 50 * engine.SECONDS, 200 * engine.SECONDS, 1000]
+    slow = [stop - first for first, stop, _ in pieces(plan(100_000, quick=False), [None])]
+    assert slow[0] == min(engine.FIRST_PIECE, 1000)
+    shared = pieces(plan(160, block=10 ** 6), [1e6] * 20, workers=4)
+    assert {stop - first for first, stop, _ in shared} == {2 * 160 // (engine.PIECES * 4)}
+    rare = pieces(plan(5, block=10 ** 6), [0.2] * 20)
+    assert {stop - first for first, stop, _ in rare} == {1}
+
+
+@pytest.mark.parametrize(('seconds', 'workers', 'runs'), [
+    (1e-3, 1, 1000), (1e-2, 1, 100), (1e-4, 2, 10_000),    # a second
+    (3.0, 1, 1), (1e-9, 1, 2**15),    # at least a run, at most a block
+    (1e-3, 1000, 125), (1e-4, 400, 500)])    # an eighth of what each of the workers does; 0.05 s
+def test_blocks_of_a_store(seconds, workers, runs):
+    assert engine.block_runs(plan(1_000_000, block=2**15), seconds, workers) == runs
