@@ -61,7 +61,7 @@ class Strikes:
         if not abs(work) <= LARGEST_WORK:
             raise BadInput(
                 f'{self._scene.name}: strike',
-                f'at {at:g} s it would do a work of {work!r} J',
+                f'at {at:g} s it would do a work of {float(work)!r} J',
                 f'at most {LARGEST_WORK:g} J: energies are doubles',
             )
         if not taken:

@@ -213,6 +213,7 @@ def test_a_rod_is_pushed_at_its_centre_without_a_torque():
     assert tuple(simulation.state.angular_velocity) == (1.0, 0.0, 0.0)
 
 
+@pytest.mark.without_numba    # where numbers come from arrays, and are told all the same
 @pytest.mark.parametrize(('overrides', 'work'), [
     ([], '1.62[0-9]*e[+]300'),
     (['body.mass=1e-70', 'body.inertia=[1e-140, 1e-140, 1e-140]'], 'inf')])
