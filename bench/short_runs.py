@@ -19,6 +19,7 @@ import time
 import heyoka
 import numba
 import numpy as np
+from heyoka_runs import runs_of
 from smooth_scenes import CASES, DRIVEN, in_frame
 
 from rigid_body_sim.choice.choose import choose
@@ -186,17 +187,7 @@ class Case:
         if tolerance not in self.solvers:
             self.solvers[tolerance] = heyoka.taylor_adaptive(
                 heyoka_form(self.text, self.names), self.start, tol=tolerance)
-        solver, start = self.solvers[tolerance], self.start
-
-        def act():
-            solver.time = 0.0
-            solver.state[:] = start
-            solver.propagate_until(duration)
-
-        def attitude():
-            act()
-            return self.attitude(solver.state)
-        return act, attitude
+        return runs_of(self.solvers[tolerance], self.start, duration, self.attitude)
 
     def by_rk4(self, duration, steps):
         """Return act() and attitude() of the RK4."""

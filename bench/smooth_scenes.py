@@ -19,6 +19,7 @@ import statistics
 import time
 
 import numpy as np
+from heyoka_runs import runs_of
 
 from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.compilation.environment import processor
@@ -144,16 +145,7 @@ def heyoka_run(scene, duration, tolerance):
     import heyoka
     start = in_frame(scene, scene.initial.vector)
     solver = heyoka.taylor_adaptive(heyoka_system(scene), start, tol=tolerance)
-
-    def act():
-        solver.time = 0.0
-        solver.state[:] = start
-        solver.propagate_until(duration)
-
-    def attitude():
-        act()
-        return solver.state[:4] / np.linalg.norm(solver.state[:4])
-    return act, attitude
+    return runs_of(solver, start, duration, lambda y: y[:4] / np.linalg.norm(y[:4]))
 
 
 def timed(act, count):
