@@ -53,8 +53,8 @@ wrong state breaks.*
 LONG = """
 ## What takes long
 
-Measured by the parts of `make soak` in `test/hard_cases` on 2 cores of an AMD EPYC, random scenes
-not to their full number. The short forms run in every `make test`.
+Measured by the parts of `make soak` in `test/hard_cases` on 2 cores of an AMD EPYC (Zen 5), 21
+November 2026, random scenes not to their full number. The short forms run in every `make test`.
 
 | what | how much | found |
 | --- | --- | --- |

@@ -178,6 +178,20 @@ def test_figures_of_the_gallery_name_their_processor_date_and_command():
             assert scene in text.replace(f'check_scenes: {scene}', ''), path.stem
 
 
+def test_pages_with_times_name_their_processor_date_and_command():
+    """A page that says how long something takes says where, when and by which command."""
+    found = []
+    for path in (*PAGES, README):
+        text = re.sub(r'```.*?```', '', path.read_text(), flags=re.DOTALL)
+        if not re.search(r'\d(\.\d+)? (us|µs|ns)\b|CPU (micro)?seconds|% of a core', text):
+            continue
+        found.append(path.stem)
+        assert re.search(r'AMD EPYC|znver', text), path
+        assert re.search(r'(November 2026|2026-\d\d-\d\d)', text), path
+        assert re.search(r'bench/\w+\.py|make [a-z]|python -m rigid_body_sim', text), path
+    assert {'accuracy', 'methods', 'node', 'sweeps', 'view', 'recordings'} <= set(found)
+
+
 def test_a_picture_of_other_numbers_than_the_scene_s_says_so():
     """Before a figure that changes keys of its scene stands what differs."""
     checked = []
