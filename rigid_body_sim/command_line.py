@@ -18,7 +18,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 
 GOOD, CHECK_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 PATIENCE, LOOK = 4.0, 0.5
-"""After which time a command says that it compiles, and how often it looks if it does, s."""
+"""Time after which a command says that it compiles, and time between its checks, s."""
 COMPILER = 'numba.core.compiler'
 """The module whose functions run while a kernel is compiled, not while it comes from the cache."""
 

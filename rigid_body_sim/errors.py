@@ -4,7 +4,7 @@
 import importlib
 
 MOST_SLIPS = 2
-"""A word with more slips of the keyboard in it is taken for another word."""
+"""Most typing errors in a misspelt word; with more it is another word."""
 LETTERS_TO_A_SLIP = 3
 """A short word has at most one slip for so many letters: `force` is no misspelling of `free`."""
 

@@ -23,7 +23,7 @@ START = State.of(0.0, (0.1, -0.4, 0.2, math.sqrt(0.79)), (1.0, -2.0, 3.0))
 
 
 class Residuals(NamedTuple):
-    """What the ledger leaves over, relative to its largest term.
+    """The remainder of the ledger, relative to its largest term.
 
     Attributes
     ----------

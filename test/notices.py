@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What commands say of the machine, not of the run: numba is missing, kernels are compiled."""
+"""Notices of commands about the machine: numba is missing, kernels are compiled."""
 
 BEGINNINGS = 'numba is not', 'compiling '
 

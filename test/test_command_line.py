@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all commands share: Ctrl-C wherever it strikes, and the line about compiling."""
+"""The common parts of all commands: Ctrl-C at any time, and the line about compiling."""
 
 import multiprocessing
 import os

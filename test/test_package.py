@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is installed agrees with package.xml, setup.py, requirements/, config/ and launch/."""
+"""The installed package agrees with package.xml, setup.py, requirements/, config/ and launch/."""
 
 import ast
 import importlib

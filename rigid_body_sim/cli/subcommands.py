@@ -45,4 +45,4 @@ MISSING = {
     'viser': 'the view needs it: pip install ".[view]" in the source tree, or pip install viser',
     'xarray': 'sweeps need it: pip install ".[sweep]" in the source tree',
 }
-"""What to say where a package that a command needs is absent."""
+"""The line printed where a package that a command needs is absent."""

@@ -27,7 +27,7 @@ from rigid_body_sim.node.gaps import NUMBER, Gaps
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, TOPICS, WIDTH, WORLD
 
 DEPTH = 10_000
-"""Messages that may wait in a subscription: a second of 10,000 a second."""
+"""Messages that may wait in a subscription: one second at 10,000 a second."""
 MOST_QUEUED = 100_000
 """Commands that may wait for a tick, while paused or at a low rate."""
 _LENGTH = struct.Struct('<I').unpack_from

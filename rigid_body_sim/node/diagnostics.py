@@ -18,9 +18,9 @@ from rigid_body_sim.recording.about import ERROR, OK, WARN
 
 PERIOD = 1.0
 LOOK = 0.25
-"""How often the recorder is looked after, s."""
+"""Time between two checks of the recorder, s."""
 SHORTEST = 200_000_000
-"""The stretch of running over which a rate is formed, ns."""
+"""Shortest running time over which a rate is computed, ns."""
 SAME_NAME_CHECKS = 10
 
 

@@ -13,9 +13,9 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.waitable import NumberOfEntities, Waitable
 
 LOOKS = 100
-"""So often nothing is found before the tick thread trusts the bell again."""
+"""Number of empty checks after which the tick thread relies on the bell again."""
 GLANCE = 32
-"""Ticks after which the tick thread looks anyway: a service may keep the executor busy."""
+"""Ticks after which the tick thread checks anyway: a service may keep the executor busy."""
 
 
 class Doorbell(Waitable):

@@ -30,7 +30,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 ANSWER_WITHIN = 0.2
 """Longest time that a service waits for the tick that does what it asks, s.
 
-After that it answers what will happen.
+Afterwards it answers with what will happen.
 """
 STOP_WITHIN = 0.4
 

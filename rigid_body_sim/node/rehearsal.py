@@ -19,7 +19,7 @@ from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, 
 from rigid_body_sim.simulation.simulation import Simulation
 
 FASTEST = 1000.0
-"""Least rate of the rehearsal (Hz), so that it covers a tenth of a second of the motion."""
+"""Least rate of the warm-up (Hz), so that it covers a tenth of a second of the motion."""
 SMALL = (1e-9, 1e-9, 1e-9)
 COMMANDS = np.array(
     [(kind, axes, *ZERO, *SMALL) for kind in (IMPULSE, HOLD) for axes in (BODY, WORLD)]

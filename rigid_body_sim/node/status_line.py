@@ -10,9 +10,9 @@ from rclpy.clock import Clock, ClockType
 from rigid_body_sim.realtime.shutdown import tell
 
 DRAWN_EVERY = 0.2
-"""How often the line on a terminal is drawn anew, s."""
+"""Time between two updates of the line on a terminal, s."""
 WRITTEN_EVERY = 10.0
-"""How often a line is written where nothing can be drawn, s."""
+"""Time between two lines where nothing can be redrawn, s."""
 
 
 class StatusLine:

@@ -17,7 +17,7 @@ from rigid_body_sim.realtime.lateness import Lateness
 from rigid_body_sim.realtime.priority import ask_for_priority
 
 CLOCK_PERIOD = 10_000_000
-"""From one message on /clock to the next, ns of the steady clock."""
+"""Time between two messages on /clock, ns of the steady clock."""
 LONGEST_SLEEP = 10_000_000      # ns
 MOST_REAL_TIME = 20.0
 """Largest rate with real-time scheduling: a faster thread may never sleep."""

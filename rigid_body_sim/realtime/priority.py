@@ -12,7 +12,7 @@ import sys
 PRIORITY = 10
 PR_SET_TIMERSLACK = 29
 SLICE = 100_000
-"""Slice that the thread asks for, ns: the shortest there is.
+"""Time slice that the thread asks for, ns: the shortest possible.
 
 Without real-time scheduling the thread with the shorter slice runs first.
 
@@ -22,7 +22,7 @@ processors busy with others).
 SCHED_SETATTR = {'x86_64': 314, 'aarch64': 274}
 """Number of the system call, which Python does not offer."""
 SWITCH_INTERVAL = 1e-4
-"""How long another thread may keep the interpreter from the one that keeps deadlines, s."""
+"""Longest time that another thread keeps the interpreter from the tick thread, s."""
 
 
 def ask_for_priority(real_time, priority=PRIORITY):

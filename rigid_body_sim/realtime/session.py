@@ -32,14 +32,13 @@ from rigid_body_sim.theory.prediction import Prediction
 REPORT_EVERY = NANOSECONDS
 """A refused command is reported at most this often for each topic and reason, ns."""
 AHEAD = 64
-"""Number of ticks made ahead at 1 kHz or less.
-
-At higher rates it is smaller, so that making them fits between two ticks.
+"""Number of ticks prefetched at 1 kHz or less. At higher rates it is smaller, so that prefetching
+fits between two ticks.
 """
 WITH_EXAMPLE = (REASONS[NOT_FINITE], REASONS[TOO_MUCH_WORK])
-"""Reasons of refusals that are reported with a command that would be right."""
+"""Reasons of refusals that are reported with a valid command."""
 QUIET = 16
-"""For how many ticks after a disturbance nothing is made ahead."""
+"""Number of ticks after a disturbance for which nothing is prefetched."""
 
 
 class Session:

@@ -28,7 +28,8 @@ class Stop:
         self._wake = lambda: None
         self.by_signal = False
         self.last_resort = lambda: None
-        """What to close, in another thread, if the process is still busy when its time is over."""
+        """Function that closes things, in another thread, if the process is still busy at its
+        end."""
 
     @property
     def wanted(self):

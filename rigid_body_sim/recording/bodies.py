@@ -28,7 +28,7 @@ from rigid_body_sim.scene.state import (
 from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, TOPICS
 
 MARKS = ('pose', 'angular_velocity', 'journal', 'scene')
-"""A namespace in which one of these was recorded is that of a body."""
+"""A namespace with one of these topics is that of a body."""
 TYPES = {**{name: OUTPUTS[name].type for name in ('pose', 'angular_velocity', 'odom')},
          'events': STATUS_TYPE, 'scene': STRING_TYPE, 'journal': STRING_TYPE,
          **{TOPICS[kind]: WRENCH_TYPE for kind in (IMPULSE, HOLD)}}

@@ -81,7 +81,7 @@ class Recovered:
 
 
 class Found:
-    """What metadata.yaml tells of a file.
+    """The data that metadata.yaml needs about a file.
 
     Attributes: `topics` (TopicRecords), `channels` (of `mcap.records`), `file` (FileRecord),
     `about` (texts or None).

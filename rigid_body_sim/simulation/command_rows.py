@@ -22,9 +22,9 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 
 IMPULSE, HOLD, RELEASE = range(3)
 TOPICS = ('cmd_impulse', 'cmd_wrench', 'release')
-"""Of each kind, as the journal of a recording names it."""
+"""Name of each kind in the journal of a recording."""
 NAMES = ('impulse', 'wrench', 'release')
-"""Of each kind, as an error names it."""
+"""Name of each kind in an error."""
 WORLD, BODY = range(2)
 FRAMES = ('world', 'body')
 

@@ -17,12 +17,12 @@ from rigid_body_sim.scene.state import PLACES, STATE_SIZE, States
 from rigid_body_sim.simulation.spans import Event
 
 BLOCK_BYTES = 2**25
-"""States of so many bytes are computed between two reports of progress, or before columns are
+"""Bytes of the states that are computed between two reports of progress, or before columns are
 taken from them."""
 SHARE = 0.8
 """Part of the free memory that a result may take."""
 UNLOOKED = 2**26
-"""Bytes of a result for which the free memory is not looked up."""
+"""Bytes of a result up to which the free memory is not checked."""
 DOUBLE = 8    # bytes
 
 

@@ -18,17 +18,17 @@ from rigid_body_sim.sweeps.runs import compute
 BLOCK_BYTES = 2**25
 """Largest size of the results of a block, where it has more than one run."""
 SECONDS = 1.0
-"""Of work in a block that goes to another process or into a store."""
+"""Work in a block that goes to another process or into a store, s."""
 SECONDS_TO_LEAD = 0.005
-"""What a block costs the process that leads the sweep, and the scheduler: blocks are longer where
-so many workers ask that it would be the limit."""
+"""Cost of a block for the leading process and the scheduler, s: blocks are longer if many workers
+would make it the limit."""
 PIECES = 8
-"""Blocks for each worker, where there is enough work: the last one to finish is short then."""
+"""Blocks for each worker, if there is enough work, so that the last one to finish is short."""
 FIRST_PIECE, FIRST_QUICK = 16, 2**15
-"""Runs of the first pieces, from which is learned how long they take: any, and those that are
-states in closed form and no more."""
+"""Runs of the first pieces, which show how long runs take: of any kind, and of single states in
+closed form."""
 PATIENCE = 5.0
-"""Between two looks at the workers, s."""
+"""Time between two checks of the workers, s."""
 LOOK = 0.2    # time within which a forecast is measured, s
 
 
@@ -52,7 +52,7 @@ os.register_at_fork(after_in_child=_threads.cache_clear)
 
 
 class Workers:
-    """Where the work goes: an executor, or a client of Dask.
+    """The executor of the work, or a client of Dask.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Workers:
 
     @property
     def count(self):
-        """How many blocks can run at the same time, as far as is known."""
+        """Number of blocks that can run at the same time, as far as is known."""
         if time.monotonic() - self._looked > PATIENCE:
             self._looked = time.monotonic()
             if self._client is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the runs of a grid are cut into blocks, each of which is a shard of a store."""
+"""The division of a grid of runs into blocks, each of which is a shard of a store."""
 
 import math
 from dataclasses import dataclass

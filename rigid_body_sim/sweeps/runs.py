@@ -36,13 +36,13 @@ from rigid_body_sim.sweeps import plan as plans
 from rigid_body_sim.sweeps.quantities import QUANTITIES, diagnosis
 
 RATE = 1000.0
-"""Ticks per second of the runs that need a Simulation: of scenes with strikes."""
+"""Ticks per second of runs that need a Simulation, those of scenes with strikes."""
 PIECE_BYTES = 2**23
-"""Size of the states that are computed before something is taken from them."""
+"""Size of the states that are computed before results are taken from them."""
 ALONE = 4
-"""Where a method gives up, runs are taken in halves down to so many, then one by one."""
+"""If a method gives up, runs are halved down to this number, then taken one by one."""
 TOLERATED = 2.0 * np.finfo(float).eps
-"""From 1, of the square of a quaternion's norm: unit_quaternion leaves such a one as it is."""
+"""Deviation from 1 of the square of a quaternion's norm that unit_quaternion leaves as it is."""
 
 
 class Run:

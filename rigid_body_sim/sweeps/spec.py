@@ -34,7 +34,7 @@ from rigid_body_sim.sweeps.values import a_count, a_number, sample_of, times_of,
 
 WORDS = ('scene', 'integrator', 'accuracy', 'vary', 'sample', 'times', 'keep')
 MOST_EVENTS = 16
-"""Times that `all` keeps of an event, where the spec does not say."""
+"""Default number of times that `all` keeps of an event."""
 KEPT = ('final', 'states', 'first', 'all', 'minimum', 'maximum', 'residuals', 'function')
 
 

@@ -26,7 +26,7 @@ from rigid_body_sim.sweeps.layout import Layout
 from rigid_body_sim.sweeps.needed import need
 
 CHUNK_BYTES = 2**20
-"""Size of what is read at once from a variable of numbers, about."""
+"""Approximate size of what is read at once from a variable of numbers."""
 MARKS = 4096
 """Blocks whose marks stand in one file."""
 PIECE = 2**20

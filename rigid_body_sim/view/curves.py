@@ -10,7 +10,7 @@ from rigid_body_sim.analysis.drift import FLOOR
 
 POINTS = 600
 SCALE = 1e-16
-"""What the numbers of the chart count: it would not show smaller ones."""
+"""Unit of the numbers in the chart, which would not show smaller ones."""
 COLORS = {'energy': '#d55e00', 'momentum': '#0072b2', 'band': 'rgba(128,128,128,0.9)'}
 
 

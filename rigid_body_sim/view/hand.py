@@ -27,9 +27,9 @@ DAMPING = 0.7
 SLACK = 1e-6
 """The hand exerts no torque about an axis whose moment is this small, relative to the largest.
 
-A body that has such a moment, and it is not zero, is drawn by its centre of mass: the couple of a
-drag stands still in the world, the axis turns into it, and within a frame the body would spin
-about it by millions of turns.
+A body that has such a moment, unless it is zero, is pulled at its centre of mass: the couple of a
+drag is fixed in the world, the axis turns into it, and within a frame the body would spin about it
+by millions of turns.
 """
 
 

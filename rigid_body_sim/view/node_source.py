@@ -28,9 +28,9 @@ from rigid_body_sim.simulation.command_rows import FORCE, IMPULSE, KIND, TORQUE
 from rigid_body_sim.view.frames import Frame
 
 APPEARS_WITHIN = 8.0
-"""How long the node may take to be discovered, s."""
+"""Longest time for the node to be discovered, s."""
 DISPLAY_WITHIN = 1.0
-"""How long a node that publishes a scene may take to show its topics for pages, s."""
+"""Longest time for a node that publishes a scene to show its topics for pages, s."""
 STATES = {'angular_velocity': Vector3Stamped, 'energy': Float64, 'pose': PoseStamped}
 """Topics of the state, in the order in which they are taken."""
 NANOSECONDS = 1e9

@@ -23,7 +23,7 @@ PRESETS = {'3/4': (2.2, -3.2, 1.7), 'front': (0.0, -4.2, 0.3), 'side': (4.2, 0.0
            'top': (0.0, -0.01, 4.6)}
 EVENTS = 8
 EDIT_AFTER = 0.4
-"""A changed number is taken when nothing has changed for so long, s."""
+"""Time without a change after which a changed number is taken, s."""
 
 
 def look(client, preset):

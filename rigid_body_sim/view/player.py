@@ -15,7 +15,7 @@ from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.view.frames import Frame
 
 MOST_STATES = 1_000_000
-"""States that are kept; of a longer recording every second, third ... one."""
+"""Most states that are kept; of a longer recording every n-th is kept."""
 MOST_BETWEEN = 40
 MOST_MARKS = 60
 """With more marks only those of commands and resets are kept."""

@@ -35,7 +35,7 @@ ARROW, GROWTH = 1.3, 1.5
 its kind is rescaled."""
 HEAD = 0.11
 FADING = 0.93
-"""What is left after a frame of the lead that a pulled body has won."""
+"""Share of the lead of a pulled body that is left after each frame."""
 
 
 def wxyz(quaternion):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is derived from attitude and omega, against the simulation's numbers and theory."""
+"""Quantities derived from attitude and omega, against the simulation's numbers and theory."""
 
 import types
 

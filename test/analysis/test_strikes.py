@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a report says of energy that strikes, commands and resets change at once.
+"""Reports on energy that strikes, commands and resets change at once.
 
 It is constant between them and jumps at each; the report tells both, and marks the strikes.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `auto` expects a run to err by: strikes belong to it, and so does the conditioning."""
+"""The error that `auto` expects of a run: it includes strikes and conditioning."""
 
 import json
 import math

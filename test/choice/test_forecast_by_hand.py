@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a forecast is made of, each part by hand: errors, looks, strikes, conditioning."""
+"""The parts of a forecast, each computed by hand: errors, looks, strikes, conditioning."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is drawn of a body, and what is said of it."""
+"""The drawing of a body, and its description."""
 
 import numpy as np
 import pytest

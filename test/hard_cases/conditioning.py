@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What conditioning allows a state and a residual, given the rounding of states on the way."""
+"""The errors that conditioning allows a state and a residual, given roundings on the way."""
 
 import numpy as np
 

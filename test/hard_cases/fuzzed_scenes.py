@@ -151,7 +151,7 @@ def torsion(source):
 
 HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, rotor: 0.15, magnetic: 0.15,
         lambda source: {'potential': {'energy': source.choice(ENERGIES)}}: 0.15}
-"""What acts under every constraint but the table: what makes it, and how often."""
+"""Effects under every constraint but the table: the function that makes each, and its weight."""
 HINGED = HELD | {torsion: 0.2, lambda source: {'dry_friction': {'torque': positive(source)}}: 0.2}
 PIVOTED = HELD | {spring: 0.15, force: 0.15}
 FREE = PIVOTED | {

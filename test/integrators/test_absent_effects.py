@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene does not list is neither in the code made for it nor asked for anything."""
+"""An effect that a scene does not list is neither in its code nor called."""
 
 import inspect
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is watched for events, and how a Watcher looks for them, without any method."""
+"""The quantities watched for events, and the search of a Watcher, without any method."""
 
 import math
 

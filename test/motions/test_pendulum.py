@@ -69,7 +69,7 @@ def test_reference(name):
                          ['rests an ulp from upright', 'rests 1e-300 from upright',
                           'leaves upright, back', 'tiny swing'])
 def test_tiny_distances_grow_to_scale(name):
-    """What is 1e-300 from upright keeps its digits while it grows."""
+    """A pendulum 1e-300 from upright keeps its digits while the distance grows."""
     anchor = recorded(name)[2]
     for entry in RECORDS[name]['states']:
         expected = np.array([float(value) for value in entry['state']])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the bearing of a hinge does, and the hinged scenes that ship."""
+"""The reaction of the bearing of a hinge, and the hinged scenes that ship."""
 
 import math
 

@@ -162,7 +162,7 @@ HINGE = {'hinge': {'axis': [0, 0, 1]}}
     ('fixed_axis', HINGE, [{'torque': {'value': [1, 0, 2], 'frame': 'world'}}], (0.5, 0.8, 1.1)),
     ('fixed_axis', 'free', [DRAG, WEIGHT], (0.5, 0.8, 1.1))])
 def test_scenes_are_matched_by_what_acts(motion, constraint, effects, inertia):
-    """What is listed and does nothing does not hide a closed form; the scene keeps it."""
+    """A listed effect that does nothing does not hide a closed form; the scene keeps it."""
     start = ({'rate': 2.0} if isinstance(constraint, dict) else
              {'angular_velocity': [0.0, 0.0, 3.0] if motion == 'fixed_axis' else [1.0, 2.0, -3.0]})
     scene = scene_of(constraint, effects, inertia, **start)

@@ -26,7 +26,7 @@ from rigid_body_sim.realtime.session import QUIET, Session
 ALL_THREADS = ('import', 'compile', 'exec')
 TICK_THREAD = (*ALL_THREADS, 'open', 'ctypes.dlopen', 'subprocess.Popen')
 TICKS = 2 * QUIET + 8
-"""Ticks before the commands, after them, and after the reset: enough that some are made ahead."""
+"""Ticks before the commands, after them, and after the reset: enough that some are prefetched."""
 PATIENCE = 60.0
 
 

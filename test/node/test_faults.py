@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What others do wrong, and what may fail inside: the node goes on, or ends in order."""
+"""Faults of other nodes and inside the node: it goes on, or ends in order."""
 
 import os
 import pathlib

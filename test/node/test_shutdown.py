@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a node ends: soon, with exit status 0, its recording whole.
+"""The end of a node: soon, with exit status 0 and a whole recording.
 
 And what it says when it cannot begin.
 """

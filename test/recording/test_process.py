@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the recorder does with each packet: nothing twice, nothing out of order.
+"""The recorder's treatment of each packet: nothing twice, nothing out of order.
 
 This holds whatever the order of arrival.
 """

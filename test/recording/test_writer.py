@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the writer writes, seen by readers of others: rosbags, mcap with mcap_ros2, PyYAML."""
+"""Recordings as other readers see them: rosbags, mcap with mcap_ros2, PyYAML."""
 
 import itertools
 import shutil

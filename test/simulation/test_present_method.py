@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What solves the present motion is said, and a body that turns back is at rest in its ledger."""
+"""The method of the present motion is named; a body that turns back is at rest in its ledger."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What Python users expect of Simulation and States: copies, pickles, slices, tables, plots."""
+"""Python's conventions for Simulation and States: copies, pickles, slices, tables, plots."""
 
 import copy
 import inspect

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events of a span: each is told once, at the look that reaches it, however early it was found."""
+"""Events of a span: each is reported once, by the call that reaches it, even if found early."""
 
 from rigid_body_sim.simulation.spans import Span
 

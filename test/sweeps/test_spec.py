@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a sweep is told, word by word: what is taken, up to which bounds, and what is refused."""
+"""The words of a sweep's spec: which are accepted, within which bounds, and which are refused."""
 
 import numpy as np
 import pytest

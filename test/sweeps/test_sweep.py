@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each run has its own bits, whoever computes it; what fails is told; what is wrong is refused."""
+"""Each run has its own bits on any worker; failures are reported, errors refused."""
 
 import concurrent.futures
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a ray meets a body, beside a box whose faces are planes."""
+"""The point where a ray meets a body, compared with a box whose faces are planes."""
 
 import asyncio
 import types

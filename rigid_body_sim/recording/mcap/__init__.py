@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the package `mcap` does not do; everything else about the format is left to it.
+"""Additions to the package `mcap`; everything else about the format is left to it.
 
 Here live: chunks composed from arrays of ticks (chunks, writing), a cut file mended in place
 (scan, mending), and messages read as columns (walk, reading). These modules import `mcap`, NumPy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What one file holds, and the tail that closes it: end of data, summary, footer.
+"""The contents of one file, and the tail that closes it: end of data, summary, footer.
 
 Why not `mcap.writer.Writer.finish`: it knows only what went through that Writer, so it cannot
 close a file that was composed of arrays, nor one that is mended. It also keeps every ChunkIndex as
@@ -42,7 +42,7 @@ class ChunkPlace(typing.NamedTuple):
 
 
 class Contents:
-    """What a file holds so far, enough to write its tail.
+    """The contents of a file so far, enough to write its tail.
 
     Attributes
     ----------

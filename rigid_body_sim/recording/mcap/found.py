@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a scan of an MCAP file finds: chunks, places that are whole, and damage (scan.py).
+"""The findings of a scan of an MCAP file: chunks, whole places, and damage (scan.py).
 
 Why not the records of `mcap`: they do not say where in a file they lie, nor what of it is damaged.
 """

@@ -13,7 +13,7 @@ from mcap.exceptions import McapError
 from mcap.records import AttachmentIndex
 
 HEAD = struct.Struct('<BQ')
-"""What every record begins with: its opcode, and the length of its content."""
+"""The head of every record: its opcode, and the length of its content."""
 PRIVATE = 0x80
 """Every reader skips records with opcodes from here on."""
 

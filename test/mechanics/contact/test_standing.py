@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a plane does to a body at one instant, beside the motion that follows from it."""
+"""The force of a plane on a body at one instant, compared with the motion that follows."""
 
 import math
 
