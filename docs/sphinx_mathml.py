@@ -16,7 +16,7 @@ CHANGES = ((re.compile(r'<m[io]>(sin|cos|tan|cot|arctan|sn|max|min|sign)</m[io]>
            (re.compile('<mi mathvariant="bold">'),
             '<mi mathvariant="normal" style="font-weight: bold">'),
            (re.compile('<mo>(&#x002D9;|&#x000A8;)</mo></mover>'),
-            r'<mo style="font-size: 150%; font-weight: bold">\1</mo></mover>'))
+            r'<mo style="font-size: 130%; font-weight: bold">\1</mo></mover>'))
 
 
 def mathml(latex, display):

@@ -197,8 +197,8 @@ def _nearest(name, known):
 def table():
     """Return the table of the parameters in Markdown, for docs/make_reference.py."""
     rows = [
-        '| parameter | type | default | range | while running | meaning |',
-        '|---|---|---|---|---|---|',
+        '| parameter | default | while running | meaning; type and range |',
+        '|---|---|---|---|',
     ]
     for entry in TABLE:
         default = (
@@ -209,8 +209,8 @@ def table():
             else f'{entry.default}' or "''"
         )
         rows.append(
-            f'| {entry.name} | {entry.kind} | {default} | {entry.limits} '
-            f'| {"yes" if entry.changeable else "no"} | {entry.about} |'
+            f'| {entry.name} | {default} | {"changes" if entry.changeable else "fixed"} '
+            f'| {entry.about}; {entry.kind}{", " if entry.limits else ""}{entry.limits} |'
         )
     return '\n'.join(rows)
 
