@@ -263,7 +263,7 @@ def _kept(entry, where, folder, functions):
         return Kept(kind, name)
     if not isinstance(value, str):
         raise BadInput(f'{where}.{kind}', f'got {yaml_text.brief(value)}',
-                       'the name of an event (flip, rolling, turning point)'
+                       'the name of an event (flip, rolling began, turning point)'
                        if kind in ('first', 'all') else f'one of {", ".join(QUANTITIES)}')
     if kind in ('minimum', 'maximum') and value not in QUANTITIES:
         near = difflib.get_close_matches(value, QUANTITIES, 1)
