@@ -14,8 +14,8 @@ from high_precision_body import closed_form
 DATA = pathlib.Path(__file__).resolve().parent
 TO = DATA.parents[1] / 'rigid_body_sim' / 'study' / 'hard_cases' / 'references.json'
 DIGITS = 36
-NEVER_BACK = 'on the separatrix the period is infinite: one lost bit and it comes back'
-GROWS = ('the offset grows e-fold every 0.35 s: what rounds it away, or makes it, decides when '
+NEVER_BACK = 'on the separatrix the period is infinite: with one lost bit it comes back'
+GROWS = ('the offset grows e-fold every 0.35 s: rounding that removes or creates it decides when '
          'the body flips')
 
 FREE = {
@@ -25,7 +25,7 @@ FREE = {
         1, 'unstable, yet an exact solution: it must never flip'),
     **{f'exactly on the separatrix, c = {c}': (1, NEVER_BACK) for c in ('0.0', '0.7', '-5.0')},
     **{f'{ulp} ulp of omega {axis} beside the separatrix': (
-           1, 'one bit decides on which side it goes round, and when')
+           1, 'one bit decides on which side it turns over, and when')
        for ulp in ('+1', '-1') for axis in (1, 3)},
     **{f'near the separatrix in a generic direction, {gap}': (
            1, 'L^2 - 2 E I2 cancels to the gap squared')
@@ -37,16 +37,16 @@ FREE = {
     'sphere': (2, 'all differences are zero'),
     'nearly a sphere': (2, 'differences of one to three ulp decide the axes'),
     'lamina': (
-        2, 'I3 = I1 + I2: the edge of what a body can be; an ulp beyond is refused by many'),
+        2, 'I3 = I1 + I2, the limit for a body; many refuse an ulp beyond'),
     'rod': (2, "a zero moment: Euler's equations divide by it"),
     'needle along 3, tumbling': (
         2, '1 : 1 : 1e-12; errors of omega are divided by the small moment'),
     'needle along 3, spun': (2, '1 : 1 : 1e-12 at 1e6 rad/s'),
     'needle, not quite round': (2, 'I1 and I2 differ by less than I3'),
-    '1e-30 kg m^2': (2, 'absolute tolerances in SI units see nothing'),
+    '1e-30 kg m^2': (2, 'absolute tolerances in SI units are far too coarse'),
     '1e+30 kg m^2': (2, 'squares of squares overflow'),
     '1e6 rad/s': (3, '1000 rad a tick of 1 ms'),
-    '1e-12 rad/s': (3, 'steps by absolute error never see it move'),
+    '1e-12 rad/s': (3, 'steps by absolute error never notice that it moves'),
     '1e6 and 1e-12 rad/s': (3, 'both on one body: eighteen digits between the components'),
     '1e6 rad/s along the middle, 1e-12 off it': (3, 'unstable with an e-folding time of 2.8 us')}
 TOPS = {

@@ -75,6 +75,6 @@ def cases():
         if record['group'] == 1 and record['flips']:
             yield Case(
                 1, f'flips: {record["name"]}',
-                'energy says nothing of them; each is the time of a passage through the middle '
+                'energy does not show them; each is the time of a passage through the middle '
                 'axis',
                 functools.partial(flips, record))

@@ -236,13 +236,14 @@ def cases():
     """
     yield Case(
         4, 'a jump of 1e6 s, a million ticks, any order',
-        'sums of time steps round; states that depend on the way do not repeat', million_ticks)
+        'sums of time steps round; states that depend on earlier steps do not repeat',
+        million_ticks)
     yield Case(
         1, 'energy is no proof',
-        'a stepper holds energy to round-off beside the separatrix, and is wrong all the same',
+        'a stepper keeps the energy to round-off beside the separatrix, and is still wrong',
         energy_is_no_proof)
     yield Case(7, 'struck at 2a/5',
-               'no slip at all: rounding makes a slip that sign functions chatter on', two_fifths,
+               'no slip at all: rounding makes a slip on which sign functions chatter', two_fifths,
                question(Shot(0.2, (SPEED, 0.0), (0.0, SPEED / A, 0.0), 10.0, (SPEED, 0.0))))
     yield Case(7, 'no friction', 'the time to rolling is infinite', frictionless,
                question(Shot(0.0, (1.0, 0.0), (0.0, -50.0, 3.0), 10.0, (1.0, 0.0))))
@@ -257,8 +258,8 @@ def cases():
              'from the smallest to the largest axis, past the orbit of infinite period', 0.05,
              200.0),
             *((f'stiff: c dt = {c * 1e-3:g}',
-               'the wobble dies within a fraction of a tick; '
-               'explicit steps would follow it for ever',
+               'the wobble dies out within a fraction of a tick; '
+               'explicit steps would stay short for ever',
                c, 1.0)
               for c in (1e3, 1e6, 1e9))):
         yield Case(
@@ -273,8 +274,8 @@ def cases():
             8,
             f'stiff: c dt = 1e+06, I = ({", ".join(f"{moment:g}" for moment in inertia)}), '
             f'asked for {accuracy:g} rad',
-            'a rate that ends at once is chattered on; with loose steps a wobble stays above its '
-            'end, and the steps at 1/rate for ever',
+            'steps chatter on a rate that ends abruptly; with loose steps a wobble never ends, '
+            'and the steps stay at 1/rate',
             functools.partial(never_rises, 1e9, WOBBLING, 1.0, inertia=inertia, accuracy=accuracy))
     yield Case(8, 'exactly on the smallest axis', 'unstable, yet it must stay', stays_on_smallest,
                questions.stays(relaxing_scene(1.0, ON_SMALLEST), 100.0))
@@ -282,7 +283,7 @@ def cases():
                'absolute tolerances keep it there for ever, or noise throws it off early',
                leaves_smallest, questions.leaves(relaxing_scene(1.0, OFF_SMALLEST), 80.0, LEAVES))
     yield Case(9, 'opposite impulses, denormal and 1e100; 1e300 refused',
-               'one overflow and every number is NaN', impulses_cancel, questions.cancel(OPPOSITE))
+               'one overflow makes every number NaN', impulses_cancel, questions.cancel(OPPOSITE))
     yield Case(10, 'a thousand jumps there and back', 'every jump begins at a rounded state',
                composed_jumps)
     yield Case(10, 'the same bits in two processes',

@@ -123,7 +123,7 @@ def anchored_anew():
 def cases():
     """Yield the cases."""
     why = ('a bias of a thousandth of an ulp a tick is 1e-11 after a day at 1 kHz, '
-           'while noise hides it from the eye')
+           'while noise hides it')
     for name in ('free_body', 'heavy_top'):
         yield Case(5, f'{name.replace("_", " ")}, a day', why, lambda name=name: anchored(name))
     yield Case(5, 'free body, anchored anew at each tick', f'{why}; every tick rounds the state',
