@@ -11,7 +11,7 @@ from rigid_body_sim.compilation.environment import PACKAGE, cache_folder
 try:
     from numba.core.caching import UserProvidedCacheLocator
 except ImportError:
-    # numba before 0.61, as of the time of Ubuntu 24.04
+    # numba before 0.61, as in Ubuntu 24.04
     from numba.core.caching import _UserProvidedCacheLocator as UserProvidedCacheLocator
 
 

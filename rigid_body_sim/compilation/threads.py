@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work shared among all cores, and work in slices: kernels release the interpreter lock.
 
-Python hears a signal between two of its own operations, not inside a kernel. So whatever may take
-long is a loop in Python over calls of kernels that end soon. Work that other threads share calls
-`look` between these: the calling thread alone hears the signal.
+Python handles a signal between two of its own operations, not inside a kernel. So long work is a
+loop in Python over calls of short kernels. Work that other threads share calls `look` between
+these: only the calling thread receives the signal.
 """
 
 import concurrent.futures
@@ -12,8 +12,8 @@ import os
 import threading
 import time
 
-PARTS = 8    # for each core: the last one to finish is short then
-SLICE = 0.05    # s that the call of a kernel should take
+PARTS = 8    # slices for each core, so that the last one to finish is short
+SLICE = 0.05    # time that the call of a kernel should take, s
 _mine = threading.local()
 
 
@@ -39,17 +39,17 @@ def look():
 
 
 def in_slices(work, size, most=None):
-    """Call work(size), with ever more at a time while that is quick, until it returns True.
+    """Call work(size), with growing sizes while it is quick, until it returns True.
 
-    How much is done at a time depends on the clock; what `work` finds must not.
+    The sizes depend on the clock; the results of `work` must not.
 
     Parameters
     ----------
     work : callable
     size : int
-        How much the first call is given.
+        Size of the first call.
     most : callable, optional
-        Returns how much the next call may be given.
+        Returns the largest size of the next call.
     """
     while True:
         look()
@@ -101,7 +101,8 @@ def on_all_cores(work, count, least=1):
         for part in parts:
             work(part)
         return
-    # the calling thread does its share: another one costs as much as a hundred tops in closed form
+    # the calling thread does its share: starting another one costs as much as a hundred tops in
+    # closed form
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
         others = [threads.submit(take) for _ in range(os.cpu_count() - 1)]
         try:
