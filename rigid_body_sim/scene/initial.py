@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Initial conditions: the keys of `initial` that constraints share, and what they mean."""
+"""Initial conditions: the keys of `initial` that constraints share, and their meaning."""
 
 import dataclasses
 import math

@@ -247,7 +247,7 @@ def changed_scene(scene: Scene, overrides: Overrides) -> Scene:
 def _overridden(mapping, overrides, where):
     """Return the validated scene of a mapping, which is changed, with overrides.
 
-    What an override set stands in no line of a text, nor need a fault be where it shows.
+    A value set by an override stands in no line of the text, nor need a fault be where it shows.
     """
     for assignment in yaml_text.assignments(overrides):
         yaml_text.override(mapping, assignment, where)

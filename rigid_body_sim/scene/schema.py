@@ -20,7 +20,7 @@ POSITIVE: Schema = {'type': 'number', 'exclusiveMinimum': 0}
 VECTOR: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 3, 'maxItems': 3}
 QUATERNION: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 4, 'maxItems': 4}
 INFINITE = 'sliding_friction.mu'
-"""The key whose number may be infinite: the body rolls, come what may."""
+"""The key whose number may be infinite: the body then always rolls."""
 MATRIX: Schema = {'type': 'array', 'items': VECTOR, 'minItems': 3, 'maxItems': 3}
 
 
@@ -68,7 +68,7 @@ def check(value: Any, schema: Schema, where: str) -> None:
 
 
 def _last(error: Any) -> bool:
-    """Return whether a fault is told after the other ones of its place.
+    """Return whether a fault is reported after the other ones of its place.
 
     A misspelt key is unknown, and the right one is missing: the first says more.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces: what of a body touches a plane, and where, and how that moves as the body turns.
+"""Surfaces: which point of a body touches a plane, and how it moves as the body turns.
 
 Symbols: gamma unit normal of the plane in body axes (it points away from the plane), s(gamma) the
 lowest point from the middle of the surface, body axes. With gamma_t = (gamma_1, gamma_2, 0):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scene text -> plain mapping: YAML as data only, of bounded size and depth, with overrides."""
+"""From scene text to a mapping: YAML as data only, of bounded size and depth, with overrides."""
 
 import collections.abc
 import functools
@@ -190,7 +190,7 @@ def assignments(overrides):
     Parameters
     ----------
     overrides : mapping of str to value, or sequence of str
-        Values are numbers, words, lists, mappings or NumPy arrays. One line alone will do for a
+        Values are numbers, words, lists, mappings or NumPy arrays. A single line stands for a
         sequence of one.
 
     Raises

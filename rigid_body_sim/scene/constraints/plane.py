@@ -17,7 +17,7 @@ from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import State
 
-SINKS = 1e-9    # of the size: a body that is said to lie that much too deep lies on the plane
+SINKS = 1e-9    # share of the size: a body that starts this much too deep is put on the plane
 
 
 @dataclass(frozen=True)

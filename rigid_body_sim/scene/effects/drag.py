@@ -20,7 +20,7 @@ from rigid_body_sim.scene.schema import MATRIX, described, mapping_of
 COEFFICIENT = {**MATRIX, 'type': ['number', 'array'], 'minimum': 0}
 KEYS = 'linear', 'angular', 'quadratic', 'angular_quadratic'
 SHAPED = 'a number or a symmetric matrix in body axes'
-SYMMETRY = 1e-12    # share of a matrix: what rounding may spoil
+SYMMETRY = 1e-12    # asymmetry, relative to the size of a matrix, that counts as rounding
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ Matrix = tuple[tuple[float, ...], ...]
 
 
 def _matrix(value, where: str) -> Matrix:
-    """Return a coefficient as a matrix; BadInput unless it takes energy whatever the motion."""
+    """Return a coefficient as a matrix; BadInput unless it takes energy from every motion."""
     if not isinstance(value, list):
         c = float(value)
         return (c, 0.0, 0.0), (0.0, c, 0.0), (0.0, 0.0, c)
@@ -143,7 +143,7 @@ class ShapedDrag(Effect):
         return cls(*(_matrix(settings.get(key, 0.0), f'{where}.{key}') for key in KEYS))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return force and couple; what is zero does not act."""
+        """Return force and couple; zero ones are left out."""
         acting = []
         for matrix, square in ((self.linear, 0.0), (self.quadratic, 1.0)):
             if not any(map(any, matrix)):

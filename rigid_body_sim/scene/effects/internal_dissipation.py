@@ -69,11 +69,11 @@ class InternalDissipation(Effect):
 def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     """Return c m x omega, rad/s: component 1 is c (I2 - I3) omega2 omega3.
 
-    What is left of a wobble (m within ENDED of its end, less than the attitude can show) would
-    only keep the steps of a strong dissipation at 1/c for ever. So the rates die away there,
-    smoothly, because steps would chatter on one that stopped at once. A rate that holds a
-    component along the axes of the least moment dies with that component, which always decays; the
-    others die with all that is across the axes of the largest moment.
+    The rest of a wobble (m within ENDED of its end, too small to show in the attitude) would keep
+    the steps of a strong dissipation at 1/c for ever. So the rates fade out there, smoothly,
+    because an abrupt end would make the steps chatter. A rate that holds a component along the
+    axes of the least moment dies with that component, which always decays; the others die with all
+    that is across the axes of the largest moment.
     """
     m1, m2, m3 = I1 * wx, I2 * wy, I3 * wz
     s1, s2, s3 = m1 * m1, m2 * m2, m3 * m3

@@ -2,8 +2,8 @@
 """The contract of an effect: what it declares, and the views of it that others ask for.
 
 An effect is a frozen dataclass that inherits :class:`Effect`. It overrides the views that it has;
-a view that it does not override is None, and whoever needs that view says so. docs/extending.md
-adds an effect step by step.
+a view that it does not override is None, and code that needs the view refuses the effect.
+docs/extending.md adds an effect step by step.
 """
 
 import inspect
@@ -137,7 +137,7 @@ class Momentum:
 
 
 class Bounds(NamedTuple):
-    """What an effect can do at most; solvers look for events as often as that asks for.
+    """Bounds of an effect; solvers derive from them how often they look for events.
 
     Attributes
     ----------
@@ -152,12 +152,12 @@ class Bounds(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """How a body and a table touch.
+    """The contact of a body with a table.
 
     Attributes
     ----------
     mu : float
-        Coefficient of sliding friction; infinite for a body that rolls, come what may.
+        Coefficient of sliding friction; infinite for a body that always rolls.
     g : float
         Acceleration that presses a ball on the table (mechanism TABLE), m/s^2.
     rolling : float
@@ -180,7 +180,7 @@ class Contact(NamedTuple):
 
 
 class Effect(Protocol):
-    """What acts on a body beside its constraint.
+    """An action on a body beside its constraint.
 
     The right-hand side and the potential must fit together: the ledger's energy residual of a
     scene says whether they do.

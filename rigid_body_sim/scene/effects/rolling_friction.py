@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rolling friction: a force against the way of the point of contact over the surface of a body."""
+"""Rolling friction: a force against the motion of the point of contact over a body's surface."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self

@@ -25,7 +25,7 @@ class SlidingFriction(Effect):
 
     mu is the coefficient of sliding friction (0 is allowed), g the gravity that presses a ball on
     the table (m/s^2). A body with a surface has its weight from the effect gravity instead of g,
-    and may roll come what may: ``mu: .inf``.
+    and with ``mu: .inf`` it always rolls.
     """
 
     mu: float

@@ -17,8 +17,9 @@ class SpinningFriction(Effect):
     With u the slip, w the spin about the normal and S = sqrt(u^2 + (rho w)^2) the friction is the
     force -mu N u/S and the couple -mu N rho^2 w/S: Coulomb's law in the three directions u and rho
     w, whose limit surface is an ellipsoid (R. Howe, M. Cutkosky, Int. J. Robotics Res. 15 (1996)
-    531). So a body that spins slips as in honey, and a pure spin meets the couple mu N rho: rho is
-    3 pi/16 of the radius of a patch with Hertz' pressure, 2/3 of one with an even pressure.
+    531). So a spinning body slips as in a viscous fluid, and a pure spin meets the couple mu N
+    rho: rho is 3 pi/16 of the radius of a patch with Hertz' pressure, 2/3 of one with an even
+    pressure.
     """
 
     radius: float

@@ -34,7 +34,7 @@ class Expression:
     parameters: tuple[tuple[str, float], ...]
 
     def tree(self, where: str, names: Sequence[str] = STATE_NAMES) -> tree.Node:
-        """Return its tree; of the state it may use these names.
+        """Return its tree, which may use these names of the state.
 
         Raises
         ------

@@ -7,7 +7,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics import functions
 
 LEVELS = 11
-"""Of the continued fraction of tanh: to round-off for |x| < 1."""
+"""Levels of the continued fraction of tanh, which reach round-off for |x| < 1."""
 EVEN = 2.0 ** 53
 """From here on every double is an even integer."""
 

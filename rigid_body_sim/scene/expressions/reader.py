@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The text of an expression -> a tree; nothing of it is ever evaluated as Python.
+"""From the text of an expression to a tree; nothing is ever evaluated as Python.
 
-Python's own parser reads the text, and only what is listed here is taken over.
+Python's own parser reads the text, and only what is listed here is accepted.
 """
 
 import ast
@@ -12,11 +12,11 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.expressions import tree
 
 LONGEST = 2000
-"""Characters of a text."""
+"""Most characters of an expression."""
 DEEPEST = 60
-"""Parentheses and operations within each other."""
+"""Most parentheses and operations within each other."""
 LARGEST_POWER = 64.0
-"""Of a number in an exponent: what is beyond is more likely a mistake than physics."""
+"""Largest number in an exponent: a larger one is more likely a mistake than physics."""
 
 _ORDERS = {ast.Lt: True, ast.LtE: True, ast.Gt: False, ast.GtE: False}
 _OPERATORS = {ast.Add: tree.plus, ast.Sub: tree.minus, ast.Mult: tree.times, ast.Div: tree.over,
@@ -31,7 +31,7 @@ def read(text, names, where):
     text : str, int or float
         ``+ - * / ^``, parentheses, numbers, names, and the functions of tree.FUNCTIONS.
     names : collection of str
-        What may stand in it.
+        The names that it may use.
     where : str
         File and key path, for error lines.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trees -> compiled kernels: straight lines, each part of an expression computed once.
+"""From trees to compiled kernels: straight-line code, each part of an expression computed once.
 
 Numbers and parameters are values of the kernel, not part of its code: a scene with other numbers
 uses the same compiled kernel.
@@ -15,7 +15,7 @@ TIME, PLACE, VELOCITY = ('t',), ('x', 'y', 'z'), ('vx', 'vy', 'vz')
 ATTITUDE, RATES, WORLD_RATES = (('qx', 'qy', 'qz', 'qw'), ('wx', 'wy', 'wz'), ('Wx', 'Wy', 'Wz'))
 HINGE = ('angle', 'rate')
 STATE_NAMES = (*TIME, *PLACE, *VELOCITY, *ATTITUDE, *RATES, *WORLD_RATES, *HINGE)
-"""What expressions know of the state: time (s); place (m) and velocity (m/s) of the body's origin,
+"""Names of the state in expressions: time (s); place (m) and velocity (m/s) of the body's origin,
 world axes; the quaternion body -> world; angular velocity (rad/s) in body and in world axes; the
 angle of a hinge (rad, within two turns) and its rate (rad/s)."""
 PLAIN = (0.0, 1.0, 2.0, 0.5)
@@ -143,7 +143,7 @@ class Lines:
 
 
 def prelude(lines, used, frame):
-    """Return the lines that make what expressions know of what kernels are given.
+    """Return the lines that compute the names of expressions from the arguments of kernels.
 
     Kernels are given the attitude and the angular velocity of a frame, and place and velocity of
     its point of reference (scene/frame.py).
@@ -151,7 +151,7 @@ def prelude(lines, used, frame):
     Parameters
     ----------
     lines : Lines
-        Gets the values that are needed.
+        Receives the values that are needed.
     used : set of str
         Of STATE_NAMES.
     frame : Frame or None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions as trees: what a scene file writes, and its derivatives.
+"""Expressions of scene files as trees, and their derivatives.
 
 A node is kept once, so that equal parts of an expression are the same object and are computed
-once. The order of operations is that of the text: the bits of a scene do not depend on the
-version of a computer algebra system, which sorts terms as it likes.
+once. The order of operations is that of the text: the bits of a scene do not depend on the version
+of a computer algebra system and its order of terms.
 """
 
 import functools
