@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Accelerations and reactions of a state: what a scene's forces do at one instant.
+"""Accelerations and reactions of a state, by the forces of a scene at one instant.
 
-Newton's and Euler's equations, whatever solved the motion. Symbols: M mass, a acceleration of the
-centre of mass (world), F sum of the forces other than the reaction (world), r arm from the point
-of reference P to the centre of mass, I tensor about P, Gamma torque of F and of all couples about
-P (body axes), n unit vector along a hinge.
+They follow from Newton's and Euler's equations, whatever solved the motion. Symbols: M mass, a
+acceleration of the centre of mass (world), F sum of the forces other than the reaction (world), r
+arm from the point of reference P to the centre of mass, I tensor about P, Gamma torque of F and of
+all couples about P (body axes), n unit vector along a hinge.
 
     free      M a = F,                              I omega' = Gamma - omega x I omega
     pivot     I omega' = Gamma - omega x I omega    reaction M a - F at P, no couple; of one that
@@ -43,12 +43,12 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.expressions.path import along
 from rigid_body_sim.scene.state import STATE
 
-STICKS = 1e-11    # slip below that share of the speeds is the rounding of rolling
+STICKS = 1e-11    # share of the speeds: a smaller slip is the rounding of rolling
 NOTHING = (0.0, 0.0, 0.0)
 
 
 class Balance(NamedTuple):
-    """What acts at one instant.
+    """Accelerations and reactions at one instant.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Balance(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """A state as the balance takes it, in tuples.
+    """A state in the form that the balance takes, as tuples.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Motion(NamedTuple):
 
 
 class Actions(NamedTuple):
-    """What effects and a held wrench do at one instant.
+    """The sum of effects and a held wrench at one instant.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class Actions(NamedTuple):
 
 
 class Reactions(NamedTuple):
-    """What a pivot, a hinge or the table exerts on the body at n times.
+    """Force and torque of a pivot, a hinge or the table on the body at n times.
 
     Attributes
     ----------

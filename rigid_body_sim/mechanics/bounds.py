@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bounds of the rates of a scene: what its potentials and its drives can do."""
+"""Bounds of the rates of a scene, from its potentials and drives."""
 
 import math
 from functools import reduce
@@ -26,7 +26,7 @@ def swing_rate(scene):
 
 
 def swing_momentum(scene):
-    """Return the angular momentum (kg m^2/s) that potentials can give a held body, at most."""
+    """Return the largest angular momentum (kg m^2/s) that potentials can give a held body."""
     body, constraint = scene.body, scene.constraint
     moment = (max(constraint.inertia(body).moments) if constraint.axis is None
               else moment_about_hinge(body, constraint))

@@ -22,7 +22,7 @@ from rigid_body_sim.scene.state import STATE
 
 
 class Diagnosis(NamedTuple):
-    """What `diagnose` finds.
+    """The result of `diagnose`.
 
     Attributes
     ----------

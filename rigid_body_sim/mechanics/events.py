@@ -54,7 +54,7 @@ class Watch:
 
 
 def watches(scene):
-    """Return what is watched in a scene.
+    """Return the quantities that are watched in a scene.
 
     Free body with three different moments: `flip`, the momentum along the middle axis changes its
     sign. Pivot: `turning point`, the height of the third body axis turns (nutation). Hinge:
@@ -124,11 +124,12 @@ class Watcher:
     start : float
         Time of the solver's start, s.
     swing : float
-        What may come to the rate at once, rad/s (mechanics/bounds.py): a body at rest soon is not.
+        Rate that potentials may add, rad/s (mechanics/bounds.py), since a body at rest may soon
+        move.
     drive : float
-        What may come to it in a second, rad/s^2 (mechanics/bounds.py).
+        Rate that drives may add in a second, rad/s^2 (mechanics/bounds.py).
     unbounded : bool, optional
-        Whether more may come than these say: then looks are at most BLINK apart.
+        Whether these are no bounds: then looks are at most BLINK apart.
     """
 
     def __init__(self, solver, watched, start, swing, drive, unbounded=False):
@@ -165,7 +166,7 @@ class Watcher:
         found = []
         least = max(tick / LOOKS_A_TICK, (until - self._time) / MOST_LOOKS, 4.0 * math.ulp(until))
         while self._watched and self._time < until:
-            # in a look the body turns over so much that changes of sign are no more seen
+            # between two looks the body turns so far that changes of sign are missed
             blind = RADIANS_BLIND * self._spacing < least * RADIANS_BETWEEN_LOOKS
             time = min(until, self._time + max(self._spacing, 32.0 * least if blind else least))
             values = self._look(time)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What acts on a body, integrated along the trajectory that is published.
+"""Work, heat and angular impulse, integrated along the published trajectory.
 
 The ledger's entries do not come from the equations that a method solved but from its states: a
 quadrature over these, under control of its own error (panels.py). So the ledger belongs to the
 published trajectory whatever solved it, and does not agree with a method merely because it repeats
-what the method did. Panels are laid from the start on, whenever the ledger is asked: what it says
-does not depend on how often.
+what the method did. Panels are laid from the start on, so the ledger does not depend on how often
+it is asked.
 """
 
 import bisect
@@ -48,7 +48,7 @@ They are spread evenly, and give the mean of what acts.
 
 
 class Actors:
-    """What acts in a scene, as the ledger takes it.
+    """Everything that acts in a scene, in the form for the ledger.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ class Exchange:
     start : array (14,)
         The state at the start.
     slack : float
-        By how much the states between two steps of a method are uncertain, relative to 1: panels
-        are not made shorter to resolve that.
+        Relative uncertainty of the states between two steps of a method: panels are not made
+        shorter to resolve it.
     kinks : callable
         Time -> the times before it at which what acts has a kink, besides the breakpoints, s.
     """

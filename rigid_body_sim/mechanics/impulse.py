@@ -33,7 +33,7 @@ ZERO = (0.0, 0.0, 0.0)
 
 
 class Response(NamedTuple):
-    """What an impulse does besides changing the state.
+    """The effects of an impulse besides the change of the state.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ def _push_center(scene, now, state, J, d):
 def _jump(scene, G):
     """Return (whether G has no part along an axis of zero moment, I^-1 G of the rest)."""
     along = rotate_back(*scene.axes, *G)
-    # what turning to the world and back leaves along an axis: 1e-15 of G, 3e-15 of the moment of a
+    # rounding along an axis by turning to the world and back: 1e-15 of G, 3e-15 of the moment of a
     # force (300,000 random ones)
     slack = 1e-14 * (abs(G[0]) + abs(G[1]) + abs(G[2]))
     I1, I2, I3 = scene.moments

@@ -51,7 +51,7 @@ def entries_size(scene):
 def balance(start, now, entries, swing=0.0):
     """Return the balance of energy (J) and angular momentum (kg m^2/s), as a dict of floats.
 
-    ``energy_residual`` is what the terms leave over, relative to the largest of |kinetic|,
+    ``energy_residual`` is the remainder of the terms, relative to the largest of |kinetic|,
     |potential|, |work|; ``momentum_residual`` is |L - L(0) - angular impulse| relative to the
     largest of the three and `swing`.
 

@@ -31,7 +31,7 @@ SEEN = 2.0 ** -27        # share of an integrand: where c_14 and c_15 are smalle
 SMOOTH = 2.0 ** -40      # the same in a panel twice as long
 FITS = 2.0 ** -20        # share of an integrand: how well its value at the beginning fits
 TURNED = 12.0            # rad: the largest turn of the body in a panel
-# what is to become of a panel's length
+# advice on a panel's length
 SHORTER, KEPT, LONGER = 0, 1, 2
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What acts in a scene, summed up without the names of its effects."""
+"""The sum of everything that acts in a scene, whatever effects it comes from."""
 
 from typing import NamedTuple
 
