@@ -6,7 +6,7 @@ of mass leaves the rotation alone. Of a pivoted body the centre of mass is the p
 pulls at it.
 
 With r the rate of the drag, Euler's equations are I omega' = -omega x I omega - r I omega. In the
-time s that goes slower and slower,
+time s, which passes more and more slowly,
 
     s = (1 - exp(-r t))/r,     omega(t) = exp(-r t) Omega(s),     q(t) = Q(s),
 
@@ -62,7 +62,7 @@ class Parameters(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     rotation_anchor: RotationAnchor
     damping: Pair

@@ -65,7 +65,7 @@ class Parameters(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides.
+    """Numbers that one state determines.
 
     The axes e1, e2, e3 are those of ramped_rotation, in the axes of the torque.
     """

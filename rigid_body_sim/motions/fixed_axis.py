@@ -55,7 +55,7 @@ class Parameters(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     start: float             # s
     orientation: Quaternion

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies whose moments are equal but for so little that it does not show: taken as symmetric.
+"""Bodies whose moments differ too little to matter: they are taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
 that lie within NEARLY of each other: both of a pair become their mean I. What that leaves out of

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The contract of a motion: what a closed form offers to the exact solver.
 
-A motion is a module of this folder with one line in the table of ``motions/__init__.py``. What it
-lacks it declares as None. docs/extending.md adds one step by step.
+A motion is a module of this folder with one line in the table of ``motions/__init__.py``. Members
+that it lacks are declared as None. docs/extending.md adds one step by step.
 """
 
 from collections.abc import Callable

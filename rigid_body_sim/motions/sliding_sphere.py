@@ -86,7 +86,7 @@ class Track(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     ball: Parameters
     start: StateView       # with the angular velocity in world axes

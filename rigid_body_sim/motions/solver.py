@@ -16,10 +16,10 @@ from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import loops as template
 from rigid_body_sim.scene.state import TIME
 
-CROWD = 4    # events that are told within a tick: a body at 1e6 rad/s would flip hundreds of times
+CROWD = 4    # most events reported within a tick: a body at 1e6 rad/s would flip hundreds of times
 NONE_YET = (-math.inf,) * CROWD
-LEAST = 512      # states of many bodies that a thread takes, at least
-AT_ONCE = 32768  # states of one call of a kernel: a tenth of a second at most
+LEAST = 512      # least number of states of many bodies that a thread takes
+AT_ONCE = 32768  # states of one call of a kernel, which takes a tenth of a second at most
 
 
 @functools.cache
@@ -33,7 +33,7 @@ def loops(motion):
 
 
 class _Asked:
-    """What only the ledger and events of a scene need: made when one of them is asked for."""
+    """Objects that only the ledger and the events of a scene need, made on demand."""
 
     def __init__(self, scene, motion):
         self.scene, self.motion = scene, motion
@@ -45,7 +45,7 @@ class _Asked:
 
     @functools.cached_property
     def watched(self):
-        """What is watched in the scene."""
+        """The quantities that are watched in the scene."""
         return watches(self.scene)
 
     @functools.cached_property
@@ -116,7 +116,7 @@ class Exact:
         if len(times) <= AT_ONCE:
             states(anchor, times, out)
         else:
-            for first in range(0, len(times), AT_ONCE):    # an interrupt is heard between calls
+            for first in range(0, len(times), AT_ONCE):    # an interrupt is handled between calls
                 look()
                 states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
         if len(times) and times.min() < self._start[TIME]:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a free rotation needs to know before it is evaluated: numbers of the body, and the anchor.
+"""Numbers of a free rotation that are computed once: those of the body, and the anchor.
 
-What grows with time, the phases v and Omega t/2 of rotation.py, has rates with more digits than a
-double, counted in turns; so the error does not grow with time beyond what the doubles of the input
-carry. With Euler's coefficients e1 = (I2 - I3)/I1 and so on in circle, Euler's equations are
+The phases v and Omega t/2 of rotation.py grow with time. Their rates are counted in turns and have
+more digits than a double, so the error does not grow with time beyond what the doubles of the
+input carry. With Euler's coefficients e1 = (I2 - I3)/I1 and so on in circle, Euler's equations are
 omega_1' = e1 omega_2 omega_3 ..., and
 
     p^2      = -e1 e2 omega_3^2 + e1 e3 omega_2^2,
@@ -79,7 +79,7 @@ class Inertia(NamedTuple):
 
 
 class Attitude(NamedTuple):
-    """How the frame of rotation.py stands."""
+    """The attitude of the frame of rotation.py."""
 
     to_body: Matrix                         # its columns are the axes of the frame in the body
     to_world: tuple[Four, Four, Four, Four]     # takes the quaternion of Z S to the attitude
@@ -203,7 +203,7 @@ def _units(body_omega):
     wx, wy, wz = body_omega
     size = max(abs(wx), abs(wy), abs(wz))
     if size < 1e-250:
-        # it does not turn in 1e240 s; what omega there is, _fill_attitude keeps
+        # the body does not turn in 1e240 s; _fill_attitude keeps what omega there is
         return 0.0, 1.0
     if size < 1e-70 or size > 1e70:
         exponent = min(math.frexp(size)[1], 960)    # powers of two are exact

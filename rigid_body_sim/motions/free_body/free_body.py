@@ -69,7 +69,7 @@ class Flight(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     rotation_anchor: RotationAnchor
     flight: Flight

@@ -77,7 +77,7 @@ class HyperbolicSeries(NamedTuple):
 
 
 class Rotation(NamedTuple):
-    """What the kernels below take from an array; of the two series only one is filled."""
+    """The view of the kernels below on an array; only one of the two series is filled."""
 
     course: Course
     circular: CircularSeries

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The anchor of a heavy symmetric top: what one state decides (symbols: lagrange_top.py)."""
+"""The anchor of a heavy symmetric top, made of one state (symbols: lagrange_top.py)."""
 
 import math
 from typing import NamedTuple

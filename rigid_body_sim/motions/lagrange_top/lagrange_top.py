@@ -20,7 +20,7 @@ body axes and c = omega . gamma across e3
 
     omega_c = (c + i u')/(1 - u^2) gamma_c,     gamma_c = 2 i conj(a) b.
 
-What grows with time has more digits than a double (means.py), so errors do not grow.
+Numbers that multiply the time have more digits than a double (means.py), so errors do not grow.
 
 Kernels besides those of every motion: `fill_columns`, the same operations as `state` on many times
 side by side; `next_event`, `turning_index`, `turning_time` (where beta turns); `reaction`. A
@@ -74,7 +74,7 @@ class Parameters(NamedTuple):
 
 
 class Steady(NamedTuple):
-    """What does not change."""
+    """Constants of the motion."""
 
     start: float         # time of the start, s
     spin: float          # omega_3, rad/s
@@ -83,7 +83,7 @@ class Steady(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     nutation: Nutation
     steady: Steady

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mean rates of a heavy symmetric top over a nutation, as pairs of doubles (symbols: roots.py).
 
-They are what grows with time. The nutation's rate is an arithmetic-geometric mean. The phases of
+They multiply the time. The nutation's rate is an arithmetic-geometric mean. The phases of
 the Cayley-Klein parameters grow at
 
     arg(a)' = sigma/(2 x),     arg(b)' = delta/(2 y),
@@ -53,7 +53,7 @@ def mean_rates(roots, scale):
     ab, bb, pb = one, scaled(kc, scale), scaled(kc, 1.0 / scale)
     go_on = True
     while go_on:
-        go_on = abs(m[0] - kc[0]) > 3e-11 * m[0]    # what is left after one more step: its square
+        go_on = abs(m[0] - kc[0]) > 3e-11 * m[0]    # remainder after one more step: its square
         aa, ba, pa = _step(aa, ba, pa, rho_a, e)
         ab, bb, pb = _step(ab, bb, pb, rho_b, e)
         m, kc, share = plus(m, kc), scaled(root_of(e), 2.0), 0.5 * share

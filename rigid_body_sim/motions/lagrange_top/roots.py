@@ -41,7 +41,7 @@ from rigid_body_sim.numerics.pairs import (
 
 
 class Now(NamedTuple):
-    """What the state says: x, y, w and c + i u' as they are now, and what is conserved."""
+    """Numbers of the state: x, y, w and c + i u' at present, and the conserved ones."""
 
     x: Pair
     y: Pair
@@ -54,7 +54,7 @@ class Now(NamedTuple):
 
 
 class Factors(NamedTuple):
-    """What the cubic of one of the two cases below gives."""
+    """Results of the cubic of one of the two cases below."""
 
     apart: bool     # whether u1 is the root apart from the other two; else u3 is
     steady: bool    # whether u stays where it is

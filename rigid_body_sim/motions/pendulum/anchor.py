@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a pendulum's motion needs to know: numbers of the scene, and the anchor.
+"""Numbers of a pendulum's motion that are computed once: those of the scene, and the anchor.
 
-Symbols and equations are those of pendulum.py. Whatever decides or grows with time, Omega, phi,
-Delta and the rate of the phase, is formed with 32 digits from the doubles of the input.
+Symbols and equations are those of pendulum.py. Omega, phi, Delta and the rate of the phase decide
+the motion or grow with time, so they are formed with 32 digits from the doubles of the input.
 """
 
 import math
@@ -91,7 +91,7 @@ class Circle(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """What one state decides."""
+    """Numbers that one state determines."""
 
     rotation: Rotation
     swing: Swing
