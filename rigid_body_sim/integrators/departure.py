@@ -52,7 +52,7 @@ def arrival(scene, vector):
 def relaxing(scene, vector):
     """Return the time (s) in which dissipation takes the body from a state to its last axis.
 
-    About, and infinite where it has no such axis.
+    It is approximate, and infinite where there is no such axis.
     """
     moments = scene.constraint.inertia(scene.body).moments
     frame = scene.constraint.frame(scene.body)

@@ -31,10 +31,10 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 
-FINEST = 1e-15          # smallest accuracy that doubles carry
+FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
-SLACK = 1e-2            # of the accuracy: the jumps between steps that the ledger does not resolve
+SLACK = 1e-2            # share of the accuracy: jumps between steps, not resolved
 
 
 class Stepped:
@@ -216,7 +216,7 @@ class Stepped:
 
 
 def _check_control(method, accuracy, step):
-    """Raise BadInput unless accuracy and step are such as a method takes."""
+    """Raise BadInput unless a method can take this accuracy and step."""
     if accuracy is None and step is None:
         raise BadInput('method', 'got neither accuracy nor step', 'give one of them')
     if step is not None and not (math.isfinite(step) and step > 0.0):

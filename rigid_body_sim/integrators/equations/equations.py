@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The equations of motion of one scene: a template bound to the sums of what acts, and numbers.
 
-What the scene does not list is not in the code.
+Effects that the scene does not list are not in the code.
 """
 
 import bisect
@@ -204,7 +204,7 @@ def moment_on_hinge(scene):
 
 
 class _Call:
-    """One thing that acts, as text.
+    """One Acting, as text.
 
     The line that calls its kernel, and the names of its three components.
     """

@@ -17,7 +17,7 @@ from rigid_body_sim.scene.state import STATE, StateView
 
 
 class Start(NamedTuple):
-    """What a start decides.
+    """Numbers that a start determines.
 
     Attributes
     ----------

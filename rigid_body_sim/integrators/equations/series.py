@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The equations of the Taylor series: one kind for all scenes, what acts is in its numbers.
+"""The equations of the Taylor series: one kind for all scenes, which differ in its numbers.
 
 Torques constant in the body or in the world, the weight on an arm, and drag;
 marching/taylor_series.py has the recurrences.

@@ -31,7 +31,7 @@ axes_rate = UNBOUND
 UNKNOWNS = PLACE
 GROUPS = ((0, OMEGA, True), (OMEGA, PLACE, False))
 APART = ((0, OMEGA, True), *((k, k + 1, False) for k in range(OMEGA, PLACE)))
-"""Groups under internal dissipation: what leaves an axis is to be right while it is small."""
+"""Groups under internal dissipation: a departure from an axis is accurate while it is small."""
 
 
 @compiled

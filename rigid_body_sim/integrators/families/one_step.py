@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the families of methods with a kernel ``step`` share: adaptive and fixed-step marches.
+"""The common part of families with a kernel ``step``: adaptive and fixed-step marches.
 
 A method with an error estimate is marched by adaptive.py, every other one by fixed.py.
 """
@@ -12,7 +12,7 @@ from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES
 from rigid_body_sim.mechanics.bounds import borne, swing_rate
 
-ROUNDING = 2.0 ** -51    # of the largest term of an angular acceleration, in an error estimate
+ROUNDING = 2.0 ** -51    # share of the largest angular acceleration
 
 
 def equations_of(scene, wrench):

@@ -16,7 +16,7 @@ from rigid_body_sim.integrators.marching import taylor_march, taylor_series
 TAKES_WRENCH = False
 LANES = True
 KINKS = False
-SAFETY = 0.25    # steps planned from the point before err by up to four times what is allowed
+SAFETY = 0.25    # steps planned a point earlier err by up to four times the allowed
 
 
 def equations_of(scene, wrench):

@@ -33,7 +33,7 @@ ORDER = UNBOUND
 
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
-TRIALS = 60                # of one step: after so many refusals it is given up
+TRIALS = 60                # refusals of one step after which it is given up
 
 
 @compiled
@@ -83,7 +83,7 @@ def march(p, control, point, following, target, end, limit):
                 h = (t1 - t) * min(
                     GROWTH, max(SHRINK, SAFETY * power(allowed / error, 1.0 / (ORDER - 1)))
                 )
-            else:    # nothing to be seen of the error, or not a number
+            else:    # no error is visible, or it is not a number
                 h = (t1 - t) * (GROWTH if good else SHRINK)
             if good:
                 break

@@ -13,8 +13,8 @@ form serves all scenes of the method, by 15 products of two series for each orde
 sums run over a loop: two of its terms, those with the newest coefficients, stand behind it, so
 that it need not wait for them.
 
-The quaternion follows from e1 and e2 up to its sign, which the way decides: of the two the one
-nearer to where the integral of omega alone would have led.
+The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
+to the result of integrating omega alone.
 """
 
 from functools import partial
@@ -76,7 +76,7 @@ def _series(o, W):
         e = rows(k, 0, 6)
         changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
         for i in range(3):
-            # what is known first comes first
+            # terms that are known first come first
             rate = (
                 o.gather(row(V + i), e[3 + i], row(CONSTANT + i))
                 if constant

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Points of a march: where a march stands, and how it goes on to the next point.
+"""Points of a march: its present place, and the step to the next point.
 
 A point is an array that begins with a Head; behind it stand the unknowns, and what their sums have
 lost (as many numbers again). The templates of this folder add what their method keeps.
@@ -33,7 +33,7 @@ LOST, REACHED, PAUSED = 0, 1, 2
 """How a march ended: no step is good; the time asked is within the step; its steps are used up."""
 
 LEAST_ERROR = 2.0 ** -62
-"""Of a step, as a share of the unknowns: it is not asked to err by less, however short it is."""
+"""Least error asked of a step, as a share of the unknowns, however short it is."""
 
 HEAD = layout(Head)
 TIME, STEP, SCALES = (HEAD.part(name).first for name in Head._fields)

@@ -36,7 +36,7 @@ KEPT = 16                    # marches that stay in memory; others are made anew
 
 
 class Start(NamedTuple):
-    """What a course takes of the solver that starts it."""
+    """The settings that a course takes from the solver that starts it."""
 
     method: object
     scene: object
@@ -60,7 +60,8 @@ class Stretch(NamedTuple):
     rests : bool
         Whether dry friction holds the body.
     head : array or None
-        Step and scales of the march before: what is small now is not measured against itself.
+        Step and scales of the march before, so that unknowns that are small now are not measured
+        against themselves.
     """
 
     begin: float

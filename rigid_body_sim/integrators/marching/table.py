@@ -3,8 +3,8 @@
 
 Its phases of sliding and rolling are smooth.
 
-What the phases are and why sliding has its own independent variable says
-rigid_body_sim/integrators/equations/table_rates.py.
+rigid_body_sim/integrators/equations/table_rates.py explains the phases, and why sliding has its
+own independent variable.
 """
 
 import bisect
@@ -43,11 +43,11 @@ from rigid_body_sim.scene.state import (
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 CLOCK = table_rates.TIME
-KEPT = 2048              # points of a phase; beyond, every other one is dropped
+KEPT = 2048              # most points of a phase; then every other one is dropped
 # rad: as far the ball turns before a new slip leaves the direction of its drive; its lag is of the
 # order of CREEP^2
 CREEP = 1e-4
-DEAD = 2.0 ** -56        # slip below that share of the speeds is none
+DEAD = 2.0 ** -56        # share of the speeds: a smaller slip counts as none
 FLOOR = 1e-17            # of an error: none is asked to be smaller
 
 

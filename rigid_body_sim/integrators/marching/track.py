@@ -28,8 +28,8 @@ FOLLOWING = UNBOUND
 COUNTS = UNBOUND
 
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
-CHECKPOINTS = 128                   # how many points are kept
-SPACING = 32                        # at first every which one
+CHECKPOINTS = 128                   # number of points that are kept
+SPACING = 32                        # stride at first: every n-th point is kept
 AT_ONCE = 8                         # steps of a call from Python that asks for a state
 
 

@@ -9,9 +9,9 @@ values are formed.
 
 import functools
 
-ROUNDING = 2.0 ** -49    # of an increment: what the sums of error estimates carry
-# rad/s, of a body that a torque sets turning from rest as good as exactly: rates relative to it
-# say nothing
+ROUNDING = 2.0 ** -49    # share of an increment: rounding of the sums of error estimates
+# rad/s: below this angular speed relative rates are meaningless, since the body is still starting
+# from rest
 NOTHING = 1e-100
 
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bound on the work of a march: it gives up where the way ahead asks for more steps than pay.
+"""A bound on the work of a march: it gives up if the way ahead would take too many steps.
 
-A march goes in slices, so that an interrupt is heard between two of them (compilation/threads.py).
-Whether it gives up depends on its steps alone, not on the clock. Steps that Python makes, and
-events between two phases of a march, count as the steps of a compiled march that they cost.
+A march goes in slices, so that an interrupt is handled between two of them
+(compilation/threads.py). Whether it gives up depends on its steps alone, not on the clock. Steps
+that Python makes, and events between two phases of a march, count as the steps of a compiled march
+that they cost.
 """
 
 import math
@@ -18,7 +19,7 @@ PATIENCE = 1e15         # steps done times steps ahead: beyond, and beyond MOST,
 
 
 class TooMuchWork(NotConverged):
-    """A march would take more steps than its work is bounded to."""
+    """A march would exceed the bound on its work."""
 
 
 class Work:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""rk4: the classical Runge-Kutta method, what general engines call their accurate one.
+"""rk4: the classical Runge-Kutta method, the accurate one of general engines.
 
 Here for comparison.
 

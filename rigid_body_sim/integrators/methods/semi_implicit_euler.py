@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""semi_implicit_euler: what general engines do at every step, for comparison.
+"""semi_implicit_euler: the step of general engines, for comparison.
 
-Exactly what is done is said in engine_step.py.
+engine_step.py defines the step.
 
-Order 1, fixed steps only: it needs `step`. Named so by its users, as the new velocity moves the
+Order 1, fixed steps only: it needs `step`. Its users call it so because the new velocity moves the
 position; the gyroscopic term is explicit, so the method is not symplectic for a body that turns,
 and its energy grows.
 """
