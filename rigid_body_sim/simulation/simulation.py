@@ -52,7 +52,7 @@ KEPT = (
     'tick', 'events', 'vector', 'departed', '_origin', '_origin_time', '_beginning', '_initial',
     '_commands',
 )
-"""What a copy or a pickle takes over as it is."""
+"""Attributes that a copy or a pickle takes over unchanged."""
 NOTHING_HELD = Wrench()
 
 
@@ -87,7 +87,7 @@ class Simulation:
         The present state; it changes with the next call, so copy what you keep (or take
         :attr:`state`).
     events : list of Event
-        What happened so far.
+        The events so far.
     departed : float or None
         The time (s) from which on the motion is not the one that `choice` made its forecast for:
         that of the first command, or 0 after a restart from another start; None before.
@@ -386,7 +386,7 @@ class Simulation:
     def advance_through(self, ticks: int) -> States:
         """Go on by a number of ticks and return the States at all of them.
 
-        They are to the bit what :meth:`advance` meets one by one.
+        They have the bits of the states that :meth:`advance` meets one by one.
         """
         ticks = self._count('advance_through', ticks)
         states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
@@ -396,7 +396,7 @@ class Simulation:
     def foresee(self, ticks: int) -> States:
         """Return the States at the next ticks without going there.
 
-        They are to the bit what :meth:`advance` meets if no command comes.
+        They have the bits of the states that :meth:`advance` meets if no command comes.
 
         There are `ticks` of them, or as many as come before the tick of the next event. They are
         kept: to advance to one of them costs nothing more.
@@ -457,7 +457,7 @@ class Simulation:
         Parameters
         ----------
         name : str
-            ``flip``, ``rolling``, ...: the names that :attr:`events` shows.
+            ``flip``, ``rolling began``, ...: the names that :attr:`events` shows.
         within : float
             How far to look ahead, s.
 
@@ -514,7 +514,7 @@ class Simulation:
         self._command_one(row_of(HOLD, force, torque, frame))
 
     def release(self) -> None:
-        """Let go of the held wrench at the present tick."""
+        """Release the held wrench at the present tick."""
         self.command(LET_GO)
 
     def _command_one(self, row):
@@ -522,9 +522,9 @@ class Simulation:
             raise refusal.error
 
     def command(self, rows):
-        """Give commands at the present tick, in their order.
+        """Apply commands at the present tick, in order.
 
-        They do to the bit what they do one by one, but are computed once.
+        They have the same bits as one by one, but are computed once.
 
         Parameters
         ----------
@@ -562,7 +562,7 @@ class Simulation:
         return self._spans[-1].wrench
 
     def reset(self) -> None:
-        """Put the state back to the one at the start, without commands; ticks go on."""
+        """Reset the state to the one at the start, without commands; ticks go on."""
         self._restart()
         self.events.append(Event(self.tick, self.time, 'reset', {}))
 
@@ -702,7 +702,7 @@ class Simulation:
 
 
 def _refuse_no_number(name, value):
-    """Refuse what a comparison with a number would fail on."""
+    """Refuse values that cannot be compared with a number."""
     if type(value) is float:
         return
     if isinstance(value, bool) or not isinstance(value, numbers.Real):

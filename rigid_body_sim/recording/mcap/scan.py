@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an MCAP file really holds, from its first byte on, whoever wrote it.
+"""The true contents of an MCAP file, from its first byte on, whichever program wrote it.
 
 For files that are cut, damaged or without a summary. Why not `mcap.stream_reader.StreamReader`: it
 does not say where a record begins, and it ends at the first one that is cut or damaged. Here what
