@@ -6,7 +6,7 @@ The unknowns are q (4) and omega (3) of the frame, and the time:
     t' = 1
 
 Rotation as in turning.py, about the pivot. Place and velocity of the pivot are those of its path,
-never integrated; what its acceleration does to the body is among the torques
+never integrated; the effect of its acceleration on the body is among the torques
 (scene/effects/carrying.py).
 """
 

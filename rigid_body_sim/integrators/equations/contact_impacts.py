@@ -19,7 +19,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 
 
 class Impact(NamedTuple):
-    """What an impact did.
+    """The results of an impact.
 
     Attributes
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the motion of a convex body on a plane ends: whether it rests, jams, or rolls back.
+"""The end of the motion of a convex body on a plane: whether it rests, jams, or rolls back.
 
 Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 """

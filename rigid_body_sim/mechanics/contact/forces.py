@@ -52,7 +52,7 @@ class Posture(NamedTuple):
 
 
 class Push(NamedTuple):
-    """What acts on a body besides the force at its lowest point.
+    """The sum of everything that acts on a body besides the force at its lowest point.
 
     Attributes
     ----------

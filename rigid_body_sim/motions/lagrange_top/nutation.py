@@ -44,7 +44,7 @@ class Course(NamedTuple):
 
 
 class Nutation(NamedTuple):
-    """What the kernels below take from an array; of the two series only one is filled."""
+    """The view of the kernels below on an array; only one of the two series is filled."""
 
     course: Course
     circular: CircularSeries

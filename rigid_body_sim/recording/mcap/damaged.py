@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is made of the damaged records of an MCAP file: rescued, replaced, or left out."""
+"""The damaged records of an MCAP file: rescued, replaced, or left out."""
 
 import numpy as np
 from mcap.exceptions import UnsupportedCompressionError
@@ -24,7 +24,7 @@ from rigid_body_sim.recording.mcap.walk import HEADS, MESSAGE, MESSAGE_FIXED, he
 
 LARGEST_RECORD = LARGEST_CHUNK + 2**16
 _LONGEST_DESCRIPTION = 2**20    # bytes of a damaged schema, channel, header or metadata record
-_FAR = 10**12                   # ns of log time to a message that is not believed
+_FAR = 10**12                   # ns of log time beyond which a message is not believed
 
 
 class DamagedRecords(Findings):
@@ -131,7 +131,7 @@ class DamagedRecords(Findings):
         self.end = rescued.end
 
     def _replaced(self, offset, opcode, length):
-        """Put a record with another head in place of one whose head alone is wrong, if it is so.
+        """Replace a record if its head alone is wrong, by one with another head.
 
         Returns where the next record is, 0 if it is not so.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The account of what a scan of an MCAP file finds: parts, contents, damages, descriptions."""
+"""The findings of a scan of an MCAP file: parts, contents, damages, descriptions."""
 
 import dataclasses
 import zlib
@@ -67,7 +67,7 @@ class Findings:
 
     @property
     def whole(self):
-        """Whether nothing is to be mended."""
+        """Whether nothing needs mending."""
         return bool(self.in_place and not self.cut and len(self.parts) == 1
                     and tail_is_whole(self._stream, self.end) and self._data_end_is_right()
                     and self._as_told())

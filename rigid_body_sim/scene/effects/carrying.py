@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Carrying: what the acceleration of a moving pivot does to a body, seen from the pivot.
+"""Carrying: the effect of a moving pivot's acceleration on a body, seen from the pivot.
 
 In axes that move with the pivot, whose acceleration is a, the force -M a acts at the centre of
 mass. A scene does not list this effect: a pivot with a `motion` brings it along.
