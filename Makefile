@@ -84,7 +84,7 @@ figures: .venv/run.stamp ## figures and tables of README and docs anew
 	.venv/bin/python docs/make_figures.py
 
 docs: .venv-docs/stamp ## the pages as a site, in .cache/site: tutorial, how-to, reference, explanation; no network once .venv-docs is there
-	.venv-docs/bin/python -m sphinx --quiet --fail-on-warning --builder html docs .cache/site
+	.venv-docs/bin/python -m sphinx --quiet --fail-on-warning --write-all --fresh-env --builder html docs .cache/site
 	@echo 'Open .cache/site/index.html'
 
 bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading; sweeps
