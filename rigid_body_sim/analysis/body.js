@@ -20,10 +20,12 @@ function bodyView(canvas, data) {
       gl_Position = camera * vec4(turn * point + at, 1.0);
     }`));
   gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `
-    precision mediump float; varying vec3 shade; void main() { gl_FragColor = vec4(shade, 1.0); }`));
+    precision mediump float; varying vec3 shade; uniform float opacity;
+    void main() { gl_FragColor = vec4(shade * opacity, opacity); }`));
   gl.linkProgram(program); gl.useProgram(program); gl.enable(gl.DEPTH_TEST);
   const place = name => gl.getUniformLocation(program, name);
-  const uniforms = {camera: place('camera'), turn: place('turn'), at: place('at'), lit: place('lit')};
+  const uniforms = {camera: place('camera'), turn: place('turn'), at: place('at'), lit: place('lit'),
+    opacity: place('opacity')};
   const attributes = ['point', 'normal', 'color'].map(name => gl.getAttribLocation(program, name));
   attributes.forEach(one => gl.enableVertexAttribArray(one));
   const buffer = numbers => {
@@ -56,9 +58,11 @@ function bodyView(canvas, data) {
     }));
   }
 
-  const body = buffer(data.surfaces.flatMap(triangles)), holder = buffer(data.holder.flatMap(triangles));
+  const solids = clear => buffer(data.surfaces.filter(one => one.clear === clear).flatMap(triangles));
+  const body = solids(false), shell = solids(true), holder = buffer(data.holder.flatMap(triangles));
   const arrows = data.arrows.map(one => ({...one, buffer: buffer(triangles({...data.arrow,
     colors: data.arrow.faces.map(() => one.color)}))}));
+  const shaft = buffer(triangles(data.shaft));
   const lines = [], far = 12, cell = data.cell;
   for (let k = -far; k <= far; k++) {
     for (const [a, b] of [[[k, -far], [k, far]], [[-far, k], [far, k]]]) {
@@ -78,12 +82,13 @@ function bodyView(canvas, data) {
     return [0, 1, 2, 3].flatMap(column => m.map(row => row[column]));
   }
 
-  function draw({one, count}, turn, at, lit, mode) {
+  function draw({one, count}, turn, at, lit, mode, opacity = 1) {
     gl.bindBuffer(gl.ARRAY_BUFFER, one);
     attributes.forEach((place, k) => gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 36, 12 * k));
     gl.uniformMatrix3fv(uniforms.turn, false, turn);
     gl.uniform3fv(uniforms.at, at);
     gl.uniform1f(uniforms.lit, lit);
+    gl.uniform1f(uniforms.opacity, opacity);
     gl.drawArrays(mode, 0, count);
   }
 
@@ -104,12 +109,17 @@ function bodyView(canvas, data) {
     draw(ground, matrix(data.slope), near, 0, gl.LINES);
     draw(body, matrix(q), sub(position, origin), 1, gl.TRIANGLES);
     draw(holder, same, sub([0, 0, 0], origin), 1, gl.TRIANGLES);
-    arrows.forEach(arrow => {
-      const value = arrow.values[frame], length = Math.hypot(...value);
+    const along = (mesh, from, value) => {
+      const length = Math.hypot(...value);
       if (length < 1e-3) return;
       const z = unit(value), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
-      draw(arrow.buffer, [...x, ...y, ...z.map(c => c * length)], sub(middle, origin), 1, gl.TRIANGLES);
+      draw(mesh, [...x, ...y, ...z.map(c => c * length)], sub(from, origin), 1, gl.TRIANGLES);
+    };
+    data.springs.forEach(({at, anchor}) => {
+      const end = rotate(q, at).map((x, k) => x + position[k]);
+      along(shaft, anchor, sub(end, anchor));
     });
+    arrows.forEach(arrow => along(arrow.buffer, middle, arrow.values[frame]));
     const points = [];
     for (let k = Math.max(0, frame - 400); k <= frame; k++) {
       points.push(...rotate(data.orientation[k], data.axis), 0, 0, 1, 0, 0.45, 0.7);
@@ -117,6 +127,11 @@ function bodyView(canvas, data) {
     gl.bindBuffer(gl.ARRAY_BUFFER, trail);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points), gl.DYNAMIC_DRAW);
     draw({one: trail, count: points.length / 9}, same, sub(middle, origin), 0, gl.LINE_STRIP);
+    if (shell.count) {
+      gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);
+      draw(shell, matrix(q), sub(position, origin), 1, gl.TRIANGLES, 0.35);
+      gl.disable(gl.BLEND); gl.depthMask(true);
+    }
   }
 
   canvas.onpointerdown = () => {

@@ -16,6 +16,7 @@ from rigid_body_sim.drawing.setting import (
     holder_of,
     middle_of,
     reach_of,
+    springs_of,
 )
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
@@ -63,6 +64,10 @@ class Moving:
             'axis': _round(reach * axis, 5), 'traced': what,
             'surfaces': [_mesh(one, unit) for one in drawing.surfaces],
             'holder': [_mesh(one, unit, 'holder') for one in holder_of(self.scene, unit)],
+            'springs': [{'at': _round(one.at / unit, 5), 'anchor': _round(one.anchor / unit, 5)}
+                        for one in springs_of(self.scene)],
+            'shaft': _mesh(surfaces.cylinder(0.012, 1.0).placed(
+                Rotation.identity(), (0.0, 0.0, 0.5)), 1.0, 'holder'),
             'arrow': _mesh(_arrow(), 1.0), 'arrows': self._arrows(turns)}
 
     def _arrows(self, turns):
@@ -110,7 +115,8 @@ def _mesh(surface, unit, color=None):
     names = ([color] * len(surface.faces) if color
              else ['accent' if accent else 'base' for accent in surface.accent])
     return {'points': _round(surface.vertices / unit, 5), 'faces': surface.faces.tolist(),
-            'colors': [COLORS[name] for name in names], 'smooth': surface.smooth}
+            'colors': [COLORS[name] for name in names], 'smooth': surface.smooth,
+            'clear': surface.clear}
 
 
 def _round(values, digits):

@@ -28,10 +28,13 @@ class Drawing(NamedTuple):
         In metres, about the body's origin.
     about : str
         Description of the picture: the shape, or what stands for it.
+    stand_in : bool
+        Whether a box stands for the body, because the scene gives no shape.
     """
 
     surfaces: list
     about: str
+    stand_in: bool = False
 
     @property
     def vertices(self):
@@ -42,24 +45,23 @@ class Drawing(NamedTuple):
 def drawing_of(scene):
     """Return the Drawing of a Scene, or a plain box for None."""
     if scene is None:
-        return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown')
+        return Drawing([surfaces.box(UNKNOWN)], 'a box: the shape of the body is unknown', True)
     mapping = yaml.safe_load(scene.text)['body']
+    solid = _solid(mapping, scene.body)
     if 'surface' in mapping:
-        return Drawing([_surface(scene.body.surface)],
-                       f'the true shape, {article(scene.body.surface.kind)}')
-    if 'parts' in mapping:
-        shaped = [part for part in mapping['parts'] if 'shape' in part and not _is_hole(part)]
-        if shaped:
-            return Drawing([_part(part) for part in shaped],
-                           _about_parts(mapping['parts'], shaped))
-    if 'shape' in mapping:
-        return Drawing([_shape(mapping['shape'], scene.body.center_of_mass)],
-                       f'the true shape, {article(next(iter(mapping["shape"])))}')
+        touching, name = _surface(scene.body.surface), article(scene.body.surface.kind)
+        if solid is None:
+            return Drawing([touching], f'the true shape, {name}')
+        return Drawing([*solid.surfaces, touching._replace(clear=True)],
+                       f'{solid.about}, and the surface that touches the plane, {name}')
+    if solid is not None:
+        return solid
     if scene.body.radius is not None:
         return Drawing([surfaces.sphere(scene.body.radius).placed(
             Rotation.identity(), scene.body.center_of_mass)], 'the true shape, a sphere')
     return Drawing([_equal_box(scene.body)],
-                   'a box with the same mass and moments of inertia: the scene gives no shape')
+                   'a box with the same mass and moments of inertia: the scene gives no shape',
+                   True)
 
 
 def box_of(body):
@@ -72,6 +74,19 @@ def box_of(body):
 def article(name):
     """Return the name of a shape with its article: an ellipsoid, a solid sphere."""
     return f'{"an" if name[0] in "aeiou" else "a"} {name.replace("_", " ")}'
+
+
+def _solid(mapping, body):
+    """Return the Drawing of the parts or the shape in a scene's mapping of a body, or None."""
+    if 'parts' in mapping:
+        shaped = [part for part in mapping['parts'] if 'shape' in part and not _is_hole(part)]
+        if shaped:
+            return Drawing([_part(part) for part in shaped],
+                           _about_parts(mapping['parts'], shaped))
+    if 'shape' in mapping:
+        return Drawing([_shape(mapping['shape'], body.center_of_mass)],
+                       f'the true shape, {article(next(iter(mapping["shape"])))}')
+    return None
 
 
 def _surface(surface):

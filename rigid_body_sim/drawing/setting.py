@@ -5,6 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import yaml
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing import surfaces
@@ -69,6 +70,21 @@ def holder_of(scene, reach):
         turn = Rotation.from_quat(scene.initial.orientation) * to_axis
         return [surfaces.cylinder(0.025 * reach, reach).placed(turn, start)]
     return []
+
+
+class Spring(NamedTuple):
+    """A spring: its point of the body (body axes, m) and its fixed end (world, m)."""
+
+    at: np.ndarray
+    anchor: np.ndarray
+
+
+def springs_of(scene):
+    """Return the Springs that pull the body; a torsion spring has no place of its own."""
+    listed = yaml.safe_load(scene.text).get('effects') or [] if scene else []
+    found = [one['spring'] for one in listed if isinstance(one, dict) and 'spring' in one]
+    return [Spring(np.array(one['at'], float), np.array(one['anchor'], float))
+            for one in found if 'anchor' in one]
 
 
 def cell_of(reach):

@@ -28,12 +28,15 @@ class Surface(NamedTuple):
         True where a triangle has the second colour.
     smooth : bool
         Whether the surface is curved, so that its shading should hide the triangles.
+    clear : bool
+        Whether the surface is translucent, because something else is drawn inside it.
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     accent: np.ndarray
     smooth: bool
+    clear: bool = False
 
     def placed(self, rotation, at):
         """Return the surface turned by a scipy Rotation, then moved by `at` (m)."""

@@ -16,6 +16,8 @@ TYPES = {BOX: 1, SPHERE: 2, CYLINDER: 3}
 TRIANGLE_LIST = 11
 COLOUR, ACCENT = (
     {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}, {'r': 0.95, 'g': 0.9, 'b': 0.8, 'a': 1.0})
+CLEAR = 0.35
+"""Opacity of a translucent surface."""
 
 
 def solid_of(scene) -> Solid | None:
@@ -24,7 +26,7 @@ def solid_of(scene) -> Solid | None:
     if mapping and len(mapping) == 1:
         return mapping[0]
     drawing = drawing_of(scene)
-    if mapping is None and 'true shape' not in drawing.about:
+    if drawing.stand_in:
         edges = np.array(box_of(scene.body))
         largest = edges.max()
         size = np.maximum(edges, THINNEST * largest) if largest else np.full(3, 0.1)
@@ -45,7 +47,8 @@ def shape_fields(scene) -> dict:
     for surface in drawing_of(scene).surfaces:
         corners = surface.vertices[surface.faces].reshape(-1, 3).tolist()
         points += [dict(zip('xyz', corner, strict=True)) for corner in corners]
-        colours += [ACCENT if accent else COLOUR for accent in np.repeat(surface.accent, 3)]
+        pair = [{**one, 'a': CLEAR} if surface.clear else one for one in (COLOUR, ACCENT)]
+        colours += [pair[accent] for accent in np.repeat(surface.accent, 3).astype(int)]
     return {
         'type': TRIANGLE_LIST,
         'scale': {'x': 1.0, 'y': 1.0, 'z': 1.0},

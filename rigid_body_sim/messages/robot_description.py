@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing.body import THINNEST, box_of
 from rigid_body_sim.messages import cdr
+from rigid_body_sim.messages.marker import CLEAR, COLOUR
 from rigid_body_sim.messages.shapes import BOX, SPHERE, equal_box, solids_of
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
@@ -46,6 +47,10 @@ def urdf(scene, frames) -> str:
         else:
             ElementTree.SubElement(
                 geometry, 'cylinder', radius=repr(0.5 * solid.size[0]), length=repr(solid.size[2]))
+        if solid.clear:
+            material = ElementTree.SubElement(visual, 'material', name='surface')
+            rgba = [*(COLOUR[key] for key in 'rgb'), CLEAR]
+            ElementTree.SubElement(material, 'color', rgba=_numbers(rgba))
     ElementTree.indent(robot)
     return ElementTree.tostring(robot, encoding='unicode') + '\n'
 

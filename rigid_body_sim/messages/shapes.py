@@ -23,12 +23,15 @@ class Solid(NamedTuple):
         Full extents, m.
     at, orientation : tuple of floats
         Centre (m) and axes (quaternion) in the body.
+    clear : bool
+        Whether it is translucent, because others are shown inside it.
     """
 
     kind: str
     size: tuple
     at: tuple
     orientation: tuple = IDENTITY
+    clear: bool = False
 
 
 def _sphere(radius):
@@ -55,18 +58,21 @@ SOLIDS: dict[str, Callable] = {
 def solids_of(scene) -> list[Solid] | None:
     """Return the solids of a scene's body, or None if solids cannot show its true shape."""
     mapping = yaml.safe_load(scene.text)['body']
-    if 'surface' in mapping:
-        found = [_solid_surface(scene.body.surface)]
-    elif 'parts' in mapping:
+    if 'parts' in mapping:
         found = [_solid(None if _is_hole(part) else part.get('shape'),
                         part.get('at', (0.0, 0.0, 0.0)), part.get('orientation', IDENTITY))
                  for part in mapping['parts']]
     elif 'shape' in mapping:
         found = [_solid(mapping['shape'], scene.body.center_of_mass, IDENTITY)]
+    elif 'surface' in mapping:
+        found = []
     elif scene.body.radius is not None:
         found = [Solid(*_sphere(scene.body.radius), tuple(scene.body.center_of_mass))]
     else:
         return None
+    if 'surface' in mapping:
+        touching = _solid_surface(scene.body.surface)
+        found.append(touching and touching._replace(clear=bool(found)))
     return found if all(found) else None
 
 

@@ -19,12 +19,15 @@ from rigid_body_sim.drawing.setting import (
     holder_of,
     middle_of,
     reach_of,
+    springs_of,
 )
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
 from rigid_body_sim.view.frames import Mechanics
 
 BODY, ACCENT, GHOST = (70, 140, 210), (240, 165, 60), (150, 150, 160)
 HOLDER = (110, 110, 118)
+CLEAR = 0.35
+"""Opacity of a translucent surface."""
 COLORS = {'omega': (214, 94, 0), 'momentum': (0, 158, 115), 'force': (204, 60, 60),
           'torque': (160, 90, 200), 'spring': (230, 200, 40)}
 AXES = ((214, 60, 60), (60, 170, 60), (60, 90, 214))
@@ -93,6 +96,10 @@ class Stage:
             if not ghost:
                 self._add_ground()
                 self._add_holder()
+            self._springs = springs_of(scene)
+            self._coils = self._server.scene.add_line_segments(
+                f'/{name}/springs', np.zeros((max(len(self._springs), 1), 2, 3)), HOLDER,
+                thickness=3.0, thickness_units='screen', visible=bool(self._springs))
             self._arrows = {key: self._add_arrow(key) for key in COLORS}
             self._lines = {key: self._add_trace(key) for key in TRACES}
 
@@ -110,7 +117,7 @@ class Stage:
                     yield self._mesh(f'/{self._name}/body/surface_{k}_{int(accent)}',
                                      surface.vertices[used], faces.reshape(-1, 3),
                                      GHOST if ghost else color, surface.smooth,
-                                     opacity=0.35 if ghost else None)
+                                     opacity=CLEAR if ghost or surface.clear else None)
 
     def _add_axes(self):
         """Add the body's axes, from the centre of mass just beyond its surface."""
@@ -159,6 +166,10 @@ class Stage:
             self._body.position = vector[POSITION] / unit
             self._body.wxyz = wxyz(vector[ORIENTATION])
             self._reference.position = self._about
+            if self._springs:
+                self._coils.points = np.array(
+                    [(spring.anchor, vector[POSITION] + turn.apply(spring.at))
+                     for spring in self._springs], np.float32) / np.float32(unit)
             if self.mechanics:
                 self._draw_arrows(frame)
             self._draw_spring(held)
