@@ -70,7 +70,21 @@ function bodyView(canvas, data) {
     }
   }
   const ground = buffer(lines), trail = gl.createBuffer();
-  let yaw = 0.6, pitch = 0.42, distance = 4.6, frame = 0;
+  let yaw = 0.6, pitch = 0.42, distance = 4.6, frame = 0, share = 0, opacity = 1;
+  const mix = (values, k, part) => {
+    const a = values[k], b = values[Math.min(k + 1, values.length - 1)];
+    return a.map((x, j) => x + part * (b[j] - x));
+  };
+  // the attitude between frame k and the next: slerp, the short way round
+  function attitude(k, part) {
+    const a = data.orientation[k], next = data.orientation[Math.min(k + 1, data.orientation.length - 1)];
+    const cosine = a.reduce((sum, x, j) => sum + x * next[j], 0);
+    const b = cosine < 0 ? next.map(x => -x) : next;
+    const angle = Math.acos(Math.min(1, Math.abs(cosine)));
+    const [u, v] = angle < 1e-4 ? [1 - part, part]
+      : [Math.sin((1 - part) * angle) / Math.sin(angle), Math.sin(part * angle) / Math.sin(angle)];
+    return a.map((x, j) => u * x + v * b[j]);
+  }
 
   function camera() {
     const eye = [Math.sin(yaw) * Math.cos(pitch), -Math.cos(yaw) * Math.cos(pitch), Math.sin(pitch)].map(x => x * distance);
@@ -82,13 +96,13 @@ function bodyView(canvas, data) {
     return [0, 1, 2, 3].flatMap(column => m.map(row => row[column]));
   }
 
-  function draw({one, count}, turn, at, lit, mode, opacity = 1) {
+  function draw({one, count}, turn, at, lit, mode, dense = opacity) {
     gl.bindBuffer(gl.ARRAY_BUFFER, one);
     attributes.forEach((place, k) => gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 36, 12 * k));
     gl.uniformMatrix3fv(uniforms.turn, false, turn);
     gl.uniform3fv(uniforms.at, at);
     gl.uniform1f(uniforms.lit, lit);
-    gl.uniform1f(uniforms.opacity, opacity);
+    gl.uniform1f(uniforms.opacity, dense);
     gl.drawArrays(mode, 0, count);
   }
 
@@ -99,7 +113,7 @@ function bodyView(canvas, data) {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(uniforms.camera, false, camera());
-    const q = data.orientation[frame], position = data.position[frame], same = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+    const q = attitude(frame, share), position = mix(data.position, frame, share), same = [1, 0, 0, 0, 1, 0, 0, 0, 1];
     const middle = rotate(q, data.middle).map((x, k) => x + position[k]);
     // the world moves against a free body; its grid repeats
     const origin = data.follow ? middle : [0, 0, 0];
@@ -119,19 +133,30 @@ function bodyView(canvas, data) {
       const end = rotate(q, at).map((x, k) => x + position[k]);
       along(shaft, anchor, sub(end, anchor));
     });
-    arrows.forEach(arrow => along(arrow.buffer, middle, arrow.values[frame]));
+    const vectors = () => arrows.forEach(arrow => along(arrow.buffer, middle, mix(arrow.values, frame, share)));
+    vectors();
     const points = [];
-    for (let k = Math.max(0, frame - 400); k <= frame; k++) {
-      points.push(...rotate(data.orientation[k], data.axis), 0, 0, 1, 0, 0.45, 0.7);
+    for (let k = 4 * Math.max(0, frame - 400); k <= 4 * (frame + share); k++) {
+      points.push(...rotate(attitude(k >> 2, (k & 3) / 4), data.axis), 0, 0, 1, 0, 0.45, 0.7);
     }
+    points.push(...rotate(q, data.axis), 0, 0, 1, 0, 0.45, 0.7);
     gl.bindBuffer(gl.ARRAY_BUFFER, trail);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points), gl.DYNAMIC_DRAW);
     draw({one: trail, count: points.length / 9}, same, sub(middle, origin), 0, gl.LINE_STRIP);
-    if (shell.count) {
-      gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);
-      draw(shell, matrix(q), sub(position, origin), 1, gl.TRIANGLES, 0.35);
-      gl.disable(gl.BLEND); gl.depthMask(true);
+    gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);
+    // the far side first, then the near one
+    gl.enable(gl.CULL_FACE);
+    for (const side of [gl.FRONT, gl.BACK]) {
+      gl.cullFace(side);
+      if (shell.count) draw(shell, matrix(q), sub(position, origin), 1, gl.TRIANGLES, 0.35);
     }
+    gl.disable(gl.CULL_FACE);
+    // what the body hides of the arrows is seen through it
+    gl.depthFunc(gl.GREATER);
+    opacity = 0.4;
+    vectors();
+    opacity = 1;
+    gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.depthMask(true);
   }
 
   canvas.onpointerdown = () => {
@@ -148,5 +173,6 @@ function bodyView(canvas, data) {
     paint();
   }, {passive: false});
   new ResizeObserver(paint).observe(canvas);
-  return {show(k) { frame = k; paint(); }};
+  // frame k, and the share of the way to the next one
+  return {show(k, part = 0) { frame = k; share = part; paint(); }};
 }

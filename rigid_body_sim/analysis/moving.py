@@ -20,7 +20,9 @@ from rigid_body_sim.drawing.setting import (
 )
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
-MOST_FRAMES, TURN_A_FRAME = 3000, 0.15
+MOST_FRAMES, TURN_A_FRAME, LARGEST_TURN = 3000, 0.15, 0.8
+"""Frames of a motion; the turn from one to the next (rad) where they are enough for the whole of
+it, and the largest, between which body.js interpolates."""
 COLORS = {'base': (0.29, 0.56, 0.85), 'accent': (0.96, 0.67, 0.26), 'holder': (0.5, 0.5, 0.53)}
 ARROWS = {'angular velocity ω': (0.84, 0.37, 0.0), 'angular momentum L': (0.0, 0.62, 0.45)}
 ARROW = 1.35
@@ -87,20 +89,23 @@ class Moving:
 def moving(measured):
     """Return the Moving of a Measured, or None.
 
-    It holds the whole recording if the samples are dense enough to be played, else the beginning.
+    It holds the whole recording if frames that are dense enough to be played suffice for it, else
+    the beginning.
     """
     if measured.motion is None or not measured.motion.samples.columns():
         return None
     columns = measured.motion.samples.columns()
     times, omega = columns[0], columns[2]
     fastest = float(np.sqrt((omega * omega).sum(axis=1)).max())
-    if len(times) > 1 and fastest * float(np.diff(times).max()) > 2.0 * TURN_A_FRAME:
+    if len(times) > 1 and fastest * float(np.diff(times).max()) > LARGEST_TURN:
         columns = measured.motion.head.columns()
         times = columns[0]
     step = 1
     if fastest > 0.0 and len(times) > 1:
-        step = max(1, int(TURN_A_FRAME / (fastest * (times[1] - times[0]))))
-    step = min(step, max(1, len(times) // 200))
+        turn = fastest * (times[1] - times[0])
+        step = max(1, min(int(TURN_A_FRAME / turn), len(times) // 200))
+        if turn * (whole := -(-len(times) // MOST_FRAMES)) <= LARGEST_TURN:
+            step = max(step, whole)
     return Moving(*(column[::step][:MOST_FRAMES] for column in columns), measured.source.scene)
 
 

@@ -18,6 +18,13 @@ function themed(layout) {
   return layout;
 }
 
+// The first blue of the palette is too dark for a dark page: its brighter brother stands for it there.
+function brightened(data) {
+  if (!matchMedia('(prefers-color-scheme: dark)').matches) return data;
+  for (const {line} of data) if (line && line.color === '#0072B2') line.color = '#56B4E9';
+  return data;
+}
+
 async function openReport() {
   const packed = JSON.parse(await unpacked('data'));
   const players = Object.entries(packed.bodies).map(([number, data]) => [number, player(number, data)]);
@@ -27,7 +34,7 @@ async function openReport() {
   const linked = Object.fromEntries(players.map(([number, one]) => [`time${number}`, one]));
   const draw = async div => {
     const {data, layout} = packed.figures[div.id];
-    await Plotly.newPlot(div, data, themed(layout), {displaylogo: false, responsive: true, plotlyServerURL: '',
+    await Plotly.newPlot(div, brightened(data), themed(layout), {displaylogo: false, responsive: true, plotlyServerURL: '',
       // nothing that uploads
       modeBarButtons: [layout.scene ? ['toImage', 'orbitRotation', 'pan3d', 'resetCameraDefault3d']
         : ['toImage', 'zoom2d', 'pan2d', 'resetScale2d']]});

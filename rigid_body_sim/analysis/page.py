@@ -70,7 +70,8 @@ def _carried(name, text):
 def _section(number, packed, name, measured, found, spectrum, balance):
     """Yield the HTML of one body; what its scripts need goes into `packed`."""
     figures = packed['figures']
-    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p>{_verdict(found)}'
+    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p>'
+    yield _verdict(found, balance)
     moves = moving(measured)
     if moves:
         packed['bodies'][number] = moves.data()
@@ -108,7 +109,7 @@ def _section(number, packed, name, measured, found, spectrum, balance):
         yield _folded('Scene', f'<pre>{html.escape(measured.source.scene.text)}</pre>')
 
 
-def _verdict(found):
+def _verdict(found, balance):
     """Return the HTML of the verdict, in a sentence or two."""
     names = {'energy': 'energy', 'angular_momentum_squared': 'L²'}
     kept = {name: found[key]['largest_residual'] for key, name in names.items()
@@ -127,7 +128,10 @@ def _verdict(found):
         if parts > 1:
             text += ' ' + _between(found)
     else:
-        text = 'Neither energy nor L² is constant in this scene; the ledger has their balance.'
+        text = 'Neither energy nor L² is constant in this scene.'
+        if balance:
+            residual = float(np.nanmax(np.abs(balance[1]['energy_residual'])))
+            text += f' The ledger balances energy to {residual:.1e} (relative).'
     text += ''.join(f' <b>Note:</b> {html.escape(line)}.' for line in found['accuracy_missed'])
     ticks = found['timing']['ticks']
     text += f' {ticks} ticks, {lost if lost else "none"} lost.'
@@ -259,8 +263,10 @@ def _add_panel(figure, row, panel):
     top = figure.layout[f'yaxis{row}'].domain[1]
     figure.update_layout({legend: {'y': top, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'left',
                                    'font': {'size': 11}}})
-    figure.update_yaxes(title_text=panel.label.replace('\n', '<br>'), title_font_size=11, row=row,
-                        col=1, exponentformat='power', type='log' if panel.log else 'linear')
+    # a standoff keeps the title beside the tick labels, however wide they are
+    figure.update_yaxes(title_text=panel.label.replace('\n', '<br>'), title_font_size=11,
+                        title_standoff=8, automargin=True, exponentformat='power', row=row, col=1,
+                        type='log' if panel.log else 'linear')
     if panel.band:
         figure.add_hrect(-panel.band, panel.band, fillcolor='#888888', opacity=0.25, line_width=0,
                          row=row, col=1)

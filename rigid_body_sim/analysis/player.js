@@ -20,9 +20,10 @@ function player(number, data) {
 
   function show() {
     const frame = frameAt(time);
-    view.show(frame);
+    const next = data.times[frame + 1];
+    view.show(frame, next > data.times[frame] ? Math.max(0, (time - data.times[frame]) / (next - data.times[frame])) : 0);
     slider.value = frame;
-    output.textContent = `t = ${data.times[frame].toFixed(3)} s`;
+    output.textContent = `t = ${time.toFixed(3)} s`;
     const layout = curves && curves._fullLayout;
     if (!layout) return;
     if (!line.parentNode) curves.appendChild(line);

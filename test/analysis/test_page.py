@@ -68,7 +68,7 @@ def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
         'angular_momentum_squared': {'largest_residual': None, 'stretches': 0}, 'run': {},
         'timing': {'ticks': 5, 'missing': 2}, 'left_out_by_recorder': 0, 'lines': [], 'events': {},
         'commands': 0}
-    said = page._verdict(found)
+    said = page._verdict(found, None)
     assert 'verdict bad' in said and 'Not kept' in said and '2 lost' in said
 
 
