@@ -122,7 +122,7 @@ function bodyView(canvas, data) {
     const near = rotate(data.slope, [u, v, 0]).map((c, k) => c + base[k] - origin[k]);
     draw(ground, matrix(data.slope), near, 0, gl.LINES);
     draw(body, matrix(q), sub(position, origin), 1, gl.TRIANGLES);
-    draw(holder, same, sub([0, 0, 0], origin), 1, gl.TRIANGLES);
+    draw(holder, same, sub(sub(middle, data.start), origin), 1, gl.TRIANGLES);
     const along = (mesh, from, value) => {
       const length = Math.hypot(...value);
       if (length < 1e-3) return;

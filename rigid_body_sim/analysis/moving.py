@@ -17,6 +17,7 @@ from rigid_body_sim.drawing.setting import (
     middle_of,
     reach_of,
     springs_of,
+    start_of,
 )
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
@@ -66,6 +67,7 @@ class Moving:
             'axis': _round(reach * axis, 5), 'traced': what,
             'surfaces': [_mesh(one, unit) for one in drawing.surfaces],
             'holder': [_mesh(one, unit, 'holder') for one in holder_of(self.scene, unit)],
+            'start': _round(start_of(self.scene) / unit, 6),
             'springs': [{'at': _round(one.at / unit, 5), 'anchor': _round(one.anchor / unit, 5)}
                         for one in springs_of(self.scene)],
             'shaft': _mesh(surfaces.cylinder(0.012, 1.0).placed(

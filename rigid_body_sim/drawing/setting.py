@@ -58,7 +58,10 @@ def ground_of(scene, reach):
 
 
 def holder_of(scene, reach):
-    """Return the surfaces of what holds the body, in the world: a column or an axle."""
+    """Return the surfaces of what holds the body, a column or an axle, in the world at the start.
+
+    They move with the point that they hold.
+    """
     mechanism = scene.constraint.mechanism if scene else Mechanism.FREE
     start = start_of(scene)
     if mechanism is Mechanism.POINT:
@@ -82,9 +85,9 @@ class Spring(NamedTuple):
 def springs_of(scene):
     """Return the Springs that pull the body; a torsion spring has no place of its own."""
     listed = yaml.safe_load(scene.text).get('effects') or [] if scene else []
-    found = [one['spring'] for one in listed if isinstance(one, dict) and 'spring' in one]
+    found = [settings for one in listed if isinstance(one, dict) for settings in one.values()]
     return [Spring(np.array(one['at'], float), np.array(one['anchor'], float))
-            for one in found if 'anchor' in one]
+            for one in found if isinstance(one, dict) and {'at', 'anchor'} <= set(one)]
 
 
 def cell_of(reach):

@@ -20,6 +20,7 @@ from rigid_body_sim.drawing.setting import (
     middle_of,
     reach_of,
     springs_of,
+    start_of,
 )
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
 from rigid_body_sim.view.frames import Mechanics
@@ -37,6 +38,8 @@ ARROW, GROWTH = 1.3, 1.5
 """Length of the first arrow of a kind, in units, and how much one may grow before
 its kind is rescaled."""
 HEAD = 0.11
+SMALLEST_MOVE = 1e-6
+"""A holder that has moved by less than this, in units, stays where it is drawn."""
 FADING = 0.93
 """Share of the lead of a pulled body that is left after each frame."""
 
@@ -81,6 +84,7 @@ class Stage:
         self.follows = False
         self._offset = self._about = np.zeros(3)
         self._lead = np.zeros(3)
+        self._holder = None
         self._references = collections.defaultdict(float)
         self.what_axis, self._axis = traced_axis(scene)
         along = (self.drawing.vertices - self._middle) @ self._axis
@@ -140,8 +144,12 @@ class Stage:
 
     def _add_holder(self):
         """Add what holds the body."""
-        for k, surface in enumerate(holder_of(self.scene, self.unit)):
-            self._mesh(f'/{self._name}/holder_{k}', surface.vertices, surface.faces, HOLDER, True)
+        held = holder_of(self.scene, self.unit)
+        if held:
+            self._holder = self._server.scene.add_frame(f'/{self._name}/holder', show_axes=False)
+            self._held_at = start_of(self.scene) / self.unit
+        for k, surface in enumerate(held):
+            self._mesh(f'/{self._name}/holder/{k}', surface.vertices, surface.faces, HOLDER, True)
 
     def _add_arrow(self, key):
         return self._server.scene.add_arrows(
@@ -166,6 +174,10 @@ class Stage:
             self._body.position = vector[POSITION] / unit
             self._body.wxyz = wxyz(vector[ORIENTATION])
             self._reference.position = self._about
+            if self._holder:
+                moved = self._about - self._held_at
+                if np.abs(moved - self._holder.position).max() > SMALLEST_MOVE:
+                    self._holder.position = moved
             if self._springs:
                 self._coils.points = np.array(
                     [(spring.anchor, vector[POSITION] + turn.apply(spring.at))

@@ -37,6 +37,13 @@ MORE = {
     'expressions': FREE.format('torque: {value: ["-k*wx", 0, "0.1*sin(w0*t)"], frame: body}'),
     'kinks': FREE.format('force: {value: ["-k*abs(x)", "min(0.2, y)", 0]}'),
     'potential': FREE.format('potential: {energy: "0.5*k*(z - 1)^2"}'),
+    'moving_pivot': """
+scene: driven_top
+body: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}
+constraint: {pivot: {motion: [0, 0, "0.05*sin(20*t)"]}}
+effects: [gravity: {g: 9.81}]
+initial: {euler_zyz: [0.0, 0.5, 0.0], angular_velocity: [0, 0, 60]}
+""",
     'parts_in_a_surface': """
 scene: loaded_ball
 body:
@@ -122,6 +129,16 @@ def test_a_spring_is_drawn_from_its_anchor_to_the_body(server):
     assert begin == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
     assert np.linalg.norm(end - frame.vector[8:11]) == pytest.approx(0.1, rel=1e-5)
     assert stage._coils.visible
+
+
+def test_the_column_moves_with_a_pivot_that_moves(server):
+    scene = parse_scene(MORE['moving_pivot'])
+    stage = Stage(server, scene)
+    for frame in frames_of(scene):
+        stage.show(frame)
+        assert stage._holder.position * stage.unit == pytest.approx(
+            [0.0, 0.0, 0.05 * np.sin(20.0 * frame.time)], abs=1e-9 + 1e-6 * stage.unit)
+    assert np.abs(stage._holder.position).max() > 0.0
 
 
 def test_parts_are_seen_through_the_surface_that_touches(server):
