@@ -52,6 +52,7 @@ def followed(tmp_path_factory):
 
 
 def test_the_report_of_the_tutorial_is_there(followed):
+    pytest.importorskip('plotly')
     assert (followed / 'reports' / 'report.html').stat().st_size > 100_000
 
 

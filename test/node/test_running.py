@@ -268,9 +268,12 @@ def test_rate_changes_at_a_tick_and_an_integer_will_do(client):
     poses = client.collect(PoseStamped, 'pose', 1000)
     client.until(lambda: len(poses) > 10, what='ticks before')
     assert set_parameter(client, 'rate', integer_value=100).successful
-    client.until(lambda: len(poses) > 60, what='ticks after')
+
+    def step():
+        return nanoseconds(poses[-1]) - nanoseconds(poses[-2])
+    client.until(lambda: step() == 10**7, what='ticks after')
     assert set_parameter(client, 'rate', double_value=float(RATE)).successful
-    client.until(lambda: len(poses) > 120, what='ticks at the old rate')
+    client.until(lambda: step() == PERIOD, what='ticks at the old rate')
     steps = np.diff([nanoseconds(pose) for pose in poses])
     changes = np.flatnonzero(np.diff(steps))
     assert [steps[0], *steps[changes + 1]] == [PERIOD, 10**7, PERIOD]

@@ -38,5 +38,5 @@ def without_priority():
 def test_who_may_not_have_real_time_asks_for_short_slices():
     done = subprocess.run([sys.executable, '-c', SLICES], cwd=ROOT, capture_output=True, text=True,
                           preexec_fn=without_priority, timeout=20, check=True)
-    nice = os.getpriority(os.PRIO_PROCESS, 0) + 3
+    nice = min(os.getpriority(os.PRIO_PROCESS, 0) + 3, 19)    # the largest there is
     assert done.stdout.splitlines() == [f'normal 100000 {nice}', f'normal True {nice}']

@@ -261,4 +261,5 @@ def test_no_states_at_all_are_states_too():
     assert (len(none), repr(none), list(none)) == (0, 'States(none)', [])
     assert repr(none[0:2]) == 'States(none)'
     assert none._repr_html_().startswith('<table>')
+    pytest.importorskip('pandas')
     assert len(none.to_pandas()) == 0

@@ -4,12 +4,13 @@
 import math
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from rigid_body_sim.sweeps.layout import Layout
 
 
+@settings(deadline=None)
 @given(some.lists(some.integers(1, 9), min_size=1, max_size=4), some.integers(1, 200),
        some.integers(1, 50))
 def test_blocks_cover_the_grid_once(shape, block_runs, chunk_runs):
