@@ -52,7 +52,7 @@ WRITTEN = {
     'weight': (TOP, TOP.replace('gravity: {g: 9.81}', "potential: {energy: "
                                 "'0.981*(qw^2 - qx^2 - qy^2 + qz^2)'}")),
     'drag, skew axes': tuple(
-        text.replace('[1.0, 2.0, 3.0]', '[[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 3]]')
+        text.replace('[1.0, 2.0, 3.0]', '[[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 2.5]]')
         for text in (DRIVEN.replace('}]\n', '}, drag: {angular: 0.01}]\n'),
                      DRIVEN.replace('}]\n', "}, torque: {value: ['-0.01*wx', '-0.01*wy', "
                                              "'-0.01*wz'], books: heat}]\n")))}

@@ -87,6 +87,8 @@ def _takes(schema):
     """Return what a key takes, in words."""
     if 'enum' in schema:
         return ' or '.join(f'`{word}`' for word in schema['enum'])
+    if schema['type'] == 'object':
+        return f'`{{{", ".join(schema["properties"])}}}`'
     kinds = [schema['type']] if isinstance(schema['type'], str) else schema['type']
     number = ('number above 0' if 'exclusiveMinimum' in schema else
               'number from 0 on' if 'minimum' in schema else 'number')

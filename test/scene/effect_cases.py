@@ -66,7 +66,9 @@ CASES = {
                  (SKEW, 'free', "magnetic: {moment: [0, 0.1, 1.2], field: ['A*x', 0, 0.4]}",
                   TURNING, 'magnetic.moment.0=2')),
     'gravity_gradient': ((SKEW, 'free', 'gravity_gradient: {mu: 90, position: [0, 3, 0]}',
-                          TURNING, 'gravity_gradient.mu=20'),),
+                          TURNING, 'gravity_gradient.mu=20'),
+                         (SKEW, 'free', 'gravity_gradient: {orbit: {rate: 2, normal: [0, 0, 1], '
+                          'toward: [1, 0, 0]}}', TURNING, 'gravity_gradient.orbit.rate=3')),
     'rotor': ((SKEW, 'free', 'rotor: {axis: [1, 2, 3], momentum: 0.4}', TURNING,
                'rotor.momentum=0.2'),
               (SKEW, HINGE, 'rotor: {axis: [1, 2, 3], inertia: 0.01, rate: 30, torque: 0.1}',

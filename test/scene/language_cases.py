@@ -15,6 +15,7 @@ DISK = '{mass: 2.0, inertia: [0.3, 0.3, 0.5]}'
 DRAGGED = ('{linear: [[0.5, 0.1, 0], [0.1, 0.3, 0], [0, 0, 0.7]], '
            'angular: [[0.05, 0.01, 0], [0.01, 0.03, 0], [0, 0, 0.07]], '
            'quadratic: [[0.5, 0.1, 0], [0.1, 0.3, 0], [0, 0, 0.7]], angular_quadratic: 0.02}')
+SATELLITE = '{mass: 1, inertia: [0.2, 0.3, 0.4]}'
 TURNING = '{orientation: [0.1, -0.4, 0.2, 0.888], angular_velocity: [1, -2, 3]}'
 
 # case: body, constraint, parameters, effects, initial, time (s)
@@ -123,6 +124,26 @@ CASES = {
         "frame: world}}, {potential: {energy: '0.1*angle^2 + 0.03*x*y'}}, {spring: {at: "
         '[0.1, 0.2, 0.3], anchor: [1, 0, 0], stiffness: 2, length: 0.3, damping: 0.1}',
         '{orientation: [0.1, -0.4, 0.2, 0.888], angle: 1.0, rate: 2.0}', 1.0),
+    # 34 digits of both: test/data/make_language.py
+    'mixed, free': (
+        SKEW, 'free', '', 'gravity: {g: 9.81}}, {spring: {at: [0.1, 0, 0.3], anchor: [0, 0, 1], '
+        'stiffness: 4, damping: 0.1, length: 0.2}}, {drag: {linear: 0.1, angular: 0.01}}, '
+        "{torque: {value: ['-0.1*wx^3', '0.02*sin(3*t)*qx', '0.01*tanh(Wz)'], books: heat}",
+        TURNING, 1.0),
+    'mixed, on a moving pivot': (
+        SKEW, "{pivot: {motion: ['0.3*sin(2*t)', 0, '0.05*cos(20*t)'], at: [0.1, 0.02, -0.05]}}",
+        '', "gravity: {g: [1, 2, -9.8]}}, {magnetic: {moment: [0, 0.1, 0.5], "
+        "field: [0.2, '0.1*x', 0.3]}}, {torque: {value: ['-0.02*wx', 0, 0], books: heat}}, "
+        '{rotor: {axis: [1, 2, 3], momentum: 0.1}', TURNING, 1.0),
+    # small deviations about three axes at once
+    'attitude under control': (
+        '{mass: 1, inertia: [0.2, 0.3, 0.4]}', 'free', 'p: 5.0, d: 0.4',
+        "torque: {value: ['-2*p*qw*qx - d*wx', '-2*p*qw*qy - d*wy', '-2*p*qw*qz - d*wz'], "
+        'books: heat}', '{rotation_vector: [1.0e-6, -2.0e-6, 1.5e-6]}', 0.7),
+    'on a circular orbit': (
+        SATELLITE, 'free', '',
+        'gravity_gradient: {orbit: {rate: 1.0, normal: [0, 0, 1], toward: [1, 0, 0]}}',
+        '{rotation_vector: [0.3, 0.2, -0.1], angular_velocity: [0.1, -0.2, 1.1]}', 1.0),
     # the pivot moves: seen from it, -M a acts at the centre of mass
     'on a moving pivot': (
         SKEW, "{pivot: {motion: ['0.3*sin(2*t)', 0, 'A*cos(w*t)'], at: [0.1, 0.02, -0.05]}}",
@@ -168,7 +189,8 @@ def run(name, method='dop8'):
 
 
 BY_TWO = ('four at once', 'body axes', 'reaction wheels on a tip', 'all of drag',
-          'everything on a hinge', 'on a moving pivot', 'heat at a pivot')
+          'everything on a hinge', 'on a moving pivot', 'heat at a pivot', 'mixed, free',
+          'mixed, on a moving pivot')
 BY_SERIES = 'gyrostat on a tip', 'top in a world that is turned'
 
 if __name__ == '__main__':

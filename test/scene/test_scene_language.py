@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 
+import mpmath
 import numpy as np
 import pytest
 from scene import language_cases
@@ -16,7 +17,13 @@ from scene import language_cases
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import runnable
 from rigid_body_sim.mechanics.balance import Dynamics
-from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.numerics.rotations import (
+    angle_between,
+    from_euler_zyz,
+    multiply,
+    rotate,
+    rotate_back,
+)
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
@@ -100,6 +107,93 @@ def test_the_ledger_balances(found, case):
     assert abs(ledger['energy_residual']) < 5e-15
     assert ledger['momentum_residual'] < (1e-8 if case in ('compass needle', 'satellite')
                                           else 5e-15)
+
+
+@pytest.mark.parametrize('case', ['mixed, free', 'mixed, on a moving pivot'])
+def test_four_effects_at_once_meet_34_digits(found, case):
+    exact = [mpmath.mpf(text) for text in json.loads(
+        (HERE.parents[1] / 'data' / 'language.json').read_text())[case]]
+    for name in (case, f'{case} by gauss16'):
+        error = max(abs(mpmath.mpf(one) - other)
+                    for one, other in zip(found[name]['state'][1:8], exact, strict=True))
+        assert error < 1e-13, name    # measured: 8e-15
+
+
+def test_a_controlled_attitude_decays_at_the_rates_of_the_formula(found):
+    """I a'' = -p a - d a' about each axis: it swings at sqrt(p/I - (d/2I)^2), decays at d/2I."""
+    x, y, z, _ = found['attitude under control']['state'][1:5]
+    for angle, start, moment in zip((2 * x, 2 * y, 2 * z), (1e-6, -2e-6, 1.5e-6), (0.2, 0.3, 0.4),
+                                    strict=True):
+        # the axes are coupled by products of two deviations
+        assert angle == pytest.approx(approach(0.7, moment, 5.0, 0.4, start), abs=1e-11)
+
+
+LIBRATING = {'pitch': '[0, 0, 1.0e-5]', 'roll': '[0, 1.0e-5, 0]', 'yaw': '[1.0e-5, 0, 0]'}
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('start', LIBRATING)
+def test_a_satellite_librates_as_the_stability_triangle_says(start):
+    """Axes 1 outwards (yaw), 2 along the track (roll), 3 along the normal (pitch).
+
+    Pitch: n sqrt(3 (I2 - I1)/I3). Roll and yaw: s^4 + (1 + 3 k1 + k1 k3) n^2 s^2 + 4 k1 k3 n^4 = 0
+    with k1 = (I3 - I1)/I2, k3 = (I3 - I2)/I1 (Hughes, Spacecraft Attitude Dynamics, section 9.1).
+    The angle x at equal times of such a motion is annihilated by the polynomial of its
+    frequencies.
+    """
+    I1, I2, I3 = 0.2, 0.3, 0.4
+    scene = parse_scene(
+        f'scene: a\nbody: {language_cases.SATELLITE}\nconstraint: free\neffects: '
+        '[gravity_gradient: {orbit: {rate: 1.0, normal: [0, 0, 1], toward: [1, 0, 0]}}]\n'
+        f'initial: {{rotation_vector: {LIBRATING[start]}, angular_velocity: [0, 0, 1]}}\n')
+    step = 0.7
+    times = step * np.arange(9)
+    states = Simulation(scene, 'dop8', accuracy=1e-13, rate=1.0, horizon=6.0).states(times)
+    # the attitude as the orbit's axes see it
+    angles = np.array([2 * np.array(multiply(0, 0, -math.sin(t / 2), math.cos(t / 2), *q)[:3])
+                       for t, q in zip(times, states.orientation, strict=True)])
+    if start == 'pitch':
+        exact = 1e-5 * np.cos(math.sqrt(3 * (I2 - I1) / I3) * times)
+        assert np.abs(angles[:, 2] - exact).max() < 1e-13
+        return
+    k1, k3 = (I3 - I1) / I2, (I3 - I2) / I1
+    half, rest = (1 + 3 * k1 + k1 * k3) / 2, 4 * k1 * k3
+    first, second = (2 * math.cos(step * math.sqrt(half + sign * math.sqrt(half ** 2 - rest)))
+                     for sign in (1, -1))
+    # (z + 1/z - first)(z + 1/z - second)
+    weights = np.array([1, -(first + second), 2 + first * second, -(first + second), 1])
+    for x in angles[:, 0], angles[:, 1]:
+        assert np.abs(x).max() > 1e-6
+        assert np.abs(np.convolve(x, weights, 'valid')).max() < 1e-12
+
+
+def test_on_a_circular_orbit_the_energy_of_the_rotating_frame_stays(found):
+    """H = T - n L_3 + (3 n^2/2) u . I u, u the direction from the attracting point."""
+    def energy(state):
+        t, *q = state[:5]
+        I, omega = np.array([0.2, 0.3, 0.4]), np.array(state[5:8])
+        u = np.array(rotate_back(*q, math.cos(t), math.sin(t), 0.0))
+        return (omega @ (I * omega) / 2 - rotate(*q, *(I * omega))[2] + 1.5 * u @ (I * u))
+
+    scene = parse_scene(language_cases.text('on a circular orbit'))
+    start, end = scene.initial.vector.tolist(), found['on a circular orbit']['state']
+    assert np.abs(np.subtract(start[1:5], end[1:5])).max() > 0.1
+    assert energy(end) == pytest.approx(energy(start), abs=1e-15)
+
+
+@pytest.mark.without_numba
+def test_a_spinning_magnet_precesses_about_the_field():
+    """Steady precession Omega at the tilt beta: I1 Omega^2 cos(beta) - I3 w3 Omega - m B = 0."""
+    moment, axial, energy, beta, Omega = 0.3, 0.5, 0.6, 0.7, -0.9
+    w3 = (moment * Omega ** 2 * math.cos(beta) - energy) / (axial * Omega)
+    # the body turns about its axis with w3 - Omega cos(beta), and that about z with Omega
+    scene = parse_scene(
+        'scene: a\nbody: {mass: 1, inertia: [0.3, 0.3, 0.5]}\nconstraint: pivot\n'
+        'effects: [magnetic: {moment: [0, 0, 1.2], field: [0, 0, 0.5]}]\n'
+        f'initial: {{tilt: {beta}, angular_velocity: [{-Omega * math.sin(beta)}, 0, {w3}]}}\n')
+    end = Simulation(scene, 'dop8', accuracy=1e-13, rate=1.0, horizon=5.0).states([5.0])
+    exact = from_euler_zyz(5 * Omega, beta, 5 * (w3 - Omega * math.cos(beta)))
+    assert angle_between(*end.orientation[0], *exact) < 1e-13
 
 
 @pytest.mark.parametrize(('case', 'method'), [
@@ -244,6 +338,11 @@ def scene_of(effect, constraint='free', parameters=''):
     ("potential: {energy: 't*x'}", '', 'potential.energy: depends on t; a potential is'),
     ("magnetic: {moment: [0, 0, 1], field: ['wx', 0, 0]}", '', 'depends on wx; a field of'),
     ('gravity_gradient: {mu: 1, position: [0, 0, 0]}', '', 'not the attracting point'),
+    ('gravity_gradient: {mu: 1}', '', "the key 'position' is missing; needed: mu and"),
+    ('gravity_gradient: {mu: 1, orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 0]}}', '',
+     'gravity_gradient.orbit: stands beside mu or position'),
+    ('gravity_gradient: {orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 1]}}', '',
+     'orbit.toward: got [1, 0, 1]; a direction square to normal'),
     ('gravity: {g: [1, 2]}', '', 'gravity.g: got [1, 2]; needs at least 3 entries'),
     ('drag: {linear: [[1, 1, 0], [0, 1, 0], [0, 0, 1]]}', '', 'linear: got [[1, 1, 0], [0, 1, 0]'),
     ('drag: {quadratic: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]}', '', 'which drives some motions'),

@@ -22,7 +22,7 @@ from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric
 # and the second of two alike
 QUICK = [name for name in SYSTEMS if not name.startswith((
     'billiard', 'driven', 'major', 'baseball', 'falling', 'rolling_', 'euler_disk', 'rattleback',
-    'tippe', 'rising', 'routh', 'chaplygin', 'tossed'))]
+    'tippe', 'rising', 'routh', 'chaplygin', 'tossed', 'kapitza', 'librating'))]
 
 KEPT = 'predicted', 'tolerance', 'unit', 'bound', 'absolute', 'as_written', 'detail'
 

@@ -6,15 +6,17 @@ from typing import Any, ClassVar, Self
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.functions import hypot3, sin_cos
 from rigid_body_sim.numerics.rotations import rotate_back
-from rigid_body_sim.numerics.vectors import scaled
+from rigid_body_sim.numerics.vectors import cross, dot, plus, scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import POSITIVE, VECTOR, described, mapping_of
+
+SQUARE = 1e-9    # of a right angle, rad: what rounding may spoil
 
 
 @dataclass(frozen=True)
@@ -28,27 +30,41 @@ class GravityGradient(Effect):
 
     with n the direction of the position and I the tensor about the centre of mass (Hughes,
     Spacecraft Attitude Dynamics, section 8.1). It turns the body and does not move it.
+
+    ``gravity_gradient: {orbit: {rate: n, normal: [x, y, z], toward: [x, y, z]}}`` is that on a
+    circular orbit: n turns with the rate (rad/s) about `normal` (world axes), beginning along
+    `toward` (square to it), and mu/r^3 = rate^2. What the orbit does is booked as work.
     """
 
-    energy: tree.Node
+    energy: tree.Node | None    # None on an orbit
     share: float
     toward: tuple[float, ...]
     most: float
+    ahead: tuple[float, ...] = (0.0, 0.0, 0.0)
+    rate: float = 0.0
     name: ClassVar[str] = 'gravity_gradient'
     SCHEMA: ClassVar[dict] = described(mapping_of(
-        ['mu', 'position'],
         mu=described(POSITIVE, 'G M in m^3/s^2'),
         position=described(
-            VECTOR,
-            'm, of the centre of mass from the attracting point, world axes')),
+            VECTOR, 'm, of the centre of mass from the attracting point, world axes'),
+        orbit=described(
+            mapping_of(['rate', 'normal', 'toward'], rate=POSITIVE, normal=VECTOR, toward=VECTOR),
+            'in place of mu and position: n turns with rate (rad/s) about normal from toward on, '
+            'world axes; mu/r^3 = rate^2')),
         'Gamma = (3 mu/r^3) n x I n about the centre of mass, n = position/r; booked as '
-        'potential')
+        'potential, on an orbit as work')
     mechanisms: ClassVar = (Mechanism.FREE,)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
                    where: str) -> Self:
         """Return the effect of its settings in a scene file."""
+        if 'orbit' in settings:
+            return cls._on_orbit(settings, body, f'{where}.orbit')
+        for key in ('mu', 'position'):
+            if key not in settings:
+                raise BadInput(where, f'the key {key!r} is missing',
+                               'needed: mu and position, or orbit')
         place = tuple(map(float, settings['position']))
         r = hypot3(*place)
         if not r > 0.0:
@@ -62,6 +78,29 @@ class GravityGradient(Effect):
         return cls(energy, 2.0 * share, scaled(1.0 / r, place),
                    share * (max(body.about_center.moments) - min(body.about_center.moments)))
 
+    @classmethod
+    def _on_orbit(cls, settings, body, where):
+        """Return the effect on a circular orbit."""
+        if len(settings) > 1:
+            raise BadInput(where, 'stands beside mu or position', 'give one of the two')
+        orbit = settings['orbit']
+        rate = float(orbit['rate'])
+        unit = []
+        for key in ('normal', 'toward'):
+            vector = tuple(map(float, orbit[key]))
+            size = hypot3(*vector)
+            if not size > 0.0:
+                raise BadInput(f'{where}.{key}', f'got {orbit[key]}', 'a direction')
+            unit.append(scaled(1.0 / size, vector))
+        normal, toward = unit
+        if abs(dot(normal, toward)) > SQUARE:
+            raise BadInput(f'{where}.toward', f'got {orbit["toward"]}',
+                           'a direction square to normal')
+        share = 1.5 * rate * rate
+        return cls(None, 2.0 * share, toward,
+                   share * (max(body.about_center.moments) - min(body.about_center.moments)),
+                   cross(normal, toward), rate)
+
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque."""
         I1, I2, I3 = frame.moments
@@ -69,15 +108,23 @@ class GravityGradient(Effect):
             return ()
         pulled = tuple(self.share * (one - other)
                        for one, other in ((I3, I2), (I1, I3), (I2, I1)))
+        if self.energy is None:
+            values = *pulled, *self.toward, *self.ahead, self.rate
+            return Acting(f'{__name__}:torque_on_orbit', values, 'torque', 'work', in_field=True),
         return Acting(f'{__name__}:torque', (*pulled, *self.toward), 'torque', 'potential'),
 
-    def potential(self, frame: Frame) -> Potential:
-        """Return the energy."""
+    @property
+    def potential(self):
+        """The energy; None on an orbit, where it depends on time."""
+        return None if self.energy is None else self._potential
+
+    def _potential(self, frame: Frame) -> Potential:
+        assert self.energy is not None    # or there is no such view
         return actions.potential(self.energy, (), frame)
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
         """Return half of what the energy can change by."""
-        return Bounds(0.5 * self.most, 0.0)
+        return Bounds(0.5 * self.most, 0.0 if self.energy is not None else self.most)
 
 
 @compiled
@@ -88,4 +135,14 @@ def torque(a, b, c, ux, uy, uz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     torque about its axis from terms that cancel.
     """
     nx, ny, nz = rotate_back(qx, qy, qz, qw, ux, uy, uz)
+    return a * (ny * nz), b * (nz * nx), c * (nx * ny)
+
+
+@compiled
+def torque_on_orbit(a, b, c, ux, uy, uz, vx_, vy_, vz_, rate,
+                    qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y, z):
+    """Return the torque with n = R^T (u cos(rate t) + v sin(rate t)), v a quarter turn ahead."""
+    sine, cosine = sin_cos(rate * t)
+    nx, ny, nz = rotate_back(qx, qy, qz, qw, *plus(scaled(cosine, (ux, uy, uz)),
+                                                   scaled(sine, (vx_, vy_, vz_))))
     return a * (ny * nz), b * (nz * nx), c * (nx * ny)

@@ -28,7 +28,8 @@ EXACT, STEPPED = (20.0, 300), (0.4, 5)
 """Duration (s) and number of states of a closed form, and of a method that steps."""
 PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_center': 0.05,
         'billiard_follow': 0.05, 'billiard_low': 0.05, 'billiard_natural_roll': 0.05,
-        'ball_with_side_spin': 0.05, 'ball_struck_twice': 0.05, 'graded_tensor': 0.1}
+        'ball_with_side_spin': 0.05, 'ball_struck_twice': 0.05, 'graded_tensor': 0.1,
+        'librating_satellite': 1e3}
 """Factor of the durations of a scene, if it is not 1."""
 STEPS, ACCURACY = 40, 1e-9
 """Number of steps of a method without error control; accuracy (rad) of one with it."""

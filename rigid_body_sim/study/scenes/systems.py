@@ -14,7 +14,9 @@ from rigid_body_sim.study.scenes import (
     fast_top,
     free_body,
     heavy_top,
+    kapitza_pendulum,
     kater_pendulum,
+    librating_satellite,
     major_axis_relaxation,
     sleeping_top,
     steady_precession,
@@ -71,6 +73,8 @@ SYSTEMS = {
         for name in ('rolling_disk', 'euler_disk', 'rattleback', 'tippe_top', 'rising_egg',
                      'routh_sphere', 'chaplygin_sphere', 'tossed_coin')
     },
+    'kapitza_pendulum': System(kapitza_pendulum.check, 2.0),
+    'librating_satellite': System(librating_satellite.check, 20000.0),
     **{
         name: System(getattr(degenerate, name), 20.0)
         for name in ('thin_rod', 'sphere', 'needle', 'spherical_pendulum')
