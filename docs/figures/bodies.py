@@ -103,6 +103,11 @@ BODIES = {
                                 points={'C': (0.0, 0.0, -0.12)}),
     'tossed_coin': Labelled('tossed_coin', vertical=True, points={'C': O},
                             lengths={'R': (O, (0.012, 0.0, 0.0))}, axes='3'),
+    'kapitza_pendulum': Labelled(
+        'kapitza_pendulum', view=(8.0, -85.0), axes='', vertical=True,
+        points={'O': O, 'C': (0.0, 0.0, 0.15)},
+        lengths={'r': (O, (0.0, 0.0, 0.15))}),
+    'librating_satellite': Labelled('librating_satellite', points={'C': O}),
     'rattleback': Labelled('rattleback', view=(25.0, -75.0), vertical=True),
 }
 

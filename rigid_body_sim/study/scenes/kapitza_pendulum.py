@@ -32,12 +32,13 @@ def check(run):
         measured = _trace(run.variant({'parameters.A': share * edge}), period)
         yield Quantity(f'trace at {share:.3f} of the edge by Mathieu, below 2 it stands',
                        theory.trace(share * edge, w, g, l), measured, 1e-9)
-    yield Quantity('the edge A w (m/s): averaged, Mathieu', theory.threshold(g, l), edge * w, 5e-3)
+    yield Quantity('the edge A w: averaged, by Mathieu', theory.threshold(g, l), edge * w, 5e-3,
+                   'm/s')
     yield from _slow_swing(run, A, w, g, l)
     fallen = run.variant({'parameters.A': 0.5 * edge})
     times = np.linspace(0.0, 2.0, 401)
-    yield Quantity('it falls at half the edge: largest tilt (rad), at least',
-                   -0.5 * math.pi, -fallen.read(instruments.beta, times).max(), 0.0, 'rad',
+    yield Quantity('a right angle less the largest tilt at half the edge: it falls', 0.0,
+                   0.5 * math.pi - fallen.read(instruments.beta, times).max(), 0.0, 'rad',
                    bound=True)
     run.simulation.advance(1)
     yield Quantity('residual of the energy with the work of the drive', 1e-12,
@@ -66,7 +67,7 @@ def _slow_swing(run, A, w, g, l):
     smooth = np.convolve(slow, window / len(window), 'valid')
     middle = times[:len(smooth)] + 0.5 * (len(window) - 1) * (times[1] - times[0])
     first, second = middle[:-1][np.diff(np.sign(smooth)) != 0][:2]
-    yield Quantity('half the period of the slow swing (s)', math.pi / rate, second - first, 0.05,
+    yield Quantity('half the period of the slow swing', math.pi / rate, second - first, 0.05,
                    's')
 
 

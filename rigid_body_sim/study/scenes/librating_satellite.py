@@ -32,7 +32,7 @@ def check(run):
     amplitude = 2.0 * math.asin(run.scene.initial.orientation[2])
     predicted = theory.pitch_period(amplitude, n, *moments)
     crossings = run.crossings(lambda states: seen(run, states)[:, 2], 0.0, 2.0 * predicted, 40)
-    yield Quantity('half the period of pitch (s)', 0.5 * predicted, crossings[1] - crossings[0],
+    yield Quantity('half the period of pitch', 0.5 * predicted, crossings[1] - crossings[0],
                    1e-11, 's')
     yield from _roll_yaw(run, n, moments)
     tumbling = run.variant({'initial.rotation_vector': [0.3, 0.2, -0.1],
@@ -44,8 +44,8 @@ def check(run):
                            'initial.rotation_vector': [0.0, 0.0, 0.01]})
     turned = 2.0 * np.arcsin(np.abs(seen(run, swapped.states(np.linspace(0.0, 3.0 * orbit, 301))))
                              [:, 2])
-    yield Quantity('outwards the middle moment: pitch falls over (rad), at least',
-                   -0.5 * math.pi, -float(turned.max()), 0.0, 'rad', bound=True)
+    yield Quantity('a right angle less the largest pitch, middle moment outwards: it turns over',
+                   0.0, 0.5 * math.pi - float(turned.max()), 0.0, 'rad', bound=True)
 
 
 def _roll_yaw(run, n, moments):
