@@ -92,6 +92,13 @@ CASES = {
     'spring off the middle': (
         SKEW, 'free', '', 'spring: {at: [0.1, 0, 0], anchor: [0, 0, 1], stiffness: 4.0, '
         'damping: 0.1, length: 0.2}', TURNING, 1.0),
+    'field that turns': (SKEW, 'free', '', "magnetic: {moment: [0, 0.1, 1.2], "
+                         "field: ['cos(3*t)', 'sin(3*t)', '0.4 - 0.1*z*t']}", TURNING, 1.0),
+    # a needle along the field follows it as it turns
+    'synchronous needle': (
+        '{mass: 1, inertia: [0.3, 0.3, 0.5]}', '{hinge: {axis: [0, 0, 1]}}', 'w: 1.3',
+        "magnetic: {moment: [2, 0, 0], field: ['0.5*cos(w*t)', '0.5*sin(w*t)', 0]}",
+        '{rate: 1.3}', 2.0),
     'uneven field': (SKEW, 'free', '', "magnetic: {moment: [0, 0.1, 1.2], "
                      "field: ['0.1*x', 0.2, '0.4 - 0.1*z']}", TURNING, 1.0),
     'at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', 'k: 0.1',

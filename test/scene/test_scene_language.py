@@ -74,6 +74,7 @@ CLOSED = {
     # omega1 + i omega2 turns with ((C - A) omega3 + h)/A
     'gyrostat': (5, 0.3 * math.cos(2 * (0.2 * 1.5 + 0.4) / 0.3)
                  - 0.1 * math.sin(2 * (0.2 * 1.5 + 0.4) / 0.3)),
+    'synchronous needle': (3, math.sin(1.3)),
     'reaction wheel': (7, 1.5 - 0.1 * 2.0 / 0.5),
 }
 

@@ -12,7 +12,7 @@ from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
-from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES
+from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES, TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
@@ -22,7 +22,8 @@ class Magnetic(Effect):
     """``magnetic: {moment: [x, y, z], field: [e, e, e]}``: A m^2 in body axes, T in world axes.
 
     U = -m . B, from which the torque m x B and, in a field that depends on place, the force on the
-    body's origin follow. The components of the field are numbers or expressions of x, y, z.
+    body's origin follow. The components of the field are numbers or expressions of x, y, z and t.
+    The ledger books the power as potential, in a field that depends on the time as work.
     """
 
     energy: tree.Node
@@ -33,9 +34,9 @@ class Magnetic(Effect):
     SCHEMA: ClassVar[dict] = described(mapping_of(
         ['moment', 'field'],
         moment=described(VECTOR, 'm in A m^2, body axes'),
-        field=described(EXPRESSIONS, 'B in T, world axes: numbers or expressions of x y z')),
+        field=described(EXPRESSIONS, 'B in T, world axes: numbers or expressions of x y z t')),
         'U = -m . B: the torque m x B, and the force of a field that is not uniform; '
-        'booked as potential')
+        'booked as potential, in a field of the time as work')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
     repeatable: ClassVar[bool] = True
 
@@ -45,10 +46,10 @@ class Magnetic(Effect):
         """Return the effect of its settings in a scene file."""
         where, field = f'{where}.field', settings['field']
         trees = trees_of(field, where)
-        known = sorted(tree.names(*trees) & {*STATE_NAMES} - {*PLACE})
+        known = sorted(tree.names(*trees) & {*STATE_NAMES} - {*PLACE, *TIME})
         if known:
             raise BadInput(where, f'depends on {", ".join(known)}',
-                           'a field of the place x, y, z')
+                           'a field of the place x, y, z and the time t')
         refuse_beside_hinge(trees, constraint, where)
         fixed = vectors.constant(settings['moment'])
         moment = vectors.to_world(fixed)
@@ -60,10 +61,19 @@ class Magnetic(Effect):
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return torque and force."""
-        return actions.pulls(self.energy, self.parameters, frame, self.turn)
+        return actions.pulls(self.energy, self.parameters, frame, self.turn,
+                             'work' if self._timed else 'potential')
 
-    def potential(self, frame: Frame) -> Potential:
-        """Return the energy."""
+    @property
+    def _timed(self) -> bool:
+        return bool(tree.names(self.energy) & {*TIME})
+
+    @property
+    def potential(self):
+        """The energy; None in a field that depends on the time."""
+        return None if self._timed else self._potential
+
+    def _potential(self, frame: Frame) -> Potential:
         return actions.potential(self.energy, self.parameters, frame)
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:

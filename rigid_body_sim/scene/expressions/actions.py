@@ -109,7 +109,7 @@ def _to_world(lines, components, axes, frame):
 
 
 @functools.lru_cache(maxsize=256)
-def pulls(energy, parameters, frame, turn=None):
+def pulls(energy, parameters, frame, turn=None, books='potential'):
     """Return the Actings of a potential: force and torque by differentiation.
 
         F = -dU/do,    torque about o: Gamma_i = -dU/dq . (q e_i)/2
@@ -127,6 +127,8 @@ def pulls(energy, parameters, frame, turn=None):
     turn : tuple of 3 Nodes, optional
         Gamma, body axes, for an effect that knows it without terms that cancel: what these leave
         over spins a slim body about its axis.
+    books : str
+        ``work`` where U depends on the time: then it is no potential.
     """
     x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
     place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
@@ -145,7 +147,7 @@ def pulls(energy, parameters, frame, turn=None):
     if frame.pushed and moved:
         lines = Lines(dict(parameters))
         found.append(_acting(lines, place, frame, f'({", ".join(lines.of(*place))})', 'force',
-                             'potential'))
+                             books))
     if (moved and any(frame.point)) or any(one is not tree.ZERO for one in turn):
         lines = Lines(dict(parameters))
         about = _to_frame(lines, ', '.join(lines.of(*turn)), 'body', frame)
@@ -156,7 +158,7 @@ def pulls(energy, parameters, frame, turn=None):
             r = ', '.join(lines.value(f'arm{k}', -part)
                           for k, part in enumerate(frame.from_body(frame.point)))
             about = f'plus({about}, cross(({r}), {at_origin}))'
-        found.append(_acting(lines, used, frame, about, 'torque', 'potential'))
+        found.append(_acting(lines, used, frame, about, 'torque', books))
     return tuple(found)
 
 
