@@ -386,6 +386,55 @@ def test_only_methods_with_a_clock_run_what_depends_on_time():
     assert 'split4' in runnable(scene_of("torque: {value: ['sin(qx)', 0, 0]}"))
 
 
+SPHERE = '{mass: 1, shape: {solid_sphere: {radius: 0.1}}, surface: {sphere: {radius: 0.1}}}'
+DISK = '{mass: 1, shape: {disk: {radius: 0.1}}}'
+BODY = '{mass: 1.0, inertia: [0.03, 0.04, 0.05]}'
+HEAVY = '{gravity: {g: 9.81}}, {sliding_friction: {mu: 0.3}}'
+
+
+@pytest.mark.parametrize(('body', 'constraint', 'effects', 'initial'), [
+    *((BODY, 'free', effect, '{}') for effect in (
+        '{gravity: {g: 9.81}}', '{gravity: {g: [0, 1, -9]}}',
+        "{torque: {value: ['-k*wx', 0, '0.1*sin(w0*t)'], frame: body}}",
+        "{force: {value: [0, 0, '3*exp(-t)'], at: [0.1, 0, 0], frame: body}}",
+        "{potential: {energy: '0.5*k*(z - 1)^2'}}", '{rotor: {axis: [0, 0, 1], momentum: 0.4}}',
+        '{rotor: {axis: [0, 0, 1], inertia: 0.01, rate: 30, torque: 0.1}}',
+        '{gravity_gradient: {mu: 3.986004418e14, position: [7.0e6, 0, 0]}}',
+        '{gravity_gradient: {orbit: {rate: 0.001, normal: [0, 0, 1], toward: [1, 0, 0]}}}',
+        '{magnetic: {moment: [0, 0, 1.2], field: [0, 2e-5, 4e-5]}}',
+        "{magnetic: {moment: [0, 0, 1.2], field: ['2e-5*cos(w0*t)', 0, 'k*x']}}",
+        '{spring: {at: [0.1, 0, 0], anchor: [0, 0, 1], stiffness: 4.0, damping: 0.1, '
+        'length: 0.2}}',
+        '{drag: {linear: 0.1, angular: 0.2, quadratic: 0.3}}',
+        '{drag: {linear: [[1, 0, 0], [0, 2, 0], [0, 0, 3]]}}')),
+    *((BODY, constraint, '{gravity: {g: 9.81}}', '{}') for constraint in (
+        'pivot', '{pivot: {at: [0.1, 0, 0]}}',
+        "{pivot: {at: [0.1, 0, 0], motion: [0, 0, '0.01*cos(300*t)']}}",
+        "{pivot: {motion: ['k*t', 0, 0]}}", '{hinge: {axis: [0, 0, 1], through: [0.1, 0, 0]}}')),
+    (BODY, '{hinge: {axis: [0, 0, 1]}}', '{spring: {stiffness: 4, angle: 0.1}}', '{angle: 1}'),
+    (BODY, '{hinge: {axis: [0, 0, 1]}}', '{dry_friction: {torque: 0.02}}', '{rate: 1}'),
+    (BODY, 'pivot', '{internal_dissipation: {coefficient: 1}}', '{}'),
+    (SPHERE, 'table', HEAVY, '{}'), (SPHERE, '{table: {normal: [0, 0.1, 1]}}', HEAVY, '{}'),
+    (SPHERE, 'table', f'{HEAVY}, {{rolling_friction: {{dry: 0.01}}}}', '{}'),
+    (SPHERE, 'table', f'{HEAVY}, {{spinning_friction: {{radius: 0.001}}}}', '{}'),
+    (DISK, 'table', f'{HEAVY}, {{air_film: {{viscosity: 1.8e-5}}}}', '{tilt: 1}'),
+    *((BODY, 'free', '', f'{{{start}}}') for start in (
+        'orientation: [0, 0, 0, 1]', 'euler_zyz: [0, 0.5, 0]', 'euler: [0.1, 0.2, 0.3]',
+        'rotation_vector: [0.1, 0, 0]', 'tilt: 0.2', 'angular_velocity: [1, 2, 3]',
+        'angular_velocity_world: [1, 2, 3]', 'angular_momentum: [1, 2, 3]', 'spin: 2',
+        'position: [1, 2, 3], velocity: [4, 5, 6]')),
+    *((f'{{parts: [{{mass: 2, shape: {{box: {{size: [0.1, 0.2, 0.3]}}}}}}, {{{part}}}]}}',
+       'free', '', '{}') for part in (
+        'mass: 1, inertia: [[0.02, 0.001, 0], [0.001, 0.02, 0], [0, 0, 0.02]], at: [0.1, 0, 0], '
+        'orientation: [0, 0, 1, 1]', 'mass: 1, point: [0.1, 0, 0]',
+        'mass: -0.1, shape: {solid_sphere: {radius: 0.02}}',
+        'density: 1000, shape: {solid_sphere: {radius: 0.02}}'))])
+def test_a_scene_may_say_it(body, constraint, effects, initial):
+    """Every kind of line of the scene language."""
+    parse_scene(f'scene: a\nparameters: {{k: 0.02, w0: 12.0}}\nbody: {body}\n'
+                f'constraint: {constraint}\neffects: [{effects}]\ninitial: {initial}\n')
+
+
 def test_a_constant_torque_is_the_effect_it_always_was():
     one, other = scene_of('torque: {value: [1, 2, 3]}'), scene_of('torque: {value: [1, 2.0, 3]}')
     assert one.effects == other.effects
