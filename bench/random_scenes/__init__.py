@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Random scenes, a truth for each that shares no formula with the package, and a judge.
+
+``draw`` makes scenes, ``truth`` and ``ball`` follow them with 64-bit mantissas by the ``laws``,
+``kinks`` finds where a scene is not smooth, ``judge`` compares. ``wide`` has their vectors.
+"""

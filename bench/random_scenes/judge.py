@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `auto` promises on one random scene, beside the truth."""
+
+import signal
+
+import numpy as np
+import yaml
+
+from random_scenes.ball import BallTruth
+from random_scenes.draw import drawn
+from random_scenes.kinks import WORDS, Kinked
+from random_scenes.truth import HALF_ULP, Truth
+from random_scenes.wide import WIDE, angle
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+ACCURACIES = 1e-6, 1e-11
+LOOKS = 24               # as often as a trial of `auto`: dense output errs between steps
+LONGEST = 120            # s of the processor, a scene with its compilation
+SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
+
+
+def truth_of(scene):
+    """Return what follows a scene with 64-bit mantissas, at its start."""
+    read = yaml.safe_load(scene.text)
+    settings = [next(iter(one.items())) for one in read['effects']]
+    kinked = any(word in scene.text for word in WORDS)
+    follow = BallTruth if scene.constraint.kind == 'table' else Kinked if kinked else Truth
+    return follow(scene, settings, read.get('parameters', {}))
+
+
+def known(scene, duration):
+    """Return attitudes at LOOKS times, times, and the largest floor on the way (rad)."""
+    truth, turned = truth_of(scene), 0.0
+    times, attitudes, floors = duration * np.arange(1, LOOKS + 1) / LOOKS, [], []
+    for end in times:
+        truth.to(float(end))
+        y = truth.y
+        attitudes.append(y[0, :4].astype(WIDE))
+        rate = float(np.sqrt((y[0, 4:7] ** 2).sum())) if y.shape[1] > 4 else 0.0
+        turned = max(turned, rate)
+        floors.append(max(truth.floor(), HALF_ULP * (4.0 + turned * float(end))))
+    return times, attitudes, max(floors)
+
+
+def tried(number, seed):
+    """Yield (text of a line, met, foretold, balanced) for one scene at each accuracy."""
+    text, duration = drawn(number, seed)
+    scene = parse_scene(text)
+    times, attitudes, floor = known(scene, duration)
+    what = ' '.join([scene.constraint.kind, *(effect.name for effect in scene.effects)])
+    for accuracy in ACCURACIES:
+        simulation = Simulation(scene, accuracy=accuracy, horizon=duration, rate=1.0 / duration)
+        choice, states = simulation.choice, simulation.states(times)
+        error = max(angle(best, own.astype(WIDE))
+                    for best, own in zip(attitudes, states.orientation, strict=True))
+        simulation.advance(1)
+        ledger = simulation.ledger()
+        residual = max(abs(ledger['energy_residual']), ledger['momentum_residual'])
+        expected, size = choice.expected_error, max(error, floor)
+        verdicts = [
+            error <= max(accuracy, 3.0 * floor),
+            size / 3.0 <= expected <= 3.0 * size or expected > SENSELESS,
+            residual <= 10.0 * max(accuracy, floor)]
+        if floor > SENSELESS:
+            verdicts = [True] * 3
+        marks = ''.join(f'  {word}' for word, good in zip(
+            ('MISSED', 'EXPECTED', 'LEDGER'), verdicts, strict=True) if not good)
+        yield (f'{number:4} {what[:44]:44}{duration:7.2f}{accuracy:8.0e}{choice.method:>9}'
+               f'{choice.tolerance:8.0e}{expected:9.1e}{error:9.1e}{floor:9.1e}{residual:9.1e}'
+               f'{marks}'), *map(bool, verdicts)
+
+
+def _late(*_):
+    raise TimeoutError(f'it takes more than {LONGEST} s')
+
+
+def judged(number, seed):
+    """Return what `tried` yields, as a list; one line if something is raised or hangs."""
+    signal.signal(signal.SIGVTALRM, _late)
+    signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
+    try:
+        return list(tried(number, seed))
+    except Exception as error:    # whatever a scene raises is a finding, and the next is tried
+        said = ' '.join(str(error).split())
+        return [(f'{number:4} {type(error).__name__}: {said}  RAISED', False, False, False)]
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The truth of a scene with kinks: each copy of the start by itself, from kink to kink."""
+
+import math
+
+import numpy as np
+
+from random_scenes.laws import Laws
+from random_scenes.truth import Truth
+from random_scenes.wide import WIDE
+
+SHARE = 0.3              # rad, of a step: no switch changes twice within
+SECANTS = 80
+WORDS = 'abs(', 'sign(', 'min(', 'max(', 'where(', '<', 'dry_friction'
+"""What a scene's text has where it has kinks."""
+
+
+class Kinked:
+    """Copies of a scene's body, each with its own times of kinks."""
+
+    floor = Truth.floor
+
+    def __init__(self, scene, settings, parameters):
+        base = Truth(scene, settings, parameters)
+        self._copies = [_Copy(base, row, parameters) for row in range(len(base.y))]
+
+    def to(self, time):
+        """Go on to a time."""
+        for one in self._copies:
+            one.to(time)
+
+    @property
+    def y(self):
+        """The unknowns of all copies."""
+        return np.concatenate([one.y for one in self._copies])
+
+
+class _Copy(Truth):
+    def __init__(self, base, row, parameters):
+        vars(self).update(vars(base))
+        self.y, self.struck = base.y[row:row + 1].copy(), set()
+        self.laws = Laws(base.effects, parameters, self)
+        self._fastest = parameters['w0']
+
+    def _march(self, end):
+        sides, h = self.laws.sides, end - self.t
+        sides.modes = []
+        self.rates(self.y, self.t)
+        if self.laws.friction is not None and not self.y[0, 4:7].any():
+            self._break_loose()
+        while self.t < end:
+            if self.laws.friction is not None and sides.modes[self.laws.friction] == 0:
+                self.t = WIDE(end)    # it rests until something jumps
+                return
+            y, k = self.y, self.rates(self.y, self.t)
+            rate, growth = (math.sqrt(float((one[0, 4:7] ** 2).sum())) for one in (y, k))
+            pace = max(rate + math.sqrt(growth), self._fastest)
+            h = min(2 * h, WIDE(SHARE / pace), end - self.t)
+            after, error = self._extrapolated(y, k, h)
+            while error > 1e-17 and h > 1e-9:
+                h = h / 2
+                after, error = self._extrapolated(y, k, h)
+            changed = self._changed(after, h)
+            if changed:
+                h, which = min((self._crossing(y, k, h, n), n) for n in changed)
+                after, _ = self._extrapolated(y, k, h)
+            after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
+            self.y = after
+            self.t = WIDE(end) if h == end - self.t else self.t + h
+            if changed:
+                for passed in {which, *self._changed(after, 0)}:    # a kink may be met twice
+                    sides.modes[passed] *= -1
+                if which == self.laws.friction:
+                    self.y[:, 4:7] = 0
+                    self._break_loose()
+                h = WIDE(SHARE / pace) / 4
+
+    def _changed(self, y, h):
+        """Return the kinks that are passed at unknowns after a step."""
+        sides = self.laws.sides
+        self.rates(y, self.t + h)
+        return [n for n, (mode, value) in enumerate(zip(sides.modes, sides.found, strict=True))
+                if mode * value < 0]
+
+    def _crossing(self, y, k, h, which):
+        """Return the time after which a kink is met, within the step h."""
+        sides = self.laws.sides
+
+        def switch(part):
+            self.rates(self._extrapolated(y, k, part)[0], self.t + part)
+            return sides.modes[which] * sides.found[which]
+        low, high, last = WIDE(0), h, 0
+        self.rates(y, self.t)
+        at_low, at_high = abs(sides.found[which]), switch(h)
+        for _ in range(SECANTS):
+            part = (low * at_high - high * at_low) / (at_high - at_low)
+            if not low < part < high:
+                part = (low + high) / 2
+            if not low < part < high or high - low < WIDE(1e-19) * (self.t + h):
+                break
+            value = switch(part)
+            if value > 0:
+                low, at_low = part, value
+                at_high = at_high / 2 if last > 0 else at_high
+            else:
+                high, at_high = part, value
+                at_low = at_low / 2 if last < 0 else at_low
+            last = 1 if value > 0 else -1
+        return high
+
+    def _break_loose(self):
+        """Say on which side of dry friction a body at rest goes on: 0 where it is held."""
+        sides, place = self.laws.sides, self.laws.friction
+        sides.modes[place] = 0
+        pull = (self.rates(self.y, self.t)[0, 4:7] @ self.axis) * self.about[0]
+        if abs(pull) > self.laws.grip:
+            sides.modes[place] = 1 if pull > 0 else -1

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Forces and torques of a scene's effects, for the truth: Newton's and Euler's right-hand sides.
+
+Python evaluates expressions. What has a kink (abs, sign, min, max, where, comparisons, dry
+friction) asks ``Sides`` on which side of it the body is, so that each right-hand side is smooth.
+"""
+
+import ast
+
+import numpy as np
+
+from random_scenes.wide import WIDE, back, cross, rotated, times
+
+Z = np.array([0, 0, 1], dtype=WIDE)
+SMOOTH = 'sin', 'cos', 'exp', 'log', 'sqrt', 'tanh'
+STEP = WIDE(1e-40)      # along the imaginary axis
+
+
+class Sides:
+    """On which side of its kinks a body is.
+
+    Attributes
+    ----------
+    modes : list of int
+        1, -1, or 0 of what rests; in the order in which the kinks are met.
+    found : list of float
+        The switches at the last evaluation: a side changes where one passes zero.
+    """
+
+    def __init__(self):
+        self.modes, self.found = [], []
+
+    def begin(self):
+        """Forget the switches of the last evaluation."""
+        self.found = []
+
+    def side(self, switch):
+        """Return the side of the next kink; at first the sign of its switch."""
+        k = len(self.found)
+        self.found.append(switch[0].real)
+        if k == len(self.modes):
+            self.modes.append(1 if switch[0].real > 0 else -1)
+        return self.modes[k]
+
+    @property
+    def functions(self):
+        """What expressions call, by name."""
+        def pick(x, y, first):
+            return x + 0 * y if first else y + 0 * x
+
+        def sign(x):
+            return self.side(x) + 0 * x
+
+        def where(found, x, y):
+            return found * x + (1 - found) * y
+        return {'abs': lambda x: self.side(x) * x, 'sign': sign, 'where': where,
+                'max': lambda x, y: pick(x, y, self.side(x - y) > 0),
+                'min': lambda x, y: pick(x, y, self.side(x - y) < 0),
+                'less': lambda x, y: (1 + sign(y - x)) / 2}
+
+
+class _Compared(ast.NodeTransformer):
+    """Comparisons as calls of ``less``."""
+
+    def visit_Compare(self, node):
+        self.generic_visit(node)
+        pair = [node.left, node.comparators[0]]
+        if isinstance(node.ops[0], ast.Gt | ast.GtE):
+            pair.reverse()
+        return ast.Call(ast.Name('less', ast.Load()), pair, [])
+
+
+def code(text):
+    """Return an expression of a scene, compiled."""
+    tree = _Compared().visit(ast.parse(text.replace('^', '**'), mode='eval'))
+    return compile(ast.fix_missing_locations(tree), text, 'eval')
+
+
+def array(numbers):
+    """Return numbers as doubles, then as 80-bit ones: what the scene has, to the bit."""
+    return np.array(numbers, dtype=float).astype(WIDE)
+
+
+def is_text(one):
+    """Return whether the value or field of an effect is an expression."""
+    return any(isinstance(part, str) for part in one.get('value', one.get('field', ())))
+
+
+def value_at(one, t):
+    """Return the torque just after a time."""
+    if 'value' in one:
+        return one['value']
+    later = [value for begin, value in zip(one['times'], one['values'], strict=True) if begin <= t]
+    return later[-1] if later else [0.0, 0.0, 0.0]
+
+
+class Laws:
+    """The effects of a scene.
+
+    Parameters
+    ----------
+    effects : list of (str, dict)
+    parameters : dict of str to float
+    held : object
+        Has mass, center, arm, about_center, I and axis of the body (truth.py).
+    """
+
+    def __init__(self, effects, parameters, held):
+        self.effects, self.held, self.sides = effects, held, Sides()
+        self.parameters = {name: WIDE(value) for name, value in parameters.items()}
+        self._codes = {}
+        self.friction, self.grip = None, None    # its place among the sides; the torque it bears
+
+    def acting(self, y, t, since):
+        """Return force (world), torque about the centre of mass (body) and extra turning.
+
+        `t` is a time or one for each row, `since` that from which pieces of torques act.
+        """
+        q, w, v, c = y[:, :4], y[:, 4:7], y[:, 7:10], y[:, 10:]
+        held, known, turning = self.held, None, 0
+        force, torque = np.zeros_like(w), np.zeros_like(w)
+        if held.kind != 'free':
+            v = rotated(q, cross(w, held.arm[None]))
+        self.sides.begin()
+        for name, one in self.effects:
+            if name == 'gravity':
+                g = one['g']
+                force = force + held.mass * (array(g) if isinstance(g, list) else -WIDE(g) * Z)
+            elif name == 'torque' and not is_text(one):
+                value = array(value_at(one, since))[None] + 0 * w
+                torque = torque + (back(q, value) if one.get('frame') == 'world' else value)
+            elif name == 'drag':
+                force = force + rotated(q, _dragged(one, '', 'linear', back(q, v)))
+                torque = torque + _dragged(one, 'angular_', 'angular', w)
+            elif name == 'internal_dissipation':
+                turning = WIDE(one['coefficient']) * cross(times(held.I, w), w)
+            elif name == 'gravity_gradient':
+                place = array(one['position'])
+                r = np.sqrt(place @ place)
+                n = back(q, place[None] / r + 0 * w)
+                torque = torque + 3 * WIDE(one['mu']) / r ** 3 * cross(
+                    n, times(held.about_center, n))
+            elif name == 'rotor':
+                torque = torque + _rotor(one, w, t)
+            elif name == 'dry_friction':
+                self.friction, self.grip = len(self.sides.found), WIDE(one['torque'])
+                side = self.sides.side((w * held.axis).sum(1))
+                torque = torque - side * WIDE(one['torque']) * held.axis
+            elif name == 'spring' and 'at' not in one:
+                torque = torque + self._torsion(one, q, w)
+            elif name != 'strike':
+                known = known or self._known(q, w, v, c, t)
+                F, G = self._field(name, one, known)    # world at the centre of mass, body
+                force, torque = force + F, torque + G
+        return force, torque, turning
+
+    def _torsion(self, one, q, w):
+        n = self.held.axis
+        rate = (w * n).sum(1)
+        pull = (WIDE(one['stiffness']) * (self.turned(q) - WIDE(one.get('angle', 0.0)))
+                + WIDE(one.get('damping', 0.0)) * rate)
+        return -pull[:, None] * n
+
+    def turned(self, q):
+        """Return the angle of a hinge, rad."""
+        return 2 * np.arctan2((q[:, :3] * self.held.axis).sum(1), q[:, 3])
+
+    def _known(self, q, w, v, c, t):
+        """Return what expressions know, by name; o and vo are place and velocity of the origin."""
+        held = self.held
+        center = held.center[None] + 0 * w
+        if held.kind == 'free':
+            o = c - rotated(q, center)
+            vo = v - rotated(q, cross(w, center))
+        else:
+            behind = (held.arm - held.center)[None] + 0 * w    # from the held point to the origin
+            o, vo = rotated(q, behind), rotated(q, cross(w, behind))
+        W = rotated(q, w)
+        names = {'t': t + 0 * w[:, 0], 'q': q, 'w': w, 'o': o, 'vo': vo}
+        for group, of in (('x y z', o), ('vx vy vz', vo), ('qx qy qz qw', q), ('wx wy wz', w),
+                          ('Wx Wy Wz', W)):
+            names |= {name: of[:, k] for k, name in enumerate(group.split())}
+        if held.axis is not None:
+            names |= {'angle': self.turned(q), 'rate': (w * held.axis).sum(1)}
+        return names
+
+    def _vector(self, texts, known):
+        """Return expressions, evaluated row by row."""
+        names = {name: getattr(np, name) for name in SMOOTH}
+        names |= known | self.parameters | self.sides.functions
+        zero, parts = 0 * known['t'], []
+        for one in texts:
+            if isinstance(one, str):
+                if one not in self._codes:
+                    self._codes[one] = code(one)
+                parts.append(zero + eval(self._codes[one], {}, names))
+            else:
+                parts.append(zero + WIDE(one))
+        return np.stack(parts, axis=1)
+
+    def _field(self, name, one, known):
+        """Return force (world) and its torque about the centre of mass and others (body)."""
+        q = known['q']
+        if name == 'potential' or (name == 'magnetic' and is_text(one)):
+            return self._by_steps(name, one, known)
+        if name == 'torque':
+            value = self._vector(one['value'], known)
+            return 0, back(q, value) if one.get('frame') == 'world' else value
+        if name == 'magnetic':
+            return 0, cross(array(one['moment'])[None],
+                               back(q, self._vector(one['field'], known)))
+        if name == 'force':
+            at = array(one['at']) if 'at' in one else self.held.center
+            F = self._vector(one['value'], known)
+            F = F if one.get('frame') == 'world' else rotated(q, F)
+        else:
+            at = array(one['at'])
+            F = _pull(one, at, known)
+        return F, cross((at - self.held.center)[None], back(q, F))
+
+    def _by_steps(self, name, one, known):
+        """Return force and torque of an energy, by steps along the imaginary axis."""
+        q, o = known['q'], known['o']
+
+        def slope(turned, moved):
+            inner = dict(zip(('t', 'qx', 'qy', 'qz', 'qw', 'x', 'y', 'z'),
+                             (known['t'], *turned.T, *moved.T), strict=True))
+            if name == 'potential':
+                energy = self._vector([one['energy']], inner)[:, 0]
+            else:
+                m = array(one['moment'])[None] + 0 * o
+                energy = -(rotated(turned, m) * self._vector(one['field'], inner)).sum(1)
+            return -energy.imag / STEP
+        wide = np.clongdouble
+        F = np.stack([slope(q.astype(wide), o + 1j * STEP * np.eye(3, dtype=WIDE)[k])
+                      for k in range(3)], axis=1)
+        G = []
+        for e in np.eye(3, dtype=WIDE):
+            u = cross(q[:, :3], e) + q[:, 3:] * e
+            by = np.concatenate((u, -(q[:, :3] @ e)[:, None]), axis=1) / 2
+            G.append(slope(q + 1j * STEP * by, o.astype(wide)))
+        # the force acts at the origin
+        return F, np.stack(G, axis=1) - cross(self.held.center[None], back(q, F))
+
+
+def _dragged(one, prefix, first, v):
+    """Return -(C + |v| D) v for the coefficients of one kind."""
+    total = 0 * v
+    for key, size in ((first, 1), (f'{prefix}quadratic', np.sqrt((v * v).sum(1))[:, None])):
+        matrix = array(one.get(key, 0.0))
+        if matrix.ndim:
+            total = total - size * times((matrix + matrix.T)[None] / 2, v)
+        else:
+            total = total - matrix * size * v
+    return total
+
+
+def _rotor(one, w, t):
+    """Return the torque of a flywheel on its body."""
+    a = array(one['axis'])
+    a = a / np.sqrt(a @ a)
+    motor = WIDE(one.get('torque', 0.0))
+    h = (WIDE(one['momentum']) if 'momentum' in one
+         else WIDE(one['inertia']) * WIDE(one['rate']) + motor * t)
+    h = np.zeros(len(w), dtype=WIDE) + h
+    return -cross(w, h[:, None] * a) - motor * a
+
+
+def _pull(one, at, known):
+    """Return the force of a spring on its point, world axes."""
+    q, k, c = known['q'], WIDE(one['stiffness']), WIDE(one.get('damping', 0.0))
+    arm = at[None] + 0 * known['w']
+    d = known['o'] + rotated(q, arm) - array(one['anchor'])
+    v = known['vo'] + rotated(q, cross(known['w'], arm))
+    if 'length' not in one:
+        return -k * d - c * v
+    size = np.sqrt((d * d).sum(1))[:, None]
+    n = d / size
+    return -(k * (size - WIDE(one['length'])) + c * (n * v).sum(1)[:, None]) * n

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The truth of a scene: Newton's and Euler's equations in body axes, with 64-bit mantissas.
+
+They have the full tensor, and go by extrapolation. The floor is what half an ulp on each number of
+the start does, by finite differences.
+"""
+
+import math
+
+import numpy as np
+
+from random_scenes.laws import Laws
+from random_scenes.wide import WIDE, angle, back, cross, inverse, rotated, times
+
+HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
+LINEAR = 0.1             # rad
+LEVELS = 9               # of the extrapolation
+
+
+class Truth:
+    """Copies of a scene's body, moved on by extrapolation of the modified midpoint rule.
+
+    Unknowns: q (4), omega (3, body), velocity and place of the centre of mass (3 and 3, world).
+    """
+
+    def __init__(self, scene, settings, parameters):
+        body, kind = scene.body, scene.constraint.kind
+        self.kind, self.effects = kind, settings
+        self.mass = WIDE(body.mass)
+        tensor = np.array(body.about_center.matrix, dtype=float).astype(WIDE)
+        self.about_center = tensor[None]
+        vector = scene.initial.vector
+        self.axis = None
+        start = np.concatenate((vector[1:8], vector[11:14], vector[8:11])).astype(WIDE)
+        copies = [start]
+        for place in range(13 if kind == 'free' else 7):
+            size = 1.0 if place < 4 else abs(float(start[place]))
+            if not size > 0.0:
+                continue
+            if kind == 'hinge' and place > 4:
+                continue
+            moved = start.copy()
+            by = WIDE(HALF_ULP * MOVED)
+            if kind == 'hinge' and place == 4:
+                moved[4:7] *= 1 + by
+            else:
+                moved[place] += by * size
+            copies.append(moved)
+        self.y, tensors = np.array(copies), tensor[None]
+        self.y[:, :4] /= np.sqrt((self.y[:, :4] ** 2).sum(1))[:, None]
+        self.arm = np.zeros(3, dtype=WIDE)
+        if kind in ('pivot', 'hinge'):
+            self.arm = np.array(scene.constraint.arm(body), dtype=float).astype(WIDE)
+            r = self.arm
+            tensors = tensors + self.mass * ((r @ r) * np.eye(3, dtype=WIDE) - np.outer(r, r))
+        self.I, self.inverse = tensors, inverse(tensors)
+        if kind == 'hinge':
+            n = np.array(scene.constraint.axis, dtype=float).astype(WIDE)
+            self.axis = n / np.sqrt(n @ n)
+            self.about = times(tensors, self.axis[None]) @ self.axis
+        # the velocity of the centre of mass
+        q, w = self.y[:, :4], self.y[:, 4:7]
+        center = np.array(body.center_of_mass, dtype=float).astype(WIDE)
+        self.y[:, 7:10] += rotated(q, cross(w, center[None]))
+        self.y[:, 10:] += rotated(q, center[None] + 0 * w)
+        self.center, self.t, self.struck = center, WIDE(0), set()
+        self.laws = Laws(settings, parameters, self)
+
+    def rates(self, y, t):
+        """Return y' for rows of unknowns at a time (s)."""
+        q, w, v = y[:, :4], y[:, 4:7], y[:, 7:10]
+        moves = self.kind == 'free'
+        force, torque, turning = self.laws.acting(y, t, self.t)
+        if not moves:
+            torque = torque + cross(self.arm[None], back(q, force))
+        out = np.empty_like(y)
+        if self.axis is not None:
+            out[:, 4:7] = ((torque @ self.axis) / self.about)[:, None] * self.axis
+        else:
+            m = times(self.I, w)
+            out[:, 4:7] = times(self.inverse, torque + cross(m, w + turning))
+        rate = w + turning
+        x, s = q[:, :3], q[:, 3:]
+        out[:, :3] = (s * rate + cross(x, rate)) / 2
+        out[:, 3] = -(x * rate).sum(1) / 2
+        out[:, 7:10] = force / self.mass if moves else 0
+        out[:, 10:] = v if moves else 0
+        return out
+
+    def to(self, time):
+        """Go on to a time, with the jumps on the way."""
+        jumps = sorted({x for name, one in self.effects if name == 'torque'
+                        for x in one.get('times', ())}
+                       | {one.get('time', 0.0) for name, one in self.effects if name == 'strike'})
+        for jump in [*[x for x in jumps if self.t < x <= time], time]:
+            self._march(jump)
+            for name, one in self.effects:
+                if name == 'strike' and one.get('time', 0.0) == jump and jump not in self.struck:
+                    self._strike(one)
+            self.struck.add(jump)
+
+    def _march(self, end):
+        h = end - self.t
+        while self.t < end:
+            y, k = self.y, self.rates(self.y, self.t)
+            rate, growth = (float(np.sqrt((one[0, 4:7] ** 2).sum())) for one in (y, k))
+            fastest = rate + math.sqrt(growth)
+            h = min(2 * h, WIDE(1 / max(fastest, 1e-3)), end - self.t)
+            while True:
+                after, error = self._extrapolated(y, k, h)
+                if error < 1e-17 or h < 1e-9:
+                    break
+                h *= 0.5
+            after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
+            self.y = after
+            self.t = WIDE(end) if h == end - self.t else self.t + h
+
+    def _extrapolated(self, y, k, h):
+        """Return y after h, and an estimate of its relative error.
+
+        All levels of the extrapolation go side by side, the one with most steps first.
+        """
+        size, count = len(y), 2 * np.arange(LEVELS, 0, -1)
+        s = np.repeat(h / count.astype(WIDE), size)[:, None]
+        before = np.tile(y, (LEVELS, 1))
+        now, rows = before + s * np.tile(k, (LEVELS, 1)), []
+        for j in range(1, 2 * LEVELS + 1):
+            rate = self.rates(now, self.t + j * s[:len(now), 0])
+            if j % 2 == 0:    # the last level that is left has arrived
+                rows.append([(now[-size:] + before[-size:] + s[len(now) - size:len(now)]
+                              * rate[-size:]) / 2])
+                now, before, rate = now[:-size], before[:-size], rate[:-size]
+            before, now = now, before + 2 * s[:len(now)] * rate
+        for level in range(2, LEVELS + 1):
+            row = rows[level - 1]
+            for j in range(1, level):
+                ratio = WIDE(level) ** 2 / WIDE(level - j) ** 2
+                row.append(row[-1] + (row[-1] - rows[level - 2][j - 1]) / (ratio - 1))
+        best, other = rows[-1][-1], rows[-1][-2]
+        size = 1 + np.abs(best[0, 4:7]).max()
+        error = max(np.abs(best - other)[0, :4].max(), np.abs(best - other)[0, 4:7].max() / size)
+        return best, float(error)
+
+    def _strike(self, one):
+        q = self.y[:, :4]
+        J = np.array(one['impulse'], dtype=float).astype(WIDE)[None] + 0 * q[:, :3]
+        if one.get('frame') == 'body':
+            J = rotated(q, J)
+        if 'point' in one:
+            lever = np.array(one['point'], dtype=float).astype(WIDE) - self.center
+        else:
+            lever = np.zeros(3, dtype=WIDE)
+        G = cross((lever + self.arm)[None], back(q, J))
+        if self.axis is not None:
+            self.y[:, 4:7] += ((G @ self.axis) / self.about)[:, None] * self.axis
+        else:
+            self.y[:, 4:7] += times(self.inverse, G)
+        if self.kind == 'free':
+            self.y[:, 7:10] += J / self.mass
+
+    def floor(self):
+        """Return what half an ulp on the numbers of the start does, rad."""
+        best = self.y[0, :4]
+        apart = [angle(best, other[:4]) for other in self.y[1:]]
+        if max(apart) > LINEAR:    # no longer in proportion to the change
+            return math.inf
+        return math.sqrt(math.fsum(x * x for x in apart)) / MOVED
