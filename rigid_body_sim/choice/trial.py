@@ -2,11 +2,12 @@
 """Trial runs of a choice on the scene itself, since a motion may magnify errors.
 
 The chosen method runs from the scene's start, strikes included, and again with a tolerance a
-thousand times finer; the difference is the error of the choice. If the error is too large, the
-tolerance is made finer by the same factor, until that no longer helps. The angular momentum of a
-slim body has a larger error than its attitude, by the quotient of its moments: it counts too, so
-that the ledger balances. Both runs lose the same digits of the start; the effect of that on the
-attitude is added (forecast.py).
+thousand times finer; the difference is the error of the choice. If it is below the tolerance of
+that other run, it is taken from a still finer one. If the error is too large, the tolerance is
+made finer by the same factor, until that no longer helps. The angular momentum of a slim body has
+a larger error than its attitude, by the quotient of its moments: it counts too, so that the ledger
+balances. Both runs lose the same digits of the start; the effect of that on the attitude is added
+(forecast.py).
 """
 
 import math
@@ -111,6 +112,19 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
                 continue
         return None
 
+    def below(finer, here):
+        """Return the tolerance of a run whose own error is below its difference from `here`.
+
+        The steps of `here` may happen to be better than was asked: then the difference from a
+        finer run may be the error of that one, which only its tolerance bounds.
+        """
+        while float(forecast.apart(here, states(finer)).max()) < finer:
+            more = finer_run(finer)
+            if more is None:
+                break
+            finer = more
+        return finer
+
     def at_most(tolerance):
         """Return the coarsest tolerance of the table up to a bound, else its finest."""
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
@@ -122,8 +136,9 @@ def _settled(scene, accuracy, horizon, method, tolerance, promised):
         if finer is None:    # no finer run to compare with: the error is below the last one
             errors = before[1] if before else None
             break
-        errors, finest = forecast.apart(here, states(finer)), finer
-        momenta = forecast.momenta_apart(scene, here, states(finer))
+        finest, beside = finer, below(finer, here)
+        errors = forecast.apart(here, states(beside))
+        momenta = forecast.momenta_apart(scene, here, states(beside))
         error = max(float(errors.max()), MOMENTA * float(momenta.max())) / part
         if error <= accuracy:
             break

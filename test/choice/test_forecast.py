@@ -104,6 +104,35 @@ def test_a_missed_accuracy_is_said_with_the_time_until_which_it_is_met():
     assert choose(scene, accuracy=1e-15).missed    # closed forms have a floor, too
 
 
+LUCKY = """scene: lucky
+parameters: {w0: 0.8548874047219291, k: 0.3785202978628972, T: 1.43007584912046e-07}
+body:
+  mass: 0.06473892756434146
+  inertia: [0.0833906030109084, 0.08348355586378747, 0.0001574189792065565]
+  center_of_mass: [0.10026850778599071, 0.43194711746219805, -0.2933319023884421]
+constraint: free
+effects:
+- torque: {value: [-1.37e-07, 1.842e-06, 3.029e-06], frame: world}
+- torque: {value: ['T*sin(w0*t)', 0, 'T*exp(-k*t)'], frame: world}
+- strike: {impulse: [-9.29e-06, -9.81e-05, 1.038e-4], point: [0.062, 0.768, -0.253], time: 2.238,
+    frame: body}
+initial:
+  orientation: [0.5492514484236666, -0.04846138926894457, -0.8342507657500999, -0.7815322991428425]
+  angular_momentum: [5.4406277098058516e-05, 5.270591202415128e-05, 4.811168209523515e-05]
+"""
+
+
+@pytest.mark.without_numba
+def test_a_run_that_errs_less_than_finer_ones_is_told_its_own_error():
+    scene, horizon = parse_scene(LUCKY), 4.048
+    found = Simulation(scene, accuracy=1e-6, horizon=horizon)
+    states, best = (simulation.states(forecast.looks(horizon)).vector for simulation in (
+        found, Simulation(scene, 'gauss16', accuracy=1e-13, horizon=horizon)))
+    error = forecast.apart(states, best).max()
+    # dop8 errs by 7e-12 where 1e-6 is asked, and by 3 to 10 times that at 1e-7 and 1e-8
+    assert error < 1e-10 and found.expected_error == pytest.approx(error, rel=0.2)
+
+
 COMMANDS = {
     'a held wrench': lambda simulation: simulation.hold(torque=(0.0, 1.0, 0.0)),
     'an impulse': lambda simulation: simulation.impulse(torque=(0.0, 1.0, 0.0)),
