@@ -47,6 +47,14 @@ def test_rod_about_its_end_by_the_parallel_axis():
     assert rod.about_origin.moments == near((6.0, 6.0, 0.0), EPS)    # M L^2 / 3
 
 
+@pytest.mark.parametrize('shift', [(-933.4, -1e6, 13.5), (-1e74, 0.005, 814.0), (3e7, 3e7, -1.0)])
+def test_about_a_far_point_no_moment_is_below_the_least_about_the_centre(shift):
+    body = bodies.make_body(1.3, (0.7, 0.0013, 0.7))
+    about = bodies.moved(body.about_center, body.mass, shift, 1.0)
+    assert min(about.moments) >= 0.0013
+    assert bodies.make_body(1.3, (0.7, 0.0013, 0.7), shift).about_origin.moments == about.moments
+
+
 def test_flat_shapes_have_perpendicular_axes():
     for name, dimensions in (('lamina', {'width': 0.3, 'height': 0.7}), ('hoop', {'radius': 0.3}),
                              ('disk', {'radius': 0.7})):

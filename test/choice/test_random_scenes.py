@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A few of the scenes of bench/choice_random.py: what `auto` promises, beside a truth."""
+
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+
+BENCH = pathlib.Path(__file__).resolve().parents[2] / 'bench'
+SCENES = {2: 'a ball on a table', 166: 'dry friction of a hinge', 172: 'gravity along a vector',
+          205: 'drag by matrices'}
+
+
+@pytest.fixture
+def judge(monkeypatch):
+    if np.finfo(np.longdouble).nmant < 63:
+        pytest.skip('no 80-bit numbers here: nothing to compare with')
+    monkeypatch.syspath_prepend(str(BENCH))
+    from random_scenes import judge
+    yield judge
+    for name in [name for name in sys.modules if name.startswith('random_scenes')]:
+        del sys.modules[name]
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('number', SCENES, ids=SCENES.values())
+def test_the_error_is_met_foretold_and_balanced(judge, number):
+    for line, *good in judge.judged(number, 11):
+        assert all(good), line
+
+
+@pytest.mark.without_numba
+def test_a_wrong_law_is_seen(judge, monkeypatch):
+    from random_scenes import laws
+    right = laws._dragged
+    monkeypatch.setattr(laws, '_dragged', lambda *given: 1.001 * right(*given))
+    assert not any(met for _, met, *_ in judge.judged(205, 11))
