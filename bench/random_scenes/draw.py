@@ -74,7 +74,9 @@ def drawn(number, seed):
                        f'frame: {chance.choice(("body", "world"))}}}')
     more = random.Random(f'{seed} {number} more')
     if more.random() < 0.4:
-        duration = _more(more, effects, constraint, parameters, least, mass, (spin, duration))
+        slim = shape in ('slim', 'flat')    # too fast to be followed from kink to kink
+        duration = _more(more, effects, constraint, parameters, (least, mass, slim),
+                         (spin, duration))
     angles = [chance.uniform(0.05, 3.0) for _ in range(3)]
     held, initial = constraint, _start(chance, vector, constraint, angles, spin, inertia)
     if constraint == 'hinge':
@@ -135,12 +137,12 @@ KINKS = {'time': ['T*sign(cos(w0*t))', 0, 'min(T, T*(1.2 + cos(k*w0*t)))'],
 GROUND = 'where(z < 0.2*s, 0.5*f/s*(z - 0.2*s)^2, 0)'    # a floor that gives way
 
 
-def _more(chance, effects, constraint, parameters, least, mass, lasting):
+def _more(chance, effects, constraint, parameters, body, lasting):
     """Add to effects: rotors, shaped drag, a field along a vector, torsion, friction, kinks.
 
     Return the duration, which is shorter where there are kinks.
     """
-    spin, duration = lasting
+    (least, mass, slim), (spin, duration) = body, lasting
 
     def between(low, high):
         return math.exp(chance.uniform(math.log(low), math.log(high)))
@@ -180,7 +182,7 @@ def _more(chance, effects, constraint, parameters, least, mass, lasting):
         elif kind == 'dry friction' and not any('*t)' in effect for effect in effects):
             effects.append(f'dry_friction: {{torque: {parameters["T"] * between(0.3, 30.0)!r}}}')
             duration = min(duration, KINKED_TURNS / spin)
-        elif kind == 'kinks':
+        elif kind == 'kinks' and not slim:
             if constraint == 'hinge':
                 of = chance.choice(('hinge', 'attitude'))
             else:

@@ -11,12 +11,14 @@ from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
 from random_scenes.truth import HALF_ULP, Truth
 from random_scenes.wide import WIDE, angle
+from rigid_body_sim.compilation import jit
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACIES = 1e-6, 1e-11
 LOOKS = 24               # as often as a trial of `auto`: dense output errs between steps
 LONGEST = 120            # s of the processor, a scene with its compilation
+LONGEST_IN_PYTHON = 600  # without compilation
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 
 
@@ -71,14 +73,18 @@ def tried(number, seed):
                f'{marks}'), *map(bool, verdicts)
 
 
+def _longest():
+    return LONGEST if jit.numba else LONGEST_IN_PYTHON
+
+
 def _late(*_):
-    raise TimeoutError(f'it takes more than {LONGEST} s')
+    raise TimeoutError(f'it takes more than {_longest()} s')
 
 
 def judged(number, seed):
     """Return what `tried` yields, as a list; one line if something is raised or hangs."""
     signal.signal(signal.SIGVTALRM, _late)
-    signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
+    signal.setitimer(signal.ITIMER_VIRTUAL, _longest())
     try:
         return list(tried(number, seed))
     except Exception as error:    # whatever a scene raises is a finding, and the next is tried
