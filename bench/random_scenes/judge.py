@@ -11,7 +11,7 @@ from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
 from random_scenes.truth import HALF_ULP, Truth
 from random_scenes.wide import WIDE, angle
-from rigid_body_sim.compilation import jit
+from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -74,7 +74,7 @@ def tried(number, seed):
 
 
 def _longest():
-    return LONGEST if jit.numba else LONGEST_IN_PYTHON
+    return LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON
 
 
 def _late(*_):
