@@ -60,6 +60,33 @@ def test_every_scene_has_a_page():
         assert f'config/scenes/{name}.yaml' in text, name
 
 
+COST = re.compile(r'\d\s?(?:us|µs|ns)\b|\b(?:a|\d[\d.]*) microseconds?|\d CPU (?:s\b|seconds|ms)'
+                  r'|\d (?:%|s) of (?:a core|CPU)|million (?:states|messages|runs)')
+PROCESSOR, DAY = re.compile(r'Zen 5|znver5'), re.compile(r'November 2026|2026-\d\d-\d\d')
+
+
+def _names_its_machine(text):
+    """Return whether one paragraph of a page names both the processor and the day."""
+    return any(PROCESSOR.search(part) and DAY.search(part) for part in text.split('\n\n'))
+
+
+@pytest.mark.parametrize('path', [*PAGES, README], ids=lambda path: path.stem)
+def test_times_rest_on_a_processor_and_a_day_that_are_named(path):
+    """On the page itself, or on one that every paragraph with a time refers to."""
+    text = path.read_text()
+    if _names_its_machine(text):
+        return
+    for part in filter(COST.search, text.split('\n\n')):
+        pages = [path.parent / target for target in re.findall(r'\]\(([^)#:]+\.md)', part)]
+        assert any(_names_its_machine(page.read_text()) for page in pages), part
+
+
+def test_a_second_machine_is_measured_where_methods_are_compared():
+    methods, accuracy = ((DOCS / f'{page}.md').read_text() for page in ('methods', 'accuracy'))
+    assert '| | AVX-512 | AVX2 | ratio |' in methods
+    assert '(methods.md#and-on-another-processor)' in accuracy
+
+
 @pytest.mark.parametrize('path', [*PAGES, README], ids=lambda path: path.stem)
 def test_links_lead_somewhere(path):
     for target in re.findall(r'\]\(([^)#:]+)\)', path.read_text()):
