@@ -49,5 +49,6 @@ def begin(stepped, march):
         # what potentials do, undiminished: swing_rate^2 = 4 U/I; and what friction bears
         swing = swing_rate(stepped.scene)
         rounding = ROUNDING * (swing * swing + borne(stepped.scene))
-        return np.array([stepped.accuracy / stepped.horizon, rounding]), point
+        return np.array([stepped.accuracy / stepped.horizon, rounding,
+                         *unroll.weights(stepped.method)]), point
     return np.array([stepped.step, 0.0]), point

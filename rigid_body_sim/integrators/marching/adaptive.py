@@ -31,6 +31,7 @@ put_scales = UNBOUND
 SIZE = UNBOUND
 ORDER = UNBOUND
 
+WEIGHTS = 2                # their place in `control`
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
 TRIALS = 60                # refusals of one step after which it is given up
@@ -53,14 +54,15 @@ def march(p, control, point, following, target, end, limit):
     Parameters
     ----------
     control : array
-        [tolerance per second, rounding of the rates of the first relative group per second].
+        [tolerance per second, rounding of the rates of the first relative group per second,
+        weights of the method (unroll.py)].
     point, following : array
         The step from `point` ends at `following`, which is not known yet if its time is not later.
         Both are changed.
     end : float
         The last point stands there exactly.
     """
-    tolerance, rounding = control[0], control[1]
+    tolerance, rounding, weights = control[0], control[1], control[WEIGHTS:]
     moved = onward(point, following, target)
     if moved < 0:
         return 0, True
@@ -73,7 +75,7 @@ def march(p, control, point, following, target, end, limit):
         good = False
         for _ in range(TRIALS):
             t1 = end if t + 1.1 * h >= end else t + h
-            y1, c1, scales1, error = trial(p, y, c, k0, t1 - t, scales)
+            y1, c1, scales1, error = trial(p, weights, y, c, k0, t1 - t, scales)
             # near a balance large terms nearly cancel, and leave their rounding in every stage: to
             # ask for less would make steps shorter for ever
             noise = rounding / math.sqrt(scales1[0]) if scales1[0] > 0.0 else 0.0
@@ -113,7 +115,6 @@ def between(p, control, point, following, dt):
     if dt > 0.0:
         # the same step as in the march, so that there is one to compile; its error is not looked
         # at
-        y, _, _, _ = trial(
-            p, y, load(point, VALUES + SIZE), rate(p, y), dt, load_scales(point, SCALES)
-        )
+        lost, scales = load(point, VALUES + SIZE), load_scales(point, SCALES)
+        y, _, _, _ = trial(p, control[WEIGHTS:], y, lost, rate(p, y), dt, scales)
     return y

@@ -81,7 +81,7 @@ class OnTable:
             step=unroll.step_source(method, UNKNOWNS, extra),
             trial=unroll.trial_source(method, UNKNOWNS, extra, table_rates.GROUPS),
         )
-        self.order = method.ORDER
+        self.order, self.weights = method.ORDER, np.array(unroll.weights(method))
 
     def course(self, stepped):
         """Return the course of a started solver."""
@@ -265,7 +265,8 @@ class _Phase:
         kernels, p = self._bound.kernels, self._p
         first = kernels.rate(p, y)
         for _ in range(TRIALS):
-            after, lost_after, scales_after, error = kernels.trial(p, y, lost, first, h, scales)
+            after, lost_after, scales_after, error = kernels.trial(
+                p, self._bound.weights, y, lost, first, h, scales)
             allowed = self._tolerance * (after[CLOCK] - y[CLOCK]) + FLOOR
             factor = SHRINK
             if error < math.inf:

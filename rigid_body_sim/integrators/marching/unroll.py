@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runge-Kutta steps written out: a table of coefficients becomes kernels without loops.
 
-Unrolled, all stages live in registers and a zero coefficient costs nothing.
+Unrolled, all stages live in registers and a zero coefficient costs nothing. A step holds its
+coefficients as literals; a trial reads them from an array, where each costs one instruction less.
 compilation/templates.py binds the text into the templates of this folder. An unknown count of ``n
 + extra`` means n unknowns that the rates depend on, then `extra` quadratures, for which no stage
 values are formed.
 """
 
 import functools
+import itertools
 
 ROUNDING = 2.0 ** -49    # share of an increment: rounding of the sums of error estimates
 # rad/s: below this angular speed relative rates are meaningless, since the body is still starting
@@ -22,21 +24,29 @@ def step_source(method, n, extra):
     One step of size h from y, where k0 is rate(p, y). c is what the sums have lost so far (Kahan):
     it is added to the increment, and what the new sum loses is returned.
     """
+    *stages, increment = _written([*method.A, method.B], repr)
     return '\n'.join(
         [
             '@compiled',
             'def step(p, y, c, k0, h):',
-            *_stages(method, n),
-            *_increment(method, n + extra),
+            *_stages(stages, n),
+            *_increment(increment, n + extra),
             f'    return {sums(n + extra)}, {losses(n + extra)}',
             '',
         ]
     )
 
 
+def weights(method):
+    """Return the coefficients of a method as its ``trial`` takes them."""
+    return [number for row in _rows(method) for number in row.values()]
+
+
 @functools.cache
 def trial_source(method, n, extra, groups):
-    """Return the source of ``trial(p, y, c, k0, h, scales) -> (y, c, scales, error)``.
+    """Return the source of ``trial(p, w, y, c, k0, h, scales) -> (y, c, scales, error)``.
+
+    w is an array of the :func:`weights` of the method.
 
     Like ``step``, with the error estimate of DOP853: err5^2/sqrt(err5^2 + 0.01 err3^2), each a sum
     over groups of unknowns of the squared error over the squared scale of the group. Where err5 is
@@ -49,11 +59,13 @@ def trial_source(method, n, extra, groups):
         Slices of the unknowns. The scale of an absolute group is 1; of the others the largest norm
         met so far, `scales` holds their squares.
     """
+    places = itertools.count()
+    *stages, increment, e5, e3 = _written(_rows(method), lambda number: f'w[{next(places)}]')
     lines = [
         '@compiled',
-        'def trial(p, y, c, k0, h, scales):',
-        *_stages(method, n),
-        *_increment(method, n + extra),
+        'def trial(p, w, y, c, k0, h, scales):',
+        *_stages(stages, n),
+        *_increment(increment, n + extra),
         '    fifth = third = moved = 0.0',
     ]
     squares = []
@@ -74,7 +86,7 @@ def trial_source(method, n, extra, groups):
             )
             squares.append(f'square{place}')
             weight = f'weight{place} * '
-        for name, row in (('fifth', method.E5), ('third', method.E3)):
+        for name, row in (('fifth', e5), ('third', e3)):
             lines += [f'    e{u} = {_sum(row, u)}' for u in members]
             lines.append(f'    {name} += {weight}({" + ".join(f"e{u} * e{u}" for u in members)})')
         lines.append(f'    moved += {weight}({" + ".join(f"d{u} * d{u}" for u in members)})')
@@ -142,13 +154,23 @@ def put_source(name, size):
     )
 
 
-def _stages(method, n):
+def _rows(method):
+    """Return the rows of coefficients of a method that estimates its error."""
+    return [*method.A, method.B, method.E5, method.E3]
+
+
+def _written(rows, text):
+    """Return rows with the texts of their coefficients, written in order."""
+    return [{j: text(number) for j, number in row.items()} for row in rows]
+
+
+def _stages(rows, n):
     """Return the lines of all stages.
 
     The newest stage is added last, because the others are known earlier.
     """
-    lines = [f'    a{i}_{j} = h * {a!r}' for i, row in enumerate(method.A) for j, a in row.items()]
-    for i, row in enumerate(method.A):
+    lines = [f'    a{i}_{j} = h * {a}' for i, row in enumerate(rows) for j, a in row.items()]
+    for i, row in enumerate(rows):
         if i == 0:
             continue
         *early, last = row
@@ -164,16 +186,16 @@ def _stages(method, n):
     return lines
 
 
-def _increment(method, size):
-    lines = [f'    b{j} = h * {b!r}' for j, b in method.B.items()]
+def _increment(row, size):
+    lines = [f'    b{j} = h * {b}' for j, b in row.items()]
     for u in range(size):
-        lines.append(f'    d{u} = {" + ".join(f"b{j} * k{j}[{u}]" for j in method.B)} + c[{u}]')
+        lines.append(f'    d{u} = {" + ".join(f"b{j} * k{j}[{u}]" for j in row)} + c[{u}]')
         lines.append(f'    s{u} = y[{u}] + d{u}')
     return lines
 
 
 def _sum(row, u):
-    return ' + '.join(f'{e!r} * k{j}[{u}]' for j, e in row.items())
+    return ' + '.join(f'{e} * k{j}[{u}]' for j, e in row.items())
 
 
 def sums(size):
