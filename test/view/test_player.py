@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recording that is played: which state, trail and marks belong to a moment of the clock."""
+
+import numpy as np
+import pytest
+from analysis import made
+
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.view import player
+from rigid_body_sim.view.player import Player
+
+RATE, TICKS = 100.0, 60
+ACTS = {20: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')], 40: [('reset',)]}
+
+
+@pytest.fixture(scope='module')
+def path(tmp_path_factory):
+    """Return the path of 0.6 s with an impulse at 0.2 s and a reset at 0.4 s."""
+    path = tmp_path_factory.mktemp('player') / 'run'
+    made.record(path, 'tennis_racket', TICKS, rate=RATE, acts=ACTS)
+    return path
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Return a clock (a list of one time) that stands still unless it is put forward."""
+    now = [100.0]
+    monkeypatch.setattr(player.time, 'monotonic', lambda: now[0])
+    return now
+
+
+def test_states_are_those_recorded_with_their_times_and_energies(path):
+    times, vectors, energies, source = player.states_of(path)
+    assert times == pytest.approx(np.arange(TICKS + 1) / RATE, abs=1e-12)
+    assert (vectors[:, 0] == times).all()
+    simulation = Simulation('tennis_racket')
+    before = simulation.states(times[:20])
+    assert vectors[:20, 1:] == pytest.approx(before.vector[:, 1:], abs=1e-15)
+    assert energies[:20] == pytest.approx(simulation.diagnose(before)[0], rel=1e-15)
+    assert energies[21] > energies[19] + 0.01
+    assert source.scene.name == 'tennis_racket'
+
+
+def test_of_a_long_recording_every_fourth_state_is_kept(path, monkeypatch):
+    whole, *_ = player.states_of(path)
+    monkeypatch.setattr(player, 'MOST_STATES', 16)
+    times, vectors, energies, _ = player.states_of(path)
+    assert times.tolist() == whole[::4].tolist()
+    assert len(vectors) == len(energies) == 16
+
+
+def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(path):
+    one = Player(path)
+    assert one.end == pytest.approx(0.6)
+    begun = one.at(0.1, 0.05)
+    assert begun.restarted
+    assert (len(begun.trail), begun.events) == (1, ())
+    one._restarted = False
+    frame = one.at(0.305, 0.195)
+    assert not frame.restarted
+    assert frame.vector[0] == pytest.approx(0.3)
+    assert frame.trail[:, 0] == pytest.approx(np.arange(20, 31) / RATE)
+    assert [text for _, text in frame.events] == [text for at, text in one.marks
+                                                  if 0.195 < at <= 0.305]
+    assert any('commands' in text for _, text in frame.events)
+    assert one.at(0.195, 0.305).restarted
+    assert one.at(-1.0, -2.0).vector[0] == 0.0
+
+
+def test_a_trail_across_many_states_has_a_few_dozen(path, monkeypatch):
+    monkeypatch.setattr(player, 'MOST_BETWEEN', 5)
+    one = Player(path)
+    one._restarted = False
+    times = one.at(0.6, 0.0).trail[:, 0]
+    assert len(times) <= 2 * 5 + 1
+    assert times[-1] == pytest.approx(0.6)
+    assert np.ptp(np.diff(times)[:-1]) < 1e-9
+
+
+def test_many_marks_are_those_of_commands_and_resets_only(path, monkeypatch):
+    every = Player(path).marks
+    monkeypatch.setattr(player, 'MOST_MARKS', len(every))
+    assert Player(path).marks == every
+    monkeypatch.setattr(player, 'MOST_MARKS', len(every) - 1)
+    few = [text for _, text in Player(path).marks]
+    assert {text.split()[0] for text in few} == {'commands', 'reset'}
+
+
+def test_it_plays_at_its_speed_and_begins_anew_after_the_end(path, clock):
+    one = Player(path)
+    [first] = one.poll()
+    assert (first.time, first.restarted) == (0.0, True)
+    assert one.poll() == []
+    clock[0] += 0.125
+    [frame] = one.poll()
+    assert frame.time == 0.125
+    assert not frame.restarted
+    assert len(frame.trail) == 12
+    one.set_speed(2.0)
+    clock[0] += 0.125
+    assert one.poll()[0].time == 0.375
+    clock[0] += 0.125
+    [again] = one.poll()
+    assert (again.time, again.restarted) == (0.0, True)
+
+
+def test_it_halts_steps_and_goes_where_it_is_told(path, clock):
+    one = Player(path)
+    one.poll()
+    one.tell('pause', True)
+    clock[0] += 0.3
+    assert one.poll() == []
+    one.tell('step')
+    assert one.poll()[0].time == pytest.approx(1.0 / 60.0)
+    one.seek(0.55)
+    [frame] = one.poll()
+    assert (frame.time, frame.restarted) == (0.55, True)
+    one.set_speed(6.0)
+    one.tell('step')
+    assert one.poll()[0].time == one.end
+    one.tell('pause', False)
+    one.tell('reset')
+    assert one.poll()[0].time == 0.0

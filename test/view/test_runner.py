@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The loop behind a live page, driven by hand: pace, trail, pause, commands, reset."""
+
+import numpy as np
+import pytest
+
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.simulation.command_rows import IMPULSE, WORLD, ZERO
+from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.view import runner
+from rigid_body_sim.view.runner import Runner
+
+SCENE = load_scene('tennis_racket')
+SETTINGS = {'rate': 100.0, 'integrator': 'auto', 'accuracy': 1e-9}
+SPIN = float(np.linalg.norm(SCENE.initial.angular_velocity))
+
+
+class Pipe:
+    """Stands for the pipe to the page; nothing comes from there."""
+
+    def __init__(self):
+        self.sent = []
+
+    def send(self, message):
+        self.sent.append(message)
+
+    def poll(self, *_):
+        return False
+
+    def frames(self):
+        """Return the frames since the last call."""
+        found = [value for name, value in self.sent if name == 'frame']
+        self.sent.clear()
+        return found
+
+
+@pytest.fixture
+def running():
+    """Return (Runner, Pipe) of a scene that has begun."""
+    pipe = Pipe()
+    one = Runner(pipe, SETTINGS, None)
+    one.told('scene', SCENE.text)
+    return one, pipe
+
+
+def test_a_scene_begins_with_its_description_and_a_frame(running):
+    _, pipe = running
+    (name, about), *others = pipe.sent
+    assert (name, about.method, about.text) == ('scene', 'exact', SCENE.text)
+    [frame] = pipe.frames()
+    assert frame.restarted
+    assert (frame.time, len(frame.trail)) == (0.0, 1)
+    assert (frame.energy_residual, frame.momentum_residual) == (0.0, 0.0)
+    assert others[0][0] == 'frame'
+
+
+def test_a_scene_that_is_wrong_is_refused_and_the_one_before_goes_on(running):
+    one, pipe = running
+    pipe.frames()
+    one.told('scene', SCENE.text.replace('mass:', 'mess:'))
+    assert [name for name, _ in pipe.sent] == ['refused']
+    pipe.frames()
+    one._advance(0.1)
+    assert pipe.frames()[0].time == pytest.approx(0.1)
+
+
+def test_it_keeps_the_pace_of_the_clock_and_its_trail_is_dense(running):
+    one, pipe = running
+    pipe.frames()
+    one._advance(0.105)
+    [frame] = pipe.frames()
+    assert frame.time == pytest.approx(0.105)
+    truth = Simulation(SCENE, **SETTINGS).states(frame.trail[:, 0]).vector
+    assert frame.trail == pytest.approx(truth, abs=1e-14)
+    assert (frame.vector == frame.trail[-1]).all()
+    # from one state to the next the body turns by a tenth at most
+    assert len(frame.trail) == 1 + int(SPIN * 0.105 / runner.TURN_BETWEEN)
+    assert np.diff([0.0, *frame.trail[:, 0]]).max() * SPIN <= runner.TURN_BETWEEN * 1.01
+    one.told('speed', 4.0)
+    one._cost = 0.0    # a machine that is busy lags; this is about the pace
+    one._advance(0.5)
+    [frame] = pipe.frames()
+    assert frame.time == pytest.approx(2.105)
+    assert len(frame.trail) == 1 + runner.MOST_BETWEEN
+
+
+def test_work_that_takes_long_makes_the_motion_lag(running):
+    one, pipe = running
+    pipe.frames()
+    one._cost = 5.0    # a second of the motion takes five
+    one._advance(0.5)
+    assert pipe.frames()[0].time == pytest.approx(runner.LONGEST_WORK / 5.0)
+    assert one._cost < 5.0
+
+
+def test_a_pause_halts_it_and_steps_go_on_by_a_frame(running):
+    one, pipe = running
+    pipe.frames()
+    one.told('pause', True)
+    one._advance(0.5)
+    assert pipe.frames() == []
+    one._cost = 0.0
+    one.told('step', None)
+    one.told('step', None)
+    one._advance(0.5)
+    assert pipe.frames()[0].time == pytest.approx(2.0 * runner.PERIOD)
+    one.told('pause', False)
+    one._cost = 0.0
+    one._advance(0.1)
+    assert pipe.frames()[0].time == pytest.approx(2.0 * runner.PERIOD + 0.1)
+
+
+def test_a_command_acts_at_the_present_tick_and_a_reset_goes_back(running):
+    one, pipe = running
+    one._advance(0.1)
+    [_, before] = pipe.frames()
+    push = (IMPULSE, WORLD, *ZERO, 0.0, 0.0, 0.25)
+    one.told('command', np.array([push, (*push[:-1], np.inf)]))
+    assert [name for name, _ in pipe.sent] == ['refused']
+    pipe.frames()
+    one._cost = 0.0
+    one._advance(0.05)
+    [frame] = pipe.frames()
+    other = Simulation(SCENE, **SETTINGS)
+    other.advance(10)
+    other.command(np.array([push]))
+    assert frame.vector == pytest.approx(other.states([frame.time])[0].vector, abs=1e-12)
+    assert abs(frame.energy - before.energy) > 1e-4
+    one.told('reset', None)
+    [frame] = pipe.frames()
+    assert frame.restarted
+    assert frame.vector[1:] == pytest.approx(SCENE.initial.vector[1:])
+    one._cost = 0.0
+    one._advance(0.02)
+    assert pipe.frames()[0].time == pytest.approx(0.02)
+
+
+def test_what_happens_is_told_once():
+    pipe = Pipe()
+    one = Runner(pipe, SETTINGS, None)
+    one._advance(1.0)    # no scene yet
+    one.told('command', np.zeros((1, 8)))
+    one.told('reset', None)
+    assert pipe.sent == []
+    one.told('scene', SCENE.text)
+    one.told('speed', 1.0)
+    told = []
+    for _ in range(40):
+        one._cost = 0.0
+        one._advance(0.25)
+        told += [event for frame in pipe.frames() for event in frame.events]
+    simulation = Simulation(SCENE, **SETTINGS)
+    simulation.advance(1000)
+    assert told == [(event.time, event.name) for event in simulation.events]
+    assert len(told) > 1
