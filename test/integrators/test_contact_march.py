@@ -12,31 +12,27 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.compilation.templates import specialise
-from rigid_body_sim.integrators.equations.contact_rates import (
+from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
-    GAP,
-    OMEGA,
-    PACE,
-    PARAMETER_COUNT,
-    PLACE,
+    LEDGER,
     ROLLING,
     ROW,
-    SIZE,
     SLIDING,
-    TIME,
     UNKNOWNS,
-    WATCHES,
-    WORK,
-    U,
 )
-from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.integrators.marching import contact_march, contact_step
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
 
 pytestmark = pytest.mark.without_numba
 
+SIZE, WATCHES = UNKNOWNS.size, ROW.part('watched').size
+OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
+                              for name in ('omega', 'u', 'place', 'gap', 'time'))
+WORK, COUPLED, PACE = LEDGER.part('work').first, LEDGER.first, ROW.part('pace').first
 RATES = f"""
 def rate(p, y, row):
-    for n in range({ROW}):
+    for n in range({ROW.size}):
         row[n] = 0.0
     pace = y[{U}] if p[{contact_march.MODE}] == {SLIDING} else 1.0
     row[0], row[3] = 0.5 * pace * y[3], -0.5 * pace * y[0]
@@ -45,10 +41,13 @@ def rate(p, y, row):
     row[{PLACE}], row[{PLACE} + 1] = -pace * y[{PLACE} + 1], pace * y[{PLACE}]
     row[{TIME}], row[{PACE}], row[{WORK}] = pace, pace, pace * 2.0 * y[{TIME}]
     for k in range({WATCHES}):
-        a, b, c = p[{PARAMETER_COUNT} + 3 * k:{PARAMETER_COUNT} + 3 * k + 3]
-        row[{SIZE} + k] = a + y[{TIME}] * (b + y[{TIME}] * c)
+        a, b, c = p[{CONTACT.size} + 3 * k:{CONTACT.size} + 3 * k + 3]
+        row[{ROW.part('watched').first} + k] = a + y[{TIME}] * (b + y[{TIME}] * c)
 """
-KERNELS = specialise(contact_march, rate=RATES)
+STEP = specialise(contact_step, rate=RATES)
+KERNELS = specialise(contact_march, rate=f'{STEP.__name__}:rate',
+                     step_from=f'{STEP.__name__}:step_from',
+                     first_zero=f'{STEP.__name__}:first_zero')
 ACCURACY = 1e-12
 
 
@@ -56,12 +55,12 @@ class Phase:
     """One phase of the made-up body, with the parabolas that are watched, k -> (a, b, c)."""
 
     def __init__(self, mode=ROLLING, kept=512, **watched):
-        self.p = np.zeros(PARAMETER_COUNT + 3 * WATCHES)
+        self.p = np.zeros(CONTACT.size + 3 * WATCHES)
         self.p[contact_march.MODE], self.p[contact_march.SWIFT] = mode, 1.0
         for k in range(WATCHES):
-            first = PARAMETER_COUNT + 3 * k
+            first = CONTACT.size + 3 * k
             self.p[first:first + 3] = watched.get(f'watch{k}', (1.0, 0.0, 0.0))
-        self.w = np.zeros((contact_march.WORK_ROWS, ROW))
+        self.w = np.zeros((contact_step.WORK_ROWS, ROW.size))
         self.meta = np.zeros(contact_march.META)
         self.meta[contact_march.TOLERANCE] = ACCURACY
         self.meta[[contact_march.RATE, contact_march.SPEED, contact_march.LENGTH]] = 1.0
@@ -71,7 +70,8 @@ class Phase:
         y = np.zeros(SIZE)
         y[3] = y[OMEGA] = y[PLACE] = 1.0
         y[U] = 1.0 if mode == SLIDING else 0.0
-        KERNELS.begin(self.p, self.w, self.front, self.meta, y)
+        STEP.rate(self.p, y, self.w[0])
+        KERNELS.begin(self.p, self.w[0], self.front, self.meta, y)
 
     def march(self, end):
         KERNELS.march(self.p, self.w, self.store, self.sizes, self.front, self.meta, end)
@@ -134,11 +134,11 @@ def test_a_dip_is_found_between_the_parts_of_a_step_to_round_off(place, depth, w
                 -2.0 * c * place, c)
     phase = Phase(watch0=parabola)
     y, lost = phase.front[:SIZE], phase.front[SIZE:]
-    found = KERNELS.first_zero(phase.p, phase.w, y, lost, 1.0, 0, parabola[0])
+    found = STEP.first_zero(phase.p, phase.w, y, lost, 1.0, 0, parabola[0])
     assert found == (pytest.approx(place - width, rel=1e-13) if depth else -1.0)
     if depth:
-        assert KERNELS.look(phase.p, phase.w, y, lost, found, 0) < 0.0
-        before = KERNELS.look(phase.p, phase.w, y, lost, found * (1.0 - 1e-15), 0)
+        assert STEP.look(phase.p, phase.w, y, lost, found, 0) < 0.0
+        before = STEP.look(phase.p, phase.w, y, lost, found * (1.0 - 1e-15), 0)
         assert before >= -1e-15 * parabola[0]    # rounding of the parabola
 
 
@@ -188,24 +188,22 @@ def test_a_long_phase_keeps_every_other_point_and_gives_the_same_bits(monkeypatc
 def test_the_error_of_a_step_does_not_depend_on_the_units():
     """Of length, of speed and of time: rates go with them, and the times against them."""
     draw = np.random.default_rng(4)
-    w = draw.normal(size=(contact_march.WORK_ROWS, ROW))
-    meta = np.ones(contact_march.META)
-    first = KERNELS.error_of(w, 0.1, meta)
-    for columns, scale in ((slice(OMEGA, U), contact_march.RATE),
-                           (slice(U, PLACE), contact_march.SPEED),
-                           (slice(PLACE, GAP + 1), contact_march.LENGTH)):
-        other, scales = w.copy(), meta.copy()
+    w = draw.normal(size=(contact_step.WORK_ROWS, ROW.size))
+    ones = 1.0, 1.0, 1.0
+    first = STEP.error_of(w, 0.1, ones)
+    for place, columns in enumerate((slice(OMEGA, U), slice(U, PLACE), slice(PLACE, GAP + 1))):
+        other, scales = w.copy(), list(ones)
         other[:, columns] *= 1000.0
-        scales[scale] *= 1000.0
-        if scale == contact_march.RATE:
+        scales[place] *= 1000.0
+        if columns.start == OMEGA:
             other[:, TIME] /= 1000.0
-        assert KERNELS.error_of(other, 0.1, scales) == pytest.approx(first, rel=1e-12)
+        assert STEP.error_of(other, 0.1, tuple(scales)) == pytest.approx(first, rel=1e-12)
     only = np.zeros_like(w)
-    for n in range(UNKNOWNS):    # each unknown counts
+    for n in range(COUPLED):    # each unknown counts
         only[:] = 0.0
         only[:, n] = w[:, n]
-        assert 0.0 < KERNELS.error_of(only, 0.1, meta) < first
+        assert 0.0 < STEP.error_of(only, 0.1, ones) < first
     only[:] = 0.0
-    only[:, UNKNOWNS:] = w[:, UNKNOWNS:]    # the ledger does not
-    assert KERNELS.error_of(only, 0.1, meta) == 0.0
-    assert KERNELS.error_of(np.full_like(w, np.nan), 0.1, meta) == math.inf
+    only[:, COUPLED:] = w[:, COUPLED:]    # the ledger does not
+    assert STEP.error_of(only, 0.1, ones) == 0.0
+    assert STEP.error_of(np.full_like(w, np.nan), 0.1, ones) == math.inf

@@ -4,25 +4,17 @@
 import numpy as np
 import pytest
 
-from rigid_body_sim.integrators.equations.contact_rates import (
-    DAMPED,
-    FILMED,
+from rigid_body_sim.integrators.equations import contact_states
+from rigid_body_sim.integrators.equations.contact_rates import SHORT
+from rigid_body_sim.integrators.equations.contact_views import (
     FLIGHT,
-    GAP,
-    OMEGA,
-    ROLLED,
+    LEDGER,
     ROLLING,
     ROW,
-    SHORT,
-    SIZE,
-    SLID,
-    SPUN,
-    STRUCK,
-    WATCHED,
-    WORK,
-    U,
+    UNKNOWNS,
 )
 from rigid_body_sim.integrators.marching.contact import MODE, SWIFT, OnPlane
+from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.contact.touch import lever
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
@@ -33,6 +25,8 @@ from rigid_body_sim.scene.state import STATE_SIZE
 
 pytestmark = pytest.mark.without_numba
 
+GAP, OMEGA, U = (UNKNOWNS.part(name).first for name in ('gap', 'omega', 'u'))
+WATCHED, FORCE = ROW.part('watched').first, ROW.part('force')
 SCENE = parse_scene("""
 scene: egg
 body: {mass: 0.06, inertia: [3.0e-5, 3.4e-5, 2.0e-5],
@@ -50,7 +44,7 @@ initial: {angular_velocity: [0, 0, 0]}
 def test_a_gap_ends_a_flight_when_it_shrinks_by_more_than_rounding(gap, speed, watched, turning):
     """A body that has just lifted off is not below the plane by the rounding of its gap."""
     bound = OnPlane(SCENE, None, None, None)
-    p, y, row = bound.parameters(0.0), np.zeros(SIZE), np.empty(ROW)
+    p, y, row = bound.parameters(0.0), np.zeros(UNKNOWNS.size), np.empty(ROW.size)
     p[MODE], p[SWIFT] = FLIGHT, 1.0
     y[3], y[GAP], y[U + 2], y[OMEGA:U] = 1.0, gap, speed, turning
     bound.rates.rate(p, y, row)
@@ -62,7 +56,7 @@ def test_a_gap_ends_a_flight_when_it_shrinks_by_more_than_rounding(gap, speed, w
 def rolling():
     """Return (rates, parameters, unknowns) of the egg as it rolls in any attitude."""
     bound = OnPlane(SCENE, None, None, None)
-    p, y = bound.parameters(0.0), np.zeros(SIZE)
+    p, y = bound.parameters(0.0), np.zeros(UNKNOWNS.size)
     p[MODE], p[SWIFT] = ROLLING, 0.3
     y[:4] = np.array([0.1, -0.5, 0.3, 0.8]) / np.sqrt(0.99)
     y[OMEGA:U] = 3.0, -8.0, 5.0
@@ -72,31 +66,31 @@ def rolling():
 def test_a_moment_later_the_body_has_turned_and_its_rates_have_grown():
     """By the difference that a creep takes: the attitude turns by omega, r goes with it."""
     rates, p, y = rolling()
-    c, axes, row = CONTACT.load(p), matrix(*y[:4].tolist()), np.empty(ROW)
-    r = lever(c, axes[2])
+    c, row = CONTACT.load(p), np.empty(ROW.size)
     rates.rate(p, y, row)
     omega, short = tuple(y[OMEGA:U].tolist()), SHORT * c.size[0] / c.swift
-    force = tuple(row[rates.FORCE:rates.FORCE + 3].tolist())
-    now = rates._ahead(p, c._replace(swift=1e30), y, axes, r, force, (0.0, 0.0, 0.0))
-    system, turned, later, (torque, _) = rates._ahead(p, c, y, axes, r, force, (0.0, 0.0, 0.0))
-    slopes = (np.array(turned) - np.array(axes)) / short
-    assert slopes == pytest.approx(np.array([cross(axis, omega) for axis in axes]), abs=1e-4)
-    assert later == lever(c, turned[2])
+    at, force, none = posture(c, tuple(y[:4].tolist()), omega), FORCE.load(row), (0.0, 0.0, 0.0)
+    _, now = rates._ahead(p, c._replace(swift=1e30), at, force, none)
+    later, pushed = rates._ahead(p, c, at, force, none)
+    slopes = (np.array(later.axes) - np.array(at.axes)) / short
+    assert slopes == pytest.approx(np.array([cross(axis, omega) for axis in at.axes]), abs=1e-4)
+    assert later == posture(c, later.q, later.omega)
+    assert (np.array(later.omega) - omega) / short == pytest.approx(row[OMEGA:U], rel=1e-6)
     # the torque without the contact is -omega x I omega, and omega grows by the whole torque
     grown = row[OMEGA:U]
     I = np.array(c.inertia)
     expected = -(np.cross(grown, I @ omega) + np.cross(omega, I @ grown))
-    assert (np.array(torque) - now[3][0]) / short == pytest.approx(expected, rel=1e-4)
-    growth = (np.array(system.b) - now[0].b) / short
-    assert np.isfinite(growth).all()
-    assert np.linalg.norm(growth) > 1.0
+    assert (np.array(pushed.torque) - now.torque) / short == pytest.approx(expected, rel=1e-4)
+    assert pushed.force == pytest.approx((0.0, 0.0, -9.81 * c.mass))
 
 
 def test_what_is_written_holds_each_heat_by_its_cause():
     rates, p, y = rolling()
-    y[[WORK, SLID, ROLLED, FILMED, STRUCK, DAMPED, SPUN]] = 7.0, 1.0, 20.0, 300.0, 4e3, 5e4, 6e5
-    out, row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS)), np.empty(ROW)
-    rates.write(p, y, row, 2.5, 0.1, 0.2, out)
+    LEDGER.store(y, LEDGER.load(y)._replace(
+        work=7.0, slid=1.0, rolled=20.0, filmed=300.0, struck=4e3, damped=5e4, spun=6e5))
+    out, row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS)), np.empty(ROW.size)
+    rates.rate(p, y, row)
+    contact_states.write(p, y, row, 2.5, (0.1, 0.2), out)
     assert out[0] == 2.5
     assert out[STATE_SIZE:STATE_SIZE + 2].tolist() == [7.0, 654321.0]
     assert out[STATE_SIZE + ENTRIES_SIZE:].tolist() == [1.0, 20.0, 300.0, 4e3, 6e5]
@@ -107,5 +101,5 @@ def test_what_is_written_holds_each_heat_by_its_cause():
     assert out[11:14] == pytest.approx(apply(axes, cross(arm, tuple(y[OMEGA:U]))), abs=1e-15)
     assert out[8:11] == pytest.approx([0.1, 0.2, -np.dot(axes[2], arm)], abs=1e-15)
     short = np.full(len(out), np.nan)
-    rates.write(p, y, row, 2.5, 0.1, 0.2, short[:STATE_SIZE])
+    contact_states.write(p, y, row, 2.5, (0.1, 0.2), short[:STATE_SIZE])
     assert short[:STATE_SIZE].tolist() == out[:STATE_SIZE].tolist()
