@@ -8,9 +8,11 @@
 coverage.py traces the lines (each test is a context of its own), and so are the digests of the
 table in study/machines. What a fixture of a module runs counts for each test that uses it, and
 what a bound template runs for the lines of the template. What other processes run is not seen.
+Where a file has been edited since, whatever ran any of its lines counts for all of them.
 """
 
 import functools
+import hashlib
 import json
 import os
 import pathlib
@@ -90,12 +92,21 @@ class Notes:
         self.trace.save()
         (FOLDER / f'{self.name}.json').write_text(json.dumps(
             {'root': str(ROOT), 'seconds': self.seconds, 'users': self.users,
-             'longer': {path: _lines(path) for path in self.trace.get_data().measured_files()
-                        if not path.startswith(f'{ROOT}/')}}))
+             'sources': {path: _hash(path) for path in self._files(own=True)},
+             'longer': {path: _lines(path) for path in self._files(own=False)}}))
+
+    def _files(self, own):
+        """Return the files of which lines were run: those of the package, or bound templates."""
+        return [path for path in self.trace.get_data().measured_files()
+                if path.startswith(f'{ROOT}/rigid_body_sim/') == own]
 
 
 def _name(fixture):
     return f'fixture: {fixture.baseid}::{fixture.argname}'
+
+
+def _hash(path):
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()[:16]
 
 
 def _lines(path):
@@ -127,13 +138,13 @@ def note(tests):
 
 @functools.cache
 def _noted():
-    """Return a list of what was noted: (data of coverage.py, seconds, users, lines, root)."""
+    """Return a list of what was noted: (data of coverage.py, all else)."""
     found = []
     for path in sorted(FOLDER.glob('*.json')):
         of, data = json.loads(path.read_text()), coverage.CoverageData(path.with_suffix(
             '.coverage'))
         data.read()
-        found.append((data, of['seconds'], of['users'], of['longer'], of['root']))
+        found.append((data, of))
     return found
 
 
@@ -142,15 +153,16 @@ def _contexts(file):
     """Return (line -> contexts, context -> CPU seconds, context -> those that use it)."""
     lines, seconds, users = {}, {}, {}
     bound = re.compile(rf'/{pathlib.PurePath(file).stem}_[0-9a-f]{{12}}\.py')
-    for data, took, used, longer, root in _noted():
-        seconds |= took
-        users |= used
-        shifts = {f'{root}/{file}': 0} | {
-            path: more - _lines(ROOT / file) for path, more in longer.items()
-            if bound.search(path)}
+    for data, of in _noted():
+        seconds |= of['seconds']
+        users |= of['users']
+        own, now = f'{of["root"]}/{file}', ROOT / file
+        edited = of['sources'].get(own) != _hash(now)
+        shifts = {own: 0} | {path: more - _lines(now) for path, more in of['longer'].items()
+                             if bound.search(path)}
         for path, shift in shifts.items():
             for line, names in data.contexts_by_lineno(path).items():
-                lines.setdefault(line - shift, set()).update(names)
+                lines.setdefault(0 if edited else line - shift, set()).update(names)
     return lines, seconds, users
 
 
@@ -160,7 +172,7 @@ def covering(file, first, last):
     If no test runs them, as what is run when a module is imported, it is all that run any line.
     """
     lines, seconds, users = _contexts(file)
-    found = set().union(*(lines.get(line, ()) for line in range(first, last + 1))) - {''}
+    found = set().union(*(lines.get(line, ()) for line in (0, *range(first, last + 1)))) - {''}
     found = found or set().union(*lines.values()) - {''}
     found = found.union(*(users.get(name, ()) for name in found))
     return {name: seconds[name] for name in found if name in seconds}
@@ -170,8 +182,8 @@ def covering(file, first, last):
 def short():
     """Return the names, without parameters, of tests of which each run passed and was short."""
     longest = {}
-    for _, seconds, *_ in _noted():
-        for name, took in seconds.items():
+    for _, of in _noted():
+        for name, took in of['seconds'].items():
             test = name.partition('[')[0]
             longest[test] = max(took, longest.get(test, 0.0))
     return {test for test, took in longest.items() if took < SHORT}
@@ -179,7 +191,7 @@ def short():
 
 def noted_files():
     """Return the files of the tests that were noted."""
-    return {name.partition('::')[0] for _, seconds, *_ in _noted() for name in seconds}
+    return {name.partition('::')[0] for _, of in _noted() for name in of['seconds']}
 
 
 class Chosen:

@@ -28,6 +28,7 @@ def noted(tmp_path, monkeypatch):
     data.write()
     (tmp_path / 'one.json').write_text(json.dumps({
         'root': str(root), 'longer': {str(bound): covering._lines(bound)},
+        'sources': {str(root / FILE): covering._hash(covering.ROOT / FILE)},
         'seconds': {'test/a.py::test_1': 0.5, 'test/a.py::test_2[x-1]': 3.0,
                     'test/b.py::test_3': 0.1, 'digest: top by exact': 0.2},
         'users': {'fixture: test/b.py::made': ['test/b.py::test_3', 'test/b.py::test_4']}}))
@@ -55,3 +56,12 @@ def test_what_is_run_at_import_is_run_by_all_that_use_the_file(noted):
 def test_a_test_is_short_if_each_of_its_runs_is(noted):
     assert covering.short() == {'test/a.py::test_1', 'test/b.py::test_3', 'digest: top by exact'}
     assert covering.noted_files() >= {'test/a.py', 'test/b.py'}
+
+
+def test_of_a_file_that_was_edited_since_all_lines_count(noted, tmp_path):
+    path = tmp_path / 'one.json'
+    of = json.loads(path.read_text())
+    of['sources'] = dict.fromkeys(of['sources'], 'another')
+    path.write_text(json.dumps(of))
+    covering._noted.cache_clear()
+    assert len(covering.covering(FILE, 11, 11)) == 4
