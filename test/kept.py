@@ -78,6 +78,34 @@ def _split(text):
     return parts[::2], list(map(float, parts[1::2]))
 
 
+def drawn(figure):
+    """Return what a figure of matplotlib shows."""
+    from matplotlib.collections import Collection
+    from matplotlib.colors import to_hex
+
+    def line(one):
+        return {'label': one.get_label(), 'color': to_hex(one.get_color()),
+                'style': [one.get_linestyle(), one.get_marker(), one.get_drawstyle()],
+                'sizes': [one.get_linewidth(), one.get_markersize()],
+                'x': np.asarray(one.get_xdata(), float), 'y': np.asarray(one.get_ydata(), float)}
+
+    def axes(one):
+        return {
+            'labels': [one.get_xlabel(), one.get_ylabel()], 'scale': one.get_yscale(),
+            'limits': [*one.get_xlim(), *one.get_ylim()], 'lines': list(map(line, one.lines)),
+            'texts': [[text.get_text(), *getattr(text, 'xy', ()), *text.get_position(),
+                       text.get_fontsize()] for text in one.texts],
+            'patches': [[to_hex(patch.get_facecolor()), *patch.get_extents().bounds]
+                        for patch in one.patches],
+            'legend': [text.get_text() for text in one.get_legend().get_texts()]
+            if one.get_legend() else None,
+            'collections': [[len(part.get_paths()), len(part.get_offsets()),
+                             *map(float, part.get_linewidth())][:4]
+                            for part in one.collections if isinstance(part, Collection)]}
+    return {'size': list(figure.get_size_inches()), 'title': figure.get_suptitle(),
+            'axes': list(map(axes, figure.axes))}
+
+
 def check(name, found):
     """Compare a picture with the one that is kept under a name; RIGID_BODY_SIM_KEEP keeps it."""
     path, found = FOLDER / f'{name}.json', json.loads(json.dumps(brief(found)))

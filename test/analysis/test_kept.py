@@ -7,8 +7,6 @@ import kept
 import numpy as np
 import pytest
 from analysis import made
-from matplotlib.collections import Collection
-from matplotlib.colors import to_hex
 
 from rigid_body_sim.analysis import page, panels, plots
 from rigid_body_sim.analysis.analyze import _ledger
@@ -39,31 +37,6 @@ def analysed(request, tmp_path_factory):
         return request.param, one, summary(one, spectrum), spectrum, _ledger(one.source)
 
 
-def drawn(figure):
-    """Return what a figure of matplotlib shows."""
-    def line(one):
-        return {'label': one.get_label(), 'color': to_hex(one.get_color()),
-                'style': [one.get_linestyle(), one.get_marker(), one.get_drawstyle()],
-                'sizes': [one.get_linewidth(), one.get_markersize()],
-                'x': np.asarray(one.get_xdata(), float), 'y': np.asarray(one.get_ydata(), float)}
-
-    def axes(one):
-        return {
-            'labels': [one.get_xlabel(), one.get_ylabel()], 'scale': one.get_yscale(),
-            'limits': [*one.get_xlim(), *one.get_ylim()], 'lines': list(map(line, one.lines)),
-            'texts': [[text.get_text(), *text.xy, *text.xyann, text.get_fontsize()]
-                      for text in one.texts],
-            'patches': [[to_hex(patch.get_facecolor()), *patch.get_extents().bounds]
-                        for patch in one.patches],
-            'legend': [text.get_text() for text in one.get_legend().get_texts()]
-            if one.get_legend() else None,
-            'collections': [[len(part.get_paths()), len(part.get_offsets()),
-                             *map(float, part.get_linewidth())][:4]
-                            for part in one.collections if isinstance(part, Collection)]}
-    return {'size': list(figure.get_size_inches()), 'title': figure.get_suptitle(),
-            'axes': list(map(axes, figure.axes))}
-
-
 def plain(figure):
     """Return what a figure of Plotly shows."""
     def numbers(part):
@@ -87,7 +60,7 @@ def test_figures_for_print(analysed):
         figures['ledger'] = plots.stack(panels.energies(balance), 'title', one.source)
     if spectrum.amplitudes:
         figures['spectrum'] = plots.spectra(spectrum, 'title')
-    kept.check(f'print_{name}', {key: drawn(figure) for key, figure in figures.items()})
+    kept.check(f'print_{name}', {key: kept.drawn(figure) for key, figure in figures.items()})
 
 
 @pytest.mark.skipif(not page.available(), reason='needs plotly')

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.expressions.reader import LONGEST, read
+from rigid_body_sim.scene.expressions.reader import DEEPEST, LARGEST_POWER, LONGEST, read
 from rigid_body_sim.scene.expressions.source import HEAD, Lines
 from rigid_body_sim.scene.expressions.tree import derivatives, parts
 
@@ -108,3 +108,29 @@ def test_a_hostile_expression_is_taken_or_refused_at_once(text):
     assert line.isprintable()
     assert len(line) < 300
     assert time.process_time() - begin < 5.0    # measured 0.02
+
+
+def test_lengths_depths_and_powers_are_taken_up_to_their_bounds():
+    assert str(read('x' + ' ' * (LONGEST - 1), NAMES, 'here')) == 'x'
+    assert str(read(f'x^{LARGEST_POWER}', NAMES, 'here')) == f'(x ^ {LARGEST_POWER})'
+    assert str(read(f'x^-{LARGEST_POWER}', NAMES, 'here')) == f'(x ^ -{LARGEST_POWER})'
+    deepest = '+' * DEEPEST
+    assert str(read(f'{deepest}x', NAMES, 'here')) == 'x'
+    for opening, closing in (('-', ''), ('+', ''), ('sin(', ')'), ('1 + (x < ', ')'), ('t*(', ')'),
+                             ('(', ')/t'), ('max(t, ', ')'), ('(', ' > t)')):
+        with pytest.raises(BadInput, match='too deep'):
+            read(f'{opening}{deepest}x{closing}', NAMES, 'here')
+    for power in (1.001 * LARGEST_POWER, -1.001 * LARGEST_POWER):
+        with pytest.raises(BadInput, match='the power'):
+            read(f'x^{power}', NAMES, 'here')
+
+
+def test_orders_are_read_either_way_round_and_choose_by_the_comparison():
+    for text, shown in (('where(x < k, t, 1)', 'where(less(x, k), t, 1.0)'),
+                        ('where(x <= k, t, 1)', 'where(less(x, k), t, 1.0)'),
+                        ('where(x > k, t, 1)', 'where(less(k, x), t, 1.0)'),
+                        ('where(x >= k, t, 1)', 'where(less(k, x), t, 1.0)')):
+        assert str(read(text, NAMES, 'here')) == shown
+    for text in ('where(x, t, 1)', 'where(x < k < t, 1, 2)', 'where(x == k, 1, 2)'):
+        with pytest.raises(BadInput):
+            read(text, NAMES, 'here')

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Table and figure of a work-precision study of made-up results, by hand and as they were kept."""
+
+import kept
+import pytest
+
+from rigid_body_sim.study.precision import figure, table
+
+
+def point(error, cost, **more):
+    return {'setting': 1, 'set_up': 0.25, 'first_run': 0.1, 'error': error,
+            'largest_error': 2.0 * error, 'omega_error': 3.0 * error, 'largest_omega_error': error,
+            'energy_residual': 1e-15, 'momentum_residual': 2e-15,
+            'cpu': {'median': cost, 'least': 0.9 * cost, 'most': 1.5 * cost}, **more}
+
+
+def line(name, *points, peer=False, control='accuracy', notes=()):
+    return {'name': name, 'control': control, 'is_peer': peer, 'notes': list(notes),
+            'points': [point(*one) for one in points]}
+
+
+RESULT = {
+    'problem': 'racket', 'about': 'made up', 'duration': 100.0, 'floor': 1e-13,
+    'lines': [
+        line('exact', (1e-15, 2e-6), control='none'),
+        line('exact, one more state', (1e-15, 1e-7), control='none'),
+        line('dop8', (1e-2, 1e-5), (1e-5, 3e-5), (1e-10, 8e-5), (2e-13, 2e-4),
+             notes=['first', 'it gave up at 1e-14']),
+        line('dop8, fixed step', (1e-4, 4e-6), (1e-8, 9e-5), control='step'),
+        line('a peer', (1e-4, 4e-5), (1e-7, 1e-4), peer=True),
+        line('another', (20.0, 1e-6), (1e-18, 1e-2), peer=True)],
+    'refused': {'lsoda': 'it is not asked'}}
+LINES = {one['name']: one for one in RESULT['lines']}
+
+
+def test_the_cost_at_a_level_is_the_least_of_what_reaches_it():
+    assert table.cost_at(LINES['dop8'], 1e-3) == 3e-5
+    assert table.cost_at(LINES['dop8'], 1e-5) == 3e-5    # reached exactly
+    assert table.cost_at(LINES['dop8'], 1e-12) == 2e-4
+    assert table.cost_at(LINES['dop8'], 1e-13) is None
+    assert table.cost_at(LINES['dop8'], 1e-5, 'largest_error') == 8e-5
+    assert table.best(LINES['dop8']) == 2e-13
+
+
+def test_ratios_compare_our_cheapest_with_the_cheapest_peer():
+    found = table.ratios(RESULT, lambda name: name.startswith('dop8'))
+    assert found == pytest.approx([4e-6 / 4e-5, 8e-5 / 1e-4, 8e-5 / 1e-2, 2e-4 / 1e-2])
+    assert table.ratios(RESULT, lambda name: False) == [None] * 4
+    alone = RESULT | {'lines': [one for one in RESULT['lines'] if not one['is_peer']]}
+    assert table.ratios(alone, lambda name: True) == [None] * 4
+
+
+def test_who_leads_at_some_level_is_drawn_thick():
+    ours = [one for one in RESULT['lines'] if not one['is_peer']]
+    assert figure.leaders(ours) == {'exact, one more state'}
+    assert figure.leaders(ours[2:]) == {'dop8', 'dop8, fixed step'}
+    assert figure.leaders([LINES['a peer'], LINES['another']]) == {'a peer', 'another'}
+    assert figure.leaders([]) == set()
+
+
+def test_table_and_figure_are_those_kept():
+    other = RESULT | {'problem': 'top', 'floor': 1e-10, 'lines': RESULT['lines'][2:5]}
+    kept.check('work_precision', {
+        'table': table.lines(RESULT), 'another': table.lines(other),
+        'figure': kept.drawn(figure.draw([RESULT, other, RESULT])),
+        'alone': kept.drawn(figure.draw([other]))})
