@@ -59,8 +59,12 @@ def pytest_pyfunc_call(pyfuncitem):
 
 
 def _without_numba(wanted):
-    """Return name -> what failed, '' if nothing, of a test and those like it in its file."""
-    names = [item.nodeid for item in wanted.session.items if item.path == wanted.path
+    """Return name -> what failed, '' if nothing, of a test and those like it later in its file.
+
+    Those before it are another worker's.
+    """
+    items = wanted.session.items
+    names = [item.nodeid for item in items[items.index(wanted):] if item.path == wanted.path
              and item.get_closest_marker('without_numba') is not None]
     with tempfile.TemporaryDirectory() as folder:
         outcomes = pathlib.Path(folder) / 'outcomes'
