@@ -172,7 +172,7 @@ def _checked(mapping, where, folder, functions=None):
     vary = {str(key): values_of(values, f'{where}: vary.{key}')
             for key, values in _mapping(mapping.get('vary'), f'{where}: vary').items()}
     sample, runs, seed = sample_of(_mapping(mapping.get('sample'), f'{where}: sample'),
-                                 f'{where}: sample')
+                                   f'{where}: sample')
     _check_keys(vary, sample, where)
     times = times_of(mapping.get('times', 0.0), f'{where}: times')
     known = dict(functions or {})
