@@ -42,7 +42,7 @@ from rigid_body_sim.motions.free_body.rotation import (
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.functions import exp
 from rigid_body_sim.numerics.pairs import pair_of, times
-from rigid_body_sim.numerics.phase import COUNTABLE
+from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -149,10 +149,12 @@ def next_event(anchor, after):
     if not abs(half_turns) < COUNTABLE:
         return math.inf, 0
     time = _flip_time(course, damping, half_turns)
-    while time <= after:
+    for _ in range(TRIES):
+        if time > after:
+            return time, 0
         half_turns += 1.0
         time = _flip_time(course, damping, half_turns)
-    return time, 0
+    return math.inf, 0
 
 
 @compiled_inline

@@ -197,6 +197,33 @@ def test_what_python_does_between_marches_counts_as_work(method, parts, monkeypa
         simulation.states([1e7])
 
 
+STRUCK = {'strike': {'impulse': [0, 1e-9, 0], 'point': [0.1, 0, 0.2], 'time': 0.002}}
+TOP = {'mass': 1.0, 'inertia': [0.02, 0.02, 0.01], 'center_of_mass': [0, 0, 0.1]}
+SWIFT = {
+    'free body': {
+        'constraint': 'free', 'body': BODY, 'effects': [STRUCK],
+        'initial': {'angular_velocity': [0.0, 1e40, 200.0]}},
+    'damped body': {
+        'constraint': 'free', 'body': BODY, 'effects': [STRUCK, {'drag': {'linear': 1e-9}}],
+        'initial': {'angular_velocity': [0.0, 1e40, 200.0]}},
+    'pendulum': {
+        'constraint': {'hinge': {'axis': [1, 0, 0], 'through': [0, 0, 0]}}, 'body': TOP,
+        'effects': [STRUCK, {'gravity': {'g': 1e74}}], 'initial': {'angle': 1.0, 'rate': 0.0}},
+    'Lagrange top': {
+        'constraint': 'pivot', 'body': TOP, 'effects': [STRUCK, {'gravity': {'g': 9.81}}],
+        'initial': {'tilt': 1.0, 'spin': 1e40}}}
+
+
+@pytest.mark.without_numba
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize('parts', SWIFT.values(), ids=SWIFT)
+def test_events_that_doubles_do_not_tell_apart_are_not_looked_for(parts):
+    simulation = Simulation(scene(**parts))
+    assert simulation.method == 'exact'
+    simulation.advance(5)
+    assert np.isfinite(simulation.vector).all()
+
+
 def test_a_march_in_slices_has_the_bits_of_one_that_is_asked_for_each_state():
     top = load_scene('driven_body')
     once, often = (Stepped(top, 'dop8', 1e-9).start(top.initial.vector) for _ in range(2))

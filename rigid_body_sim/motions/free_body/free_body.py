@@ -40,7 +40,7 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import two_sum
-from rigid_body_sim.numerics.phase import COUNTABLE
+from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.numerics.vectors import cross, minus, plus
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -177,7 +177,9 @@ def next_event(anchor, after):
     if not abs(half_turns) < COUNTABLE:
         return math.inf, 0
     time = course.start + (0.5 * half_turns - course.phase) / rate
-    while time <= after:
+    for _ in range(TRIES):
+        if time > after:
+            return time, 0
         half_turns += 1.0
         time = course.start + (0.5 * half_turns - course.phase) / rate
-    return time, 0
+    return math.inf, 0

@@ -51,7 +51,7 @@ from rigid_body_sim.motions.loops import COLUMNS
 from rigid_body_sim.numerics.double_double import multiply_double, two_sum
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import quotient
-from rigid_body_sim.numerics.phase import COUNTABLE
+from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies, principal_axes
 from rigid_body_sim.scene.constraints import Pivot
@@ -222,12 +222,12 @@ def next_event(anchor, after):
     if not abs(index) < COUNTABLE:
         return math.inf, 0
     time = turning_time(anchor, index)
-    while time <= after:
+    for _ in range(TRIES):
+        if time > after:
+            return time, 0
         index += 1.0
-        if turning_time(anchor, index) == math.inf:
-            return math.inf, 0
         time = turning_time(anchor, index)
-    return time, 0
+    return math.inf, 0
 
 
 @compiled

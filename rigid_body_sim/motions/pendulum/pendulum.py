@@ -55,7 +55,7 @@ from rigid_body_sim.motions.pendulum.anchor import (
     steady,
 )
 from rigid_body_sim.numerics.double_double import two_sum
-from rigid_body_sim.numerics.phase import COUNTABLE
+from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -139,10 +139,12 @@ def next_event(anchor, after):
     if not abs(half_turns) < COUNTABLE:
         return math.inf, 0
     time = _turning_time(course, half_turns)
-    while time <= after:
+    for _ in range(TRIES):
+        if time > after:
+            return time, 0
         half_turns += 1.0
         time = _turning_time(course, half_turns)
-    return time, 0
+    return math.inf, 0
 
 
 @compiled_inline
