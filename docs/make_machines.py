@@ -13,7 +13,8 @@ from rigid_body_sim.simulation import arithmetic
 
 DOCS = pathlib.Path(__file__).resolve().parent
 BEGIN = '## What was measured\n'
-HEAD = ('this machine stands for', 'digests', 'numeric tests', 'seconds', 'processor', 'date')
+HEAD = ('this machine stands for', 'digests', 'numeric tests', 'seconds', 'processor', 'commit',
+        'date')
 
 
 def section(rows, version):
@@ -29,7 +30,7 @@ def section(rows, version):
         made = row.get('arithmetic', version)
         verdict = row['verdict'] + f' (`{made}`)' * (made != version)
         cells.append((row['name'], verdict, row.get('tests') or '-', str(row.get('seconds', '-')),
-                      row.get('processor', '-'), row.get('date', '-')))
+                      row.get('processor', '-'), row.get('commit', '-'), row.get('date', '-')))
     return '\n'.join([*lines, *(f'| {" | ".join(row)} |' for row in cells)]) + '\n'
 
 

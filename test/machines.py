@@ -177,11 +177,19 @@ def _tell(machine, apart):
         print(f'{machine.name}: ... all in {path}')
 
 
+def _commit():
+    """Return the commit that is visited, with a + if files differ from it."""
+    def git(*words):
+        return subprocess.run(['git', *words], cwd=ROOT, capture_output=True, text=True).stdout
+    return git('rev-parse', '--short', 'HEAD').strip() + '+' * bool(
+        git('status', '--porcelain', '--', 'rigid_body_sim'))
+
+
 def _visited(machine, recording):
     """Visit a machine, print what is found, and return its row of the table."""
     begin = time.monotonic()
     row = {'name': machine.name, 'arithmetic': arithmetic.version(), 'tests': '', 'differ': 0,
-           'processor': environment.processor().split()[0],
+           'processor': environment.processor().split()[0], 'commit': _commit(),
            'date': datetime.datetime.now(datetime.UTC).date().isoformat()}
     try:
         row['digests'], apart, row['tests'] = visit(machine, recording)
@@ -196,12 +204,19 @@ def _visited(machine, recording):
     return row
 
 
+def _wanted(words):
+    """Return the machines whose names begin with a word; a whole name means that machine alone."""
+    known = {one.name: one for one in machines()}
+    found = {name for word in words or [''] for name in known
+             if (name == word if word in known else name.startswith(word))}
+    return [one for name, one in known.items() if name in found]
+
+
 def main(words):
     """Visit the machines, keep the table; return the exit status."""
     CACHE.mkdir(parents=True, exist_ok=True)
     recording = _record()
-    names = tuple(word for word in words if word != '--digests')
-    wanted = [one for one in machines() if not names or one.name.startswith(names)]
+    wanted = _wanted([word for word in words if word != '--digests'])
     # the first one compiles what those that differ in their libraries only find compiled
     rows = [_visited(one, recording) for one in wanted[:1]]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

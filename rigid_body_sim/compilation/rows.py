@@ -2,8 +2,8 @@
 """Columns to rows, eight rows at a time, by the vector unit of the processor.
 
 Kernels that compute many states side by side fill columns, one for each number of a state; whoever
-asked wants rows. One number after the other, that takes 2 ns a state, a fifth of what a state in
-closed form costs; here it takes 1 ns. Numbers are copied, so the bits stay.
+asked wants rows. Numbers are copied, so the bits stay; in the caches of an AMD EPYC (Zen 5) a state
+takes 1 ns, one number after the other 2 ns.
 """
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
@@ -71,12 +71,16 @@ def compiled_rows(count, stride):
             # a row begins `step` numbers after the one before
             step = builder.sdiv(builder.extract_value(out.strides, 0),
                                 ir.Constant(INDEX, out_type.dtype.bitwidth // 8))
+            groups = []
             for begin in begins:
                 found = [operations.load(columns, operations.place(at, stride, begin + j))
                          for j in range(LANES)]
-                for k, one in enumerate(turned(found, operations.shuffled)):
-                    place = operations.place(begin, step, builder.add(row, ir.Constant(INDEX, k)))
-                    operations.put(one, out.data, place)
+                groups.append(turned(found, operations.shuffled))
+            # row after row, as memory takes them best
+            for k in range(LANES):
+                line = builder.add(row, ir.Constant(INDEX, k))
+                for begin, group in zip(begins, groups, strict=True):
+                    operations.put(group[k], out.data, operations.place(begin, step, line))
             return context.get_dummy_value()
         out_type = out
         return types.void(columns, types.int64, out, types.int64), write
