@@ -5,6 +5,7 @@ Nothing is fetched: equations become MathML, which browsers draw themselves, and
 in the page.
 """
 
+import os
 import pathlib
 import sys
 import xml.etree.ElementTree
@@ -27,7 +28,12 @@ myst_enable_extensions = ['dollarmath', 'deflist']
 myst_heading_anchors = 3
 # a file of the tree (a scene, a script) is a download; pages of folders outside of docs are not
 suppress_warnings = ['misc.highlighting_failure']
-nb_execution_mode = 'off'
+# notebooks are run where they changed since the last build, by a kernel that finds this tree
+nb_execution_mode = 'cache'
+nb_execution_cache_path = str(HERE.parent / '.cache' / 'notebooks')
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+os.environ['PYTHONPATH'] = str(HERE.parent)
 exclude_patterns = ['_build', 'figures', 'images', *([] if own else ['notebooks'])]
 
 autosummary_generate = True

@@ -21,7 +21,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.player import states_of
 
 FRAMES_A_SECOND, MOST_FRAMES = 120, 6000
-HEIGHT = 640    # px
+HEIGHT = 540    # px
 
 
 class View:
