@@ -30,6 +30,7 @@ initial: {rate: 0.2}
 @pytest.fixture(scope='module')
 def struck(tmp_path_factory):
     """Return the numbers of the report, its text and its page."""
+    pytest.importorskip('plotly')
     path = tmp_path_factory.mktemp('struck')
     (path / 'bar.yaml').write_text(SCENE)
     assert simulate(['--scene', str(path / 'bar.yaml'), '--duration', '1', '--rate', '200',
