@@ -105,7 +105,8 @@ def test_the_ledger_balances(found, case):
     1.3e-9.
     """
     ledger = found[case]['ledger']
-    assert abs(ledger['energy_residual']) < 5e-15
+    # driven at 20 rad/s the state itself is 8e-15 from its 34 digits
+    assert abs(ledger['energy_residual']) < (2e-14 if 'on a moving pivot' in case else 5e-15)
     assert ledger['momentum_residual'] < (1e-8 if case in ('compass needle', 'satellite')
                                           else 5e-15)
 

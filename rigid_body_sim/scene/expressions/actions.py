@@ -19,6 +19,7 @@ from rigid_body_sim.scene.expressions.source import (
     VELOCITY,
     WORLD_RATES,
     Lines,
+    frame_matrix,
     kernel,
     prelude,
 )
@@ -97,8 +98,7 @@ def _to_frame(lines, components, axes, frame):
         return f'rotate_back(qx, qy, qz, qw, {components})'
     if frame.axes == IDENTITY:
         return f'({components})'
-    turn = ', '.join(lines.value(f'axes{k}', part) for k, part in enumerate(frame.axes))
-    return f'rotate_back({turn}, {components})'
+    return f'apply({frame_matrix(lines, frame, back=True)}, ({components}))'
 
 
 def _to_world(lines, components, axes, frame):
