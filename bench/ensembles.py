@@ -54,7 +54,7 @@ def stepped(case, goal):
     starts = starts_of(scene, MANY)
     exact = [exact_attitude(scene, DURATION, start) for start in starts[:CHECKED]]
 
-    axes = scene.constraint.frame(scene.body).axes
+    axes = scene.frame.axes
 
     def error_of(attitudes):
         return max(angle_between(*q, *truth) for q, truth in zip(attitudes, exact, strict=True))

@@ -74,7 +74,7 @@ def heyoka_system(scene):
     import heyoka
 
     qx, qy, qz, qw, wx, wy, wz = heyoka.make_vars('qx', 'qy', 'qz', 'qw', 'wx', 'wy', 'wz')
-    frame, torque = scene.constraint.frame(scene.body), scene.effect('torque')
+    frame, torque = scene.frame, scene.effect('torque')
     I1, I2, I3 = frame.moments
     rows = [[None] * 3, [None] * 3,
             [2.0 * (qx * qz - qw * qy), 2.0 * (qy * qz + qw * qx),
@@ -110,7 +110,7 @@ def heyoka_system(scene):
 def in_frame(scene, vector):
     """Return q and omega of a state vector in the scene's frame."""
     from rigid_body_sim.numerics.rotations import multiply, rotate_back
-    axes = scene.constraint.frame(scene.body).axes
+    axes = scene.frame.axes
     return [*multiply(*vector[1:5], *axes), *rotate_back(*axes, *vector[5:8])]
 
 
@@ -129,7 +129,7 @@ def our_run(scene, duration, method, accuracy):
     from rigid_body_sim.numerics.rotations import multiply
     choice, start, out = (choose(scene, method, accuracy, horizon=duration),
                           scene.initial.vector, np.empty(14))
-    axes = scene.constraint.frame(scene.body).axes
+    axes = scene.frame.axes
 
     def act():
         choice.solver(start, STILL).state(duration, out)

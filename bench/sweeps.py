@@ -129,7 +129,7 @@ def beside_heyoka():
 
     count, duration = 512, 20.0
     scene = parse_scene(f'scene: bench\n{CASES[CASE]}')
-    axes = scene.constraint.frame(scene.body).axes
+    axes = scene.frame.axes
     rates = float(scene.initial.angular_velocity[2]) * np.linspace(0.9, 1.1, count)
     spec = {
         'scene': scene,

@@ -69,7 +69,7 @@ class Segment:
         """Return whether `harmless` is true of everything that acts between impulses."""
         if self.scene is None or self.held or self.scene.constraint.mechanism is Mechanism.PLANE:
             return False
-        frame = self.scene.constraint.frame(self.scene.body)
+        frame = self.scene.frame
         return all(effect.contact is None and all(map(harmless, effect.acting(frame, 0.0)))
                    for effect in self.scene.acting)
 

@@ -7,7 +7,6 @@ was measured to meet the accuracy (measured.py), after a trial run on the scene 
 
 import functools
 import logging
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -67,6 +66,8 @@ class Choice:
         Time over which the accuracy holds, s.
     tolerance : float or None
         The accuracy that the method is given: what `auto` found sufficient, else `accuracy`.
+    settled : trial.Settled or None
+        What `auto` chose, as `choose` takes it again; None of a method that was named.
     """
 
     scene: object
@@ -76,11 +77,11 @@ class Choice:
     horizon: float
     tolerance: float | None
     _prototype: Solver
-    _find: Callable[[], Forecast] | None
+    settled: trial.Settled | None
 
-    @functools.cached_property
+    @property
     def _forecast(self):
-        return self._find() if self._find else Forecast(None, None)
+        return self.settled.forecast if self.settled else Forecast(None, None)
 
     @property
     def expected_error(self):
@@ -91,13 +92,6 @@ class Choice:
     def met_until(self):
         """Time until which the accuracy is met (s), where `auto` chose: the horizon, or less."""
         return self._forecast.met_until
-
-    @property
-    def settled(self):
-        """The choice of `auto`, as `choose` accepts it again; None if a method was named."""
-        if self.expected_error is None:
-            return None
-        return trial.Settled(self.method, self.tolerance, self.expected_error, self.met_until)
 
     @property
     def missed(self):
@@ -226,12 +220,12 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
             # the forecast of a closed form decides nothing, so it is made on demand
             find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
             return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
-                          _known(settled) if settled else find)
+                          settled or trial.Settled('exact', accuracy, find=find))
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
         raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
                        'leave it out, or name a method that does')
     able, stiff = runnable(scene), _stiff(scene)
-    method, tolerance, find = integrator, accuracy, None
+    method, tolerance, prototype = integrator, accuracy, None
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
@@ -240,20 +234,20 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
             method, tolerance = able[0], finer
         else:
             settled = settled or trial.settle(scene, fit, finer, horizon)
-            method, tolerance, find = settled.method, settled.tolerance, _known(settled)
+            method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
+    else:
+        settled = None
     if method not in able:
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',
                        f'those that can: {possible}')
     if 'dissipation' in stiff and tolerance is not None:
         tolerance = min(tolerance, ENDING)
-    prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
-    return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, find)
-
-
-def _known(settled):
-    """Return a function that makes the Forecast of a settled choice."""
-    return functools.partial(Forecast, settled.expected_error, settled.met_until)
+    if prototype is not None and step is None:
+        prototype = prototype.at(tolerance)
+    else:
+        prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
+    return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, settled)
 
 
 class _Closed(NamedTuple):

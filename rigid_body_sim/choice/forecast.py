@@ -24,11 +24,11 @@ from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import angle_between, normalised
+from rigid_body_sim.numerics.rotations import angles_between, normalised
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-LOOKS = 24               # number of times at which runs are compared
+LOOKS = 64               # times at which runs are compared
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
          (1, -1, -1, 1, 1, -1, -1))
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
@@ -103,11 +103,9 @@ def run(scene, prototype, vector, times):
             if strike.time > times[-1]:
                 break
             last = int(np.searchsorted(times, strike.time))
-            for k in range(first, last):
-                solver.state(float(times[k]), out[k])
+            solver.states(times[first:last], out[first:last])
             solver, first = prototype.start(_struck(scene, strike, solver)), last
-        for k in range(first, len(times)):
-            solver.state(float(times[k]), out[k])
+        solver.states(times[first:], out[first:])
     except TooMuchWork:
         raise
     except NotConverged:
@@ -145,9 +143,9 @@ def struck_rate(scene):
 
 def apart(states, others):
     """Return the angles between the attitudes of two runs (rad), shape (n,); infinite for NaN."""
-    angles = [angle_between(*one, *other) for one, other in zip(
-        states[:, ORIENTATION].tolist(), others[:, ORIENTATION].tolist(), strict=True)]
-    return np.array([math.inf if math.isnan(angle) else angle for angle in angles])
+    angles = np.empty(len(states))
+    angles_between(states[:, ORIENTATION], others[:, ORIENTATION], angles)
+    return np.where(np.isnan(angles), math.inf, angles)
 
 
 def momenta_apart(scene, states, others):
@@ -161,10 +159,16 @@ def momenta_apart(scene, states, others):
         energies(scene).diagnose_many(parameters(scene), vectors, out)
         found.append(out[:, MOMENTUM:MOMENTUM + 3])
     one, other = found
-    sizes = np.maximum.accumulate([hypot3(*row) for row in one.tolist()])
-    apart = np.array([hypot3(*row) for row in (one - other).tolist()])
+    sizes, apart = np.maximum.accumulate(_lengths(one)), _lengths(one - other)
     shares = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
     return np.where(np.isnan(apart) | np.isnan(sizes), math.inf, shares)
+
+
+def _lengths(vectors):
+    """Return the lengths of vectors (n, 3), shape (n,); NaN where a component is not finite."""
+    sizes = np.abs(vectors).max(axis=1)
+    x, y, z = np.divide(vectors.T, sizes, out=np.zeros((3, len(vectors))), where=sizes != 0.0)
+    return sizes * np.sqrt(x * x + y * y + z * z)
 
 
 def rounding(scene, states, times):

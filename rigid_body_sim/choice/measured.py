@@ -14,6 +14,7 @@ import pathlib
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.scene import kept
 
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
@@ -25,12 +26,13 @@ def table():
     return json.loads(FILE.read_text())
 
 
+@kept
 def kind(scene):
     """Return the kind of a scene in the table: its free directions, and how it makes heat.
 
     Heat at a constant angular momentum (`turning`) is internal dissipation; other heat is damping.
     """
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     acting = [one for effect in scene.effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
     hot = [one for one in acting if one.books == 'heat']

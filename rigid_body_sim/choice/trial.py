@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trial runs of a choice on the scene itself, since a motion may magnify errors.
+"""Trial runs of a choice on the scene itself: a motion may magnify errors, which no table knows.
 
-The chosen method runs from the scene's start, strikes included, and again with a tolerance a
-thousand times finer; the difference is the error of the choice. If it is below the tolerance of
-that other run, it is taken from a still finer one. If the error is too large, the tolerance is
-made finer by the same factor, until that no longer helps. The angular momentum of a slim body has
-a larger error than its attitude, by the quotient of its moments: it counts too, so that the ledger
-balances. Both runs lose the same digits of the start; the effect of that on the attitude is added
-(forecast.py).
+The chosen method runs from the scene's start, strikes included, with a tolerance that is likely to
+meet the accuracy, and with a much finer one; the difference is the error. How errors grow with the
+tolerance then leads to the tolerance that spends what is asked: a tenth of it to two fifths.
+Tolerances are powers of two, so that nothing depends on the last digit of a difference. The
+angular momentum of a slim body errs more than its attitude, by the quotient of its moments: it
+counts too, so that the ledger balances. Both runs lose the same digits of the start: what that
+does to the attitude is found when somebody asks for the expected error (forecast.py).
+
+Where a body turns too little for a trial to pay, the tolerance of the table is taken.
 """
 
+import functools
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,153 +22,256 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.numerics.functions import log, power
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
-LONGER = 10.0   # multiple of the span up to which a trial goes on to a strike
-STEPS, STEPS_PER_RADIAN = 5000, 20    # most work of a trial run: three times that of the finest
-FINER = 1e-3    # tolerance of the run that a choice is compared with, relative to its own
-FINER_ONES = FINER, 0.03, 0.3    # the same, where such a run takes too much work
-TRIES = 5       # largest number of tolerances
-MOMENTA = 0.1   # weight of relative errors of the angular momentum as errors, rad
+LONGER = 10.0   # times that: up to there a trial goes on to a strike
+SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
+STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
+LEAST, MOST, AIM = 0.1, 0.4, 0.2      # of the accuracy: the error that is taken, and aimed at
+COARSER = 8.0   # times the tolerance of the table, which holds on all scenes: the first one tried
+FINER = 2.0 ** -7    # of a tolerance, the one of the run that it is compared with
+NEAR = 2.0 ** -4     # of a tolerance: a run that is less fine is none to compare it with
+FINER_ONES = FINER, NEAR, 0.25    # where a run that much finer takes too much work
+TRIES = 6       # largest number of tolerances
+GROWTH = 1.1    # power of the tolerance with which errors grow, until two are known
+GROWTHS = 0.5, 2.0
+FARTHEST = 2.0 ** 12    # from one tolerance tried to the next, as a factor
+ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mostly round-off
+MOMENTA = 0.1   # share at which relative errors of the angular momentum count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
-MAGNIFIED = 1e-5    # rad: rounding magnified beyond this shows in the errors themselves
+MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
 
-class Settled(NamedTuple):
-    """The choice of `auto`.
+class Settled:
+    """What `auto` chose.
+
+    Parameters
+    ----------
+    method : str
+    tolerance : float
+        rad.
+    expected_error, met_until : float, optional
+        As the attributes, where they are known.
+    find : callable, optional
+        Returns the Forecast where they are not: it is called when somebody asks.
+    prototype : Stepped, optional
+        The method at some accuracy, on the scene and the horizon of the choice.
 
     Attributes
     ----------
     method : str
     tolerance : float
         rad.
-    expected_error : float
-        Largest error of the attitude within the horizon, rad.
-    met_until : float
-        Time until which the accuracy asked is met, s.
     """
 
-    method: str
-    tolerance: float
-    expected_error: float
-    met_until: float
+    def __init__(self, method, tolerance, expected_error=None, met_until=None, find=None,
+                 prototype=None):
+        self.method, self.tolerance, self.prototype = method, tolerance, prototype
+        self._find = find or functools.partial(forecast.Forecast, expected_error, met_until)
+
+    @functools.cached_property
+    def forecast(self):
+        """The Forecast of the choice."""
+        found, self._find = self._find(), None    # what it kept is no longer needed
+        return found
+
+    @property
+    def expected_error(self):
+        """Largest error of the attitude within the horizon, rad."""
+        return self.forecast.error
+
+    @property
+    def met_until(self):
+        """Time until which the accuracy asked is met, s."""
+        return self.forecast.met_until
+
+    def __eq__(self, other):
+        return self is other or (
+            isinstance(other, Settled)
+            and (self.method, self.tolerance) == (other.method, other.tolerance)
+            and self.forecast == other.forecast)
+
+    def __hash__(self):
+        return hash((self.method, self.tolerance))
+
+    def __reduce__(self):
+        return Settled, (self.method, self.tolerance, *self.forecast)
+
+    def __deepcopy__(self, memo):
+        return self
 
 
 def settle(scene, able, accuracy, horizon):
     """Return the Settled choice that meets an accuracy on this scene.
 
-    A method that takes many more steps than the motion requires is unsuitable, and the next one is
-    tried. If none meets the accuracy, the most accurate method of the table is taken. The
-    parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a
-    long horizon, and errors are taken to grow in proportion to time.
+    A method that takes many more steps than the motion asks for is no method for the scene: the
+    next one is tried. Where none meets the accuracy, the most accurate method of the table is
+    taken. The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a
+    part of a long horizon, and errors are taken to grow in proportion to time.
 
     Raises
     ------
     NotConverged
         No method follows the scene.
     """
-    # a method that was not measured on such scenes is used only if it is named
+    # a method that was not measured on such scenes is for those who name it
     left, failed = [name for name in able if measured.rows(scene).get(name)], None
     while left:
         method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
+        trial = _Trial(scene, accuracy, horizon, method, promised)
         try:
-            return _settled(scene, accuracy, horizon, method, tolerance, promised)
+            if trial.radians <= SHORT and promised <= accuracy:
+                found = tolerance
+            else:
+                found = trial.tolerance_from(tolerance)
         except TooMuchWork as error:
             left.remove(method)
             failed = error
+        else:
+            return Settled(method, found, find=functools.partial(trial.forecast, found),
+                           prototype=trial.prototype)
     raise NotConverged(f'no method follows the scene; the last one tried was {failed or "none"}')
 
 
-def _settled(scene, accuracy, horizon, method, tolerance, promised):
-    """Return what `settle` returns, for one method and the tolerance at which it begins.
+class _Trial:
+    """The trial runs of one method on a scene.
 
-    More than forty lines: its helpers share the runs made so far, each of which is made once.
+    Parameters
+    ----------
+    promised : float
+        The error at the tolerance of the table, rad: what is expected where runs tell nothing.
+
+    Attributes
+    ----------
+    radians : float
+        By which the body turns at most, about.
     """
-    time = min(horizon, _span(scene, horizon))
-    if not time > 0.0:
-        return Settled(method, tolerance, promised, horizon)
-    part, runs = time / horizon, {}
-    times = forecast.looks(time)
-    radians = (_pace(scene) + 0.5 * drive(scene, None) * time) * time
-    most = STEPS + int(min(STEPS_PER_RADIAN * radians, LONGER * STEPS_PER_RADIAN * RADIANS))
 
-    def prototype(tolerance):
-        return Stepped(scene, method, tolerance, horizon=horizon, most=most)
+    def __init__(self, scene, accuracy, horizon, method, promised):
+        self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
+        self._promised, self._runs, self._compared = promised, {}, {}
+        pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
+        time = min(horizon, _span(scene, pace, push, horizon))
+        self._part, self._times = time / horizon, forecast.looks(time)
+        self.radians = (pace + 0.5 * push * time) * time
+        most = STEPS + int(
+            min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS))
+        known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
+        self._finest, self._coarsest = min(known), max(known)
+        self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
 
-    def states(tolerance):
-        """Return the states of a trial run; TooMuchWork is raised."""
-        if tolerance not in runs:
-            runs[tolerance] = forecast.run(
-                scene, prototype(tolerance), scene.initial.vector, times)
-        return runs[tolerance]
+    def tolerance_from(self, tolerance):
+        """Return the tolerance that meets the accuracy, from the one of the table on.
 
-    def finer_run(tolerance):
+        Raises
+        ------
+        TooMuchWork
+            A run takes more steps than the motion asks for.
+        """
+        accuracy, good, bad, here = self._accuracy, None, None, self._grid(COARSER * tolerance)
+        for _ in range(TRIES):
+            error = self._error(here)
+            if error is None:    # no finer run to compare with: what was seen last is kept
+                return here if bad is None else bad[0]
+            if error <= MOST * accuracy:
+                good = here, error
+                if error >= LEAST * accuracy or here == self._coarsest:
+                    return here
+            elif bad and good is None and here < bad[0] and error > HELPS * bad[1]:
+                return bad[0]    # the motion magnifies round-off
+            elif bad and good is None and error > bad[1] * power(here / bad[0], ROUNDS):
+                return here    # that is most of what is left of the error
+            else:
+                bad = here, error
+            last, here = here, self._next(here, error, good, bad)
+            if here == last or (good and here == good[0]) or (bad and here == bad[0]):
+                break
+        return good[0] if good else min(here, bad[0])
+
+    def forecast(self, tolerance):
+        """Return the Forecast of a choice."""
+        accuracy, horizon, times = self._accuracy, self._horizon, self._times
+        finer = self._reference(tolerance)
+        errors = None if finer is None else forecast.apart(
+            self._states(tolerance), self._states(self._below(finer, tolerance)))
+        if errors is None or not float(errors[0]) < math.inf:
+            return forecast.Forecast(
+                self._promised, horizon if self._promised <= accuracy else 0.0)
+        if float(errors.max()) < MAGNIFIED:
+            errors = np.maximum(errors, forecast.lost(
+                self._scene, self.prototype.at(finer, self._most), times, self._states(finer)))
+        return forecast.forecast(errors, times, accuracy, horizon)
+
+    def _grid(self, tolerance):
+        """Return the largest power of two up to a tolerance, within those of the table."""
+        exponent = math.frexp(tolerance)[1]
+        return min(max(math.ldexp(0.5, exponent), self._finest), self._coarsest)
+
+    def _states(self, tolerance):
+        """Return the states of a trial run."""
+        if tolerance not in self._runs:
+            self._runs[tolerance] = forecast.run(
+                self._scene, self.prototype.at(tolerance, self._most),
+                self._scene.initial.vector,
+                self._times)
+        return self._runs[tolerance]
+
+    def _reference(self, tolerance):
         """Return the tolerance of a finer run, or None if none is within the work."""
+        able = [one for one in self._runs if one <= NEAR * tolerance]
+        if able:
+            return max(able)
         for share in FINER_ONES:
-            finer = at_most(share * tolerance)
+            finer = self._grid(share * tolerance)
             try:
-                states(finer)
+                self._states(finer)
                 return finer if finer < tolerance else None
             except TooMuchWork:
                 continue
         return None
 
-    def below(finer, here):
-        """Return the tolerance of a run whose own error is below its difference from `here`.
+    def _below(self, finer, tolerance):
+        """Return the tolerance of a run whose own error is below its difference from a coarser one.
 
-        The steps of `here` may happen to be better than was asked: then the difference from a
-        finer run may be the error of that one, which only its tolerance bounds.
+        The steps of the coarser one may happen to be better than was asked: then the difference
+        from a finer run may be the error of that one, which only its tolerance bounds.
         """
-        while float(forecast.apart(here, states(finer)).max()) < finer:
-            more = finer_run(finer)
+        here = self._states(tolerance)
+        while float(forecast.apart(here, self._states(finer)).max()) < finer:
+            more = self._reference(finer)
             if more is None:
                 break
             finer = more
         return finer
 
-    def at_most(tolerance):
-        """Return the coarsest tolerance of the table up to a bound, else its finest."""
-        known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
-        return max((one for one in known if one <= tolerance * (1.0 + 1e-9)), default=min(known))
+    def _error(self, tolerance):
+        """Return the error at a tolerance at the horizon, rad, or None if nothing tells it."""
+        here, finer = self._states(tolerance), self._reference(tolerance)
+        if finer is None:
+            return None
+        best = self._states(finer)
+        momenta = forecast.momenta_apart(self._scene, here, best)
+        return max(float(forecast.apart(here, best).max()),
+                   MOMENTA * float(momenta.max())) / self._part
 
-    before, errors, finest = None, None, tolerance
-    for _ in range(TRIES):
-        here, finer = states(tolerance), finer_run(tolerance)
-        if finer is None:    # no finer run to compare with: the error is below the last one
-            errors = before[1] if before else None
-            break
-        finest, beside = finer, below(finer, here)
-        errors = forecast.apart(here, states(beside))
-        momenta = forecast.momenta_apart(scene, here, states(beside))
-        error = max(float(errors.max()), MOMENTA * float(momenta.max())) / part
-        if error <= accuracy:
-            break
-        if before and error > HELPS * before[2]:
-            tolerance, errors, _ = before    # the motion magnifies round-off
-            break
-        before = tolerance, errors, error
-        tolerance = at_most(tolerance * max(FINER, 0.5 * accuracy / error))
-    if errors is None or not float(errors[0]) < math.inf:
-        return Settled(method, tolerance, promised, horizon if promised <= accuracy else 0.0)
-    best = states(finest)
-    if float(errors.max()) < MAGNIFIED:
-        errors = np.maximum(errors, forecast.lost(scene, prototype(finest), times, best))
-    found = forecast.forecast(errors, times, accuracy, horizon)
-    return Settled(method, tolerance, *found)
+    def _next(self, here, error, good, bad):
+        """Return the tolerance to try after one with an error."""
+        growth = GROWTH
+        if good and bad and good[1] > 0.0 and bad[1] < math.inf:
+            growth = log(bad[1] / good[1]) / log(bad[0] / good[0])
+            growth = min(max(growth, GROWTHS[0]), GROWTHS[1])
+        share = AIM * self._accuracy / error if error > 0.0 else math.inf
+        factor = power(share, 1.0 / growth) if share < math.inf else FARTHEST
+        return self._grid(here * min(max(factor, 1.0 / FARTHEST), FARTHEST))
 
 
-def _pace(scene):
-    """Return an approximate bound of the rate of a body (rad/s), strikes included."""
-    return measured.pace(scene) + forecast.struck_rate(scene)
-
-
-def _span(scene, horizon):
+def _span(scene, rate, acceleration, horizon):
     """Return the length of a trial, s: until the body could have turned by RADIANS.
 
     It goes on to a strike that comes later, within the horizon, and then for that angle again.
     """
-    rate, acceleration = _pace(scene), drive(scene, None)
     times = [strike.time for strike in forecast.strikes(scene) if strike.time < horizon]
     own = RADIANS / rate if rate else math.inf
     if acceleration:

@@ -43,7 +43,7 @@ def runnable(scene):
         return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects
                if effect.acting is not None or effect.as_impulse is None]
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     acting = [one for effect in effects if effect.acting is not None
               for one in effect.acting(frame, 0.0)]
     hot = any(one.books == 'heat' or one.of_motion for one in acting)

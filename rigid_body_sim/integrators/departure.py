@@ -55,7 +55,7 @@ def relaxing(scene, vector):
     It is approximate, and infinite where there is no such axis.
     """
     moments = scene.constraint.inertia(scene.body).moments
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     L = hypot3(*(I * w for I, w in zip(frame.moments, omega, strict=True)))
     low, high = min(moments), max(moments)
@@ -69,7 +69,7 @@ def departure(scene, vector, least=0.0):
 
     A state whose other two components of omega are not above `least` (rad/s) has none.
     """
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     k = max(range(3), key=lambda axis: abs(omega[axis]))
     small = hypot(omega[k - 2], omega[k - 1])

@@ -188,6 +188,9 @@ class Bound(Protocol):
 
     EXCHANGES: bool
 
+    def at(self, stepped: Any) -> 'Bound':
+        """Return the Bound of a solver that differs from the one bound in its accuracy alone."""
+
     def course(self, stepped: Any) -> 'Course':
         """Return the course of a started solver."""
 

@@ -13,6 +13,7 @@ simulation/simulation.py starts a new solver after each strike.
 """
 
 import contextlib
+import functools
 import math
 
 import numpy as np
@@ -35,6 +36,18 @@ FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
 SLACK = 1e-2            # share of the accuracy: jumps between steps, not resolved
+
+
+class _Ledger:
+    """What only the ledger asks for: made when it does, once for all starts."""
+
+    def __init__(self, scene, wrench):
+        self._scene, self._wrench = scene, wrench
+
+    @functools.cached_property
+    def actors(self):
+        """The Actors of the scene."""
+        return Actors(self._scene, self._wrench)
 
 
 class Stepped:
@@ -75,8 +88,19 @@ class Stepped:
             raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table '
                            'under a wrench', f'those that can: {able}')
         self._bound = self.method.FAMILY.bind(self.method, self)
-        self._actors = None if self._bound.EXCHANGES else Actors(scene, wrench)
+        self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
+
+    def at(self, accuracy, most=None):
+        """Return a Stepped that differs in its accuracy, rad, and in its `most` steps.
+
+        It costs less than a new one: kernels and equations are shared.
+        """
+        _check_control(self.method, accuracy, self.step)
+        other = object.__new__(Stepped)
+        other.__dict__ = self.__dict__ | {'accuracy': accuracy, 'most': most}
+        other._bound = self._bound.at(other)
+        return other
 
     @property
     def name(self):
@@ -206,11 +230,12 @@ class Stepped:
         self._within(time, time)
         if self._bound.EXCHANGES:
             return self._course.exchanged(time)
-        if not self._actors.acts:
+        actors = self._ledger.actors
+        if not actors.acts:
             return np.zeros(ENTRIES_SIZE)
         if self._exchange is None:
             slack = SLACK * self.accuracy if self.step is None else 0.0
-            self._exchange = Exchange(self._actors, self._course.states, self.vector, slack,
+            self._exchange = Exchange(actors, self._course.states, self.vector, slack,
                                       self._course.kinks)
         return self._exchange.until(self._course.exchanges_until(time) if self._departs else time)
 

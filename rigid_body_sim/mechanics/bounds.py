@@ -7,8 +7,10 @@ from operator import add
 
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.scene import kept
 
 
+@kept
 def swing_rate(scene):
     """Return what potentials can add to the rate of a held body (rad/s).
 

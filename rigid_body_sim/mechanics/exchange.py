@@ -69,7 +69,7 @@ class Actors:
     """
 
     def __init__(self, scene, wrench=None):
-        self._frame = scene.constraint.frame(scene.body)
+        self._frame = scene.frame
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self._actors += [wrench] if wrench else []
         self.breakpoints = sorted({time for actor in self._actors for time in actor.breakpoints})

@@ -90,13 +90,13 @@ def parameters(scene):
 
 def potentials(scene):
     """Return the Potential of each effect of a scene that has one."""
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     return [effect.potential(frame) for effect in scene.effects if effect.potential is not None]
 
 
 def momenta(scene):
     """Return the Momentum of each effect of a scene that carries one inside the body."""
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     found = [effect.momentum(frame) for effect in scene.effects if effect.momentum is not None]
     return [one for one in found if one is not None]
 

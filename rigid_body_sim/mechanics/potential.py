@@ -9,8 +9,10 @@ import functools
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import energy
 from rigid_body_sim.mechanics.parameters import SCENE, momenta, potentials
+from rigid_body_sim.scene.scene import kept
 
 
+@kept
 def energies(scene):
     """Return the kernels of energy.py, `diagnose` and `diagnose_many`, for a scene."""
     parts = tuple((one.kernel, len(one.values)) for one in potentials(scene))

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.vectors import plus
+from rigid_body_sim.scene.scene import kept
 
 NOTHING = (0.0, 0.0, 0.0)
 BOOKS = {'force': 'potential', 'torque': 'work', 'drag': 'heat'}
@@ -35,6 +36,7 @@ class Total(NamedTuple):
     slowing: float
 
 
+@kept
 def total_pull(scene):
     """Return the Total of what acts in a scene.
 
@@ -44,7 +46,7 @@ def total_pull(scene):
         None where something acts that is not of this kind, or changes in time, and where another
         point than the body's origin is held.
     """
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     if scene.constraint.axis is None and not frame.moves and any(frame.point):
         return None    # motions about a point hold the body's origin
     pulls = []

@@ -9,6 +9,8 @@ It may import ``mechanics`` and what lies below.
 import functools
 import importlib
 
+from rigid_body_sim.scene.scene import kept
+
 MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
            'rigid_body_sim.motions.lagrange_top.lagrange_top',
            'rigid_body_sim.motions.pendulum.pendulum',
@@ -19,6 +21,7 @@ MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
 """Modules in the order in which a scene is offered to them; each is imported when it is asked."""
 
 
+@kept
 def absorbing_motion(scene):
     """Return the motion module that solves the whole scene in closed form, or None."""
     for name in MOTIONS:

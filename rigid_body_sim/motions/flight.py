@@ -44,7 +44,7 @@ FIELD = layout(Field)
 
 def field_of(scene, total):
     """Return the Field of a scene and its Total (mechanics/pulls.py), as an array."""
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     field = np.zeros(FIELD.size)
     force = [component / frame.mass for component in total.force]
     FIELD.store(field, Field(frame.point, 1.0, force, total.slowing / frame.mass) if frame.moves

@@ -111,6 +111,14 @@ def angle_between(px, py, pz, pw, qx, qy, qz, qw):
 
 
 @compiled
+def angles_between(p, q, out):
+    """Fill out, shape (n,), with the angles (rad) between n attitudes and n others, (n, 4)."""
+    for k in range(len(out)):
+        out[k] = angle_between(p[k, 0], p[k, 1], p[k, 2], p[k, 3],
+                               q[k, 0], q[k, 1], q[k, 2], q[k, 3])
+
+
+@compiled
 def from_euler_zyz(alpha, beta, gamma):
     """Return the quaternion of R = Rz(alpha) Ry(beta) Rz(gamma)."""
     sine, cosine = sin(0.5 * beta), cos(0.5 * beta)

@@ -29,6 +29,7 @@ from rigid_body_sim.scene.expressions.expression import (
     checked_parameters,
     with_expressions,
 )
+from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start, unit_quaternion
 from rigid_body_sim.scene.schema import MATRIX, POSITIVE, QUATERNION, VECTOR, check, mapping_of
 from rigid_body_sim.scene.state import State
@@ -108,6 +109,11 @@ class Scene:
         """YAML of the scene as it runs, overrides included: enough to make it again."""
         return yaml.safe_dump(self.mapping, sort_keys=False, allow_unicode=True)
 
+    @functools.cached_property
+    def frame(self) -> Frame:
+        """The frame in which the equations of motion of the body are written."""
+        return self.constraint.frame(self.body)
+
     @property
     def notes(self) -> list[str]:
         """Warnings about settings that are legal but probably unintended, one line each."""
@@ -121,7 +127,7 @@ class Scene:
         One that is listed may do nothing: a coefficient of zero, gravity on a body whose pivot is
         its centre of mass.
         """
-        frame = self.constraint.frame(self.body)
+        frame = self.frame
         return tuple(effect for effect in self.effects if effect.contact is not None or (
             effect.acting is not None
             and any(effect.acting(frame, time) for time in (0.0, *effect.breakpoints))))
@@ -165,6 +171,20 @@ class Scene:
     def effect(self, name: str) -> Effect | None:
         """Return the effect of that name, or None if the scene does not list it."""
         return next((effect for effect in self.effects if effect.name == name), None)
+
+
+def kept(function):
+    """Let a function of a scene keep what it returns with the scene: a scene never changes.
+
+    What it returns must not change either.
+    """
+    @functools.wraps(function)
+    def of(scene):
+        found = scene.__dict__.setdefault('_kept', {})
+        if of not in found:
+            found[of] = function(scene)
+        return found[of]
+    return of
 
 
 def _summed(zero: tuple[float, ...], rows: Sequence[tuple[float, ...]]) -> list[float]:

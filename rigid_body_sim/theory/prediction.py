@@ -101,7 +101,7 @@ def _round_the_axis(scene, state):
 
 def _axial_torque(scene, inertia, axis):
     """Return the constant torque about a principal axis, N m; None for any other torque."""
-    frame, along = scene.constraint.frame(scene.body), 0.0
+    frame, along = scene.frame, 0.0
     for effect in scene.acting:
         if effect.series is None:
             return None

@@ -56,6 +56,10 @@ class Coasting:
         turn = Rotation.from_rotvec((time - self.vector[0]) * self.vector[5:8])
         out[0], out[1:5] = time, (Rotation.from_quat(self.vector[1:5]) * turn).as_quat()
 
+    def states(self, times, out):
+        for time, row in zip(times, out, strict=True):
+            self.state(time, row)
+
 
 def scene(*strikes, effects=()):
     struck = [f'strike: {{impulse: [{impulse}, 0, 0], point: [0, 1, 0], time: {time}, '

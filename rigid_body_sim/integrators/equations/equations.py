@@ -71,7 +71,7 @@ class Equations:
 
         More than forty lines: each attribute is made from those before it.
         """
-        self.frame = scene.constraint.frame(scene.body)
+        self.frame = scene.frame
         self._axis = scene.constraint.axis
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self._actors += [wrench] if wrench else []

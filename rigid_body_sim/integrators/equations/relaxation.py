@@ -53,7 +53,7 @@ def stiff_relaxations(scene, unknowns):
 
 def relaxations(scene, unknowns):
     """Return the Relaxations of a scene for equations of so many unknowns."""
-    frame, axis = scene.constraint.frame(scene.body), scene.constraint.axis
+    frame, axis = scene.frame, scene.constraint.axis
     pulls = [effect.series(frame, -math.inf) for effect in scene.effects
              if effect.series is not None]
     matrices = [pull.drag for pull in pulls if pull.drag is not None]

@@ -117,7 +117,7 @@ def _frame(scene):
 
     That of a hinge has its third axis along it, and takes no torque about the others.
     """
-    frame = scene.constraint.frame(scene.body)
+    frame = scene.frame
     if scene.constraint.axis is None:
         return frame
     nx, ny, nz = scene.constraint.axis

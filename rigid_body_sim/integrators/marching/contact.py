@@ -81,7 +81,7 @@ class OnPlane:
         self.scene = scene
         self._wrench = wrench or Wrench()
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
-        self._frame = scene.constraint.frame(scene.body)
+        self._frame = scene.frame
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
         if any(one.in_field or one.gives == 'turning' for one in acting):
@@ -104,6 +104,10 @@ class OnPlane:
         """Return the parameters that hold just after a time (s), an array of the caller's own."""
         values = [value for one in self._acting(time) for value in one.values]
         return np.array([*self._fixed, *values])
+
+    def at(self, stepped):
+        """Return the Bound of a solver that differs in its accuracy: this one."""
+        return self
 
     def course(self, stepped):
         """Return the course of a started solver."""

@@ -44,12 +44,21 @@ class Bound:
         self.equations = equations = family.equations_of(stepped.scene, stepped.wrench)
         self.march = family.march(method, equations, stepped.step is None)
         control, point = family.begin(stepped, self.march)
-        self._beginning, self._prototypes = np.concatenate((control, point)), {}
+        self._family, self._prototypes = family, {}
+        self._beginning = np.concatenate((control, point))
         sizes = [equations.parameter_count, len(control), len(point), len(point)]
         places = np.cumsum(sizes).tolist()
         self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
         self.track = self._track(places)
+
+    def at(self, stepped):
+        """Return the Bound of a solver that differs in its accuracy: it shares the kernels."""
+        other = object.__new__(Bound)
+        other.__dict__ = self.__dict__.copy()
+        other._beginning = np.concatenate(self._family.begin(stepped, self.march))
+        other._prototypes = {}
+        return other
 
     def _track(self, places):
         """Return the template track.py bound to the march; `places` are those in a piece."""

@@ -83,6 +83,10 @@ class OnTable:
         )
         self.order, self.weights = method.ORDER, np.array(unroll.weights(method))
 
+    def at(self, stepped):
+        """Return the Bound of a solver that differs in its accuracy: this one."""
+        return self
+
     def course(self, stepped):
         """Return the course of a started solver."""
         return TableCourse(stepped, self)

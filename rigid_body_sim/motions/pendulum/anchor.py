@@ -5,6 +5,7 @@ Symbols and equations are those of pendulum.py. Omega, phi, Delta and the rate o
 the motion or grow with time, so they are formed with 32 digits from the doubles of the input.
 """
 
+import functools
 import math
 from fractions import Fraction
 from typing import NamedTuple
@@ -40,6 +41,7 @@ from rigid_body_sim.numerics.pairs import (
     pair_of,
     plus,
     products,
+    quotient,
     root_of,
     scaled,
     times,
@@ -105,11 +107,15 @@ load_swing, store_swing = ANCHOR.part('swing').load, ANCHOR.part('swing').store
 load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').store
 
 
+KEPT = 64    # hinges whose exact numbers are kept for bodies that differ in other things
+
+
 class Axle(NamedTuple):
     """A body on a hinge, in exact numbers; vectors in body axes."""
 
     axis: list[Fraction]       # n
     arm: list[Fraction]        # r, m
+    side: list[Fraction]       # n x r, m
     distance: Fraction         # of the centre of mass from the axis, m; 0 to rounding of the scene
     momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
     moment: Fraction           # about n, kg m^2
@@ -118,18 +124,32 @@ class Axle(NamedTuple):
 def axle(scene):
     """Return the Axle of a scene whose constraint holds an axis."""
     body = scene.body
-    axis, point = _exact(scene.constraint.axis), scene.constraint.point(body)
-    r = [c - t for c, t in zip(_exact(body.center_of_mass), _exact(point), strict=True)]
-    n = [component / _root(_dot(axis, axis)) for component in axis]
-    side, mass = _cross(n, r), Fraction(body.mass)
-    swung = _cross(r, _cross(r, n))
-    spun = _tensor_times(body.about_center, n)
+    axis, point = tuple(scene.constraint.axis), scene.constraint.point(body)
+    n, r, side, swung = _swung(axis, tuple(body.center_of_mass), tuple(point))
+    inertia, mass = body.about_center, Fraction(body.mass)
+    spun = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis)
     momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
     d = _root(_dot(side, side))
     size = hypot3(*body.center_of_mass) + hypot3(*point)
     if d <= principal_axes.ULPS * size:
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
-    return Axle(n, r, d, momentum, _dot(n, momentum))
+    return Axle(n, r, side, d, momentum, _dot(n, momentum))
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _unit(axis):
+    """Return the unit vector along an axis, exactly."""
+    axis = _exact(axis)
+    size = _root(_dot(axis, axis))
+    return tuple(component / size for component in axis)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _swung(axis, center, point):
+    """Return the unit vector n of an axis, r from a point to the centre, n x r, r x (r x n)."""
+    n = _unit(axis)
+    r = tuple(c - t for c, t in zip(_exact(center), _exact(point), strict=True))
+    return n, r, _cross(n, r), _cross(r, _cross(r, n))
 
 
 def parameters(scene):
@@ -139,18 +159,23 @@ def parameters(scene):
     """
     body, weight, held = scene.body, scene.weight, axle(scene)
     n, r, d, moment = held.axis, held.arm, held.distance, held.moment
-    side, along = _cross(n, r), _dot(n, r)
+    side, along = held.side, _dot(n, r)
     down = [along * a - b for a, b in zip(n, r, strict=True)]
     mass, g = Fraction(body.mass), Fraction(weight)
 
     def over_d(vector):
-        return [pair_of(component / d) if d else NOTHING for component in vector]
+        return [_pair_of_ratio(component, d) if d else NOTHING for component in vector]
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         [pair_of(component) for component in n], over_d(side), over_d(down),
-        pair_of(mass * g * d / moment), n, scene.constraint.point(body), body.mass, g, r,
+        _pair_of_ratio(mass * g * d, moment), n, scene.constraint.point(body), body.mass, g, r,
         held.momentum, mass * g / moment))
     return numbers
+
+
+def _pair_of_ratio(a, b):
+    """Return a/b of two Fractions, b > 0, as a pair."""
+    return quotient(a.numerator * b.denominator, a.denominator * b.numerator)
 
 
 def _exact(numbers):
@@ -173,17 +198,21 @@ def _root(number):
     return Fraction(math.isqrt((number.numerator << 2 * shift) // number.denominator), 1 << shift)
 
 
-def _tensor_times(inertia, n):
-    """Return I n for principal moments and axes."""
-    x, y, z, w = _exact(inertia.axes)
+@functools.lru_cache(maxsize=KEPT)
+def _tensor_times(moments, axes, axis):
+    """Return I n for principal moments and axes, n the unit vector along an axis."""
+    n = _unit(axis)
+    if axes == bodies.IDENTITY:
+        return tuple(Fraction(moment) * along for moment, along in zip(moments, n, strict=True))
+    x, y, z, w = _exact(axes)
     norm = x * x + y * y + z * z + w * w
     columns = ((w * w + x * x - y * y - z * z, 2 * (x * y + z * w), 2 * (x * z - y * w)),
                (2 * (x * y - z * w), w * w + y * y - z * z - x * x, 2 * (y * z + x * w)),
                (2 * (x * z + y * w), 2 * (y * z - x * w), w * w + z * z - x * x - y * y))
     along = [Fraction(moment) * _dot(column, n) / norm
-             for moment, column in zip(inertia.moments, columns, strict=True)]
-    return [sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm
-            for k in range(3)]
+             for moment, column in zip(moments, columns, strict=True)]
+    return tuple(sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm
+                 for k in range(3))
 
 
 @compiled

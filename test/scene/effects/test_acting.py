@@ -211,7 +211,7 @@ PLACES = [(effects, kind) for effects, (_, kinds) in CASES.items() for kind in k
 @pytest.mark.parametrize(('effects', 'kind'), PLACES)
 def test_what_acts_is_what_the_formula_says(effects, kind):
     scene = scene_of(effects, kind)
-    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    effect, frame = scene.effects[0], scene.frame
     for seed in range(3):
         now = drawn(kind, seed)
         for found, expected in zip(pushed(effect, frame, now), CASES[effects][0](now, kind),
@@ -232,7 +232,7 @@ POTENTIAL = 'potential: {energy: "k*x*qy + qx^2*z - cos(y*qw) + 0.3*qz"}'
 def test_a_potential_falls_by_the_work_of_what_acts(effects, kind):
     """Along any small motion that the constraint allows, by differences: dU = -F dx - Gamma da."""
     scene = scene_of(effects, kind)
-    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    effect, frame = scene.effects[0], scene.frame
     now, h = drawn(kind, 5), 1e-6
     force, torque = pushed(effect, frame, now)
     for k in range(6 if kind == 'free' else 3):
@@ -254,7 +254,7 @@ def test_a_potential_falls_by_the_work_of_what_acts(effects, kind):
 def test_a_torque_in_pieces_begins_at_its_times():
     scene = scene_of('torque: {times: [1, 2.5], values: [[1, 2, 3], [0, 0, -4]], frame: world}',
                      'free')
-    torque, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    torque, frame = scene.effects[0], scene.frame
     now = drawn('free', 0)
     for time, value in ((0.999, [0, 0, 0]), (1.0, [1, 2, 3]), (2.499, [1, 2, 3]),
                         (2.5, [0, 0, -4]), (99.0, [0, 0, -4])):
@@ -271,7 +271,7 @@ def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
     force, torque = (np.array(one) if axes == 'world' else now.turn.apply(one)
                      for one in (wrench.force, wrench.torque))
     at_center, moment = at_point(now, CENTER, force, kind)
-    found = pushed(wrench, scene.constraint.frame(scene.body), now)
+    found = pushed(wrench, scene.frame, now)
     assert found[0] == pytest.approx(at_center, abs=1e-13)
     assert found[1] == pytest.approx(moment + torque, abs=1e-13)
 
@@ -282,7 +282,7 @@ def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
 def test_a_power_series_is_given_the_same(effects, kind):
     """Pull: constant + arm x R^T force + R^T couple + drag omega; a free body is moved by it."""
     scene, now = scene_of(effects, kind), drawn(kind, 4)
-    effect, frame = scene.effects[0], scene.constraint.frame(scene.body)
+    effect, frame = scene.effects[0], scene.frame
     pull, turn = effect.series(frame, 0.0), now.turn * Rotation.from_quat(frame.axes)
     omega = Rotation.from_quat(frame.axes).inv().apply(now.omega)
     torque = turn.apply(pull.constant) + np.array(pull.couple or np.zeros(3))
