@@ -109,6 +109,17 @@ class Choice:
             return self._prototype.start(start)
         return self._general(wrench).start(start)
 
+    def runner(self):
+        """Return ``run(start, time, out)``, which fills out with the state at a time from a start.
+
+        It has the bits of a solver from that start. Calls may not overlap: each thread makes a
+        runner of its own.
+        """
+        return self._run if self._asks else self._prototype.runner()
+
+    def _run(self, start, time, out):
+        self.solver(start, Wrench()).state(time, out)
+
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states of many bodies at n times (s).
 

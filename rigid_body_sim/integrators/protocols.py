@@ -35,6 +35,12 @@ class Solver(Protocol):
             The state, its time included. It is copied.
         """
 
+    def runner(self) -> Any:
+        """Return ``run(start, time, out)``: the bits of ``start(start).state(time, out)``.
+
+        It is the quickest way to one state. Calls of one runner may not overlap.
+        """
+
     def state(self, time: float, out: np.ndarray) -> None:
         """Fill `out`, shape (14,), with the state at a time not before the start."""
 
@@ -190,6 +196,13 @@ class Bound(Protocol):
 
     def at(self, stepped: Any) -> 'Bound':
         """Return the Bound of a solver that differs from the one bound in its accuracy alone."""
+
+    def runner(self, stepped: Any) -> Any:
+        """Return ``run(vector, time, out)``, the quickest way to a final state, or None.
+
+        It fills `out` with the bits of a course from that start and returns True, or returns False
+        where that takes a course. Calls of one runner may not overlap.
+        """
 
     def course(self, stepped: Any) -> 'Course':
         """Return the course of a started solver."""

@@ -122,6 +122,24 @@ class Stepped:
             started._course = Departing(near, started._march_from)
         return started
 
+    def runner(self):
+        """Return ``run(start, time, out)``, which fills out with the state at a time from a start.
+
+        It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
+        run is short. Calls may not overlap: each thread makes a runner of its own.
+        """
+        at_once = None if self._departs else self._bound.runner(self)
+        if at_once is None:
+            return self._run
+
+        def run(start, time, out):
+            if not at_once(start, time, out):
+                self._run(start, time, out)
+        return run
+
+    def _run(self, start, time, out):
+        self.start(start).state(time, out)
+
     def _march_from(self, vector):
         """Return the course that goes on from a state after a departure."""
         later = object.__new__(Stepped)

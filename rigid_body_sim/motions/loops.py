@@ -33,6 +33,13 @@ fill_columns = UNBOUND
 
 
 @compiled
+def final(parameters, start, time, anchored, out):
+    """Fill out, shape (14,), with the state at a time from a start; the anchor is filled anew."""
+    anchor(parameters, start, anchored)
+    state(anchored, time, out)
+
+
+@compiled
 def one_by_one(anchored, times, out):
     """Fill out, shape (n, 14), with the states of an anchored motion at n times, in any order."""
     for k in range(len(times)):

@@ -168,6 +168,23 @@ class Simulation:
         self.events = []
         return self
 
+    def runner(self):
+        """Return a function ``run(start, time, out)``, for loops over starts.
+
+        It fills `out`, shape (14,), with the state at a time (s) that a simulation begun at
+        `start`, an array (14,), would have: the bits of :meth:`restart` and then :meth:`states`,
+        where the start is at time 0. It is the quickest way to one state: under a microsecond for
+        short runs. This simulation stays as it is. Like the starts of :func:`ensemble`, a start is
+        taken as it is, with its own time, and the strikes of the scene are left out. Calls may not
+        overlap: each thread makes a runner of its own.
+        """
+        if not self._chosen.rests_on_start:
+            return self._chosen.runner()
+
+        def run(start, time, out):
+            self._choice_from(start).solver(start, NOTHING_HELD).state(time, out)
+        return run
+
     def _choice_from(self, start):
         """Return the Choice for the scene from a state (14 doubles) on."""
         first = self._chosen

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim import BadInput, NotConverged, ensemble
 from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
 from rigid_body_sim.compilation.lanes import LANES, Plain
+from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: N812
 from rigid_body_sim.integrators.marching import batch_series as series
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
@@ -58,6 +59,35 @@ def test_one_of_many_bodies_is_where_the_reference_says(name):
         # 0.09 (driven_from_rest)
         assert np.linalg.norm(state[5:8] - exact[4:7]) <= 0.2 * floor * speed
         assert np.abs(state[8:] - exact[7:]).max() <= 4 * ULP    # 1.5 (driven_in_pieces)
+
+
+DAMPED = {
+    'top': ('body: {mass: 1.0, inertia: [0.02, 0.03, 0.04], center_of_mass: [0.01, 0, 0.1]}\n'
+            'constraint: pivot\neffects: [gravity: {g: 9.81}, drag: {angular: 0.002}]\n'
+            'initial: {tilt: 0.5, angular_velocity: [1, 2, 30]}\n'),
+    'thrown': ('body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}\nconstraint: free\n'
+               'effects: [gravity: {g: 9.81}, drag: {linear: 0.1, angular: 0.2}, torque: '
+               '{times: [0.5, 1.0], values: [[0.3, -0.2, 0.5], [0, 0.4, 0]], frame: world}]\n'
+               'initial: {angular_velocity: [1, 2, 3], velocity: [1, 0, 5]}\n'),
+    'hinge': ('body: {mass: 1.0, inertia: [0.02, 0.03, 0.01], center_of_mass: [0.1, 0, 0]}\n'
+              'constraint: {hinge: {axis: [0, 1, 0.5], through: [0, 0.1, 0]}}\n'
+              'effects: [gravity: {g: 9.81}, torque: {value: [0, 0.3, 0]}, '
+              'drag: {angular: 0.01}]\n'
+              'initial: {angle: 0.5, rate: 2.0}\n')}
+
+
+@pytest.mark.parametrize('name', DAMPED)
+def test_bodies_with_drag_and_on_a_hinge_go_side_by_side(name):
+    """Eleven bodies against one by one, positions and the times between included."""
+    scene = parse_scene(f'scene: damped\n{DAMPED[name]}')
+    starts, times = starts_of(scene, np.linspace(0.0, 2.0, 11)), np.array([2.0, 0.3, 0.75, 1.0])
+    assert FAMILY.batch(Stepped(scene, 'taylor', 1e-12)._bound, Stepped(scene, 'taylor', 1e-12),
+                        times) is not None
+    alone, one = np.empty((11, 4, 14)), Stepped(scene, 'taylor', accuracy=1e-13)
+    for start, states in zip(starts, alone, strict=True):
+        one.start(start).states(times, states)
+    together = ensemble(scene, starts, times, 'taylor', 1e-12).vector
+    assert np.abs(together - alone).max() < 1e-12    # measured: 3e-14
 
 
 def test_slow_and_fast_bodies_share_the_lanes():
@@ -177,7 +207,7 @@ def test_a_step_is_the_same_in_plain_python():
     draw = np.random.default_rng(1)
     table = np.zeros((series.ROWS, LANES))
     table[series.EULER:series.EULER + 3] = [[-0.3], [0.6], [-0.4]]
-    table[series.CONSTANT:series.INVERSES] = draw.uniform(-1.0, 1.0, (15, 1))
+    table[series.CONSTANT:series.DRAG] = draw.uniform(-1.0, 1.0, (15, 1))
     table[series.INVERSES:] = 1.0 / np.arange(1.0, series.ORDER + 1.0).reshape(-1, 1)
     for lane in range(LANES):
         q = draw.normal(size=4)

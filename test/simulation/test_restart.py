@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.choice import choose, trial
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.scene import changed_scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import State
 from rigid_body_sim.simulation.simulation import Simulation
@@ -20,6 +20,13 @@ body: {mass: 1.0, inertia: [0.03, 0.04, 0.05], center_of_mass: [0, 0, 0.1], iner
 constraint: pivot
 effects: [gravity: {g: 9.81}]
 initial: {tilt: 0.3, angular_velocity: [0.1, 0, 20]}
+"""
+SLIDING_BALL = """
+scene: sliding
+body: {mass: 0.2, shape: {solid_sphere: {radius: 0.03}}}
+constraint: table
+effects: [sliding_friction: {mu: 0.2, g: 9.81}]
+initial: {angular_velocity: [1, 20, 3], velocity: [1, 0.1, 0]}
 """
 SLIDING_SPIN = """
 scene: turning
@@ -158,3 +165,47 @@ def test_a_text_that_was_read_before_gives_scenes_that_share_nothing_changeable(
     first.mapping['body']['mass'] = 9.0
     assert second.initial.vector[5] != 7.0 and second.mapping['body']['mass'] == 1.0
     assert load_scene('heavy_top').text == second.text
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('scene', 'method'), [
+    *((scene, 'exact') for scene in ('tennis_racket', 'heavy_top', 'kater_pendulum', 'driven_body',
+                                     parse_scene(SLIDING_BALL))),
+    (parse_scene(ASYMMETRIC), 'taylor'), (parse_scene(ASYMMETRIC), 'dop8'),
+    (parse_scene(ASYMMETRIC), 'gauss16'), (parse_scene(ASYMMETRIC), 'radau'),
+    (parse_scene(ASYMMETRIC.replace('[gravity: {g: 9.81}]', '[gravity: {g: 9.81}, torque: {'
+     'times: [0.1, 0.2], values: [[0.1, 0, 0], [0, 0.1, 0]]}]')), 'taylor'),
+    ('major_axis_relaxation', 'dop8')])
+def test_a_runner_has_the_bits_of_a_simulation_begun_anew(scene, method):
+    simulation = Simulation(scene, method, accuracy=1e-6, horizon=1.0)
+    run, out = simulation.runner(), np.empty(14)
+    for turned in (1.0, 1.25):
+        start = simulation.scene.initial.vector.copy()
+        start[5:8] *= turned
+        for time in (0.0, 0.3, 1.0):
+            run(start, time, out)
+            assert out.tobytes() == simulation.restart(start).states([time]).vector.tobytes()
+
+
+@pytest.mark.without_numba
+def test_a_runner_goes_on_where_one_call_does_not_arrive_and_says_what_cannot_be_reached():
+    simulation = Simulation(parse_scene(ASYMMETRIC), 'taylor', step=1e-3)
+    run, out, start = simulation.runner(), np.empty(14), simulation.scene.initial.vector
+    run(start, 1.5, out)
+    assert out.tobytes() == simulation.states([1.5]).vector.tobytes()
+    for time in (-1.0, np.nan, np.inf):
+        with pytest.raises(BadInput, match='time'):
+            run(start, time, out)
+    fast = start.copy()
+    fast[7] = 1e17
+    with pytest.raises(NotConverged, match='more radians'):
+        run(fast, 1.0, out)
+
+
+def test_a_runner_of_a_closed_form_says_what_lies_beyond_doubles():
+    scene = parse_scene(ASYMMETRIC.replace('constraint: pivot', 'constraint: free').replace(
+        'gravity: {g: 9.81}', 'drag: {angular: 0.01}').replace(
+            '[0.03, 0.04, 0.05]', '[0.05, 0.05, 0.05]').replace(', inertia_about: origin', ''))
+    run, out = Simulation(scene, 'exact').runner(), np.empty(14)
+    with pytest.raises(BadInput, match='beyond what doubles hold'):
+        run(scene.initial.vector, -1e5, out)

@@ -31,8 +31,8 @@ def equations_of(scene, wrench):
 
 
 def batch(bound, stepped, times):
-    """Return the Batch for a scene at n times (s), None for fixed steps or where there is drag."""
-    if stepped.step is not None or bound.equations.dragged:
+    """Return the Batch for a scene at n times (s), None for fixed steps."""
+    if stepped.step is not None:
         return None
     return batches.Batch(bound.equations, stepped.accuracy / stepped.horizon, times)
 

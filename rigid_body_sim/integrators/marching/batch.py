@@ -12,16 +12,11 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.integrators.equations import euler, series
-from rigid_body_sim.integrators.marching import batch_series
-from rigid_body_sim.integrators.marching.batch_march import (
-    ANYBODY,
-    NOBODY,
-    SEATS,
-    empty,
-    march,
-)
+from rigid_body_sim.integrators.marching import batch_march, batch_series
+from rigid_body_sim.integrators.marching.batch_march import ANYBODY, NOBODY, SEATS
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import from_matrix
 from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
@@ -72,6 +67,7 @@ def rows_for(p):
         (batch_series.CONSTANT, p[series.CONSTANT : series.CONSTANT + 3]),
         (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
         (batch_series.V, scaled(aside, inverse)),
+        (batch_series.DRAG, p[series.DRAG : series.DRAG + 9]),
         (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0)),
     ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
@@ -93,6 +89,8 @@ class Batch:
     def __init__(self, equations, tolerance, times):
         self._tolerance, self._times, self._stretches = tolerance, times, []
         self._order = np.argsort(times, kind='stable')
+        step = 'advance_with_drag' if equations.dragged else 'advance'
+        self._kernels = specialise(batch_march, advance=f'{batch_series.__name__}:{step}')
         rising, begin = times[self._order], -math.inf
         # between two breakpoints the equations hold, and what they give at the end is the start
         # behind it
@@ -122,11 +120,12 @@ class Batch:
 
             def arrived(rounds, W=W, numbers=numbers, turn=turn, stretch=(first, last, end),
                         found=found):
-                found[:] = march(W, numbers, turn, self._tolerance, seats, states, self._times,
-                                 self._order, *stretch, out, rounds)
+                found[:] = self._kernels.march(
+                    W, numbers, turn, self._tolerance, seats, states, self._times, self._order,
+                    *stretch, out, rounds)
                 return found[0] != ANYBODY
 
-            empty(seats)
+            self._kernels.empty(seats)
             in_slices(arrived, ROUNDS)
             body, time = found
             if body != NOBODY:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""March of many bodies, eight at a time: a body that arrives gives its lane to the next one."""
+"""Template: march of many bodies, eight at a time; one that arrives gives its lane to the next."""
 
 import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import read_state
 from rigid_body_sim.integrators.equations.falling import write
 from rigid_body_sim.integrators.marching.batch_series import (
@@ -18,10 +19,11 @@ from rigid_body_sim.integrators.marching.batch_series import (
     SINCE,
     SOUND,
     TIME,
-    advance,
     between,
 )
 from rigid_body_sim.numerics.rotations import multiply, rotate_back
+
+advance = UNBOUND
 
 NOBODY, ANYBODY = -1, -2    # no number of a body: none has failed; the march has paused
 # in `seats`: which body sits in a lane, and the place of its next time; which body is next, how

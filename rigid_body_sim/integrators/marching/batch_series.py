@@ -6,12 +6,13 @@ Each lane (lanes.py) is a body with its own time and step.
 The unknowns are two directions of the world seen in the body, e1 and e2, and omega:
 
     e' = e x omega,
-    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2)_1   and so on in turn,
+    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2 + D omega)_1
 
-where e1 lies along a force and e2 in the plane of it and a couple, both fixed in the world; so one
-form serves all scenes of the method, by 15 products of two series for each order. Their Cauchy
-sums run over a loop: two of its terms, those with the newest coefficients, stand behind it, so
-that it need not wait for them.
+and so on in turn, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
+in the world, and D is the matrix of drag; so one form serves all scenes of the method, by 15
+products of two series for each order (with drag a kernel of its own). Their Cauchy sums run over a
+loop: two of its terms, those with the newest coefficients, stand behind it, so that it need not
+wait for them.
 
 The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
 to the result of integrating omega alone.
@@ -39,9 +40,9 @@ POINT_SIZE = SERIES + UNKNOWNS
 FOLLOWING = SERIES + UNKNOWNS * (ORDER + 1)
 END = FOLLOWING + POINT_SIZE
 SOUND, SINCE, FOUND = END + 1, END + 2, END + 3
-EULER = FOUND + 7                       # then constant (3), U (9), V (3)
-CONSTANT, U, V = EULER + 3, EULER + 6, EULER + 15
-INVERSES = V + 3                        # 1/k for k = 1 ... ORDER
+EULER = FOUND + 7                       # then constant (3), U (9), V (3), D (9)
+CONSTANT, U, V, DRAG = EULER + 3, EULER + 6, EULER + 15, EULER + 18
+INVERSES = DRAG + 9                     # 1/k for k = 1 ... ORDER
 ROWS = INVERSES + ORDER
 
 
@@ -61,8 +62,8 @@ def _products(o, sums, e, w, others):
     return made
 
 
-def _series(o, W):
-    """Fill the coefficients of orders 1 ... ORDER."""
+def _series(o, W, dragged):
+    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
     def row(place):
         return o.load(W, LANES * place)
 
@@ -73,7 +74,7 @@ def _series(o, W):
         ]
 
     def next_order(k, sums, constant):
-        e = rows(k, 0, 6)
+        e, w = rows(k, 0, 6), rows(k, 6, 3) if dragged else ()
         changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
         for i in range(3):
             # terms that are known first come first
@@ -84,6 +85,8 @@ def _series(o, W):
             )
             for j in range(3):
                 rate = o.gather(row(U + 3 * i + j), e[j], rate)
+            for j, turn in enumerate(w):
+                rate = o.gather(row(DRAG + 3 * i + j), turn, rate)
             changes.append(o.gather(row(EULER + i), sums[12 + i], rate))
         share = o.load(W, o.place(LANES * INVERSES, LANES, k))
         for i, change in enumerate(changes):
@@ -245,7 +248,7 @@ def _coefficient(o, W, order, i):
     return o.load(W, LANES * (SERIES + UNKNOWNS * order + i))
 
 
-def _advance(o, W, tolerance2):
+def _advance(o, W, tolerance2, dragged=False):
     """Make the series of the point and from them the point that follows it.
 
     The square of the tolerance is for a second. More than forty lines: one straight recipe for the
@@ -255,7 +258,7 @@ def _advance(o, W, tolerance2):
 
     def put(value, place):
         o.put(value, W, LANES * place)
-    _series(o, W)
+    _series(o, W, dragged)
     w, pull, scale = o.none(), o.none(), row(SCALE)
     for i in range(6, UNKNOWNS):
         w, pull = (
@@ -323,4 +326,5 @@ def _between(o, W):
 
 
 advance = compiled_lanes(_advance, 0)
+advance_with_drag = compiled_lanes(partial(_advance, dragged=True), 0)
 between = compiled_lanes(_between, 0)

@@ -109,6 +109,9 @@ class OnPlane:
         """Return the Bound of a solver that differs in its accuracy: this one."""
         return self
 
+    def runner(self, stepped):
+        """Return None: runs are those of a course."""
+
     def course(self, stepped):
         """Return the course of a started solver."""
         return PlaneCourse(stepped, self)

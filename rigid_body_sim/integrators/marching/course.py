@@ -70,6 +70,24 @@ class Bound:
             bindings[name] = f'{name} = {place}\n'
         return specialise(track, **bindings)
 
+    def runner(self, stepped):
+        """Return ``run(vector, time, out)``, which fills out as a course from a start does.
+
+        It returns whether the march arrived in one call; where it did not, a course is to go
+        there. None where what acts changes on the way. Calls may not overlap: they share memory.
+        """
+        if self.equations.modes:
+            return None
+        last = self.equations.breakpoints[-1] if self.equations.breakpoints else -math.inf
+        final, prototype, piece = self.track.final, self.prototype(last), np.empty(self.piece_size)
+
+        def run(vector, time, out):
+            return final(prototype, vector, piece, time, out) == REACHED
+
+        def late_run(vector, time, out):
+            return vector[TIME] >= last and run(vector, time, out)
+        return late_run if last > -math.inf else run
+
     def course(self, stepped):
         """Return the course of a started solver."""
         if self.equations.modes:

@@ -11,6 +11,8 @@ parameters, control, point, following point of the method, [kept points, stride,
 points. Its beginning, up to the point, is copied from a prototype.
 """
 
+import math
+
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, TIME
@@ -31,6 +33,8 @@ STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept
 AT_ONCE = 8                         # steps of a call from Python that asks for a state
+IN_ONE_CALL = 1024                  # steps of a call that asks for a final state
+MOST_TURNS = 1e15                   # rad, of a final state: then somebody else says what is wrong
 
 
 @compiled
@@ -141,6 +145,30 @@ def first_state(prototype, vector, piece, time, end, out):
     """Fill a piece at its start, and out as `state` does: one call from Python."""
     first_piece(prototype, vector, piece)
     return state(piece, time, end, out)
+
+
+@compiled
+def final(prototype, vector, piece, time, out):
+    """Fill out with the state at a time after a start, in one call; return as `follow` does.
+
+    The piece is filled anew. LOST also stands for a time that cannot be reached from the start.
+    """
+    wx, wy, wz = vector[5], vector[6], vector[7]
+    turns = (time - vector[0]) * math.sqrt(wx * wx + wy * wy + wz * wz)
+    if not (time >= vector[0] and turns < MOST_TURNS):
+        return LOST
+    first_piece(prototype, vector, piece)
+    status = follow(piece, time, math.inf, IN_ONE_CALL)
+    if status == REACHED:
+        _fill(
+            piece[:CONTROL],
+            piece[CONTROL:POINT],
+            piece[POINT:FOLLOWING],
+            piece[FOLLOWING:COUNTS],
+            time,
+            out,
+        )
+    return status
 
 
 @compiled
