@@ -4,9 +4,9 @@
     .venv/bin/python bench/ensembles.py [--case 'top 2' 'driven body'] [--goal 1e-6] [--json]
 
 Times are CPU seconds of all threads, medians of interleaved repeats, and include the Python around
-the kernels. A stepped case, one of smooth_scenes.py, runs for 20 s to an error of at most 1e-9
-rad, the largest of CHECKED bodies. heyoka, where it is installed, gets the same equations; the
-set-up of its batches is left out.
+the kernels. A stepped case, one of short_runs.py, runs for 20 s to an error of at most 1e-9 rad,
+the largest of CHECKED bodies. heyoka, where it is installed, gets the same equations; the set-up
+of its batches is left out.
 """
 
 import argparse
@@ -16,11 +16,11 @@ import statistics
 import time
 
 import numpy as np
-from smooth_scenes import CASES, exact_attitude, heyoka_system, in_frame
 
 from rigid_body_sim import ensemble
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.numerics.rotations import angle_between, multiply
-from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.scene.scene import load_scene
 
 CLOSED = {'free body': 'asymmetric_top', 'racket': 'tennis_racket', 'Lagrange top': 'heavy_top'}
 BODIES, TIMES, REPEATS = 20_000, 50, 7
@@ -48,45 +48,54 @@ def closed():
 
 
 def stepped(case, goal):
-    """Yield (name, callable, bodies times seconds) of a stepped case, run to an error."""
-    import heyoka
-    scene = parse_scene(f'scene: bench\n{CASES[case]}')
-    starts = starts_of(scene, MANY)
-    exact = [exact_attitude(scene, DURATION, start) for start in starts[:CHECKED]]
+    """Yield (name, callable, bodies times seconds) of a stepped case, run to an error.
 
+    `auto` is the ensemble with the tolerance that our choice takes for that error.
+    """
+    import heyoka
+    from short_runs import Case, heyoka_form, start_of
+    made = Case(case)
+    scene, hinged = made.scene, made.scene.constraint.axis is not None
+    starts = starts_of(scene, MANY)
+    unknowns = [np.array(start_of(scene, start)) for start in starts]
+    exact = [made.exact(DURATION, start) for start in unknowns[:CHECKED]]
     axes = scene.frame.axes
 
     def error_of(attitudes):
         return max(angle_between(*q, *truth) for q, truth in zip(attitudes, exact, strict=True))
 
-    def ours(accuracy):
-        return lambda: ensemble(scene, starts, [DURATION], 'taylor', accuracy)
+    def ours(method, accuracy):
+        chosen = choose(scene, method, accuracy, horizon=DURATION)
+        return lambda: ensemble(scene, starts, [DURATION], chosen)
+
+    def error_of_ours(act):
+        found = [body.orientation[0] for body in act()[:CHECKED]]
+        return error_of(found if hinged else [multiply(*q, *axes) for q in found])
 
     def theirs(tolerance):
         solver = heyoka.taylor_adaptive_batch(
-            heyoka_system(scene), np.zeros((7, BATCH)), tol=tolerance)
-        batches = [np.array([in_frame(scene, start) for start in starts[k:k + BATCH]]).T
-                   for k in range(0, MANY, BATCH)]
+            heyoka_form(made.text, made.names), np.zeros((len(made.names), BATCH)), tol=tolerance)
+        batches = [np.array(unknowns[k:k + BATCH]).T for k in range(0, MANY, BATCH)]
 
         def act():
-            attitudes = []
+            found = []
             for start in batches:
                 solver.set_time(0.0)
                 solver.state[:] = start
                 solver.propagate_until(DURATION)
-                attitudes += list(
-                    solver.state[:4].T
-                    / np.linalg.norm(solver.state[:4], axis=0)[:, np.newaxis])
-            return attitudes
+                found.append(solver.state.T.copy())
+            return np.concatenate(found)
         return act
     for digits in np.arange(1.0, 15.0, 0.5):
-        act = ours(10.0 ** -digits)
-        if error_of([multiply(*body.orientation[0], *axes) for body in act()[:CHECKED]]) <= goal:
+        act = ours('taylor', 10.0 ** -digits)
+        if error_of_ours(act) <= goal:
             yield f'{case}, taylor to {10.0 ** -digits:.0e}', act, MANY * DURATION
             break
+    act = ours('auto', goal)
+    yield f'{case}, auto, error {error_of_ours(act):.0e}', act, MANY * DURATION
     for digits in np.arange(1.0, 16.0, 0.5):
         act = theirs(10.0 ** -digits)
-        if error_of(act()[:CHECKED]) <= goal:
+        if error_of([made.attitude(one) for one in act()[:CHECKED]]) <= goal:
             yield (f'{case}, heyoka in batches of {BATCH} to {10.0 ** -digits:.0e}', act,
                    MANY * DURATION)
             break
@@ -95,12 +104,13 @@ def stepped(case, goal):
 def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--case', nargs='+', choices=list(CASES), default=['top 1'],
+    parser.add_argument('--case', nargs='+', default=['top 1'],
                         help='cases without a closed form (top 1)')
     parser.add_argument('--goal', type=float, default=GOAL, help=f'their error, rad ({GOAL:g})')
+    parser.add_argument('--stepped', action='store_true', help='no closed forms')
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
-    rows = list(closed())
+    rows = [] if options.stepped else list(closed())
     if importlib.util.find_spec('heyoka') is not None:
         rows += [row for case in options.case for row in stepped(case, options.goal)]
     for _, act, _ in rows:
@@ -118,7 +128,7 @@ def main():
     print('for each CPU second: states in closed form, else bodies times seconds')
     for what, rate in rates.items():
         print(f'  {what:60} {rate:12.0f}')
-    if len(rows) == 2 * len(CLOSED):
+    if importlib.util.find_spec('heyoka') is None:
         print('  stepped ones not measured: heyoka, which they are measured against, '
               'is not installed (pip install heyoka==7.13.2)')
 

@@ -2,6 +2,7 @@
 """CPU time of short runs, 0.1 to 5 s: ours, heyoka's and that of an RK4 written for each scene.
 
     .venv/bin/python bench/short_runs.py [--json] [--case NAME ...] [--durations 0.1 1 5]
+        [--methods taylor gauss16 dop8]
 
 A run is a start from new initial data and the final state, with the calls from Python. Peers
 are at their best: heyoka has our form of the equations and keeps its compiled state; the RK4 is
@@ -64,11 +65,11 @@ def equations(scene):
         moment = float(moment_about_hinge(scene.body, scene.constraint))
         gravity, arm = scene.effect('gravity'), scene.constraint.arm(scene.body)
         weight = scene.body.mass * gravity.g * float(np.hypot(*arm[::2]))
-        terms = [f'{weight / moment!r} * cos(angle)']
+        terms = [f'{float(weight / moment)!r} * cos(angle)']
         if torque:
-            terms.append(f'{torque.values[0][1] / moment!r}')
+            terms.append(f'{float(torque.values[0][1]) / moment!r}')
         if c:
-            terms.append(f'{-c / moment!r} * rate')
+            terms.append(f'{float(-c) / moment!r} * rate')
         return {'angle': 'rate', 'rate': ' + '.join(terms)}
     frame = scene.frame
     I1, I2, I3 = frame.moments
@@ -105,12 +106,12 @@ def equations(scene):
     return found
 
 
-def start_of(scene):
-    """Return the start of the equations."""
+def start_of(scene, vector):
+    """Return the unknowns of the equations at a start, a state vector."""
     if scene.constraint.axis is None:
-        return list(map(float, in_frame(scene, scene.initial.vector)))
-    _, y, _, w = scene.initial.vector[1:5]
-    return [2.0 * float(np.arctan2(y, w)), float(scene.initial.angular_velocity[1])]
+        return list(map(float, in_frame(scene, vector)))
+    _, y, _, w = vector[1:5]
+    return [2.0 * float(np.arctan2(y, w)), float(vector[6])]
 
 
 def heyoka_form(text, names):
@@ -145,7 +146,8 @@ class Case:
 
     def __init__(self, name):
         self.scene = parse_scene(f'scene: bench\n{SCENES[name]}')
-        self.text, self.start = equations(self.scene), np.array(start_of(self.scene))
+        self.text, self.start = equations(self.scene), np.array(
+            start_of(self.scene, self.scene.initial.vector))
         self.names = list(self.text)
         self.rk4, self.solvers = rk4_of(self.text), {}
 
@@ -155,12 +157,14 @@ class Case:
             half = 0.5 * float(numbers[0])
             return [0.0, np.sin(half), 0.0, np.cos(half)]
         q = np.array(numbers[:4], dtype=float)
-        return q / np.linalg.norm(q)
+        size = np.linalg.norm(q) if np.abs(q).max() < 2.0 else np.nan
+        return q / size    # what has blown up is no attitude
 
-    def exact(self, duration):
-        """Return the final attitude by heyoka with 80-bit numbers."""
+    def exact(self, duration, start=None):
+        """Return the final attitude by heyoka with 80-bit numbers, from the start or another."""
         solver = heyoka.taylor_adaptive(
-            heyoka_form(self.text, self.names), [np.longdouble(x) for x in self.start],
+            heyoka_form(self.text, self.names),
+            [np.longdouble(x) for x in (self.start if start is None else start)],
             fp_type=np.longdouble, high_accuracy=True)
         solver.propagate_until(np.longdouble(duration))
         return self.attitude(solver.state)
@@ -201,13 +205,13 @@ class Case:
             return self.attitude(out)
         return act, attitude
 
-    def runs(self, duration):
-        """Yield (who, setting, act, attitude) from coarse to fine."""
+    def runs(self, duration, methods):
+        """Yield (who, setting, act, attitude) from coarse to fine; ours by some methods."""
         if absorbing_motion(self.scene):
             yield 'exact', '', *self.ours(duration, 'exact', 1e-12)
         else:
             able = [method for method in runnable(self.scene)
-                    if method in OURS and 'accuracy' in METHODS[method].TAKES]
+                    if method in methods and 'accuracy' in METHODS[method].TAKES]
             for method in able:
                 for tolerance in TOLERANCES:
                     yield method, f'{tolerance:.0e}', *self.ours(duration, method, tolerance)
@@ -221,10 +225,10 @@ class Case:
             steps = max(steps + 1, round(1.6 * steps))
 
 
-def measure(case, duration):
+def measure(case, duration, methods):
     """Return {who: {goal: (seconds a run, setting)}}; `auto` stands at the goal it was asked."""
     exact, candidates, seen = case.exact(duration), [], {}
-    for who, setting, act, attitude in case.runs(duration):
+    for who, setting, act, attitude in case.runs(duration, methods):
         found = attitude()
         error = angle_between(*found, *exact) if np.isfinite(found).all() else np.inf
         if who == 'rk4' and seen.get(who, np.inf) <= GOALS[-1]:
@@ -275,13 +279,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--case', nargs='+', choices=SCENES, default=list(SCENES))
     parser.add_argument('--durations', nargs='+', type=float, default=list(DURATIONS))
+    parser.add_argument('--methods', nargs='+', choices=OURS, default=list(OURS))
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
     found, behind = {}, {}
     for name in options.case:
         case = Case(name)
         for duration in options.durations:
-            table = measure(case, duration)
+            table = measure(case, duration, options.methods)
             best, auto = report(name, duration, table)
             found[f'{name}, {duration:g} s'] = table
             for who, row in (('best', best), ('auto', auto)):

@@ -198,10 +198,11 @@ class Bound(Protocol):
         """Return the Bound of a solver that differs from the one bound in its accuracy alone."""
 
     def runner(self, stepped: Any) -> Any:
-        """Return ``run(vector, time, out)``, the quickest way to a final state, or None.
+        """Return (kernel, room), the quickest way to a final state, or None.
 
-        It fills `out` with the bits of a course from that start and returns True, or returns False
-        where that takes a course. Calls of one runner may not overlap.
+        ``kernel(room, vector, time, out)`` fills `out` with the bits of a course from that start
+        and returns points.REACHED, or something else where that takes a course. It works in
+        `room`: calls may not overlap.
         """
 
     def course(self, stepped: Any) -> 'Course':

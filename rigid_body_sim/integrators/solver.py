@@ -24,6 +24,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
 from rigid_body_sim.integrators.marching.course import lost
+from rigid_body_sim.integrators.marching.points import REACHED
 from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
 from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.exchange import Actors, Exchange
@@ -128,12 +129,13 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        at_once = None if self._departs else self._bound.runner(self)
-        if at_once is None:
+        found = None if self._departs else self._bound.runner(self)
+        if found is None:
             return self._run
+        final, room = found
 
         def run(start, time, out):
-            if not at_once(start, time, out):
+            if final(room, start, time, out) != REACHED:
                 self._run(start, time, out)
         return run
 

@@ -33,10 +33,13 @@ fill_columns = UNBOUND
 
 
 @compiled
-def final(parameters, start, time, anchored, out):
-    """Fill out, shape (14,), with the state at a time from a start; the anchor is filled anew."""
-    anchor(parameters, start, anchored)
-    state(anchored, time, out)
+def final(room, start, time, out):
+    """Fill out, shape (14,), with the state at a time from a start.
+
+    `room` holds an anchor, which is filled anew, and then the parameters.
+    """
+    anchor(room[ANCHOR_SIZE:], start, room[:ANCHOR_SIZE])
+    state(room[:ANCHOR_SIZE], time, out)
 
 
 @compiled

@@ -104,11 +104,11 @@ class Exact:
         It has the bits of ``self.start(start).state(time, out)``, by one kernel. Calls may not
         overlap: each thread makes a runner of its own.
         """
-        final, parameters = self._loops.final, self._parameters
-        anchored = np.empty(self.motion.ANCHOR_SIZE)
+        final = self._loops.final
+        room = np.concatenate((np.empty(self.motion.ANCHOR_SIZE), self._parameters))
 
         def run(start, time, out):
-            final(parameters, start, time, anchored, out)
+            final(room, start, time, out)
             if time < start[TIME]:
                 _refuse_beyond(out[np.newaxis])
         return run

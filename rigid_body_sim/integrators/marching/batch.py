@@ -89,7 +89,8 @@ class Batch:
     def __init__(self, equations, tolerance, times):
         self._tolerance, self._times, self._stretches = tolerance, times, []
         self._order = np.argsort(times, kind='stable')
-        step = 'advance_with_drag' if equations.dragged else 'advance'
+        step = ('advance_on_hinge' if equations.hinged
+                else 'advance_with_drag' if equations.dragged else 'advance')
         self._kernels = specialise(batch_march, advance=f'{batch_series.__name__}:{step}')
         rising, begin = times[self._order], -math.inf
         # between two breakpoints the equations hold, and what they give at the end is the start

@@ -10,9 +10,9 @@ The unknowns are two directions of the world seen in the body, e1 and e2, and om
 
 and so on in turn, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
 in the world, and D is the matrix of drag; so one form serves all scenes of the method, by 15
-products of two series for each order (with drag a kernel of its own). Their Cauchy sums run over a
-loop: two of its terms, those with the newest coefficients, stand behind it, so that it need not
-wait for them.
+products of two series for each order (4 on a hinge; drag and hinge have kernels of their own).
+Their Cauchy sums run over a loop: two of its terms, those with the newest coefficients, stand
+behind it, so that it need not wait for them.
 
 The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
 to the result of integrating omega alone.
@@ -25,6 +25,7 @@ from rigid_body_sim.integrators.marching.taylor_march import GROWTH, NOTHING, UN
 
 ORDER = 18
 UNKNOWNS = 9        # e1, e2, omega
+ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
 LOW = 8             # orders of omega that decide a sign
 
 # Layout, in rows of eight numbers. A point: time, step that led here, squared scale of omega, what
@@ -46,12 +47,18 @@ INVERSES = DRAG + 9                     # 1/k for k = 1 ... ORDER
 ROWS = INVERSES + ORDER
 
 
-def _products(o, sums, e, w, others):
+def _products(o, sums, e, w, others, hinged):
     """Return the 15 sums, those of e x omega by sign, with one more pair of orders.
 
-    Added are the products of e and w of one order with omega of the other.
+    Added are the products of e and w of one order with omega of the other. On a hinge, along the
+    third axis, all others are 0.
     """
     made = list(sums)
+    if hinged:
+        for d in (0, 1):
+            made[6 * d] = o.gather(e[3 * d + 1], others[2], made[6 * d])
+            made[6 * d + 3] = o.gather(e[3 * d], others[2], made[6 * d + 3])
+        return made
     for d in (0, 1):
         for i in range(3):
             j, k, at = 3 * d + (i + 1) % 3, 3 * d + (i + 2) % 3, 6 * d + 2 * i
@@ -62,8 +69,10 @@ def _products(o, sums, e, w, others):
     return made
 
 
-def _series(o, W, dragged):
-    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
+def _series(o, W, dragged, hinged):
+    """Fill the coefficients of orders 1 ... ORDER, with drag or without, on a hinge or free."""
+    turns, moving = ((2,), ON_HINGE) if hinged else ((0, 1, 2), range(UNKNOWNS))
+
     def row(place):
         return o.load(W, LANES * place)
 
@@ -76,7 +85,7 @@ def _series(o, W, dragged):
     def next_order(k, sums, constant):
         e, w = rows(k, 0, 6), rows(k, 6, 3) if dragged else ()
         changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
-        for i in range(3):
+        for i in turns:
             # terms that are known first come first
             rate = (
                 o.gather(row(V + i), e[3 + i], row(CONSTANT + i))
@@ -85,11 +94,13 @@ def _series(o, W, dragged):
             )
             for j in range(3):
                 rate = o.gather(row(U + 3 * i + j), e[j], rate)
-            for j, turn in enumerate(w):
-                rate = o.gather(row(DRAG + 3 * i + j), turn, rate)
-            changes.append(o.gather(row(EULER + i), sums[12 + i], rate))
+            for j in turns if dragged else ():
+                rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
+            changes.append(rate if hinged else o.gather(row(EULER + i), sums[12 + i], rate))
         share = o.load(W, o.place(LANES * INVERSES, LANES, k))
-        for i, change in enumerate(changes):
+        if hinged:
+            changes = [changes[i] for i in (0, 1, 3, 4, 6)]
+        for i, change in zip(moving, changes, strict=True):
             o.put(
                 o.times(share, change),
                 W,
@@ -98,16 +109,16 @@ def _series(o, W, dragged):
 
     none = [o.none()] * 15
     first, first_rates = rows(0, 0, 6), rows(0, 6, 3)
-    next_order(0, _products(o, none, first, first_rates, first_rates), True)
+    next_order(0, _products(o, none, first, first_rates, first_rates, hinged), True)
 
     def order(k, _):
         def pair(i, sums):
             rest = o.place(k, -1, i)
-            return _products(o, sums, rows(i, 0, 6), rows(i, 6, 3), rows(rest, 6, 3))
+            return _products(o, sums, rows(i, 0, 6), rows(i, 6, 3), rows(rest, 6, 3), hinged)
         sums = o.repeat(1, k, none, pair)
         newest = rows(k, 6, 3)
-        sums = _products(o, sums, rows(0, 0, 6), rows(0, 6, 3), newest)
-        next_order(k, _products(o, sums, rows(k, 0, 6), newest, rows(0, 6, 3)), False)
+        sums = _products(o, sums, rows(0, 0, 6), rows(0, 6, 3), newest, hinged)
+        next_order(k, _products(o, sums, rows(k, 0, 6), newest, rows(0, 6, 3), hinged), False)
         return []
     o.repeat(1, ORDER, [], order)
 
@@ -218,13 +229,17 @@ def _attitude(o, e, guess):
     return [o.times(scale, component) for component in found]
 
 
-def _moved(o, coefficient, h):
+def _moved(o, coefficient, h, moving=range(UNKNOWNS)):
     """Return the change of the unknowns in a time h, and the integral of omega over it.
 
-    The series are those of ``coefficient(order, unknown)``.
+    Those that are not `moving` do not change. The series are those of
+    ``coefficient(order, unknown)``.
     """
     changes = []
     for i in range(UNKNOWNS):
+        if i not in moving:
+            changes.append(o.none())
+            continue
         change = coefficient(ORDER, i)
         for k in range(ORDER - 1, 0, -1):
             change = o.gather(change, h, coefficient(k, i))
@@ -248,7 +263,7 @@ def _coefficient(o, W, order, i):
     return o.load(W, LANES * (SERIES + UNKNOWNS * order + i))
 
 
-def _advance(o, W, tolerance2, dragged=False):
+def _advance(o, W, tolerance2, dragged=False, hinged=False):
     """Make the series of the point and from them the point that follows it.
 
     The square of the tolerance is for a second. More than forty lines: one straight recipe for the
@@ -258,7 +273,7 @@ def _advance(o, W, tolerance2, dragged=False):
 
     def put(value, place):
         o.put(value, W, LANES * place)
-    _series(o, W, dragged)
+    _series(o, W, dragged, hinged)
     w, pull, scale = o.none(), o.none(), row(SCALE)
     for i in range(6, UNKNOWNS):
         w, pull = (
@@ -272,7 +287,7 @@ def _advance(o, W, tolerance2, dragged=False):
     t, end, step = row(TIME), row(END), _longest(o, W, row, tolerance2, scale)
     t1 = o.where_less(o.gather(o.everywhere(o.number(1.1)), step, t), end, o.plus(t, step), end)
     h = o.plus(t1, o.minus(t))
-    changes, angle = _moved(o, coefficient, h)
+    changes, angle = _moved(o, coefficient, h, ON_HINGE if hinged else range(UNKNOWNS))
     y = [coefficient(0, i) for i in range(UNKNOWNS)]
     d = [o.plus(change, row(LOST + i)) for i, change in enumerate(changes)]
     y1 = [o.plus(a, b) for a, b in zip(y, d, strict=True)]
@@ -327,4 +342,5 @@ def _between(o, W):
 
 advance = compiled_lanes(_advance, 0)
 advance_with_drag = compiled_lanes(partial(_advance, dragged=True), 0)
+advance_on_hinge = compiled_lanes(partial(_advance, dragged=True, hinged=True), 0)
 between = compiled_lanes(_between, 0)

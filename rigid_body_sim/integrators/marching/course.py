@@ -71,22 +71,18 @@ class Bound:
         return specialise(track, **bindings)
 
     def runner(self, stepped):
-        """Return ``run(vector, time, out)``, which fills out as a course from a start does.
+        """Return (kernel, room) of ``kernel(room, vector, time, out)``, or None.
 
-        It returns whether the march arrived in one call; where it did not, a course is to go
-        there. None where what acts changes on the way. Calls may not overlap: they share memory.
+        The kernel fills `out` as a course from that start does, and returns REACHED; where it
+        returns something else, a course is to go there. `room` is its memory, so calls may not
+        overlap. None where what acts has kinks.
         """
         if self.equations.modes:
             return None
         last = self.equations.breakpoints[-1] if self.equations.breakpoints else -math.inf
-        final, prototype, piece = self.track.final, self.prototype(last), np.empty(self.piece_size)
-
-        def run(vector, time, out):
-            return final(prototype, vector, piece, time, out) == REACHED
-
-        def late_run(vector, time, out):
-            return vector[TIME] >= last and run(vector, time, out)
-        return late_run if last > -math.inf else run
+        room = np.concatenate((self.prototype(last), np.empty(self.piece_size)))
+        room[self.point + TIME] = last    # from when on what acts is constant
+        return self.track.final, room
 
     def course(self, stepped):
         """Return the course of a started solver."""

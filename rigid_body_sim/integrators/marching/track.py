@@ -148,16 +148,23 @@ def first_state(prototype, vector, piece, time, end, out):
 
 
 @compiled
-def final(prototype, vector, piece, time, out):
+def final(room, vector, time, out):
     """Fill out with the state at a time after a start, in one call; return as `follow` does.
 
-    The piece is filled anew. LOST also stands for a time that cannot be reached from the start.
+    LOST also stands for a time that cannot be reached from the start, or not without a breakpoint.
+
+    Parameters
+    ----------
+    room : array
+        A prototype, with the time from which on what acts is constant in place of that of its
+        point, and a piece, which is filled anew.
     """
     wx, wy, wz = vector[5], vector[6], vector[7]
     turns = (time - vector[0]) * math.sqrt(wx * wx + wy * wy + wz * wz)
-    if not (time >= vector[0] and turns < MOST_TURNS):
+    if not (time >= vector[0] >= room[POINT + TIME] and turns < MOST_TURNS):
         return LOST
-    first_piece(prototype, vector, piece)
+    piece = room[FOLLOWING:]
+    first_piece(room[:FOLLOWING], vector, piece)
     status = follow(piece, time, math.inf, IN_ONE_CALL)
     if status == REACHED:
         _fill(
