@@ -50,6 +50,7 @@ from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import cross
 from rigid_body_sim.scene import principal_axes
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import STATE
 
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
@@ -202,7 +203,7 @@ def _root(number):
 def _tensor_times(moments, axes, axis):
     """Return I n for principal moments and axes, n the unit vector along an axis."""
     n = _unit(axis)
-    if axes == bodies.IDENTITY:
+    if axes == IDENTITY:
         return tuple(Fraction(moment) * along for moment, along in zip(moments, n, strict=True))
     x, y, z, w = _exact(axes)
     norm = x * x + y * y + z * z + w * w
