@@ -149,7 +149,7 @@ class Equations:
         inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
         if hinge:
             inverse[0] = 1.0 / self._moment
-        differences = np.roll(moments, -1) - np.roll(moments, -2)
+        differences = moments[[1, 2, 0]] - moments[[2, 0, 1]]
         share = np.divide(differences, moments, out=np.zeros(3), where=moments > 0.0)
         fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
         euler.EQUATION.store(fixed, euler.EquationParameters(

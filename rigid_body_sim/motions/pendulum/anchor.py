@@ -116,7 +116,6 @@ class Axle(NamedTuple):
 
     axis: list[Fraction]       # n
     arm: list[Fraction]        # r, m
-    side: list[Fraction]       # n x r, m
     distance: Fraction         # of the centre of mass from the axis, m; 0 to rounding of the scene
     momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
     moment: Fraction           # about n, kg m^2
@@ -125,16 +124,12 @@ class Axle(NamedTuple):
 def axle(scene):
     """Return the Axle of a scene whose constraint holds an axis."""
     body = scene.body
-    axis, point = tuple(scene.constraint.axis), scene.constraint.point(body)
-    n, r, side, swung = _swung(axis, tuple(body.center_of_mass), tuple(point))
+    axis, point = tuple(scene.constraint.axis), tuple(scene.constraint.point(body))
+    n, r, d, swung = _swung(axis, tuple(body.center_of_mass), point)
     inertia, mass = body.about_center, Fraction(body.mass)
     spun = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis)
     momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
-    d = _root(_dot(side, side))
-    size = hypot3(*body.center_of_mass) + hypot3(*point)
-    if d <= principal_axes.ULPS * size:
-        d = Fraction(0)         # on the axis, to the rounding of what the scene says
-    return Axle(n, r, side, d, momentum, _dot(n, momentum))
+    return Axle(n, r, d, momentum, _dot(n, momentum))
 
 
 @functools.lru_cache(maxsize=KEPT)
@@ -147,10 +142,26 @@ def _unit(axis):
 
 @functools.lru_cache(maxsize=KEPT)
 def _swung(axis, center, point):
-    """Return the unit vector n of an axis, r from a point to the centre, n x r, r x (r x n)."""
+    """Return the unit vector n of an axis, r from a point to the centre, d, and r x (r x n)."""
     n = _unit(axis)
     r = tuple(c - t for c, t in zip(_exact(center), _exact(point), strict=True))
-    return n, r, _cross(n, r), _cross(r, _cross(r, n))
+    side = _cross(n, r)
+    d = _root(_dot(side, side))
+    if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
+        d = Fraction(0)         # on the axis, to the rounding of what the scene says
+    return n, r, d, _cross(r, _cross(r, n))
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _directions(axis, center, point):
+    """Return n, (n x r)/d and (n (n . r) - r)/d as pairs, the last two 0 where d is."""
+    n, r, d, _ = _swung(axis, center, point)
+    along = _dot(n, r)
+    down = [along * a - b for a, b in zip(n, r, strict=True)]
+
+    def over_d(vector):
+        return [_pair_of_ratio(component, d) if d else NOTHING for component in vector]
+    return [pair_of(component) for component in n], over_d(_cross(n, r)), over_d(down)
 
 
 def parameters(scene):
@@ -159,18 +170,13 @@ def parameters(scene):
     They come from the exact rationals that the doubles of the scene are.
     """
     body, weight, held = scene.body, scene.weight, axle(scene)
-    n, r, d, moment = held.axis, held.arm, held.distance, held.moment
-    side, along = held.side, _dot(n, r)
-    down = [along * a - b for a, b in zip(n, r, strict=True)]
-    mass, g = Fraction(body.mass), Fraction(weight)
-
-    def over_d(vector):
-        return [_pair_of_ratio(component, d) if d else NOTHING for component in vector]
+    point = tuple(scene.constraint.point(body))
+    directions = _directions(tuple(scene.constraint.axis), tuple(body.center_of_mass), point)
+    force = Fraction(body.mass) * Fraction(weight)
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        [pair_of(component) for component in n], over_d(side), over_d(down),
-        _pair_of_ratio(mass * g * d, moment), n, scene.constraint.point(body), body.mass, g, r,
-        held.momentum, mass * g / moment))
+        *directions, _pair_of_ratio(force * held.distance, held.moment), held.axis, point,
+        body.mass, weight, held.arm, held.momentum, force / held.moment))
     return numbers
 
 
