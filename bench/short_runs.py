@@ -225,6 +225,13 @@ class Case:
             steps = max(steps + 1, round(1.6 * steps))
 
 
+def once(act):
+    """Return the CPU time of one call, s."""
+    begin = time.process_time()
+    act()
+    return time.process_time() - begin
+
+
 def measure(case, duration, methods):
     """Return {who: {goal: (seconds a run, setting)}}; `auto` stands at the goal it was asked."""
     exact, candidates, seen = case.exact(duration), [], {}
@@ -234,9 +241,7 @@ def measure(case, duration, methods):
         if who == 'rk4' and seen.get(who, np.inf) <= GOALS[-1]:
             continue
         seen[who] = min(seen.get(who, np.inf), error)
-        begin = time.process_time()
-        act()
-        count = max(1, min(200, int(SAMPLE / max(time.process_time() - begin, 1e-6))))
+        count = max(1, min(400, int(SAMPLE / max(min(once(act) for _ in range(5)), 5e-7))))
         candidates.append([who, setting, act, error, count, np.inf])
     for _ in range(REPEATS):
         for row in candidates:
