@@ -233,7 +233,7 @@ class _Trial:
         return None
 
     def _below(self, finer, tolerance):
-        """Return the tolerance of a run whose own error is below its difference from a coarser one.
+        """Return the tolerance of a run that errs less than it differs from a coarser one.
 
         The steps of the coarser one may happen to be better than was asked: then the difference
         from a finer run may be the error of that one, which only its tolerance bounds.
