@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns to rows, eight rows at a time, by the vector unit of the processor.
 
-Kernels that compute many states side by side fill columns, one for each number of a state; whoever
-asked wants rows. Numbers are copied, so the bits stay; in the caches of an AMD EPYC (Zen 5) a state
-takes 1 ns, one number after the other 2 ns.
+Kernels that compute many states side by side fill columns, one for each number of a state;
+whoever asked wants rows. Numbers are copied, so the bits stay; in the caches of an AMD EPYC (Zen
+5) a state takes 1 ns, one number after the other 2 ns.
 """
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
