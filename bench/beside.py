@@ -82,13 +82,13 @@ def stepped():
     return found
 
 
-def run(tree, settings, bench):
+def run(tree, settings, bench, more=()):
     """Return {row: least seconds} of a bench in a tree, with settings of the environment."""
     script = TREE / 'bench' / 'beside.py' if bench == 'stepped' else (
         tree / 'bench' / f'{bench}.py')
     words = ['--measure'] if bench == 'stepped' else ['--json']
     path = os.pathsep.join(filter(None, (str(tree), os.environ.get('PYTHONPATH'))))
-    done = subprocess.run([sys.executable, script, *words], cwd=tree, capture_output=True,
+    done = subprocess.run([sys.executable, script, *words, *more], cwd=tree, capture_output=True,
                           text=True, env=os.environ | settings | {'PYTHONPATH': path})
     if done.returncode:
         sys.exit(f'{tree}: {bench}: {done.stderr.strip().splitlines()[-1]}')
@@ -102,11 +102,16 @@ def run(tree, settings, bench):
 
 def compare(other, settings, bench, turns):
     """Print a table of a bench; return the rows that lost."""
-    ours, theirs, lost = {}, {}, []
+    ours, theirs, lost, more = {}, {}, [], ()
+    if bench == 'closed_forms' and other != TREE:
+        from closed_forms import SCENES    # not at the top: --measure runs in other trees
+        # as many scenes as there: with more of them less of their states stays in the caches
+        kinds = {row.partition(':')[0] for row in run(other, settings, bench)}
+        more = '--only', *(kind for kind in SCENES if kind in kinds)
     for turn in range(turns):
-        sides = (TREE, {}, ours), (other, settings, theirs)
-        for tree, wanted, table in sides if turn % 2 == 0 else sides[::-1]:
-            for row, seconds in run(tree, wanted, bench).items():
+        sides = (TREE, {}, ours, more), (other, settings, theirs, ())
+        for tree, wanted, table, words in sides if turn % 2 == 0 else sides[::-1]:
+            for row, seconds in run(tree, wanted, bench, words).items():
                 table.setdefault(row, []).append(seconds)
     print(f'{bench:46} {"here, us":>10} {"other, us":>10}  ratio  of single turns')
     for row in ours:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cost of one state in closed form, and of a state every millisecond; RK4 and heyoka.
 
-    .venv/bin/python bench/closed_forms.py [--json]
+    .venv/bin/python bench/closed_forms.py [--only 'free body' pendulum] [--json]
 
 RK4 is compiled; heyoka is measured where it is installed. Every figure is the median of
 interleaved repeats in one run; "call" includes the call from Python. Ratios are reproducible,
@@ -72,9 +72,13 @@ def timed(act, count):
     return (time.perf_counter() - begin) / count
 
 
-def cases():
-    """Yield (name, callable, units per call)."""
-    for kind, (name, overrides) in SCENES.items():
+def cases(kinds=tuple(SCENES)):
+    """Yield (name, callable, units per call) of these kinds of scenes, and of the others' solvers.
+
+    Each kind has 2 MB of states, so times of states every millisecond rise with their number.
+    """
+    for kind in kinds:
+        name, overrides = SCENES[kind]
         scene = load_scene(name, overrides)
         solver = Exact(scene, absorbing_motion(scene))
         start, out = scene.initial.vector, np.empty(STATE_SIZE)
@@ -140,8 +144,10 @@ def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--json', action='store_true')
+    parser.add_argument('--only', nargs='+', choices=SCENES, default=list(SCENES),
+                        help='kinds of scenes (all)')
     options = parser.parse_args()
-    rows = list(cases())
+    rows = list(cases(options.only))
     for _, act, _ in rows:
         act()
     times = {what: [] for what, _, _ in rows}

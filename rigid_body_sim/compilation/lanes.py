@@ -148,16 +148,11 @@ if HAVE_NUMBA:
 
         def everywhere(self, x):
             """Return a vector of eight times x."""
-            return self.shuffled(self.with_lane(ABSENT, 0, x), ABSENT, [0] * LANES)
+            return self._shuffled(self.with_lane(ABSENT, 0, x), ABSENT, [0] * LANES)
 
         def next(self, v):
             """Return the lanes moved one place down, with 0 in the last."""
-            return self.shuffled(v, self.none(), [place + 1 for place in PLACES])
-
-        def shuffled(self, u, v, places):
-            """Return the numbers at eight places of u (0 to 7) and v (8 to 15)."""
-            return self._builder.shuffle_vector(
-                u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
+            return self._shuffled(v, self.none(), [place + 1 for place in PLACES])
 
         def first(self, v):
             """Return the number in the first lane."""
@@ -243,6 +238,10 @@ if HAVE_NUMBA:
 
         def _place(self, array, at):
             return self._builder.gep(array, [self._index(at)])
+
+        def _shuffled(self, u, v, places):
+            return self._builder.shuffle_vector(
+                u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
 
 
 def compiled_lanes(recurrence, results):
