@@ -104,7 +104,7 @@ def compare(other, settings, bench, turns):
     """Print a table of a bench; return the rows that lost."""
     ours, theirs, lost, more = {}, {}, [], ()
     if bench == 'closed_forms' and other != TREE:
-        from closed_forms import SCENES    # not at the top: --measure runs in other trees
+        from closed_forms import SCENES  # not at the top: --measure runs in other trees
         # as many scenes as there: with more of them less of their states stays in the caches
         kinds = {row.partition(':')[0] for row in run(other, settings, bench)}
         more = '--only', *(kind for kind in SCENES if kind in kinds)
