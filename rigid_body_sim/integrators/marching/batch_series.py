@@ -70,7 +70,11 @@ def _products(o, sums, e, w, others, hinged):
 
 
 def _series(o, W, dragged, hinged):
-    """Fill the coefficients of orders 1 ... ORDER, with drag or without, on a hinge or free."""
+    """Fill the coefficients of orders 1 ... ORDER, with drag or without, on a hinge or free.
+
+    More than forty lines: an order is what the functions within make of the rows of the lower
+    ones, and all of them share the rows.
+    """
     turns, moving = ((2,), ON_HINGE) if hinged else ((0, 1, 2), range(UNKNOWNS))
 
     def row(place):

@@ -16,6 +16,7 @@ import math
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, TIME
+from rigid_body_sim.scene.state import STATE
 
 start = UNBOUND
 begin = UNBOUND
@@ -35,6 +36,7 @@ SPACING = 32                        # stride at first: every n-th point is kept
 AT_ONCE = 8                         # steps of a call from Python that asks for a state
 IN_ONE_CALL = 1024                  # steps of a call that asks for a final state
 MOST_TURNS = 1e15                   # rad, of a final state: then somebody else says what is wrong
+load_state = STATE.load
 
 
 @compiled
@@ -159,7 +161,7 @@ def final(room, vector, time, out):
         A prototype, with the time from which on what acts is constant in place of that of its
         point, and a piece, which is filled anew.
     """
-    wx, wy, wz = vector[5], vector[6], vector[7]
+    wx, wy, wz = load_state(vector).angular_velocity
     turns = (time - vector[0]) * math.sqrt(wx * wx + wy * wy + wz * wz)
     if not (time >= vector[0] >= room[POINT + TIME] and turns < MOST_TURNS):
         return LOST
