@@ -30,6 +30,7 @@ LONGER = 10.0   # times that: up to there a trial goes on to a strike
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 LEAST, MOST, AIM = 0.1, 0.4, 0.2      # of the accuracy: the error that is taken, and aimed at
+PATIENCE = 1, 16    # times so many, where no method follows: what acts is faster than the body
 COARSER = 8.0   # times the tolerance of the table, which holds on all scenes: the first one tried
 FINER = 2.0 ** -7    # of a tolerance, the one of the run that it is compared with
 NEAR = 2.0 ** -4     # of a tolerance: a run that is less fine is none to compare it with
@@ -107,9 +108,12 @@ def settle(scene, able, accuracy, horizon):
     """Return the Settled choice that meets an accuracy on this scene.
 
     A method that takes many more steps than the motion asks for is no method for the scene: the
-    next one is tried. Where none meets the accuracy, the most accurate method of the table is
-    taken. The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a
-    part of a long horizon, and errors are taken to grow in proportion to time.
+    next one is tried. Where none follows, all of them are tried again with more patience, since
+    what acts may be faster than the body, and from the coarsest tolerance on, since rounding of
+    what acts may be more than a fine one allows. Where none meets the accuracy, the most accurate
+    method of the table is taken. The parameters are those of
+    :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a long horizon, and errors
+    are taken to grow in proportion to time.
 
     Raises
     ------
@@ -117,22 +121,25 @@ def settle(scene, able, accuracy, horizon):
         No method follows the scene.
     """
     # a method that was not measured on such scenes is for those who name it
-    left, failed = [name for name in able if measured.rows(scene).get(name)], None
-    while left:
-        method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
-        trial = _Trial(scene, accuracy, horizon, method, promised)
-        try:
-            if trial.radians <= SHORT and promised <= accuracy:
-                found = tolerance
+    measured_ones = [name for name in able if measured.rows(scene).get(name)]
+    failed = 'none'
+    for patience in PATIENCE:
+        left = measured_ones.copy()
+        while left:
+            method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
+            trial = _Trial(scene, accuracy, horizon, method, promised, patience)
+            try:
+                if trial.radians <= SHORT and promised <= accuracy:
+                    found = tolerance
+                else:
+                    found = trial.tolerance_from(tolerance)
+            except TooMuchWork as error:
+                left.remove(method)
+                failed = error
             else:
-                found = trial.tolerance_from(tolerance)
-        except TooMuchWork as error:
-            left.remove(method)
-            failed = error
-        else:
-            return Settled(method, found, find=functools.partial(trial.forecast, found),
-                           prototype=trial.prototype)
-    raise NotConverged(f'no method follows the scene; the last one tried was {failed or "none"}')
+                return Settled(method, found, find=functools.partial(trial.forecast, found),
+                               prototype=trial.prototype)
+    raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
 
 
 class _Trial:
@@ -142,6 +149,8 @@ class _Trial:
     ----------
     promised : float
         The error at the tolerance of the table, rad: what is expected where runs tell nothing.
+    patience : int
+        How many times the steps that the motion of the body asks for a run may take.
 
     Attributes
     ----------
@@ -149,15 +158,15 @@ class _Trial:
         By which the body turns at most, about.
     """
 
-    def __init__(self, scene, accuracy, horizon, method, promised):
+    def __init__(self, scene, accuracy, horizon, method, promised, patience):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
-        self._promised, self._runs, self._compared = promised, {}, {}
+        self._promised, self._runs, self._patience = promised, {}, patience
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
         self._part, self._times = time / horizon, forecast.looks(time)
         self.radians = (pace + 0.5 * push * time) * time
-        most = STEPS + int(
-            min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS))
+        most = patience * (STEPS + int(
+            min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         self._finest, self._coarsest = min(known), max(known)
         self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
@@ -171,8 +180,15 @@ class _Trial:
             A run takes more steps than the motion asks for.
         """
         accuracy, good, bad, here = self._accuracy, None, None, self._grid(COARSER * tolerance)
+        if self._patience > 1:
+            here = self._coarsest    # fine ones are known to take too much
         for _ in range(TRIES):
-            error = self._error(here)
+            try:
+                error = self._error(here)
+            except TooMuchWork:
+                if good or (bad and self._patience > 1):
+                    break    # a finer run would be too long: what works is taken
+                raise
             if error is None:    # no finer run to compare with: what was seen last is kept
                 return here if bad is None else bad[0]
             if error <= MOST * accuracy:
@@ -188,7 +204,9 @@ class _Trial:
             last, here = here, self._next(here, error, good, bad)
             if here == last or (good and here == good[0]) or (bad and here == bad[0]):
                 break
-        return good[0] if good else min(here, bad[0])
+        if good:
+            return good[0]
+        return min(here, bad[0]) if here in self._runs else bad[0]
 
     def forecast(self, tolerance):
         """Return the Forecast of a choice."""

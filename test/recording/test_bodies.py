@@ -180,5 +180,6 @@ def test_a_topic_as_xarray(flight):
 @pytest.mark.parametrize('name', ['pandas', 'xarray'])
 def test_what_is_not_installed_is_said_in_one_line(flight, monkeypatch, name):
     monkeypatch.setitem(sys.modules, name, None)
-    with Recording(flight) as recording, pytest.raises(BadInput, match=f'"pip install {name}"'):
+    line = f'{name}: is not installed; pip install {name}'
+    with Recording(flight) as recording, pytest.raises(BadInput, match=line):
         getattr(recording, f'to_{name}')('/pose')

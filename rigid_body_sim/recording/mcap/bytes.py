@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The bytes of a file, read anywhere in it.
 
-`mcap.data_stream.ReadDataStream` is not used because it only reads forwards, and a damaged file is
-read at many places.
+Why not `mcap.data_stream.ReadDataStream`: it only reads forwards, and a damaged file is read at
+many places.
 """
 
 import os

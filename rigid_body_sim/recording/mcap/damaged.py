@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The damaged records of an MCAP file: rescued, replaced, or left out."""
+"""The damaged records of an MCAP file: rescued, replaced, or left out.
+
+Why not the library: it ends at a record that is damaged.
+"""
 
 import numpy as np
 from mcap.exceptions import UnsupportedCompressionError

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The findings of a scan of an MCAP file: parts, contents, damages, descriptions."""
+"""The findings of a scan of an MCAP file: parts, contents, damages, descriptions.
+
+Why not the library: it keeps the places of what its index names, and no others.
+"""
 
 import dataclasses
 import zlib
