@@ -107,6 +107,7 @@ class Work:
     def _given_up(self, time, target):
         done, before = self._begin
         return TooMuchWork(
-            f'{self._name}: {self.done - done} steps from t = {before!r} s led to t = {float(time)!r} s; '
+            f'{self._name}: {self.done - done} steps from t = {before!r} s '
+            f'led to t = {float(time)!r} s; '
             f'to reach {target!r} s asks for too many. A slower body, weaker effects, a coarser '
             'accuracy, a shorter time, or another integrator would do')
