@@ -35,7 +35,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE, STATE_SIZE, TIME
 RADIANS = 8.0            # of the fastest turn, in the longest panel
 UNMOVED = 1.0            # s, the first panel where nothing moves
 AT_ONCE = 256            # panels
-ULP = 2.0 ** -52         # of the time, 64 of them: the clock resolves no shorter panel
+CLOCK = 2.0 ** -46       # share of the time, 64 ulps: the clock resolves no shorter panel
 TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
 PLACES = np.array([0.0, *NODES])
 MOST = 2 ** 20
@@ -161,7 +161,10 @@ class Exchange:
         self._count = 0
         ends = [*sorted({*self._actors.breakpoints, *self._kinks(time)}), math.inf]
         ahead = time - self._time
-        self._least = ahead / EVENLY if ahead > MOST * self._longest else 0.0
+        # where the clock resolves no turn of the body, short panels would see noise
+        fastest = RADIANS / self._longest + self._actors.drive * (time - float(self._start[TIME]))
+        lost = fastest * CLOCK * abs(time) > RADIANS
+        self._least = ahead / EVENLY if lost or ahead > MOST * self._longest else 0.0
         for end in ends[bisect.bisect_right(ends, self._time):]:
             self._time, self._length = self._lay(self._time, time, end, self._length, self._sums)
             if end > time:
@@ -207,7 +210,7 @@ class Exchange:
             states = np.empty((len(times), STATE_SIZE))
             self._states(times, states)
             # the edges are rounded, so a panel may be an ulp of the time longer than asked
-            shortest = max(1.001 * least, 64.0 * ULP * abs(t) + TINY * self._first)
+            shortest = max(1.001 * least, CLOCK * abs(t) + TINY * self._first)
             added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
                                        shortest, self._slack, sums)
             self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)
