@@ -16,7 +16,7 @@ from rigid_body_sim.study.hard_cases.trends import LONG
 
 FILE = kept.FOLDER / 'hard_cases.json'
 FACTOR = 2.0
-NOTHING = 2.0 ** -53    # an error as small as the rounding of 1 is none
+NOTHING = 1e-18    # an error as small as that is none
 
 
 def judge(case, outcome=None):
