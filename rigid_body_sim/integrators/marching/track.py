@@ -125,20 +125,26 @@ def _fill(p, control, point, following, time, out):
 
 
 @compiled
+def _within(piece, time, out):
+    """Fill `out` with the state at a time within the present step of a piece."""
+    _fill(
+        piece[:CONTROL],
+        piece[CONTROL:POINT],
+        piece[POINT:FOLLOWING],
+        piece[FOLLOWING:COUNTS],
+        time,
+        out,
+    )
+
+
+@compiled
 def state(piece, time, end, out):
     """Fill out with the state at a time if the march reaches it; return what `follow` returns."""
     status = REACHED
     if not piece[POINT + TIME] <= time < piece[FOLLOWING + TIME]:
         status = follow(piece, time, end, AT_ONCE)
     if status == REACHED:
-        _fill(
-            piece[:CONTROL],
-            piece[CONTROL:POINT],
-            piece[POINT:FOLLOWING],
-            piece[FOLLOWING:COUNTS],
-            time,
-            out,
-        )
+        _within(piece, time, out)
     return status
 
 
@@ -169,14 +175,7 @@ def final(room, vector, time, out):
     first_piece(room[:FOLLOWING], vector, piece)
     status = follow(piece, time, math.inf, IN_ONE_CALL)
     if status == REACHED:
-        _fill(
-            piece[:CONTROL],
-            piece[CONTROL:POINT],
-            piece[POINT:FOLLOWING],
-            piece[FOLLOWING:COUNTS],
-            time,
-            out,
-        )
+        _within(piece, time, out)
     return status
 
 
