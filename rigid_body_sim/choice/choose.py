@@ -7,7 +7,7 @@ was measured to meet the accuracy (measured.py), after a trial run on the scene 
 
 import functools
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,14 +70,14 @@ class Choice:
         What `auto` chose, as `choose` takes it again; None of a method that was named.
     """
 
-    scene: object
+    scene: object = field(repr=False)
     method: str
     accuracy: float | None
     step: float | None
     horizon: float
     tolerance: float | None
-    _prototype: Solver
-    settled: trial.Settled | None
+    _prototype: Solver = field(repr=False)
+    settled: trial.Settled | None = field(repr=False)
 
     @property
     def _forecast(self):
