@@ -39,8 +39,9 @@ sweep-demo: .venv/run.stamp ## a stability map on a Dask cluster of two worker p
 	@rm -rf .cache/sleeping_top.zarr
 	@.venv/bin/python examples/sweep_on_dask.py config/sweeps/sleeping_top.yaml .cache/sleeping_top.zarr
 
-test: lint ## everything: ruff, colcon build and test of the package, pytest
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=none package unit
+test: lint ## everything: ruff, pytest, colcon build and test of the package, with the kernels that are compiled by then
+	@$(MAKE) --no-print-directory unit
+	@$(MAKE) --no-print-directory package
 
 unit: .venv/test.stamp ## pytest
 	.venv/bin/$(PYTEST)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of all tests."""
 
+import fcntl
+import hashlib
 import json
 import os
 import pathlib
@@ -14,6 +16,7 @@ import ros
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
+TEST = pathlib.Path(__file__).resolve().parent
 os.environ.update(ros.SETTINGS)
 # a shell that starts the tests with & leaves SIGINT ignored, and nohup SIGHUP; processes inherit
 # that
@@ -33,6 +36,33 @@ def ros_domain(tmp_path, monkeypatch):
         monkeypatch.setenv('ROS_DOMAIN_ID', str(domain.id))
         monkeypatch.setenv('ROS_LOG_DIR', domain.environment['ROS_LOG_DIR'])
         yield domain
+
+
+@pytest.fixture(scope='session')
+def plain(tmp_path_factory):
+    """Return a function that runs a script of test/ in plain Python, and returns its JSON.
+
+    Plain Python compiles nothing. Workers share what one of them has run.
+    """
+    folder = tmp_path_factory.getbasetemp()
+    if 'PYTEST_XDIST_WORKER' in os.environ:
+        folder = folder.parent
+    environment = os.environ | {'NUMBA_DISABLE_JIT': '1',
+                                'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
+
+    def run(script, *arguments):
+        name = hashlib.sha256('\0'.join((script, *arguments)).encode()).hexdigest()
+        kept = folder / f'{name}.json'
+        with open(folder / f'{name}.lock', 'w', encoding='utf-8') as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not kept.exists():
+                done = subprocess.run(
+                    [sys.executable, '-W', 'ignore', TEST / script, *arguments],
+                    env=environment, capture_output=True, text=True, timeout=280)
+                assert done.returncode == 0, done.stderr
+                kept.write_text(done.stdout, encoding='utf-8')
+        return json.loads(kept.read_text(encoding='utf-8'))
+    return run
 
 
 WITHOUT_NUMBA = pytest.StashKey()

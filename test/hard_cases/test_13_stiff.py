@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Group 13, slim and stiffly damped bodies: nothing hangs, and what is followed is right."""
 
-import concurrent.futures
+import functools
 import json
 import math
 import os
@@ -28,41 +28,23 @@ from rigid_body_sim.simulation.simulation import Simulation
 TEST = pathlib.Path(__file__).resolve().parents[1]
 DEPARTURES = json.loads((TEST / 'data' / 'departures.json').read_text())
 NAMES = 'slim', 'hinge', 'spinning', 'skew', 'driven', 'needle'
-RUN = *NAMES, 'departures'
-
-
-def plain(script, *arguments):
-    """Start a script in plain Python, which compiles nothing."""
-    settings = os.environ | {'NUMBA_DISABLE_JIT': '1',
-                             'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
-    return subprocess.Popen([sys.executable, str(script), *arguments], env=settings, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 @pytest.fixture(scope='module')
-def stiff():
-    def run(name):
-        process = plain(TEST / 'hard_cases' / 'stiff_scenes.py', name)
-        try:
-            out, error = process.communicate(timeout=200)    # 10 to 20 s each; a hang has no end
-        finally:
-            process.kill()
-        assert process.returncode == 0, error
-        return json.loads(out)
-    with concurrent.futures.ThreadPoolExecutor(2) as two:
-        return dict(zip(RUN, two.map(run, RUN), strict=True))
+def stiff(plain):
+    return functools.partial(plain, 'hard_cases/stiff_scenes.py')
 
 
 @pytest.mark.parametrize('name', NAMES)
 def test_auto_takes_a_method_that_keeps_the_pace_of_the_motion(stiff, name):
-    assert stiff[name]['method'] in ('gauss16', 'exact')
-    assert stiff[name]['expected'] < 1e-11
+    assert stiff(name)['method'] in ('gauss16', 'exact')
+    assert stiff(name)['expected'] < 1e-11
 
 
 def test_a_pendulum_in_tar_creeps_at_the_rate_of_torque_over_drag(stiff):
     pendulum = load_scene('kater_pendulum_from_p')
     arm = pendulum.constraint.arm(pendulum.body)
-    end = stiff['hinge']['end']
+    end = stiff('hinge')['end']
     angle, rate = 2.0 * math.atan2(end[2], end[4]), end[6]
     down = math.hypot(arm[0], arm[2])
     torque = -pendulum.body.mass * 9.81 * down * math.sin(angle - math.pi)
@@ -72,7 +54,7 @@ def test_a_pendulum_in_tar_creeps_at_the_rate_of_torque_over_drag(stiff):
 
 
 def test_an_overdamped_top_keeps_its_spin_and_its_axis_falls_as_the_sum_says(stiff):
-    _, x, y, z, w, _, _, spin, *_ = stiff['spinning']['end']
+    _, x, y, z, w, _, _, spin, *_ = stiff('spinning')['end']
     assert abs(spin - 30.0) < 1e-12
     tilt = 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
     # c r^2 theta' = M g r sin(theta), gyroscopic corrections are (I3 w3/(c r^2))^2 = 6e-11 of it
@@ -81,13 +63,13 @@ def test_an_overdamped_top_keeps_its_spin_and_its_axis_falls_as_the_sum_says(sti
 
 
 def test_a_driven_body_in_tar_turns_with_torque_over_drag(stiff):
-    omega = np.array(stiff['driven']['end'][5:8])
+    omega = np.array(stiff('driven')['end'][5:8])
     assert np.abs(omega - np.array([0.1, 0.2, 0.3]) / 1e5).max() < 1e-15
 
 
 def test_drag_slows_a_needle_as_it_slows_a_disk(stiff):
     # I1 = I2 and I3 = 0: omega1 and omega2 fall by e^(-k t/I1), the axis turns in a plane
-    omega = np.array(stiff['needle']['end'][5:8])
+    omega = np.array(stiff('needle')['end'][5:8])
     assert np.abs(omega - np.array([1.0, 2.0, 0.0]) * math.exp(-0.05)).max() < 1e-13
 
 
@@ -101,7 +83,7 @@ def departing(moments, coefficient, omega):
 @pytest.mark.parametrize('name', DEPARTURES)
 def test_internal_dissipation_leaves_an_axis_at_the_right_time(stiff, name, accuracy):
     # measured at 1e-12: errors of at most 1e-14, and they are the expected ones
-    found = stiff['departures'][f'{name} {accuracy}']
+    found = stiff('departures')[f'{name} {accuracy}']
     assert found['error'] < accuracy
     assert found['rate'] < 10.0 * accuracy
     assert found['error'] < 2.0 * found['expected'] + 1e-14

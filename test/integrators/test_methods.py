@@ -3,10 +3,7 @@
 
 import json
 import math
-import os
 import pathlib
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -49,12 +46,8 @@ def energy(scene, vector):
 
 
 @pytest.fixture(scope='module')
-def measured_slopes():
-    settings = (os.environ | {
-        'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))})
-    command = [sys.executable, str(TEST / 'integrators' / 'slopes.py')]
-    return json.loads(subprocess.run(
-        command, capture_output=True, text=True, timeout=200, env=settings, check=True).stdout)
+def measured_slopes(plain):
+    return plain('integrators/slopes.py')
 
 
 @pytest.mark.parametrize('name', METHODS)

@@ -2,10 +2,7 @@
 """Every kind of smooth scene against 34 digits (test/data/make_smooth.py), at round-off."""
 
 import json
-import os
 import pathlib
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -25,15 +22,10 @@ BY_SERIES = ('asymmetric_heavy_top', 'skew_heavy_top', 'driven_body', 'driven_fr
 
 
 @pytest.fixture(scope='module', params=['dop8', 'gauss16', 'taylor'])
-def solved(request):
+def solved(request, plain):
     # under a held wrench it is dop8
     names = BY_SERIES if request.param == 'taylor' else smooth_cases.CASES
-    command = [sys.executable, str(TEST / 'integrators' / 'plain_python.py'), request.param,
-               'accuracy', '1e-14', *names]
-    settings = (os.environ | {
-        'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))})
-    return json.loads(subprocess.run(
-        command, capture_output=True, text=True, timeout=300, env=settings, check=True).stdout)
+    return plain('integrators/plain_python.py', request.param, 'accuracy', '1e-14', *names)
 
 
 def check(name, states):
