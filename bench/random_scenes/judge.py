@@ -16,7 +16,7 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACIES = 1e-6, 1e-11
-LOOKS = 24               # as often as a trial of `auto`: dense output errs between steps
+LOOKS = 64               # as often as a trial of `auto`: dense output errs between steps
 LONGEST = 120            # s of the processor, a scene with its compilation
 LONGEST_IN_PYTHON = 600  # without compilation
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked

@@ -6,6 +6,7 @@ friction) asks ``Sides`` on which side of it the body is, so that each right-han
 """
 
 import ast
+import re
 
 import numpy as np
 
@@ -86,6 +87,11 @@ def is_text(one):
     return any(isinstance(part, str) for part in one.get('value', one.get('field', ())))
 
 
+def timed(one):
+    """Return whether the field of a magnet depends on the time."""
+    return any(re.search(r'\bt\b', str(part)) for part in one['field'])
+
+
 def value_at(one, t):
     """Return the torque just after a time."""
     if 'value' in one:
@@ -117,7 +123,7 @@ class Laws:
         `t` is a time or one for each row, `since` that from which pieces of torques act.
         """
         q, w, v, c = y[:, :4], y[:, 4:7], y[:, 7:10], y[:, 10:]
-        held, known, turning = self.held, None, 0
+        held, known, loosened, pulled = self.held, None, None, 0
         force, torque = np.zeros_like(w), np.zeros_like(w)
         if held.kind != 'free':
             v = rotated(q, cross(w, held.arm[None]))
@@ -133,13 +139,13 @@ class Laws:
                 force = force + rotated(q, _dragged(one, '', 'linear', back(q, v)))
                 torque = torque + _dragged(one, 'angular_', 'angular', w)
             elif name == 'internal_dissipation':
-                turning = WIDE(one['coefficient']) * cross(times(held.I, w), w)
+                loosened = WIDE(one['coefficient'])
             elif name == 'gravity_gradient':
                 place = array(one['position'])
                 r = np.sqrt(place @ place)
                 n = back(q, place[None] / r + 0 * w)
-                torque = torque + 3 * WIDE(one['mu']) / r ** 3 * cross(
-                    n, times(held.about_center, n))
+                G = 3 * WIDE(one['mu']) / r ** 3 * cross(n, times(held.about_center, n))
+                torque, pulled = torque + G, pulled + G
             elif name == 'rotor':
                 torque = torque + _rotor(one, w, t)
             elif name == 'dry_friction':
@@ -152,7 +158,12 @@ class Laws:
                 known = known or self._known(q, w, v, c, t)
                 F, G = self._field(name, one, known)    # world at the centre of mass, body
                 force, torque = force + F, torque + G
-        return force, torque, turning
+                if name in ('potential', 'spring') or (name == 'magnetic' and not timed(one)):
+                    pulled = pulled + G
+        if loosened is None:
+            return force, torque, 0
+        # only free bodies are drawn: a pivot's weight would be among the potentials
+        return force, torque, loosened * (cross(times(held.I, w), w) + pulled)
 
     def _torsion(self, one, q, w):
         n = self.held.axis

@@ -26,13 +26,14 @@ from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import angles_between, normalised
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, VELOCITY
 
 LOOKS = 64               # times at which runs are compared
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
          (1, -1, -1, 1, 1, -1, -1))
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
 MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
+AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 
@@ -158,7 +159,19 @@ def momenta_apart(scene, states, others):
         out = np.empty((len(vectors), DIAGNOSIS_SIZE))
         energies(scene).diagnose_many(parameters(scene), vectors, out)
         found.append(out[:, MOMENTUM:MOMENTUM + 3])
-    one, other = found
+    return _shares(*found)
+
+
+def velocities_apart(states, others):
+    """Return the differences of the velocities of two runs, shape (n,); infinite for NaN.
+
+    They are relative to the largest speed so far.
+    """
+    return _shares(states[:, VELOCITY], others[:, VELOCITY])
+
+
+def _shares(one, other):
+    """Return the lengths of differences as shares of the largest length so far, shape (n,)."""
     sizes, apart = np.maximum.accumulate(_lengths(one)), _lengths(one - other)
     shares = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
     return np.where(np.isnan(apart) | np.isnan(sizes), math.inf, shares)
@@ -174,14 +187,16 @@ def _lengths(vectors):
 def rounding(scene, states, times):
     """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,).
 
-    A rate that a torque adds counts twice, since the moment of inertia is rounded, too.
+    A rate that a torque adds counts twice, since the moment of inertia is rounded, too. On a hinge
+    the attitude is the product of that of the start and of a turn, each of them rounded.
     """
     rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
     fastest = np.maximum.accumulate(rates)
     if drive(scene, None) > 0.0:
         first = hypot3(*scene.initial.vector[ANGULAR_VELOCITY].tolist())
         fastest = fastest + np.maximum(0.0, fastest - first)
-    return HALF_ULP * (4.0 + fastest * times)
+    numbers = 4.0 if scene.constraint.axis is None else 8.0
+    return HALF_ULP * (numbers + fastest * times)
 
 
 def conditioning(scene, prototype, times, states):
@@ -209,17 +224,21 @@ def conditioning(scene, prototype, times, states):
 def lost(scene, prototype, times, states):
     """Return the error of the attitude of a run by rounding, rad, shape (n,).
 
-    Each strike starts the motion anew, with roundings of its own: squares add up.
+    Each strike starts the motion anew, with roundings of its own, which grow from then on: squares
+    add up.
 
     Parameters
     ----------
     states : array (n, 14)
         The run from the scene's own start.
     """
-    begun = 1 + np.searchsorted([strike.time for strike in strikes(scene)], times)
     found = np.maximum(rounding(scene, states, times),
                        conditioning(scene, prototype, times, states))
-    return found * np.sqrt(begun.astype(float))
+    squares = np.square(found)
+    for strike in strikes(scene):
+        since = 1.0 - max(strike.time, 0.0) / times
+        squares += np.where(since >= 0.0, np.square(found * since) + AGAIN * AGAIN, 0.0)
+    return np.sqrt(squares)
 
 
 def _moved(scene, start, signs, many):

@@ -5,11 +5,13 @@ The chosen method runs from the scene's start, strikes included, with a toleranc
 meet the accuracy, and with a much finer one; the difference is the error. How errors grow with the
 tolerance then leads to the tolerance that spends what is asked: a tenth of it to two fifths.
 Tolerances are powers of two, so that nothing depends on the last digit of a difference. The
-angular momentum of a slim body errs more than its attitude, by the quotient of its moments: it
-counts too, so that the ledger balances. Both runs lose the same digits of the start: what that
-does to the attitude is found when somebody asks for the expected error (forecast.py).
+angular momentum of a slim body errs more than its attitude, by the quotient of its moments, and
+the flight of a body that hardly turns errs where its attitude does not: angular momentum and
+velocity count too, so that the ledger balances. Both runs lose the same digits of the start: what
+that does to the attitude is found when somebody asks for the expected error (forecast.py).
 
-Where a body turns too little for a trial to pay, the tolerance of the table is taken.
+Where a body that is not slim turns too little for a trial to pay, and no force moves it, the
+tolerance of the table is taken, and eight times less to be safe: its scenes are others.
 """
 
 import functools
@@ -28,10 +30,11 @@ RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
 LONGER = 10.0   # times that: up to there a trial goes on to a strike
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
+SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 LEAST, MOST, AIM = 0.1, 0.4, 0.2      # of the accuracy: the error that is taken, and aimed at
 PATIENCE = 1, 16    # times so many, where no method follows: what acts is faster than the body
-COARSER = 8.0   # times the tolerance of the table, which holds on all scenes: the first one tried
+COARSER = 8.0   # between the tolerance of the table and that of a scene, either way
 FINER = 2.0 ** -7    # of a tolerance, the one of the run that it is compared with
 NEAR = 2.0 ** -4     # of a tolerance: a run that is less fine is none to compare it with
 FINER_ONES = FINER, NEAR, 0.25    # where a run that much finer takes too much work
@@ -40,7 +43,7 @@ GROWTH = 1.1    # power of the tolerance with which errors grow, until two are k
 GROWTHS = 0.5, 2.0
 FARTHEST = 2.0 ** 12    # from one tolerance tried to the next, as a factor
 ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mostly round-off
-MOMENTA = 0.1   # share at which relative errors of the angular momentum count as errors, rad
+MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
@@ -129,8 +132,9 @@ def settle(scene, able, accuracy, horizon):
             method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
             trial = _Trial(scene, accuracy, horizon, method, promised, patience)
             try:
-                if trial.radians <= SHORT and promised <= accuracy:
-                    found = tolerance
+                if (trial.radians <= SHORT and promised <= accuracy
+                        and not (_slim(scene) or _flies(scene))):
+                    found = trial.finer_than(tolerance)
                 else:
                     found = trial.tolerance_from(tolerance)
             except TooMuchWork as error:
@@ -161,6 +165,7 @@ class _Trial:
     def __init__(self, scene, accuracy, horizon, method, promised, patience):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._runs, self._patience = promised, {}, patience
+        self._flies = _flies(scene)
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
         self._part, self._times = time / horizon, forecast.looks(time)
@@ -179,7 +184,8 @@ class _Trial:
         TooMuchWork
             A run takes more steps than the motion asks for.
         """
-        accuracy, good, bad, here = self._accuracy, None, None, self._grid(COARSER * tolerance)
+        accuracy, good, bad, slow = self._accuracy, None, None, None
+        here = self._grid(COARSER * tolerance)    # that of the table holds on most scenes
         if self._patience > 1:
             here = self._coarsest    # fine ones are known to take too much
         for _ in range(TRIES):
@@ -195,18 +201,27 @@ class _Trial:
                 good = here, error
                 if error >= LEAST * accuracy or here == self._coarsest:
                     return here
-            elif bad and good is None and here < bad[0] and error > HELPS * bad[1]:
-                return bad[0]    # the motion magnifies round-off
-            elif bad and good is None and error > bad[1] * power(here / bad[0], ROUNDS):
-                return here    # that is most of what is left of the error
-            else:
+            elif (bad and good is None and here < bad[0]
+                  and error > bad[1] * power(here / bad[0], ROUNDS)):
+                if error <= accuracy:
+                    return here
+                if slow is not None:
+                    return slow    # the motion magnifies round-off
+                # so it may; or the coarser steps happened to be better than was asked
+                slow = bad[0] if error > HELPS * bad[1] else here
                 bad = here, error
+            else:
+                bad, slow = (here, error), None
             last, here = here, self._next(here, error, good, bad)
             if here == last or (good and here == good[0]) or (bad and here == bad[0]):
                 break
         if good:
             return good[0]
         return min(here, bad[0]) if here in self._runs else bad[0]
+
+    def finer_than(self, tolerance):
+        """Return the tolerance that is taken without a trial."""
+        return self._grid(tolerance / COARSER)
 
     def forecast(self, tolerance):
         """Return the Forecast of a choice."""
@@ -270,9 +285,11 @@ class _Trial:
         if finer is None:
             return None
         best = self._states(finer)
-        momenta = forecast.momenta_apart(self._scene, here, best)
+        shares = forecast.momenta_apart(self._scene, here, best)
+        if self._flies:
+            shares = np.maximum(shares, forecast.velocities_apart(here, best))
         return max(float(forecast.apart(here, best).max()),
-                   MOMENTA * float(momenta.max())) / self._part
+                   MOMENTA * float(shares.max())) / self._part
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""
@@ -283,6 +300,20 @@ class _Trial:
         share = AIM * self._accuracy / error if error > 0.0 else math.inf
         factor = power(share, 1.0 / growth) if share < math.inf else FARTHEST
         return self._grid(here * min(max(factor, 1.0 / FARTHEST), FARTHEST))
+
+
+def _slim(scene):
+    """Return whether moments differ by more than those of the scenes of the table."""
+    moments = scene.constraint.frame(scene.body).moments
+    return max(moments) > SLIM * min(moments)
+
+
+def _flies(scene):
+    """Return whether forces move the body, of which the table tells nothing."""
+    frame = scene.constraint.frame(scene.body)
+    return frame.pushed and any(
+        one.gives == 'force' for effect in scene.effects if effect.acting is not None
+        for one in effect.acting(frame, 0.0))
 
 
 def _span(scene, rate, acceleration, horizon):
