@@ -74,6 +74,10 @@ class Live:
         """Send the simulation a request (Runner.told)."""
         self._pipe.send((name, value))
 
+    def wait(self, seconds):
+        """Wait until the simulation sends something, for some seconds at most."""
+        self._pipe.poll(seconds)
+
     def poll(self):
         """Return the Frames that have come since the last call."""
         frames = []

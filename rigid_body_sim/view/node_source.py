@@ -119,6 +119,8 @@ class NodeSource:
             self.generation += 1
         return bool(texts)
 
+    wait = staticmethod(time.sleep)
+
     def poll(self):
         """Return the newest Frame, if there is a new one."""
         rclpy.spin_once(self._asking, timeout_sec=0.0)

@@ -80,8 +80,9 @@ class Page:
         due = time.monotonic()
         while not until():
             self.turn()
-            due = max(due + PERIOD, time.monotonic())
-            time.sleep(max(due - time.monotonic(), 0.0))
+            now = time.monotonic()
+            due = min(max(due + PERIOD, now), now + PERIOD)
+            self._source.wait(due - now)
 
     def turn(self):
         """Handle what is due: requests, frames, the mouse."""
@@ -105,6 +106,8 @@ class Page:
             if frames:
                 self._show()
             self._numbers()
+            # else viser gathers messages for a sixtieth of a second of its own
+            self.server.flush()
 
     def _begin(self):
         """Show the scene that the source has begun."""

@@ -55,6 +55,8 @@ class Player:
         self.speed, self._paused, self._time, self._shown = 1.0, False, 0.0, -1.0
         self._restarted, self._last = True, time.monotonic()
 
+    wait = staticmethod(time.sleep)
+
     def poll(self):
         """Return the Frame of now, if it differs from the last one."""
         now = time.monotonic()
