@@ -196,10 +196,11 @@ def test_patience_says_it_once(monkeypatch, capsys):
     monkeypatch.setattr(command_line, 'PATIENCE', 0.0)
     monkeypatch.setattr(command_line, 'LOOK', 0.01)
     monkeypatch.setattr(command_line, '_compiles', lambda thread: said.set() or True)
-    with command_line.patience():
+    with command_line.patience('the report'):
         assert said.wait(60.0)
     for thread in threading.enumerate():
         if thread.name == 'patience':
             thread.join(60.0)
     told = capsys.readouterr().err
-    assert told.startswith('compiling the kernels') and told.count('\n') == 1
+    assert told.startswith('compiling the kernels of the report, once')
+    assert told.count('\n') == 1
