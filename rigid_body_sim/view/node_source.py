@@ -24,7 +24,7 @@ from rigid_body_sim.node import display
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import State
-from rigid_body_sim.simulation.command_rows import FORCE, IMPULSE, KIND, TORQUE
+from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, IMPULSE, KIND, TORQUE, wrench_of
 from rigid_body_sim.view.frames import Frame
 
 APPEARS_WITHIN = 8.0
@@ -156,9 +156,12 @@ class NodeSource:
                                    if value.key.endswith('_residual')}
 
     def command(self, rows):
-        """Publish rows of commands (simulation.command_rows) in world axes."""
+        """Publish rows of commands (simulation.command_rows)."""
         for row in rows:
             message = WrenchStamped()
+            if row[AXES] == BODY:
+                # the frame of the angular velocity is the body's
+                message.header.frame_id = self._last['angular_velocity'].header.frame_id
             force, torque = message.wrench.force, message.wrench.torque
             force.x, force.y, force.z = row[FORCE].tolist()
             torque.x, torque.y, torque.z = row[TORQUE].tolist()
@@ -167,7 +170,7 @@ class NodeSource:
             else:
                 # a release is a wrench of zero
                 self._held.publish(message)
-                self._wrench = Wrench(tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist()))
+                self._wrench = wrench_of(row)
 
     def tell(self, name, value=None):
         """Call a service of the node: ``pause`` with a bool, ``step`` or ``reset``."""

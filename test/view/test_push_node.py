@@ -9,6 +9,7 @@
 import json
 import signal
 import time
+import types
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ import pytest
 pytest.importorskip('rclpy')
 
 from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.simulation.command_rows import HOLD, row_of
+from rigid_body_sim.view.node_source import NodeSource
 
 SCENE = """
 scene: still_ball
@@ -24,6 +27,21 @@ constraint: free
 effects: []
 initial: {}
 """
+
+
+def test_commands_in_body_axes_name_the_node_s_body_frame():
+    from geometry_msgs.msg import Vector3Stamped
+    sent, source = [], NodeSource.__new__(NodeSource)
+    source._held = types.SimpleNamespace(publish=sent.append)
+    turning = Vector3Stamped()
+    turning.header.frame_id = 'left/body'
+    source._last = {'angular_velocity': turning}
+    for frame in ('body', 'world'):
+        source.command(row_of(HOLD, (1.0, 2.0, 3.0), (0.0, 0.0, 0.5), frame))
+        assert source._wrench.frame == frame
+    assert [message.header.frame_id for message in sent] == ['left/body', '']
+    assert sent[0].wrench.force.z == 3.0
+    assert sent[0].wrench.torque.z == 0.5
 
 
 def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
