@@ -24,7 +24,15 @@ from rigid_body_sim.node import display
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import State
-from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, IMPULSE, KIND, TORQUE, wrench_of
+from rigid_body_sim.simulation.command_rows import (
+    AXES,
+    BODY,
+    FORCE,
+    IMPULSE,
+    KIND,
+    TORQUE,
+    wrench_of,
+)
 from rigid_body_sim.view.frames import Frame
 
 APPEARS_WITHIN = 8.0

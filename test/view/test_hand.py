@@ -13,7 +13,6 @@ from rigid_body_sim.view.frames import Mechanics
 from rigid_body_sim.view.hand import PULL, Hand
 from rigid_body_sim.view.mouse import hit
 
-
 SLIM = """
 scene: slim
 body: {{mass: 1.0, inertia: [1.0, 1.0, {:g}]}}
