@@ -75,8 +75,8 @@ class Live:
         self._pipe.send((name, value))
 
     def wait(self, seconds):
-        """Wait until the simulation sends something, for some seconds at most."""
-        self._pipe.poll(seconds)
+        """Wait for the simulation, some seconds at most; return whether it has sent something."""
+        return self._pipe.poll(seconds)
 
     def poll(self):
         """Return the Frames that have come since the last call."""

@@ -138,6 +138,21 @@ def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_
     assert parting_of(tmp_path / 'run') is None
 
 
+def test_a_picture_goes_out_when_it_is_drawn_and_the_page_wakes_when_one_comes(
+        page, monkeypatch):
+    drawn, sent = [], []
+    monkeypatch.setattr(page, '_show', lambda: drawn.append(page.frame.time))
+    monkeypatch.setattr(page.server, 'flush', lambda: sent.append(page.frame.time))
+    until(page, lambda: len(drawn) > 2)
+    assert set(drawn) <= set(sent)
+    page._source.tell('pause', True)
+    while page._source.wait(1.0):
+        page._source.poll()
+    page._source.tell('step')
+    assert page._source.wait(PATIENCE)
+    assert page._source.poll()
+
+
 def test_another_scene_and_a_changed_number_begin_anew(page):
     page.panel.requests.put(('choose', 'heavy_top'))
     until(page, lambda: page._source.scene.name == 'heavy_top' and page.frame.energy > 1.0)
