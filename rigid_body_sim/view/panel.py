@@ -149,8 +149,9 @@ class Panel:
                   'force': 'net force', 'torque': 'net torque dL/dt', 'axis': 'trace of the axis',
                   'polhode': 'polhode (ω in the body)', 'herpolhode': 'herpolhode (ω in space)',
                   'follow': 'follow the body'}
+        self._boxes = {}
         for key, text in labels.items():
-            box = gui.add_checkbox(text, initial_value=self._shown[key])
+            box = self._boxes[key] = gui.add_checkbox(text, initial_value=self._shown[key])
             box.on_update(lambda event, key=key: self._shown.update({key: event.target.value}))
         dark = gui.add_checkbox('dark page', initial_value=self._shown['dark'])
         dark.on_update(lambda event: self._ask('dark', event.target.value))
@@ -171,6 +172,7 @@ class Panel:
             f'<div style="font-size:0.85em">{html.escape(scene.about)}</div>'
             f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground '
             f'has a line every {cell:g} m.</div></div>')
+        self._boxes['follow'].value = self._shown['follow']
         self._events.clear()
         self._event_list.content = ''
         self._expected.content = ''

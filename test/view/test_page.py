@@ -154,8 +154,12 @@ def test_a_picture_goes_out_when_it_is_drawn_and_the_page_wakes_when_one_comes(
 
 
 def test_another_scene_and_a_changed_number_begin_anew(page):
+    # a free body is followed, and the box says so
+    assert page.panel._boxes['follow'].value
     page.panel.requests.put(('choose', 'heavy_top'))
     until(page, lambda: page._source.scene.name == 'heavy_top' and page.frame.energy > 1.0)
+    assert not page.panel._boxes['follow'].value
+    assert not page._shown['follow']
     text = load_scene('heavy_top', ['initial.angular_velocity.2=50']).text
     page.panel._edit = (0.0, lambda: text)
     until(page, lambda: page.frame.vector[7] == 50.0)
