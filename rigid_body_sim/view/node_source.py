@@ -33,7 +33,7 @@ from rigid_body_sim.simulation.command_rows import (
     TORQUE,
     wrench_of,
 )
-from rigid_body_sim.view.frames import Frame
+from rigid_body_sim.view.frames import Frame, trail_between
 
 APPEARS_WITHIN = 8.0
 """Longest time for the node to be discovered, s."""
@@ -65,7 +65,7 @@ class NodeSource:
         self._name = name if name.startswith('/') else f'/{name}'
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
-        self._start, self._last = None, {}
+        self._start, self._last, self._shown = None, {}, None
         rclpy.init(args=[])
         self._node = rclpy.create_node('rigid_body_sim_view')
         # another node, so that the answers of services can be awaited without taking states
@@ -125,6 +125,7 @@ class NodeSource:
         if texts:
             self.scene = parse_scene(texts[-1], where=f'{self._name}: scene')
             self.generation += 1
+            self._shown = None
         return bool(texts)
 
     wait = staticmethod(time.sleep)
@@ -153,7 +154,9 @@ class NodeSource:
         events = tuple((stamp - self._start, message.message or message.name)
                        for message in self._take('events'))
         energy = self._last['energy'].data if 'energy' in self._last else math.nan
-        return Frame(stamp - self._start, vector, vector[np.newaxis], self._wrench, energy,
+        trail = vector[np.newaxis] if self._shown is None else trail_between(self._shown, vector)
+        self._shown = vector
+        return Frame(stamp - self._start, vector, trail, self._wrench, energy,
                      self._residuals.get('energy_residual', math.nan),
                      self._residuals.get('momentum_residual', math.nan), events)
 
