@@ -130,6 +130,21 @@ def deaf_children():
 
 
 @contextlib.contextmanager
+def ending_like_ctrl_c():
+    """Let SIGTERM end what runs here as Ctrl-C does, with what it has to finish.
+
+    That holds in the background of a script too, where Ctrl-C is ignored.
+    """
+    ctrl_c = signal.getsignal(signal.SIGINT)
+    before = signal.signal(signal.SIGTERM,
+                           ctrl_c if callable(ctrl_c) else signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextlib.contextmanager
 def patience(kernels='this scene'):
     """Say in one line if kernels are being compiled in this thread for longer than PATIENCE."""
     done, thread, began = threading.Event(), threading.get_ident(), time.monotonic()

@@ -191,6 +191,17 @@ def test_the_compiler_is_where_it_is_looked_for():
     assert any(seen)
 
 
+@pytest.mark.parametrize('ctrl_c', [signal.default_int_handler, signal.SIG_IGN])
+def test_sigterm_ends_as_ctrl_c_does_in_the_background_too(ctrl_c):
+    before = signal.signal(signal.SIGINT, ctrl_c), signal.getsignal(signal.SIGTERM)
+    try:
+        with command_line.ending_like_ctrl_c(), pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        assert signal.getsignal(signal.SIGTERM) is before[1]
+    finally:
+        signal.signal(signal.SIGINT, before[0])
+
+
 def test_patience_says_it_once(monkeypatch, capsys):
     said = threading.Event()
     monkeypatch.setattr(command_line, 'PATIENCE', 0.0)

@@ -16,6 +16,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Vector3Stamped, WrenchStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
@@ -66,7 +67,8 @@ class NodeSource:
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
         self._start, self._last, self._shown = None, {}, None
-        rclpy.init(args=[])
+        # signals are the command's: those of rclpy take its context away while it is in use
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node('rigid_body_sim_view')
         # another node, so that the answers of services can be awaited without taking states
         self._asking = rclpy.create_node('rigid_body_sim_view_requests')
