@@ -259,7 +259,8 @@ class Panel:
         self._event_list.content = (f'<div style="padding:0 1em;font-size:0.85em">'
                                     f'{"<br>".join(lines) or "none yet"}</div>')
         if expected:
-            self._expected.content = _table([('theory', 'predicted, measured'),
+            what = expected.get('event') or expected.get('quantity') or 'theory'
+            self._expected.content = _table([(what, 'predicted, measured'),
                                              *_compared(expected)])
 
 

@@ -169,8 +169,13 @@ def test_another_scene_and_a_changed_number_begin_anew(page):
 
 
 def test_pause_step_speed_and_reset(page):
+    page.panel.requests.put(('choose', 'tennis_racket'))
+    until(page, lambda: page._source.scene.name == 'tennis_racket')
     page.panel.requests.put(('speed', 10.0))
     until(page, lambda: page.frame.time > 3.0)
+    # what theory predicts is named: the flips
+    until(page, lambda: 'predicted, measured' in page.panel._expected.content)
+    assert '>flip<' in page.panel._expected.content
     page.panel.requests.put(('run', 'pause'))
     deadline = time.monotonic() + 0.5
     until(page, lambda: time.monotonic() > deadline)
