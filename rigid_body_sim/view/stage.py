@@ -93,8 +93,8 @@ class Stage:
         self._references = collections.defaultdict(float)
         self.what_axis, self._axis = traced_axis(scene)
         center = np.array(scene.body.center_of_mass) if scene else self._middle
-        self._hidden = {key: self.drawing.depth(center if key == 'force' else self._middle)
-                        / self.unit for key in COLORS}
+        starts = dict.fromkeys(COLORS, self._middle) | {'force': center}
+        self._hidden = {key: self.drawing.depth(at) / self.unit for key, at in starts.items()}
         along = (self.drawing.vertices - self._middle) @ self._axis
         self._radius = max(1.2 * float(along.max()) / self.unit, 0.7)
         self._traces = {key: collections.deque(maxlen=TRACE_POINTS) for key in TRACES}
