@@ -44,7 +44,8 @@ numpydoc_xref_param_type = False
 
 html_theme = 'furo'
 html_title = 'rigid_body_sim'
-html_static_path = []
+html_static_path = ['static'] if own else []
+html_css_files = ['site.css'] if own else []
 html_show_sourcelink = False
 html_copy_source = False
 highlight_language = 'text'      # of code blocks that name no language

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The managed node, configured and activated as it comes up.
+"""Start the managed node, configure it and activate it.
 
 ::
 
@@ -22,7 +22,7 @@ from lifecycle_msgs.msg import Transition
 
 
 def managed(context):
-    """Return the node, and what moves it from unconfigured to active."""
+    """Return the node and the actions that configure and activate it."""
     given = {name: value for name, value in (
         ('scene', ParameterValue(LaunchConfiguration('scene'), value_type=str)),
         ('rate', LaunchConfiguration('rate'))) if context.launch_configurations[name]}
@@ -33,7 +33,7 @@ def managed(context):
     activate = RegisterEventHandler(OnStateTransition(
         target_lifecycle_node=node, start_state='configuring', goal_state='inactive',
         entities=[_change(node, Transition.TRANSITION_ACTIVATE)]))
-    # the handler stands first: the transition may be over before another action is reached
+    # the handler comes first, because the transition may end before the next action starts
     return [activate, node, _change(node, Transition.TRANSITION_CONFIGURE)]
 
 

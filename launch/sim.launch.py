@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node, and what is asked for beside it.
+"""Start the node, and RViz or the page in the browser if asked.
 
 ::
 
@@ -21,7 +21,7 @@ SHOWN = '[marker, odom]'
 
 def nodes(context):
     """Return the node; an argument that is not given leaves the value of the parameter file."""
-    # rate without a type: the node refuses what is no number, and says what would be right
+    # rate has no type here: the node itself refuses a wrong value and says what would be right
     arguments = {'scene': ParameterValue(LaunchConfiguration('scene'), value_type=str),
                  **{name: LaunchConfiguration(name)
                     for name in ('rate', 'record', 'use_sim_time')}}

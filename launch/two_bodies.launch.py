@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two bodies side by side, each in a namespace of its own.
+"""Start two bodies, each in a namespace of its own.
 
 ::
 
@@ -21,10 +21,10 @@ def generate_launch_description():
     """Return the description that ``ros2 launch`` runs."""
     file = PathJoinSubstitution([FindPackageShare('rigid_body_sim'), 'launch', 'sim.launch.py'])
     rate = DeclareLaunchArgument('rate', default_value='',
-                                 description='ticks per second of simulated time, of both')
+                                 description='ticks per second of simulated time, for both bodies')
     scenes = [DeclareLaunchArgument(side, default_value=scene, description=f'scene on the {side}')
               for side, scene in SIDES.items()]
-    # in groups: what an included file sets ends with its group
+    # each body has a group, which confines what the included file sets
     bodies = [GroupAction([IncludeLaunchDescription(
         PythonLaunchDescriptionSource(file),
         launch_arguments={'namespace': side, 'scene': LaunchConfiguration(side),

@@ -35,10 +35,13 @@ def parser(name, about, example):
                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
 
 
-def run(function, arguments):
-    """Run a command's function on its parsed arguments; return the exit status."""
+def run(function, arguments, kernels='this scene'):
+    """Run a command's function on its parsed arguments; return the exit status.
+
+    `kernels` says whose kernels the command may have to compile.
+    """
     try:
-        with patience():
+        with patience(kernels):
             return function(arguments)
     except BadInput as error:
         print(error, file=sys.stderr)
@@ -127,7 +130,22 @@ def deaf_children():
 
 
 @contextlib.contextmanager
-def patience():
+def ending_like_ctrl_c():
+    """Let SIGTERM end what runs here as Ctrl-C does, with what it has to finish.
+
+    That holds in the background of a script too, where Ctrl-C is ignored.
+    """
+    ctrl_c = signal.getsignal(signal.SIGINT)
+    before = signal.signal(signal.SIGTERM,
+                           ctrl_c if callable(ctrl_c) else signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextlib.contextmanager
+def patience(kernels='this scene'):
     """Say in one line if kernels are being compiled in this thread for longer than PATIENCE."""
     done, thread, began = threading.Event(), threading.get_ident(), time.monotonic()
 
@@ -135,7 +153,7 @@ def patience():
         while not done.wait(LOOK):
             if time.monotonic() - began > PATIENCE and _compiles(thread):
                 with contextlib.suppress(OSError, ValueError):
-                    print('compiling the kernels of this scene, once for this machine and '
+                    print(f'compiling the kernels of {kernels}, once for this machine and '
                           'version ...', file=sys.stderr, flush=True)
                 return
     threading.Thread(target=watch, name='patience', daemon=True).start()

@@ -191,15 +191,27 @@ def test_the_compiler_is_where_it_is_looked_for():
     assert any(seen)
 
 
+@pytest.mark.parametrize('ctrl_c', [signal.default_int_handler, signal.SIG_IGN])
+def test_sigterm_ends_as_ctrl_c_does_in_the_background_too(ctrl_c):
+    before = signal.signal(signal.SIGINT, ctrl_c), signal.getsignal(signal.SIGTERM)
+    try:
+        with command_line.ending_like_ctrl_c(), pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        assert signal.getsignal(signal.SIGTERM) is before[1]
+    finally:
+        signal.signal(signal.SIGINT, before[0])
+
+
 def test_patience_says_it_once(monkeypatch, capsys):
     said = threading.Event()
     monkeypatch.setattr(command_line, 'PATIENCE', 0.0)
     monkeypatch.setattr(command_line, 'LOOK', 0.01)
     monkeypatch.setattr(command_line, '_compiles', lambda thread: said.set() or True)
-    with command_line.patience():
+    with command_line.patience('the report'):
         assert said.wait(60.0)
     for thread in threading.enumerate():
         if thread.name == 'patience':
             thread.join(60.0)
     told = capsys.readouterr().err
-    assert told.startswith('compiling the kernels') and told.count('\n') == 1
+    assert told.startswith('compiling the kernels of the report, once')
+    assert told.count('\n') == 1

@@ -152,7 +152,7 @@ def main(arguments=None):
         'of several recordings it gets one page on all, and a folder each',
     )
     parser.add_argument('--json', action='store_true', help='print what report.json holds')
-    return command_line.run(_run, parser.parse_args(arguments))
+    return command_line.run(_run, parser.parse_args(arguments), kernels='the report')
 
 
 def _run(options):

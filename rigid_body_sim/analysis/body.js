@@ -60,8 +60,8 @@ function bodyView(canvas, data) {
 
   const solids = clear => buffer(data.surfaces.filter(one => one.clear === clear).flatMap(triangles));
   const body = solids(false), shell = solids(true), holder = buffer(data.holder.flatMap(triangles));
-  const arrows = data.arrows.map(one => ({...one, buffer: buffer(triangles({...data.arrow,
-    colors: data.arrow.faces.map(() => one.color)}))}));
+  const arrows = data.arrows.map(one => ({...one, buffer: buffer(triangles({...one.mesh,
+    colors: one.mesh.faces.map(() => one.color)}))}));
   const shaft = buffer(triangles(data.shaft));
   const lines = [], far = 12, cell = data.cell;
   for (let k = -far; k <= far; k++) {

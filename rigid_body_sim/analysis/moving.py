@@ -28,6 +28,9 @@ COLORS = {'base': (0.29, 0.56, 0.85), 'accent': (0.96, 0.67, 0.26), 'holder': (0
 ARROWS = {'angular velocity ω': (0.84, 0.37, 0.0), 'angular momentum L': (0.0, 0.62, 0.45)}
 ARROW = 1.35
 """Length of the longest arrow, relative to the body's reach."""
+SHAPES = ((1.0, 0.018), (0.8, 0.028))
+"""Length of each arrow relative to ARROW, and radius of its shaft: L is thicker and shorter than
+omega, so that both are seen where they are parallel."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Moving:
                         for one in springs_of(self.scene)],
             'shaft': _mesh(surfaces.cylinder(0.012, 1.0).placed(
                 Rotation.identity(), (0.0, 0.0, 0.5)), 1.0, 'holder'),
-            'arrow': _mesh(_arrow(), 1.0), 'arrows': self._arrows(turns)}
+            'arrows': self._arrows(turns)}
 
     def _arrows(self, turns):
         """Return the arrows of omega and L in world axes, each relative to its longest."""
@@ -83,9 +86,10 @@ class Moving:
             inertia = (body.about_origin if held else body.about_center).matrix
             values.append(self.angular_velocity @ inertia)
         longest = [float(np.linalg.norm(one, axis=1).max()) or 1.0 for one in values]
-        return [{'name': name, 'color': color,
-                 'values': _round(ARROW * turns.apply(value) / size, 4)}
-                for (name, color), value, size in zip(ARROWS.items(), values, longest)]
+        return [{'name': name, 'color': color, 'mesh': _mesh(_arrow(shaft), 1.0),
+                 'values': _round(ARROW * share * turns.apply(value) / size, 4)}
+                for (name, color), (share, shaft), value, size in zip(
+                    ARROWS.items(), SHAPES, values, longest)]
 
 
 def moving(measured):
@@ -111,11 +115,12 @@ def moving(measured):
     return Moving(*(column[::step][:MOST_FRAMES] for column in columns), measured.source.scene)
 
 
-def _arrow():
-    """Return an arrow of length 1 along z."""
+def _arrow(radius):
+    """Return an arrow of length 1 along z with a shaft of a radius."""
     still = Rotation.identity()
-    return surfaces.joined([surfaces.cylinder(0.018, 0.86).placed(still, (0.0, 0.0, 0.43)),
-                            surfaces.cone(0.05, 0.14).placed(still, (0.0, 0.0, 0.895))])
+    head = surfaces.cone(2.5 * radius, 0.14)
+    return surfaces.joined([surfaces.cylinder(radius, 0.86).placed(still, (0.0, 0.0, 0.43)),
+                            head.placed(still, (0.0, 0.0, 0.895))])
 
 
 def _mesh(surface, unit, color=None):

@@ -31,7 +31,8 @@ def main(arguments=None):
                         help='seconds (20); 0: until Ctrl-C')
     parser.add_argument('--json', action='store_true',
                         help='print what report.json holds, as the last thing on stdout')
-    return command_line.run(_run, parser.parse_args(arguments))
+    # the node compiles those of the scene, and says so
+    return command_line.run(_run, parser.parse_args(arguments), kernels='the report')
 
 
 def _run(options):

@@ -3,7 +3,6 @@
 
 import contextlib
 import logging
-import signal
 import sys
 import time
 
@@ -40,7 +39,7 @@ def _run(options):
     need('xarray')
     if not options.output and not options.dry_run:
         raise BadInput('--output', 'is missing', 'NAME.zarr, or NAME.parquet for one row a run')
-    with _ending_like_ctrl_c(), _client(options.dask) as client:
+    with command_line.ending_like_ctrl_c(), _client(options.dask) as client:
         if options.dry_run:
             return _tell_forecast(forecast(options.spec, client), options)
         begin = time.perf_counter()
@@ -53,16 +52,6 @@ def _run(options):
             print(f'interrupted: {error}' if str(error) else 'interrupted', file=sys.stderr)
             return 130
         return _tell(found, time.perf_counter() - begin, options)
-
-
-@contextlib.contextmanager
-def _ending_like_ctrl_c():
-    """Let SIGTERM end the sweep as Ctrl-C does, with what runs taken into the store."""
-    before = signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 @contextlib.contextmanager

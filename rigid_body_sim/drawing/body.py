@@ -41,6 +41,10 @@ class Drawing(NamedTuple):
         """All vertices, array (n, 3)."""
         return np.concatenate([one.vertices for one in self.surfaces])
 
+    def depth(self, point):
+        """Return the radius (m) of a ball about a point that an opaque surface hides."""
+        return max((one.depth(point) for one in self.surfaces if not one.clear), default=0.0)
+
 
 def drawing_of(scene):
     """Return the Drawing of a Scene, or a plain box for None."""

@@ -13,6 +13,8 @@ AROUND, ALONG = 48, 24
 """Number of segments around an axis and along it."""
 THIN = 0.01
 """Drawn thickness of thin shapes, relative to their length."""
+SLIVER = 1e-9
+"""A triangle this small, relative to the largest, has no plane: those at a pole."""
 
 
 class Surface(NamedTuple):
@@ -41,6 +43,18 @@ class Surface(NamedTuple):
     def placed(self, rotation, at):
         """Return the surface turned by a scipy Rotation, then moved by `at` (m)."""
         return self._replace(vertices=rotation.apply(self.vertices) + np.asarray(at, float))
+
+    def depth(self, point):
+        """Return how far (m) a point is below all planes of the triangles, 0 where it is not.
+
+        In a convex solid this is the radius of the largest ball about the point.
+        """
+        a, b, c = np.moveaxis(self.vertices[self.faces] - point, 1, 0)
+        normal = np.cross(b - a, c - a)
+        size = np.linalg.norm(normal, axis=1)
+        kept = size > SLIVER * size.max(initial=0.0)
+        below = np.einsum('ij,ij->i', normal, a)[kept] / size[kept]
+        return max(0.0, float(below.min(initial=np.inf))) if kept.any() else 0.0
 
 
 def box(size):

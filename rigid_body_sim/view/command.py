@@ -40,6 +40,12 @@ def main(arguments=None):
 
 
 def _run(options):
+    with command_line.ending_like_ctrl_c():
+        return _serve(options)
+
+
+def _serve(options):
+    """Serve the page until Ctrl-C or SIGTERM; return the exit status."""
     source = _source(options)
     try:
         # viser is needed from here on; it takes a second to import

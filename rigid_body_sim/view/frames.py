@@ -14,7 +14,13 @@ from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, VELOCITY
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY
+
+TURN_BETWEEN = 0.1
+"""Largest turn between two states of a trail, rad, up to MOST_BETWEEN states."""
+MOST_BETWEEN = 40
+LONGEST_GAP = 0.5
+"""Time between two states, s, beyond which a trail does not guess what was between them."""
 
 
 class Frame(NamedTuple):
@@ -47,6 +53,30 @@ class Frame(NamedTuple):
     momentum_residual: float
     events: tuple = ()
     restarted: bool = False
+
+
+def trail_between(before, after):
+    """Return states (n, 14) from one state to a later one, dense enough for a trace.
+
+    The body is taken to turn evenly, as many times as its angular velocity says: a source that
+    has sixty states a second shows a fast top by this. The last row is `after`.
+    """
+    elapsed = after[TIME] - before[TIME]
+    if not 0.0 < elapsed < LONGEST_GAP:
+        return after[np.newaxis]
+    start = Rotation.from_quat(before[ORIENTATION])
+    turn = (start.inv() * Rotation.from_quat(after[ORIENTATION])).as_rotvec()
+    expected = 0.5 * elapsed * (before[ANGULAR_VELOCITY] + after[ANGULAR_VELOCITY])
+    angle = float(np.linalg.norm(turn))
+    if angle > 0.0:
+        axis = turn / angle
+        turn = turn + 2.0 * np.pi * round(float(axis @ expected - angle) / (2.0 * np.pi)) * axis
+    count = min(1 + int(np.linalg.norm(turn) / TURN_BETWEEN), MOST_BETWEEN)
+    share = np.arange(1, count + 1)[:, np.newaxis] / count
+    states = before + share * (after - before)
+    states[:, ORIENTATION] = (start * Rotation.from_rotvec(share * turn)).as_quat()
+    states[-1] = after
+    return states
 
 
 class Arrows(NamedTuple):

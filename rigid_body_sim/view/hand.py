@@ -18,18 +18,17 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, apply_impulse
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ORIENTATION
-from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, WIDTH, WORLD
+from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WIDTH, WORLD
 
 PULL = 2.0 * math.pi * 0.8
 """Angular frequency at which the grabbed point follows the cursor, rad per second of the clock."""
 DAMPING = 0.7
 """Damping of the spring, relative to critical."""
-SLACK = 1e-6
+SLACK = 1e-2
 """The hand exerts no torque about an axis whose moment is this small, relative to the largest.
 
-A body that has such a moment, unless it is zero, is pulled at its centre of mass: the couple of a
-drag is fixed in the world, the axis turns into it, and within a frame the body would spin about it
-by millions of turns.
+Commands to a body that has such an axis are in body axes: a couple that stayed fixed in the world
+for a frame, while the axis turns into it, would spin a needle by millions of turns.
 """
 
 
@@ -43,7 +42,7 @@ class Hand:
 
     def __init__(self, mechanics):
         self._mechanics = mechanics
-        self._slack, self._spins_up = _slack_axes(mechanics.scene)
+        self._slack = _slack_axes(mechanics.scene)
 
     def pull(self, vector, grabbed, cursor, pace):
         """Return the row that holds the spring's wrench.
@@ -63,10 +62,6 @@ class Hand:
             None where no force can move that point.
         """
         velocity = self._mechanics.velocity_at(vector, grabbed)
-        if self._spins_up:
-            center = self._mechanics.center(vector)
-            cursor, grabbed = cursor - grabbed + center, center
-            velocity = self._mechanics.velocity_at(vector, grabbed)
         wanted = pace * (pace * (np.subtract(cursor, grabbed)) - 2.0 * DAMPING * velocity)
         size = float(np.linalg.norm(wanted))
         if size == 0.0 or not math.isfinite(size):
@@ -89,7 +84,10 @@ class Hand:
 
     def _row(self, kind, vector, point, force):
         force, couple = self._at_center(vector, point, force)
-        return np.array([kind, WORLD, *force, *couple]).reshape(1, WIDTH)
+        if not len(self._slack):
+            return np.array([kind, WORLD, *force, *couple]).reshape(1, WIDTH)
+        back = Rotation.from_quat(vector[ORIENTATION]).inv()
+        return np.array([kind, BODY, *back.apply(force), *back.apply(couple)]).reshape(1, WIDTH)
 
     def _at_center(self, vector, point, force):
         """Return force and couple at the centre of mass, without torque about slack axes."""
@@ -106,14 +104,10 @@ def release():
 
 
 def _slack_axes(scene):
-    """Return the principal axes of (nearly) zero moment, and whether a torque spins one up.
-
-    The axes are in body axes, array (n, 3).
-    """
-    inertia = (scene.constraint.inertia(scene.body))
-    axes = Rotation.from_quat(inertia.axes).as_matrix().T
+    """Return the principal axes of small or no moment, in body axes, array (n, 3)."""
+    inertia = scene.constraint.inertia(scene.body)
     if scene.constraint.mechanism is Mechanism.AXIS:
-        return np.empty((0, 3)), False
+        return np.empty((0, 3))
     moments = np.array(inertia.moments)
-    slack = moments < SLACK * moments.max()
-    return axes[slack], bool((moments[slack] > 0.0).any())
+    axes = Rotation.from_quat(inertia.axes).as_matrix().T
+    return axes[moments < SLACK * moments.max()]

@@ -74,6 +74,10 @@ class Live:
         """Send the simulation a request (Runner.told)."""
         self._pipe.send((name, value))
 
+    def wait(self, seconds):
+        """Wait for the simulation, some seconds at most; return whether it has sent something."""
+        return self._pipe.poll(seconds)
+
     def poll(self):
         """Return the Frames that have come since the last call."""
         frames = []

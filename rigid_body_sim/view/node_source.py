@@ -16,6 +16,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Vector3Stamped, WrenchStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
@@ -24,8 +25,16 @@ from rigid_body_sim.node import display
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import State
-from rigid_body_sim.simulation.command_rows import FORCE, IMPULSE, KIND, TORQUE
-from rigid_body_sim.view.frames import Frame
+from rigid_body_sim.simulation.command_rows import (
+    AXES,
+    BODY,
+    FORCE,
+    IMPULSE,
+    KIND,
+    TORQUE,
+    wrench_of,
+)
+from rigid_body_sim.view.frames import Frame, trail_between
 
 APPEARS_WITHIN = 8.0
 """Longest time for the node to be discovered, s."""
@@ -57,8 +66,9 @@ class NodeSource:
         self._name = name if name.startswith('/') else f'/{name}'
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
-        self._start, self._last = None, {}
-        rclpy.init(args=[])
+        self._start, self._last, self._shown = None, {}, None
+        # signals are the command's: those of rclpy take its context away while it is in use
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node('rigid_body_sim_view')
         # another node, so that the answers of services can be awaited without taking states
         self._asking = rclpy.create_node('rigid_body_sim_view_requests')
@@ -117,7 +127,10 @@ class NodeSource:
         if texts:
             self.scene = parse_scene(texts[-1], where=f'{self._name}: scene')
             self.generation += 1
+            self._shown = None
         return bool(texts)
+
+    wait = staticmethod(time.sleep)
 
     def poll(self):
         """Return the newest Frame, if there is a new one."""
@@ -143,7 +156,9 @@ class NodeSource:
         events = tuple((stamp - self._start, message.message or message.name)
                        for message in self._take('events'))
         energy = self._last['energy'].data if 'energy' in self._last else math.nan
-        return Frame(stamp - self._start, vector, vector[np.newaxis], self._wrench, energy,
+        trail = vector[np.newaxis] if self._shown is None else trail_between(self._shown, vector)
+        self._shown = vector
+        return Frame(stamp - self._start, vector, trail, self._wrench, energy,
                      self._residuals.get('energy_residual', math.nan),
                      self._residuals.get('momentum_residual', math.nan), events)
 
@@ -154,9 +169,12 @@ class NodeSource:
                                    if value.key.endswith('_residual')}
 
     def command(self, rows):
-        """Publish rows of commands (simulation.command_rows) in world axes."""
+        """Publish rows of commands (simulation.command_rows)."""
         for row in rows:
             message = WrenchStamped()
+            if row[AXES] == BODY:
+                # the frame of the angular velocity is the body's
+                message.header.frame_id = self._last['angular_velocity'].header.frame_id
             force, torque = message.wrench.force, message.wrench.torque
             force.x, force.y, force.z = row[FORCE].tolist()
             torque.x, torque.y, torque.z = row[TORQUE].tolist()
@@ -165,7 +183,7 @@ class NodeSource:
             else:
                 # a release is a wrench of zero
                 self._held.publish(message)
-                self._wrench = Wrench(tuple(row[FORCE].tolist()), tuple(row[TORQUE].tolist()))
+                self._wrench = wrench_of(row)
 
     def tell(self, name, value=None):
         """Call a service of the node: ``pause`` with a bool, ``step`` or ``reset``."""

@@ -80,8 +80,9 @@ class Page:
         due = time.monotonic()
         while not until():
             self.turn()
-            due = max(due + PERIOD, time.monotonic())
-            time.sleep(max(due - time.monotonic(), 0.0))
+            now = time.monotonic()
+            due = min(max(due + PERIOD, now), now + PERIOD)
+            self._source.wait(due - now)
 
     def turn(self):
         """Handle what is due: requests, frames, the mouse."""
@@ -105,6 +106,8 @@ class Page:
             if frames:
                 self._show()
             self._numbers()
+            # else viser gathers messages for a sixtieth of a second of its own
+            self.server.flush()
 
     def _begin(self):
         """Show the scene that the source has begun."""
@@ -123,7 +126,7 @@ class Page:
         beside = getattr(self._source, 'beside', None)
         if beside is not None:
             self._stages.append(Stage(self.server, beside.scene, 'beside', True, stage.unit))
-        self.panel.begin(scene, stage.drawing.about, stage.cell)
+        self.panel.begin(scene, stage.drawing.about, stage.cell, beside)
 
     def _show(self):
         stage = self._stages[0]
@@ -133,8 +136,13 @@ class Page:
                    (stage.to_world(pull.grabbed), stage.to_world(pull.cursor)))
         for other in self._stages[1:]:
             other.follows = False
-            other.show(self._source.beside.at(self.frame.time, self.frame.time))
+            other.show(self._beside())
             other.move_with(stage)
+
+    def _beside(self):
+        """Return the Frame of the second recording, or None."""
+        beside = getattr(self._source, 'beside', None)
+        return None if beside is None else beside.at(self.frame.time, self.frame.time)
 
     def _numbers(self):
         now = time.monotonic()
@@ -144,7 +152,7 @@ class Page:
         stage, frame = self._stages[0], self.frame
         stage.draw_traces()
         arrows = stage.mechanics.arrows(frame.vector, frame.wrench) if stage.mechanics else None
-        self.panel.draw(frame, arrows, self._source.expected)
+        self.panel.draw(frame, arrows, self._source.expected, self._beside())
 
     def _push(self):
         """Apply the commands of the mouse to the body."""

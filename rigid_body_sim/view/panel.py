@@ -11,9 +11,11 @@ import queue
 import time
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import scene_names
+from rigid_body_sim.scene.state import ORIENTATION, POSITION
 from rigid_body_sim.view import parameters
 from rigid_body_sim.view.curves import Curves
 
@@ -147,24 +149,30 @@ class Panel:
                   'force': 'net force', 'torque': 'net torque dL/dt', 'axis': 'trace of the axis',
                   'polhode': 'polhode (ω in the body)', 'herpolhode': 'herpolhode (ω in space)',
                   'follow': 'follow the body'}
+        self._boxes = {}
         for key, text in labels.items():
-            box = gui.add_checkbox(text, initial_value=self._shown[key])
+            box = self._boxes[key] = gui.add_checkbox(text, initial_value=self._shown[key])
             box.on_update(lambda event, key=key: self._shown.update({key: event.target.value}))
         dark = gui.add_checkbox('dark page', initial_value=self._shown['dark'])
         dark.on_update(lambda event: self._ask('dark', event.target.value))
 
-    def begin(self, scene, about, cell):
+    def begin(self, scene, about, cell, beside=None):
         """Show the controls of a scene that begins.
 
-        `about` says in words what is drawn, `cell` how far the lines of the ground are apart (m).
+        `about` says in words what is drawn, `cell` how far the lines of the ground are apart (m),
+        and `beside` is the Player of a second recording or None.
         """
         name = html.escape(scene.name.replace('_', ' '))
         method = html.escape(self._source.method or 'being prepared ...')
+        grey = '' if beside is None else (
+            f'<div>In grey: <b>{html.escape(beside.name)}</b>, {html.escape(beside.method)}; '
+            f'in colours: {html.escape(self._source.name)}</div>')
         self._title.content = (
-            f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {method}'
+            f'<div style="padding:0.4em 1em 0"><b>{name}</b>, {method}{grey}'
             f'<div style="font-size:0.85em">{html.escape(scene.about)}</div>'
             f'<div style="font-size:0.85em;opacity:0.75">Drawn: {html.escape(about)}; the ground '
             f'has a line every {cell:g} m.</div></div>')
+        self._boxes['follow'].value = self._shown['follow']
         self._events.clear()
         self._event_list.content = ''
         self._expected.content = ''
@@ -215,8 +223,11 @@ class Panel:
 
     def say(self, problem):
         """Show an error line."""
-        style = 'padding:0.3em 1em;color:#c00;font-size:0.9em'
-        self._problem.content = f'<div style="{style}">{html.escape(problem)}</div>'
+        # the text keeps the colour of the page, which is legible on light and on dark ground
+        style = ('margin:0.3em 1em;padding:0.2em 0.6em;font-size:0.9em;'
+                 'border-left:4px solid #e03131;background:rgba(224,49,49,0.15)')
+        self._problem.content = (f'<div style="{style}">{html.escape(problem)}</div>'
+                                 if problem else '')
 
     def take(self, frame):
         """Take the events of a Frame."""
@@ -224,8 +235,11 @@ class Panel:
             self.curves.take(frame)
         self._events = [*self._events, *frame.events][-EVENTS:]
 
-    def draw(self, frame, arrows, expected):
-        """Show the numbers of a Frame; a few times a second is enough."""
+    def draw(self, frame, arrows, expected, beside=None):
+        """Show the numbers of a Frame; a few times a second is enough.
+
+        `beside` is the Frame of a second recording at the same time, or None.
+        """
         rows = [('t', f'{frame.time:.3f} s'), ('E', f'{frame.energy:.9g} J')]
         if arrows:
             for name, value, unit in (('ω', arrows.omega, 'rad/s'),
@@ -233,6 +247,9 @@ class Panel:
                                       ('net force', arrows.force, 'N'),
                                       ('net torque', arrows.torque, 'N m')):
                 rows.append((name, f'{math.hypot(*value):.5g} {unit}'))
+        if beside is not None:
+            angle, distance = _apart(frame.vector, beside.vector)
+            rows += [('to the grey one', f'{angle:.3g} rad'), ('', f'{distance:.3g} m')]
         self._values.content = _table(rows)
         if self.curves:
             self.curves.draw()
@@ -242,8 +259,15 @@ class Panel:
         self._event_list.content = (f'<div style="padding:0 1em;font-size:0.85em">'
                                     f'{"<br>".join(lines) or "none yet"}</div>')
         if expected:
-            self._expected.content = _table([('theory', 'predicted, measured'),
+            what = expected.get('event') or expected.get('quantity') or 'theory'
+            self._expected.content = _table([(what, 'predicted, measured'),
                                              *_compared(expected)])
+
+
+def _apart(one, other):
+    """Return the angle (rad) between the attitudes of two states, and their distance (m)."""
+    turn = Rotation.from_quat(one[ORIENTATION]).inv() * Rotation.from_quat(other[ORIENTATION])
+    return float(turn.magnitude()), float(np.linalg.norm(other[POSITION] - one[POSITION]))
 
 
 def _compared(expected):

@@ -3,6 +3,7 @@
 
 import contextlib
 import math
+import pathlib
 import time
 
 import numpy as np
@@ -32,6 +33,8 @@ class Player:
 
     Attributes
     ----------
+    name : str
+        The recording's own name, to tell two of them apart.
     end : float
         Time of its last state since its first one, s.
     marks : list of (float, str)
@@ -45,6 +48,7 @@ class Player:
     def __init__(self, path):
         self._times, self._vectors, self._energies, source = states_of(path)
         self.scene, self.generation = source.scene, 1
+        self.name = pathlib.Path(path).name
         self.method = source.run.get('method', 'a recording')
         self.marks = [((mark.stamp - source.start) / NANOSECONDS,
                        f'{mark.kind} {mark.name}'.strip()) for mark in source.history.marks]
@@ -54,6 +58,8 @@ class Player:
         self.messages, self.expected, self.beside = [], {}, None
         self.speed, self._paused, self._time, self._shown = 1.0, False, 0.0, -1.0
         self._restarted, self._last = True, time.monotonic()
+
+    wait = staticmethod(time.sleep)
 
     def poll(self):
         """Return the Frame of now, if it differs from the last one."""

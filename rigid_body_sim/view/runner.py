@@ -21,15 +21,12 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME, States
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory.prediction import expectation
-from rigid_body_sim.view.frames import Frame
+from rigid_body_sim.view.frames import MOST_BETWEEN, TURN_BETWEEN, Frame
 
 PERIOD = 1.0 / 60.0
 """Time between two frames, s of the clock."""
 LONGEST_WORK = 0.05
 """Time that the computation of one frame may take, s of the clock: then the motion lags."""
-TURN_BETWEEN = 0.1
-"""Largest turn between two states of a trail, rad, up to MOST_BETWEEN states."""
-MOST_BETWEEN = 40
 LAST_TIME = 1e9
 """Simulated time that ends the motion, in seconds times the rate over 1000: ticks stay exact."""
 

@@ -34,9 +34,14 @@ COLORS = {'omega': (214, 94, 0), 'momentum': (0, 158, 115), 'force': (204, 60, 6
 AXES = ((214, 60, 60), (60, 170, 60), (60, 90, 214))
 TRACES = {'axis': (0, 114, 178), 'polhode': (214, 94, 0), 'herpolhode': (230, 159, 0)}
 TRACE_POINTS = 1500
-ARROW, GROWTH = 1.3, 1.5
-"""Length of the first arrow of a kind, in units, and how much one may grow before
-its kind is rescaled."""
+ARROW, LEAST_ARROW, GROWTH = 1.3, 0.45, 1.5
+"""How far the first arrow of a kind reaches, in units; its least length beyond the ball that hides
+it; and how much an arrow may grow before its kind is rescaled."""
+THICK = {'momentum': (0.026, 0.06)}
+SLIM = 0.014, 0.045
+"""Radii of an arrow's shaft and head, in units. L is thicker and shorter than omega, so that
+both are seen where they are parallel."""
+SHORTER = {'momentum': 0.75}
 HEAD = 0.11
 SMALLEST_MOVE = 1e-6
 """A holder that has moved by less than this, in units, stays where it is drawn."""
@@ -87,6 +92,9 @@ class Stage:
         self._holder = None
         self._references = collections.defaultdict(float)
         self.what_axis, self._axis = traced_axis(scene)
+        center = np.array(scene.body.center_of_mass) if scene else self._middle
+        starts = dict.fromkeys(COLORS, self._middle) | {'force': center}
+        self._hidden = {key: self.drawing.depth(at) / self.unit for key, at in starts.items()}
         along = (self.drawing.vertices - self._middle) @ self._axis
         self._radius = max(1.2 * float(along.max()) / self.unit, 0.7)
         self._traces = {key: collections.deque(maxlen=TRACE_POINTS) for key in TRACES}
@@ -152,9 +160,10 @@ class Stage:
             self._mesh(f'/{self._name}/holder/{k}', surface.vertices, surface.faces, HOLDER, True)
 
     def _add_arrow(self, key):
+        shaft, head = THICK.get(key, SLIM)
         return self._server.scene.add_arrows(
             f'/{self._name}/reference/{key}', np.zeros((1, 2, 3)), COLORS[key], visible=False,
-            shaft_radius=0.016, head_radius=0.045, head_length=HEAD)
+            shaft_radius=shaft, head_radius=head, head_length=HEAD)
 
     def _add_trace(self, key):
         folder = f'/{self._name}/{"body" if key == "polhode" else "reference"}'
@@ -203,18 +212,27 @@ class Stage:
             self._draw_arrow(key, start, value if self.shown.get(key) else np.zeros(3))
 
     def _draw_arrow(self, key, start, value):
-        """Draw one arrow, in proportion to the first one of its kind; what grows rescales it."""
+        """Draw one arrow, in proportion to the first one of its kind; what grows rescales it.
+
+        It begins where the largest ball about its start leaves the body that would hide it.
+        """
         handle, size = self._arrows[key], float(np.linalg.norm(value))
         reference = self._references[key]
         if size > GROWTH * reference:
             reference = self._references[key] = size
         visible = size > 1e-6 * reference
         if visible:
-            length = ARROW * size / reference
-            handle.points = np.array([[start, start + value / size * length]], np.float32)
+            hidden, length = self._hidden[key], self._length(key) * size / reference
+            along = value / size
+            handle.points = np.array([[start + hidden * along,
+                                       start + (hidden + length) * along]], np.float32)
             handle.head_length = min(HEAD, 0.5 * length)
         if handle.visible != visible:
             handle.visible = visible
+
+    def _length(self, key):
+        """Return the length of the first arrow of a kind beyond the ball that hides it."""
+        return SHORTER.get(key, 1.0) * max(ARROW - self._hidden[key], LEAST_ARROW)
 
     def _draw_spring(self, held):
         handle = self._arrows['spring']
@@ -234,10 +252,14 @@ class Stage:
         speed = float(np.linalg.norm(omega[-1]))
         if speed > GROWTH * self._references['omega']:
             self._references['omega'] = speed
-        scale = ARROW / (self._references['omega'] or 1.0)
+        # both curves are those of the arrow's tip
+        sizes = np.linalg.norm(omega, axis=1, keepdims=True)
+        sizes[sizes == 0.0] = 1.0
+        tips = omega * (self._hidden['omega'] / sizes
+                        + self._length('omega') / (self._references['omega'] or 1.0))
         self._traces['axis'].extend(self._radius * turns.apply(self._axis))
-        self._traces['polhode'].extend(self._middle / self.unit + scale * omega)
-        self._traces['herpolhode'].extend(scale * turns.apply(omega))
+        self._traces['polhode'].extend(self._middle / self.unit + tips)
+        self._traces['herpolhode'].extend(turns.apply(tips))
 
     def draw_traces(self):
         """Draw the traces as they are now; a few times a second is enough."""

@@ -131,3 +131,13 @@ initial: {}
         [0.02, 0.2, 0.02], abs=1e-3)
     assert drawing.surfaces[1].vertices[:, 2].min() == pytest.approx(0.0, abs=1e-12)
     assert drawing.surfaces[1].vertices[:, 2].max() == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(('surface', 'point', 'depth'), [
+    (surfaces.box((2.0, 4.0, 6.0)), (0.0, 0.0, 0.0), 1.0),
+    (surfaces.box((2.0, 4.0, 6.0)), (0.0, 0.0, 2.5), 0.5),
+    (surfaces.box((2.0, 4.0, 6.0)), (0.0, 0.0, 3.5), 0.0),
+    (surfaces.cylinder(0.5, 4.0), (0.0, 0.0, 0.0), 0.5),
+    (surfaces.torus(1.0, 0.2), (0.0, 0.0, 0.0), 0.0)])
+def test_the_depth_of_a_point_is_the_largest_ball_about_it(surface, point, depth):
+    assert surface.depth(np.array(point)) == pytest.approx(depth, rel=0.01)

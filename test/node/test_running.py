@@ -13,6 +13,7 @@ from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
+from visualization_msgs.msg import Marker
 
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.theory import asymmetric_top
@@ -89,6 +90,15 @@ def test_every_tick_reaches_a_plain_subscriber_with_exact_stamps(client):
     assert {spin.header.frame_id for spin in spins} == {'body'}
     assert all(math.isclose(np.linalg.norm([q.x, q.y, q.z, q.w]), 1.0, rel_tol=1e-15)
                for q in (pose.pose.orientation for pose in poses))
+
+
+def test_a_marker_comes_thirty_times_a_second_whatever_the_ticks(client):
+    markers = client.collect(Marker, 'marker', 100)
+    client.until(lambda: len(markers) >= 10, what='10 markers')
+    ticks = [(nanoseconds(marker) - nanoseconds(markers[0])) / PERIOD for marker in markers]
+    # 250 / 30 = 8 1/3: the first tick at or after each instant
+    assert set(np.diff(ticks)) == {8.0, 9.0}
+    assert abs(np.diff(ticks).sum() - (len(ticks) - 1) * RATE / 30.0) < 1.0
 
 
 def test_topics_are_reliable_and_only_those_asked_for(client):

@@ -12,7 +12,13 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.curves import POINTS, Curves
-from rigid_body_sim.view.frames import Frame, Mechanics
+from rigid_body_sim.view.frames import (
+    MOST_BETWEEN,
+    TURN_BETWEEN,
+    Frame,
+    Mechanics,
+    trail_between,
+)
 
 TENSOR = [[0.3, 0.01, 0.02], [0.01, 0.4, -0.03], [0.02, -0.03, 0.5]]
 START = 'orientation: [0.1, 0.2, 0.3, 0.9]'
@@ -90,3 +96,25 @@ def test_curves_hold_the_last_residuals_in_units_of_their_scale():
     curves.draw()
     assert len(gui.chart.data[0]) == POINTS
     assert gui.chart.data[0][-1] == 2.0 * POINTS
+
+
+@pytest.mark.parametrize('spin', [3.0, 119.0, 240.0, -400.0])
+def test_a_trail_between_two_pictures_turns_as_the_body_does(spin):
+    """Sampled 60 times a second, a body at 240 rad/s turns by 4 rad from one to the next."""
+    simulation = Simulation('symmetric_top', overrides={
+        'initial.angular_velocity': [0.02 * spin, 0.0, spin]})
+    before, after = simulation.states([1.0, 1.0 + 1.0 / 60.0]).vector
+    trail = trail_between(before, after)
+    assert (trail[-1] == after).all()
+    assert len(trail) == min(1 + int(abs(spin) / 60.0 / TURN_BETWEEN), MOST_BETWEEN)
+    exact = simulation.states(trail[:, 0])
+    off = Rotation.from_quat(trail[:, 1:5]).inv() * Rotation.from_quat(exact.orientation)
+    # omega is 0.02 rad off the axis, and goes round it on the way
+    assert off.magnitude().max() < 0.02 * abs(spin) / 60.0 + 1e-3
+
+
+def test_a_trail_does_not_guess_across_a_long_gap_or_back_in_time():
+    before, later, long_after = Simulation('tennis_racket').states([1.0, 1.1, 2.0]).vector
+    assert len(trail_between(before, later)) > 1
+    for one, other in ((before, long_after), (later, before), (before, before)):
+        assert (trail_between(one, other) == other[np.newaxis]).all()

@@ -7,11 +7,19 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim import Simulation, load_scene
 from rigid_body_sim.drawing.body import drawing_of
-from rigid_body_sim.scene.scene import scene_names
-from rigid_body_sim.simulation.command_rows import FORCE, TORQUE
+from rigid_body_sim.scene.scene import parse_scene, scene_names
+from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, TORQUE
 from rigid_body_sim.view.frames import Mechanics
 from rigid_body_sim.view.hand import PULL, Hand
 from rigid_body_sim.view.mouse import hit
+
+SLIM = """
+scene: slim
+body: {{mass: 1.0, inertia: [1.0, 1.0, {:g}]}}
+constraint: free
+effects: []
+initial: {{angular_velocity: [0.1, 0.2, 0.3]}}
+"""
 
 
 def hand_of(name, *overrides):
@@ -69,6 +77,29 @@ def test_a_pull_at_sixty_frames_a_second_is_taken_and_stays_bounded_in_every_sce
         simulation.advance(10)
     assert np.isfinite(simulation.vector).all()
     assert np.linalg.norm(vector[5:8]) < 3.0 * before + 40.0 * PULL
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('least', [1e-3, 1e-7])
+def test_a_slim_body_is_turned_by_its_end_and_never_spun_about_its_axis(least):
+    simulation = Simulation(parse_scene(SLIM.format(least)), rate=600.0, integrator='dop8',
+                            accuracy=1e-6)
+    mechanics = Mechanics(simulation.scene)
+    hand, drawing = Hand(mechanics), drawing_of(simulation.scene)
+    corner = drawing.vertices[np.argmax(drawing.vertices @ (1.0, 0.3, 0.2))]
+    reach, fastest = np.linalg.norm(corner), np.zeros(2)
+    for k in range(60):
+        vector = simulation.vector
+        grabbed = vector[8:11] + Rotation.from_quat(vector[1:5]).apply(corner)
+        cursor = reach * np.array([1.5 * np.sin(k / 7), 1.2 * np.cos(k / 9), 0.5])
+        row = hand.pull(vector, grabbed, cursor, PULL)
+        assert row[0, AXES] == BODY
+        simulation.command(row)
+        simulation.advance(10)
+        omega = np.abs(simulation.vector[5:8])
+        fastest = np.maximum(fastest, [omega[:2].max(), omega[2]])
+    assert 1.0 < fastest[0] < 4.0 * PULL
+    assert fastest[1] == pytest.approx(0.3, rel=1e-6)
 
 
 def test_a_pulled_point_comes_to_the_cursor_and_stays():

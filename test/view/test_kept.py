@@ -84,13 +84,35 @@ def test_an_arrow_grows_with_its_vector_until_its_kind_is_rescaled():
     server = Server()
     stage = Stage(server, load_scene('tennis_racket'))
     handle = server.added['/world/reference/omega']
-    lengths = []
+    whole, lengths = stage._length('omega'), []
+    assert whole == pytest.approx(ARROW, rel=0.02)    # the plate hides next to nothing
     for size in (2.0, 1.0, 2.9, 3.2, 1.6, 0.0):
         stage._draw_arrow('omega', np.zeros(3), np.array([0.0, size, 0.0]))
         lengths.append(float(np.linalg.norm(handle.points[0, 1] - handle.points[0, 0])))
     assert lengths[:5] == pytest.approx(
-        [ARROW, ARROW / 2, 1.45 * ARROW, ARROW, ARROW / 2], rel=1e-6)
+        [whole, whole / 2, 1.45 * whole, whole, whole / 2], rel=1e-6)
     assert not handle.visible
+
+
+def test_arrows_of_a_ball_begin_at_its_surface_and_are_told_apart_where_they_coincide():
+    server = Server()
+    scene = load_scene('sphere')
+    stage, simulation = Stage(server, scene), Simulation(scene)
+    stage.shown = dict.fromkeys(('omega', 'momentum', 'herpolhode'), True)
+    one = frame(simulation, [0.0, 0.1])
+    stage.show(one)
+    stage.trace(one)
+    stage.draw_traces()
+    omega, momentum = (server.added[f'/world/reference/{key}'] for key in ('omega', 'momentum'))
+    assert np.cross(omega.points[0, 1], momentum.points[0, 1]) == pytest.approx(0.0, abs=1e-6)
+    for handle in (omega, momentum):
+        # the drawn ball has flat faces
+        assert np.linalg.norm(handle.points[0, 0]) == pytest.approx(1.0, abs=0.01)
+    assert (np.linalg.norm(momentum.points[0, 1]) + momentum.head_length
+            < np.linalg.norm(omega.points[0, 1]))
+    assert momentum.shaft_radius > omega.shaft_radius
+    tips = server.added['/world/reference/trace_herpolhode'].points
+    assert tips[-1, 1] == pytest.approx(omega.points[0, 1], abs=1e-6)
 
 
 def test_the_world_moves_against_a_body_that_is_followed_and_a_pull_halts_it():

@@ -138,9 +138,28 @@ def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_
     assert parting_of(tmp_path / 'run') is None
 
 
+def test_a_picture_goes_out_when_it_is_drawn_and_the_page_wakes_when_one_comes(
+        page, monkeypatch):
+    drawn, sent = [], []
+    monkeypatch.setattr(page, '_show', lambda: drawn.append(page.frame.time))
+    monkeypatch.setattr(page.server, 'flush', lambda: sent.append(page.frame.time))
+    until(page, lambda: len(drawn) > 2)
+    assert set(drawn) <= set(sent)
+    page._source.tell('pause', True)
+    while page._source.wait(1.0):
+        page._source.poll()
+    page._source.tell('step')
+    assert page._source.wait(PATIENCE)
+    assert page._source.poll()
+
+
 def test_another_scene_and_a_changed_number_begin_anew(page):
+    # a free body is followed, and the box says so
+    assert page.panel._boxes['follow'].value
     page.panel.requests.put(('choose', 'heavy_top'))
     until(page, lambda: page._source.scene.name == 'heavy_top' and page.frame.energy > 1.0)
+    assert not page.panel._boxes['follow'].value
+    assert not page._shown['follow']
     text = load_scene('heavy_top', ['initial.angular_velocity.2=50']).text
     page.panel._edit = (0.0, lambda: text)
     until(page, lambda: page.frame.vector[7] == 50.0)
@@ -150,8 +169,13 @@ def test_another_scene_and_a_changed_number_begin_anew(page):
 
 
 def test_pause_step_speed_and_reset(page):
+    page.panel.requests.put(('choose', 'tennis_racket'))
+    until(page, lambda: page._source.scene.name == 'tennis_racket')
     page.panel.requests.put(('speed', 10.0))
     until(page, lambda: page.frame.time > 3.0)
+    # what theory predicts is named: the flips
+    until(page, lambda: 'predicted, measured' in page.panel._expected.content)
+    assert '>flip<' in page.panel._expected.content
     page.panel.requests.put(('run', 'pause'))
     deadline = time.monotonic() + 0.5
     until(page, lambda: time.monotonic() > deadline)
