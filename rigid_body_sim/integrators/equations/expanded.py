@@ -29,7 +29,8 @@ LARGEST = 64
 STARTED = 'start_x', 'start_y', 'start_z'
 FIRST = 'first_x', 'first_y', 'first_z', 'first_w'
 TURNED = 'turned'
-"""Numbers of a start on a hinge: its place, the attitude where phi is 0, its angle less phi."""
+"""Numbers of a start: the place of a point that is held; on a hinge the attitude where phi is 0,
+and its angle less phi."""
 
 
 def own(name):
@@ -47,6 +48,10 @@ class Expanded(Equations):
 
     Attributes
     ----------
+    rates : list of Nodes
+        Of the unknowns, made of these (`unknown`) and of names whose values `named` has.
+    named : dict of str to float
+        The numbers at the beginning. A start on a hinge or a pivot adds those of its own.
     expand : str
         Source of ``expand(p, S, y)``: the coefficients of the unknowns.
 
@@ -67,12 +72,14 @@ class Expanded(Equations):
         self._static = {}
         self._times = (-np.inf, *self.breakpoints)
         rates = self._rates(scene)
-        plan = Plan(rewritten(rates, self._definitions(), self._parameters))
+        self.rates = rewritten(rates, self._definitions(), self._parameters)
+        plan = Plan(self.rates)
         if plan.products > MOST:
             raise BadInput('integrator', f'taylor cannot run the scene {scene.name}: its formulas '
                            f'take {plan.products} products of series',
                            f'at most {MOST}: dop8 and gauss16 take more')
-        lines = Lines(self._parameters | self._numbers(-np.inf))
+        self.named = self._parameters | self._numbers(-np.inf)
+        lines = Lines(self.named)
         self.expand = self._expand(plan, lines)
         self._values, self.parameter_count = lines.values, self._first + len(lines.values)
 
@@ -185,8 +192,6 @@ class Expanded(Equations):
             turn = (*(tree.times(part, sine) for part in n), cosine)
             attitude = _product([own(name) for name in FIRST], turn)
             omega = tuple(tree.times(part, unknown(1)) for part in n)
-            place = tuple(own(name) for name in STARTED)
-            drift = (tree.ZERO,) * 3
             found |= {'angle': tree.plus(unknown(0), own(TURNED)), 'rate': unknown(1)}
             clock = unknown(2)
         else:
@@ -198,9 +203,11 @@ class Expanded(Equations):
                 back = (*(tree.negative(part) for part in (x, y, z)), w)
                 attitude = _product(attitude, back)
                 omega = tuple(vectors.dot(row, omega) for row in axes)
-            place = tuple(unknown(PLACE + k) for k in range(3))
-            drift = tuple(unknown(DRIFT + k) if frame.moves else tree.ZERO for k in range(3))
             clock = unknown(CLOCK)
+        place, drift = tuple(own(name) for name in STARTED), (tree.ZERO,) * 3
+        if frame.moves:
+            place, drift = (tuple(unknown(first + k) for k in range(3))
+                            for first in (PLACE, DRIFT))
         point = self._constants_of('point', frame.point)
         carried = vectors.to_world(vectors.cross(vectors.named(source.RATES), point))
         for names, trees in (
@@ -237,16 +244,17 @@ class Expanded(Equations):
         ])
 
     def _of_start(self, lines):
-        """Return the lines that name what a start on a hinge determines."""
+        """Return the lines that name what a start determines."""
+        place, first = (', '.join(f'the__{name}' for name in names) for names in (STARTED, FIRST))
+        begin = [f'    {place} = load_start(p).place']
         if self.kind not in (hinged, hinged_field):
-            return []
+            return begin
         nx, ny, nz = (lines.value(f'hinge{k}', part)
                       for k, part in enumerate(self.frame.hinge.axis))
         zx, zy, zz, zw = (lines.value(f'zero{k}', part)
                           for k, part in enumerate(self.frame.hinge.zero))
-        place, first = (', '.join(f'the__{name}' for name in names) for names in (STARTED, FIRST))
         return [
-            f'    {place} = load_start(p).place',
+            *begin,
             f'    {first} = load_attitude(p)',
             f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, *attitude(p, the__y0))',
             f'    the__{TURNED} = 2.0 * atan2({nx} * ux + {ny} * uy + {nz} * uz, uw) - the__y0']
