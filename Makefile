@@ -94,6 +94,7 @@ bench: .venv/run.stamp ## cost of one state in closed form; energy over a millio
 	.venv/bin/python bench/instructions.py
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py
+	.venv/bin/python bench/expressions.py
 	.venv/bin/python bench/ensembles.py
 	.venv/bin/python bench/sweeps.py --only overhead dask
 

@@ -11,6 +11,8 @@ import functools
 import json
 import pathlib
 
+from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.equations.series import has_formulas
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -64,6 +66,16 @@ def rows(scene):
     """
     kinds = table()['kinds']
     return kinds.get(kind(scene)) or kinds[_free_directions(scene)]
+
+
+def on_such(scene, method):
+    """Return whether a method was measured on scenes of this kind.
+
+    Power series were where what acts is in numbers; formulas of a scene have a series of their
+    own, which takes seconds to compile.
+    """
+    formulas = METHODS[method].NEEDS == 'series' and has_formulas(scene)
+    return bool(rows(scene).get(method)) and not formulas
 
 
 def pick(scene, able, accuracy, horizon):

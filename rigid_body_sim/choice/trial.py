@@ -124,7 +124,7 @@ def settle(scene, able, accuracy, horizon):
         No method follows the scene.
     """
     # a method that was not measured on such scenes is for those who name it
-    measured_ones = [name for name in able if measured.rows(scene).get(name)]
+    measured_ones = [name for name in able if measured.on_such(scene, name)]
     failed = 'none'
     for patience in PATIENCE:
         left = measured_ones.copy()

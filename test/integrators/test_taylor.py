@@ -49,8 +49,8 @@ def test_products_of_series_are_complete():
     """Coefficients of a b up to order 15 for random series, by eight lanes and Cauchy's sum."""
     a, b = np.random.default_rng(3).uniform(-1.0, 1.0, (2, taylor_series.ORDER))
     o = lanes.Plain()
-    first, second = taylor_series._Series(o, a[0]), taylor_series._Series(o, b[0])
-    product = taylor_series._Products(o, (-1, first, second))
+    first, second = taylor_series.Series(o, a[0]), taylor_series.Series(o, b[0])
+    product = taylor_series.Products(o, (-1, first, second))
     for k in range(taylor_series.ORDER):
         assert abs(product.at(k) + cauchy(a, b, k)) < 8 * ULP    # 2.5
         if k + 1 < taylor_series.ORDER:

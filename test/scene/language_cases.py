@@ -198,7 +198,9 @@ def run(name, method='dop8'):
 BY_TWO = ('four at once', 'body axes', 'reaction wheels on a tip', 'all of drag',
           'everything on a hinge', 'on a moving pivot', 'heat at a pivot', 'mixed, free',
           'mixed, on a moving pivot')
-BY_SERIES = 'gyrostat on a tip', 'top in a world that is turned'
+BY_SERIES = ('gyrostat on a tip', 'top in a world that is turned', 'body axes',
+             'pivoted, body axes', 'potential of place and attitude', 'uneven field',
+             'everything on a hinge', 'mixed, free', 'attitude under control', 'torsion spring')
 
 if __name__ == '__main__':
     print(json.dumps({name: run(name) for name in CASES}

@@ -3,6 +3,7 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -66,6 +67,62 @@ def test_the_order_survives(method, order, steps):
     errors = [abs(followed(scene, 3.0, method, step=step)[0] - exact) for step in steps]
     slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert slope > order - 0.6, errors
+
+
+def period(power):
+    """Return that of x'' = -sign(x) |x|^power with the speed 1 at x = 0, s (beta function)."""
+    amplitude = (0.5 * (power + 1)) ** (1 / (power + 1))
+    return float(4 * amplitude / (power + 1) * mpmath.beta(1 / (power + 1), 0.5))
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('power', 'method', 'accuracies'), [
+    (0.5, 'dop8', [1e-9]), (1.5, 'dop8', [1e-5, 1e-11]), (1.5, 'gauss16', [1e-8])])
+def test_a_power_that_is_not_whole_has_its_kink_where_its_base_is_zero(power, method, accuracies):
+    """A step looks beyond the kink in which it ends, where |x|^1.5 as it stands is not real."""
+    scene = scene_of(f"[force: {{value: ['-2*sign(x)*abs(x)^{power}', 0, 0], frame: world}}]",
+                     '{velocity: [1, 0, 0]}')
+    time = period(power)
+    for accuracy in accuracies:
+        _, kinks, _, end = followed(scene, time, method, accuracy=accuracy, horizon=time)
+        assert abs(kinks[0] - 0.5 * time) < accuracy
+        # measured: 0.19 of it
+        assert max(abs(end[8]), abs(end[11] - 1.0)) < accuracy
+
+
+@pytest.mark.without_numba
+def test_branches_of_a_kink_may_have_roots_that_end_there():
+    """A ball on a Hertzian wall under a steady push, written in three ways."""
+    ends = []
+    for wall in ('max(x, 0)^1.5', 'where(x > 0, x^1.5, 0)',
+                 'where(0 < x, x, 0)*sqrt(max(x, 0))'):
+        scene = scene_of(f"[force: {{value: ['0.6 - 10*{wall}', 0, 0], frame: world}}]",
+                         '{velocity: [1, 0, 0]}')
+        _, kinks, _, end = followed(scene, 9.0)
+        assert len(kinks) == 2
+        ends.append(end)
+    assert np.abs(ends[1] - ends[0]).max() < 1e-12
+    assert np.abs(ends[2] - ends[0]).max() < 1e-12
+
+
+@pytest.mark.without_numba
+def test_a_root_that_is_not_real_on_its_own_side_is_still_refused():
+    scene = scene_of("[force: {value: ['-abs(vx)*sqrt(x)', 0, 0], frame: world}]",
+                     '{velocity: [-1, 0, 0]}')
+    with pytest.raises(NotConverged, match='the state is no longer finite'):
+        followed(scene, 1.0)
+
+
+@pytest.mark.without_numba
+def test_after_such_a_kink_fixed_steps_have_the_order_of_the_power():
+    """The step behind the kink errs by h^(p + 2): what it takes is not smooth there."""
+    scene = scene_of("[force: {value: ['-2*sign(x)*abs(x)^1.5', 0, 0], frame: world}]",
+                     '{velocity: [1, 0, 0]}')
+    time = period(1.5)
+    steps = [time / n / 1.013 for n in (40, 80)]
+    errors = [abs(followed(scene, time, step=step)[3][8]) for step in steps]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(2.5, abs=0.2), errors
 
 
 @pytest.mark.without_numba

@@ -109,7 +109,8 @@ def test_the_ledger_balances(found, case):
 def test_four_effects_at_once_meet_34_digits(found, case):
     exact = [mpmath.mpf(text) for text in json.loads(
         (HERE.parents[1] / 'data' / 'language.json').read_text())[case]]
-    for name in (case, f'{case} by gauss16'):
+    others = ('gauss16', 'taylor') if case in language_cases.BY_SERIES else ('gauss16',)
+    for name in (case, *(f'{case} by {method}' for method in others)):
         error = max(abs(mpmath.mpf(one) - other)
                     for one, other in zip(found[name]['state'][1:8], exact, strict=True))
         assert error < 1e-13, name    # measured: 8e-15
@@ -377,7 +378,7 @@ def test_the_angle_of_a_hinge_is_known_on_hinges_only():
 
 def test_only_methods_with_a_clock_run_what_depends_on_time():
     assert runnable(scene_of("torque: {value: ['t', 0, 0]}")) == \
-        ['dop8', 'gauss16', 'rk4', 'lsoda', 'radau']
+        ['dop8', 'gauss16', 'taylor', 'rk4', 'lsoda', 'radau']
     assert 'split4' in runnable(scene_of("torque: {value: ['sin(qx)', 0, 0]}"))
 
 

@@ -52,6 +52,18 @@ CONSTANT, FORCE, PULL, COUPLE, DRAG = (
 COUNT = SERIES.size
 
 
+def refusal(scene):
+    """Return the BadInput of a scene without power series."""
+    return BadInput('integrator', f'taylor cannot run the scene {scene.name}',
+                    'bodies under gravity, torques, drag and formulas without kinks only')
+
+
+def has_formulas(scene):
+    """Return whether any effect has formulas in its view `series`."""
+    return any(effect.series(scene.frame, -np.inf).formulas for effect in scene.effects
+               if effect.acting is not None and effect.series is not None)
+
+
 class Series(Equations):
     """The equations of turning as taylor_series.py has them.
 
@@ -69,11 +81,7 @@ class Series(Equations):
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         if not all(actor.series is not None for actor in self._actors):
-            raise BadInput(
-                'integrator',
-                f'taylor cannot run the scene {scene.name}',
-                'bodies under gravity, torques and drag only',
-            )
+            raise refusal(scene)
         pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
         self.kind = turning
         forced = any(pull.force is not None for pull in pulls)

@@ -97,15 +97,21 @@ def _square(S, order, weight):
 
 
 @compiled
-def _step(S, tolerance, planned, scale):
+def chosen(final, before, tolerance, planned):
     """Return (the step from here, the plan for the next point).
 
     A step is GROWTH times the plan at most.
 
-    Of the last two terms the lower one counts as it would at the step that is planned.
+    Parameters
+    ----------
+    final, before : float
+        Squared norms of the last two coefficients. Of their terms the lower one counts as it
+        would at the step that is planned.
+    tolerance : float
+        For a second.
+    planned : float
+        s; 0 of the first step.
     """
-    weight = 1.0 / scale if scale > NOTHING else 0.0
-    final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
     allowed = tolerance * tolerance
     if planned == 0.0:    # the first step: by the last term alone
         if final == 0.0:
@@ -125,6 +131,14 @@ def _step(S, tolerance, planned, scale):
     if square != 0.0:
         h = min(h, power(allowed / square, ROOT))
     return h, h
+
+
+@compiled
+def _step(S, tolerance, planned, scale):
+    """Return what `chosen` does for the coefficients of all unknowns."""
+    weight = 1.0 / scale if scale > NOTHING else 0.0
+    final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
+    return chosen(final, before, tolerance, planned)
 
 
 @compiled

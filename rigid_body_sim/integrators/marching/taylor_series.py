@@ -25,7 +25,7 @@ CHAINS = 3
 UNKNOWNS = 7
 
 
-class _Series:
+class Series:
     """Coefficients of one unknown: as numbers, and spread over all lanes.
 
     The first eight also stand side by side, as far as they are known.
@@ -45,7 +45,7 @@ class _Series:
         self.low.append(o.with_lane(before, k, coefficient) if k < LANES else before)
 
 
-class _Products:
+class Products:
     """A sum of products of series with signs, [(sign, a, b), ...].
 
     B should be the one whose coefficients are known first.
@@ -85,17 +85,17 @@ class _Products:
 
 def _turned(o, f, w):
     """Return the products of f' = f x omega."""
-    return [_Products(o, (1, f[i - 2], w[i - 1]), (-1, f[i - 1], w[i - 2])) for i in range(3)]
+    return [Products(o, (1, f[i - 2], w[i - 1]), (-1, f[i - 1], w[i - 2])) for i in range(3)]
 
 
 def _turning(o, q, w):
     """Return the products of 2 q' = q omega."""
     x, y, z, s = q
     return (
-        _Products(o, (1, s, w[0]), (1, y, w[2]), (-1, z, w[1])),
-        _Products(o, (1, s, w[1]), (1, z, w[0]), (-1, x, w[2])),
-        _Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])),
-        _Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])),
+        Products(o, (1, s, w[0]), (1, y, w[2]), (-1, z, w[1])),
+        Products(o, (1, s, w[1]), (1, z, w[0]), (-1, x, w[2])),
+        Products(o, (1, s, w[2]), (1, x, w[1]), (-1, y, w[0])),
+        Products(o, (-1, x, w[0]), (-1, y, w[1]), (-1, z, w[2])),
     )
 
 
@@ -124,14 +124,14 @@ def expansion(pushed, coupled, dragged, hinged):
     def recurrence(o, S, y, euler, constant, push, couple, drag):
         turns = (2,) if hinged else (0, 1, 2)
         q, w = (
-            [_Series(o, value) for value in y[:4]],
-            [_Series(o, y[4 + i]) if i in turns else None for i in range(3)],
+            [Series(o, value) for value in y[:4]],
+            [Series(o, y[4 + i]) if i in turns else None for i in range(3)],
         )
-        f, u = ([_Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
+        f, u = ([Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
         c, inverse = (
-            ([_Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
+            ([Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
         )
-        gyroscopic = [_Products(o, (1, w[i - 2], w[i - 1])) for i in range(3)]
+        gyroscopic = [Products(o, (1, w[i - 2], w[i - 1])) for i in range(3)]
         products = [
             *_turning(o, q, w),
             *(_turned(o, f, w) if f else ()),

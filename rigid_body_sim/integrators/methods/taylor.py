@@ -3,7 +3,8 @@
 
 A torque is constant in the body or in the world. The centre of mass of a free body moves in closed
 form (falling.py), drag or not; a body on a hinge is one that takes no torque across it
-(power_series.py).
+(power_series.py). Where an effect gives formulas, the series is that of the scene's own equations
+(equations/expanded.py, marching/recurrences.py).
 
 Coefficients follow one from the other by Cauchy's products, eight orders at once in the vector
 unit (taylor_series.py); a step, as long as the last two coefficients allow, is three to five times
@@ -12,7 +13,7 @@ output.
 
 Ensembles have a mode of their own: eight bodies at once (batch.py).
 
-Caveat: it needs products only, so no internal dissipation. Energy and momentum are kept to the
+Caveat: no internal dissipation, nothing with kinks. Energy and momentum are kept to the
 accuracy of the method; the norm of the quaternion is restored after each step. The ledger's sums,
 and what holds while a wrench is held, are made by dop8.
 """
@@ -24,7 +25,7 @@ NAME = 'taylor'
 PRESERVES = ()
 NEEDS = 'series'
 HEAT = True
-FIELD = False
+FIELD = True
 STIFF = ()
 TABLE = False
 TAKES = ('accuracy', 'step')

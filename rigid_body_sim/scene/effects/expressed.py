@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
-from rigid_body_sim.scene.expressions import actions, tree
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential, Pull
+from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
 from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
@@ -66,6 +66,10 @@ class ExpressedTorque(Effect):
         """Return the couple."""
         return actions.torque(self.trees, self.frame, self.parameters, frame, self.books),
 
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the couple."""
+        return formulas.torque(self.trees, self.frame, self.parameters)
+
 
 @dataclass(frozen=True)
 class PotentialEnergy(Effect):
@@ -105,6 +109,10 @@ class PotentialEnergy(Effect):
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and torque."""
         return actions.pulls(self.energy, self.parameters, frame)
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return force and torque."""
+        return formulas.pulls(self.energy, self.parameters, frame)
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""

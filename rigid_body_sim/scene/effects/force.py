@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Effect
-from rigid_body_sim.scene.expressions import actions, tree
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
@@ -56,3 +56,7 @@ class Force(Effect):
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the force and its moment."""
         return actions.force(self.trees, self.frame, self.parameters, self.at, frame, self.books)
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the force and its moment."""
+        return formulas.force(self.trees, self.frame, self.parameters, self.at, frame)

@@ -9,8 +9,8 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
-from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential, Pull
+from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES, TIME
 from rigid_body_sim.scene.frame import Frame
@@ -63,6 +63,10 @@ class Magnetic(Effect):
         """Return torque and force."""
         return actions.pulls(self.energy, self.parameters, frame, self.turn,
                              'work' if self._timed else 'potential')
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return torque and force."""
+        return formulas.pulls(self.energy, self.parameters, frame, self.turn)
 
     @property
     def _timed(self) -> bool:

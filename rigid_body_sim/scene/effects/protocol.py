@@ -16,6 +16,7 @@ import numpy as np
 
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
+from rigid_body_sim.scene.expressions.tree import ZERO, Node
 from rigid_body_sim.scene.frame import Frame
 
 Vector = tuple[float, float, float]
@@ -78,8 +79,29 @@ class Acting:
 
 
 @dataclass(frozen=True)
+class Formulas:
+    """Torque and force of an effect as trees (scene/expressions/tree.py), for power series.
+
+    Their names are those of expressions, and parameters.
+
+    Attributes
+    ----------
+    torque : tuple of 3 Nodes
+        About the reference point, body components, N m.
+    force : tuple of 3 Nodes
+        At the centre of mass, world components, N. Only where ``frame.moves``; else zeros, and
+        the torque has its moment.
+    parameters : tuple of (str, float)
+    """
+
+    torque: tuple[Node, Node, Node]
+    force: tuple[Node, Node, Node] = (ZERO, ZERO, ZERO)
+    parameters: tuple[tuple[str, float], ...] = ()
+
+
+@dataclass(frozen=True)
 class Pull:
-    """Torque and force of an effect without quotients and roots, for power series.
+    """Torque and force of an effect, for power series: numbers, or formulas where these fail.
 
     Attributes
     ----------
@@ -94,6 +116,8 @@ class Pull:
         Rows of the matrix that makes a torque of omega, frame components (N m s).
     slowing : float
         c of a force -c v at the centre of mass of a free body (N s/m).
+    formulas : tuple of Formulas
+        What else acts.
     """
 
     constant: Vector = (0.0, 0.0, 0.0)
@@ -101,6 +125,7 @@ class Pull:
     couple: Vector | None = None
     drag: tuple[Vector, Vector, Vector] | None = None
     slowing: float = 0.0
+    formulas: tuple[Formulas, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential
-from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential, Pull
+from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
 from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import NUMBER, VECTOR, described, mapping_of
@@ -98,6 +98,15 @@ class Spring(Effect):
         if not self.damper:
             return pulls
         return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the pull with the damping."""
+        if self.at is None:
+            found = formulas.pulls(self.energy, (), frame)
+            damper = formulas.torque(self.damper or formulas.NONE, 'body', ())
+            return Pull(formulas=found.formulas + damper.formulas)
+        both = vectors.total(self.pull, self.damper or formulas.NONE)
+        return formulas.force(both, 'world', (), self.at, frame)
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""

@@ -108,6 +108,24 @@ def _to_world(lines, components, axes, frame):
     return f'rotate(qx, qy, qz, qw, *{_to_frame(lines, components, axes, frame)})'
 
 
+def gradient(energy, frame, turn=None):
+    """Return force and torque about the body's origin, three trees each, as `pulls` has them."""
+    x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
+    place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
+    by_q = tree.derivatives(energy, ATTITUDE)
+    columns = ((w, z, tree.negative(y), tree.negative(x)),
+               (tree.negative(z), w, x, tree.negative(y)),
+               (y, tree.negative(x), w, tree.negative(z)))
+    half = tree.number(-0.5)
+    turn = turn or [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
+                    for column in columns]
+    if frame.hinge is not None:
+        along, = tree.derivatives(energy, ['angle'])
+        turn = [tree.minus(one, tree.times(tree.number(part), along))
+                for one, part in zip(turn, frame.hinge.axis, strict=True)]
+    return tuple(place), tuple(turn)
+
+
 @functools.lru_cache(maxsize=256)
 def pulls(energy, parameters, frame, turn=None, books='potential'):
     """Return the Actings of a potential: force and torque by differentiation.
@@ -130,19 +148,7 @@ def pulls(energy, parameters, frame, turn=None, books='potential'):
     books : str
         ``work`` where U depends on the time: then it is no potential.
     """
-    x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
-    place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
-    by_q = tree.derivatives(energy, ATTITUDE)
-    columns = ((w, z, tree.negative(y), tree.negative(x)),
-               (tree.negative(z), w, x, tree.negative(y)),
-               (y, tree.negative(x), w, tree.negative(z)))
-    half = tree.number(-0.5)
-    turn = turn or [tree.times(half, functools.reduce(tree.plus, map(tree.times, by_q, column)))
-                    for column in columns]
-    if frame.hinge is not None:
-        along, = tree.derivatives(energy, ['angle'])
-        turn = [tree.minus(one, tree.times(tree.number(part), along))
-                for one, part in zip(turn, frame.hinge.axis, strict=True)]
+    place, turn = gradient(energy, frame, turn)
     found, moved = [], any(one is not tree.ZERO for one in place)
     if frame.pushed and moved:
         lines = Lines(dict(parameters))

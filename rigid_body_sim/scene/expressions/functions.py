@@ -52,6 +52,21 @@ def raised(x, y):
 
 
 @compiled
+def raised_beyond(beyond, x, y):
+    """Return x to the power y; beyond a kink -|x|^y for x < 0.
+
+    Steps look beyond the kink in which they end: there abs(x)^1.5 goes on as an odd function.
+    """
+    return -raised(-x, y) if beyond and x < 0.0 else raised(x, y)
+
+
+@compiled
+def root_beyond(beyond, x):
+    """Return the square root of x; beyond a kink -sqrt(|x|) for x < 0."""
+    return -root(-x) if beyond and x < 0.0 else root(x)
+
+
+@compiled
 def tangent(x):
     """Return tan x."""
     sine, cosine = functions.sin_cos(x)

@@ -22,15 +22,16 @@ angle of a hinge (rad, within two turns) and its rate (rad/s)."""
 PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
-CALLS = {'/': 'divided', 'sqrt': 'root', 'log': 'logarithm', 'tan': 'tangent',
-         'tanh': 'hyperbolic_tangent', '^': 'raised', 'sin': 'sin', 'cos': 'cos', 'exp': 'exp'}
+CALLS = {'/': 'divided', 'log': 'logarithm', 'tan': 'tangent', 'tanh': 'hyperbolic_tangent',
+         'sin': 'sin', 'cos': 'cos', 'exp': 'exp'}
 KINKED = {'abs', 'sign', 'min', 'max', 'less'}
 HEAD = """from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.functions import atan2, cos, exp, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
-    divided, hyperbolic_tangent, logarithm, raised, root, side, tangent)
+    divided, hyperbolic_tangent, logarithm, raised, raised_beyond, root, root_beyond, side,
+    tangent)
 """
 
 
@@ -75,8 +76,12 @@ class Lines:
         return name
 
     def of(self, *trees):
-        """Add the lines that compute trees; return the names of the results."""
-        for one in tree.parts(*trees):
+        """Add the lines that compute trees; return the names of the results.
+
+        What has kinks comes first: powers that stand in its branches ask on which side it is.
+        """
+        kinked = [one for one in tree.parts(*trees) if one.op in KINKED]
+        for one in tree.parts(*kinked, *trees):
             if one not in self._names:
                 self._names[one] = self._line(one)
         return [self._names[one] for one in trees]
@@ -110,6 +115,18 @@ class Lines:
         self.lines.append(f'    side_{mode} = side({mode}, {switch})')
         return f'side_{mode}'
 
+    def _beyond(self):
+        """Return the text that says whether the state is beyond a kink."""
+        return ' or '.join(f'side_{mode} * ({switch}) < 0.0'
+                           for mode, switch in self.switches.items())
+
+    def _power(self, *args):
+        """Return the text of a power or root whose base may be negative beyond a kink only."""
+        name = 'root' if len(args) == 1 else 'raised'
+        if not self.switches:
+            return f'{name}({", ".join(args)})'
+        return f'{name}_beyond({", ".join((self._beyond(), *args))})'
+
     def _kinked(self, one, args):
         match one.op:
             case 'abs':
@@ -139,7 +156,9 @@ class Lines:
         if exponent is not None and -exponent in (1, *INTEGER_POWERS):
             return f'divided(1.0, {" * ".join([args[0]] * int(-exponent))})'
         if exponent == 0.5:
-            return f'root({args[0]})'
+            return self._power(args[0])
+        if one.op in ('^', 'sqrt'):
+            return self._power(*args)
         return f'{CALLS[one.op]}({", ".join(args)})'
 
 

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: march by the Taylor series of a scene's own equations (recurrences.py).
+
+A point of the march holds [time, step planned from here or number of the point, squared scales
+(3), unknowns, what their sums lost]. `control` is that of taylor_march.py, and so is the choice of
+the steps.
+"""
+
+import math
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES, onward
+from rigid_body_sim.integrators.marching.taylor_march import (
+    FIXED,
+    FOR,
+    NEARLY,
+    ORIGIN,
+    TOLERANCE,
+    WORK,
+    chosen,
+)
+from rigid_body_sim.integrators.marching.taylor_series import ORDER
+
+expand = UNBOUND
+along = UNBOUND
+settled = UNBOUND
+load = UNBOUND
+put = UNBOUND
+load_scales = UNBOUND
+put_scales = UNBOUND
+grown = UNBOUND
+measured = UNBOUND
+added = UNBOUND
+SIZE = UNBOUND
+PLACES = UNBOUND
+
+
+@compiled
+def begin(p, control, point):
+    """Note the origin of a point whose time and unknowns are set, and its scales."""
+    control[ORIGIN], control[FOR] = point[TIME], math.nan
+    point[STEP] = 0.0
+    y = load(point, VALUES)
+    put_scales(grown(load_scales(point, SCALES), y, y, 0.0), point, SCALES)
+
+
+@compiled
+def march(p, control, point, following, target, end, limit):
+    """Move `point` on until the step from it holds the time `target`, at most `limit` steps.
+
+    Return (steps moved, whether it went well); as ``march`` of taylor_march.py.
+    """
+    moved = onward(point, following, target)
+    if moved < 0:
+        return 0, True
+    tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
+    t, last = point[TIME], point[STEP]
+    scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
+    good = True
+    while t < end:
+        expand(p, S, y)
+        scales1 = grown(scales, y, load(S, PLACES), last if fixed == 0.0 else fixed)
+        if fixed > 0.0:
+            step = last + 1.0
+            t1, h = control[ORIGIN] + step * fixed, fixed
+            if t1 + NEARLY * fixed >= end:
+                t1, h = end, end - t
+        else:
+            final, before = measured(S, ORDER, scales1), measured(S, ORDER - 1, scales1)
+            h, step = chosen(final, before, tolerance, last)
+            t1 = end if t + 1.1 * h >= end else t + h
+            h = t1 - t
+        y1, c1, size = added(y, c, along(S, (h,)))
+        good = t1 > t and size < math.inf
+        y1, c1 = settled(y1, c1)
+        if not good or target < t1 or moved == limit:
+            following[TIME] = t1 if good else t    # t: none follows
+            following[STEP] = step
+            put_scales(scales1, following, SCALES)
+            put(y1, following, VALUES)
+            put(c1, following, VALUES + SIZE)
+            control[FOR] = t
+            break
+        t, last, y, c, scales = t1, step, y1, c1, scales1
+        moved += 1
+    point[TIME], point[STEP] = t, last
+    put_scales(scales, point, SCALES)
+    put(y, point, VALUES)
+    put(c, point, VALUES + SIZE)
+    return moved, good
+
+
+@compiled
+def between(p, control, point, following, dt):
+    """Return the unknowns a time dt after a point, within the step from it, by its series."""
+    y = load(point, VALUES)
+    if not dt > 0.0:
+        return y
+    S = control[WORK:]
+    if control[FOR] != point[TIME]:
+        expand(p, S, y)
+        control[FOR] = point[TIME]
+    y, _, _ = added(y, load(point, VALUES + SIZE), along(S, (dt,)))
+    return y
