@@ -46,6 +46,7 @@ CHATTER = 1e-13          # an impact rebounds no more below that share of the sp
 HOLDS = 1e-12            # of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
+CANCELS = 2.0 ** -51     # of the weight, which the plane balances to that rounding
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
@@ -170,8 +171,9 @@ class PlaneCourse:
                 float(y[TIME]) - self._phases[-AT_ONCE[0]].begin <= short):
             raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
                                'follow each other without end')
-        self._phases.append(_Phase(self._bound, p, y, self._tolerance, self._work,
-                                   self._length))
+        # no step is asked to resolve the rounding of forces that cancel
+        tolerance = max(self._tolerance, CANCELS * self._heaviness / p[SWIFT])
+        self._phases.append(_Phase(self._bound, p, y, tolerance, self._work, self._length))
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
