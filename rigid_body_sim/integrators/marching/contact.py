@@ -46,7 +46,7 @@ CHATTER = 1e-13          # an impact rebounds no more below that share of the sp
 HOLDS = 1e-12            # of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
-CANCELS = 2.0 ** -51     # of the weight, which the plane balances to that rounding
+CANCELS = 2.0 ** -51     # of the weight, which the plane balances to that share
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
@@ -263,6 +263,8 @@ class PlaneCourse:
         time = self._begin + float(y[TIME])
         if why == contact_march.FAILED and jams(p, y):
             why = contact_march.STOPPED
+        if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
+            why = contact_march.STUCK
         if why == contact_march.FAILED:
             held = p[DRY] > 0.0
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
@@ -412,6 +414,15 @@ class _Phase:
         row = self._work[0]
         self._bound.rates.rate(self.p, y, row)
         write(self.p, y, row, time, place, out)
+
+
+def _died(p, y):
+    """Return whether a slip has died: a step past its end turns what is left of it around.
+
+    What the laws say of a slip the other way is then no event.
+    """
+    slip = hypot3(*y[SLIP].tolist(), spins(p, y))
+    return p[MODE] == SLIDING and slip <= contact_march.DEAD * p[SWIFT]
 
 
 def _length(p, rates, y, row):
