@@ -31,6 +31,8 @@ SHORT = 3.0     # rad: over less there is no trial, the run costs some microseco
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 LEAST, MOST, AIM = 0.1, 0.4, 0.2      # of the accuracy: the error that is taken, and aimed at
 PATIENCE = 1, 16    # times so many, where no method follows: what acts is faster than the body
+ALONE = 16          # times so many for the only method there is: a disk turns ever faster
+SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
 COARSER = 8.0   # times the tolerance of the table, which holds on all scenes: the first one tried
 FINER = 2.0 ** -7    # of a tolerance, the one of the run that it is compared with
 NEAR = 2.0 ** -4     # of a tolerance: a run that is less fine is none to compare it with
@@ -41,6 +43,7 @@ GROWTHS = 0.5, 2.0
 FARTHEST = 2.0 ** 12    # from one tolerance tried to the next, as a factor
 ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mostly round-off
 MOMENTA = 0.1   # share at which relative errors of the angular momentum count as errors, rad
+DOUBTED = 1e3   # times the rounding of the angle turned: a larger error is hardly rounding at once
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
@@ -127,7 +130,8 @@ def settle(scene, able, accuracy, horizon):
         left = measured_ones.copy()
         while left:
             method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
-            trial = _Trial(scene, accuracy, horizon, method, promised, patience)
+            trial = _Trial(scene, accuracy, horizon, method, promised, patience,
+                           len(measured_ones) > 1)
             try:
                 if trial.radians <= SHORT and promised <= accuracy:
                     found = tolerance
@@ -151,6 +155,8 @@ class _Trial:
         The error at the tolerance of the table, rad: what is expected where runs tell nothing.
     patience : int
         How many times the steps that the motion of the body asks for a run may take.
+    others : bool
+        Whether other methods could run the scene.
 
     Attributes
     ----------
@@ -158,17 +164,18 @@ class _Trial:
         By which the body turns at most, about.
     """
 
-    def __init__(self, scene, accuracy, horizon, method, promised, patience):
+    def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._runs, self._patience = promised, {}, patience
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
         self._part, self._times = time / horizon, forecast.looks(time)
         self.radians = (pace + 0.5 * push * time) * time
-        most = patience * (STEPS + int(
+        most = patience * (1 if others else ALONE) * (STEPS + int(
             min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         self._finest, self._coarsest = min(known), max(known)
+        self._floor = measured.floor(scene, horizon)
         self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
 
     def tolerance_from(self, tolerance):
@@ -180,13 +187,14 @@ class _Trial:
             A run takes more steps than the motion asks for.
         """
         accuracy, good, bad, here = self._accuracy, None, None, self._grid(COARSER * tolerance)
+        doubted = False
         if self._patience > 1:
             here = self._coarsest    # fine ones are known to take too much
         for _ in range(TRIES):
             try:
                 error = self._error(here)
             except TooMuchWork:
-                if good or (bad and self._patience > 1):
+                if good or doubted or (bad and (self._patience > 1 or bad[1] > SATURATED)):
                     break    # a finer run would be too long: what works is taken
                 raise
             if error is None:    # no finer run to compare with: what was seen last is kept
@@ -195,8 +203,12 @@ class _Trial:
                 good = here, error
                 if error >= LEAST * accuracy or here == self._coarsest:
                     return here
+            elif error > SATURATED:
+                bad = here, error
             elif bad and good is None and here < bad[0] and error > HELPS * bad[1]:
-                return bad[0]    # the motion magnifies round-off
+                if doubted or error < DOUBTED * self._floor:
+                    return bad[0]    # the motion magnifies round-off
+                doubted = True    # or errors of many events happen to cancel in the coarser run
             elif bad and good is None and error > bad[1] * power(here / bad[0], ROUNDS):
                 return here    # that is most of what is left of the error
             else:
