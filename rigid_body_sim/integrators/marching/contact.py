@@ -85,10 +85,11 @@ class OnPlane:
         self._frame = scene.frame
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
-        if any(one.in_field or one.gives == 'turning' for one in acting):
-            raise BadInput(f'{scene.name}: effects', 'an expression of time or place, or an '
-                           'effect that turns the axes, for a body on a plane',
-                           'numbers that hold, or pieces in time: gravity, torque, drag, strike')
+        if any(one.in_field or one.modes or one.gives == 'turning' for one in acting):
+            raise BadInput(f'{scene.name}: effects', 'an expression of time or place or with a '
+                           'kink, or an effect that turns the axes, for a body on a plane',
+                           'numbers that hold, pieces in time, or expressions of attitude and '
+                           'angular velocity')
         source = equations.applied_source(acting, CONTACT.size)
         self.rates = specialise(contact_rates, applied=source)
         rate = f'{self.rates.__name__}:rate'
