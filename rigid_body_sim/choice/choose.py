@@ -240,12 +240,8 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
-        if len(able) == 1 and settled is None:
-            # nothing to choose from, so nothing was measured: a body on a plane
-            method, tolerance = able[0], finer
-        else:
-            settled = settled or trial.settle(scene, fit, finer, horizon)
-            method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
+        settled = settled or trial.settle(scene, fit, finer, horizon)
+        method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:
         settled = None
     if method not in able:

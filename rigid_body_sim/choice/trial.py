@@ -34,6 +34,8 @@ SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # of a trial run, at most: three times what the finest takes
 LEAST, MOST, AIM = 0.1, 0.4, 0.2      # of the accuracy: the error that is taken, and aimed at
 PATIENCE = 1, 16    # times so many, where no method follows: what acts is faster than the body
+ALONE = 16          # times so many for the only method there is: a disk turns ever faster
+SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
 COARSER = 8.0   # between the tolerance of the table and that of a scene, either way
 FINER = 2.0 ** -7    # of a tolerance, the one of the run that it is compared with
 NEAR = 2.0 ** -4     # of a tolerance: a run that is less fine is none to compare it with
@@ -130,7 +132,8 @@ def settle(scene, able, accuracy, horizon):
         left = measured_ones.copy()
         while left:
             method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
-            trial = _Trial(scene, accuracy, horizon, method, promised, patience)
+            trial = _Trial(scene, accuracy, horizon, method, promised, patience,
+                           len(measured_ones) > 1)
             try:
                 if (trial.radians <= SHORT and promised <= accuracy
                         and not (_slim(scene) or _flies(scene))):
@@ -155,6 +158,8 @@ class _Trial:
         The error at the tolerance of the table, rad: what is expected where runs tell nothing.
     patience : int
         How many times the steps that the motion of the body asks for a run may take.
+    others : bool
+        Whether other methods could run the scene.
 
     Attributes
     ----------
@@ -162,7 +167,7 @@ class _Trial:
         By which the body turns at most, about.
     """
 
-    def __init__(self, scene, accuracy, horizon, method, promised, patience):
+    def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._runs, self._patience = promised, {}, patience
         self._flies = _flies(scene)
@@ -170,7 +175,7 @@ class _Trial:
         time = min(horizon, _span(scene, pace, push, horizon))
         self._part, self._times = time / horizon, forecast.looks(time)
         self.radians = (pace + 0.5 * push * time) * time
-        most = patience * (STEPS + int(
+        most = patience * (1 if others else ALONE) * (STEPS + int(
             min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         self._finest, self._coarsest = min(known), max(known)
@@ -192,7 +197,7 @@ class _Trial:
             try:
                 error = self._error(here)
             except TooMuchWork:
-                if good or (bad and self._patience > 1):
+                if good or slow or (bad and (self._patience > 1 or bad[1] > SATURATED)):
                     break    # a finer run would be too long: what works is taken
                 raise
             if error is None:    # no finer run to compare with: what was seen last is kept
@@ -201,6 +206,8 @@ class _Trial:
                 good = here, error
                 if error >= LEAST * accuracy or here == self._coarsest:
                     return here
+            elif error > SATURATED:
+                bad, slow = (here, error), None
             elif (bad and good is None and here < bad[0]
                   and error > bad[1] * power(here / bad[0], ROUNDS)):
                 if error <= accuracy:

@@ -181,7 +181,7 @@ ERRORS = {
 @pytest.mark.parametrize(('error', 'most'), ERRORS.values(), ids=ERRORS)
 def test_one_finer_tolerance_that_does_not_help_is_not_the_last(error, most, monkeypatch):
     scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
-    found = trial._Trial(scene, 1e-11, 6.0, 'dop8', 1e-12, 1)
+    found = trial._Trial(scene, 1e-11, 6.0, 'dop8', 1e-12, 1, True)
     asked = []
     monkeypatch.setattr(found, '_error', lambda one: asked.append(one) or error(one))
     tolerance = found.tolerance_from(1e-9)

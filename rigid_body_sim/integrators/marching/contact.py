@@ -46,6 +46,7 @@ CHATTER = 1e-13          # an impact rebounds no more below that share of the sp
 HOLDS = 1e-12            # of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
+CANCELS = 2.0 ** -51     # of the weight, which the plane balances to that share
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
@@ -84,10 +85,11 @@ class OnPlane:
         self._frame = scene.frame
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
-        if any(one.in_field or one.gives == 'turning' for one in acting):
-            raise BadInput(f'{scene.name}: effects', 'an expression of time or place, or an '
-                           'effect that turns the axes, for a body on a plane',
-                           'numbers that hold, or pieces in time: gravity, torque, drag, strike')
+        if any(one.in_field or one.modes or one.gives == 'turning' for one in acting):
+            raise BadInput(f'{scene.name}: effects', 'an expression of time or place or with a '
+                           'kink, or an effect that turns the axes, for a body on a plane',
+                           'numbers that hold, pieces in time, or expressions of attitude and '
+                           'angular velocity')
         source = equations.applied_source(acting, CONTACT.size)
         self.rates = specialise(contact_rates, applied=source)
         rate = f'{self.rates.__name__}:rate'
@@ -170,8 +172,9 @@ class PlaneCourse:
                 float(y[TIME]) - self._phases[-AT_ONCE[0]].begin <= short):
             raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
                                'follow each other without end')
-        self._phases.append(_Phase(self._bound, p, y, self._tolerance, self._work,
-                                   self._length))
+        # no step is asked to resolve the rounding of forces that cancel
+        tolerance = max(self._tolerance, CANCELS * self._heaviness / p[SWIFT])
+        self._phases.append(_Phase(self._bound, p, y, tolerance, self._work, self._length))
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
@@ -261,6 +264,8 @@ class PlaneCourse:
         time = self._begin + float(y[TIME])
         if why == contact_march.FAILED and jams(p, y):
             why = contact_march.STOPPED
+        if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
+            why = contact_march.STUCK
         if why == contact_march.FAILED:
             held = p[DRY] > 0.0
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
@@ -410,6 +415,15 @@ class _Phase:
         row = self._work[0]
         self._bound.rates.rate(self.p, y, row)
         write(self.p, y, row, time, place, out)
+
+
+def _died(p, y):
+    """Return whether a slip has died: a step past its end turns what is left of it around.
+
+    What the laws say of a slip the other way is then no event.
+    """
+    slip = hypot3(*y[SLIP].tolist(), spins(p, y))
+    return p[MODE] == SLIDING and slip <= contact_march.DEAD * p[SWIFT]
 
 
 def _length(p, rates, y, row):

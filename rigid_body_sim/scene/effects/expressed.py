@@ -49,7 +49,7 @@ class ExpressedTorque(Effect):
     books: str
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'torque'
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod
@@ -89,7 +89,7 @@ class PotentialEnergy(Effect):
             'U in J, an expression of x y z, qx qy qz qw, or the angle of a hinge')),
         "F = -dU/d(x, y, z) at the body's origin, and the torque -dU by a turn about it; "
         'booked as potential')
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod

@@ -39,7 +39,7 @@ class Force(Effect):
         frame=described({'enum': ['body', 'world']}, 'axes of the components', 'body'),
         books=described({'enum': ['work', 'heat']}, 'where the ledger has its power', 'work')),
         'F = value at a point of the body')
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod

@@ -37,7 +37,7 @@ class Magnetic(Effect):
         field=described(EXPRESSIONS, 'B in T, world axes: numbers or expressions of x y z t')),
         'U = -m . B: the torque m x B, and the force of a field that is not uniform; '
         'booked as potential, in a field of the time as work')
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod
