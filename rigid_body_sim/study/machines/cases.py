@@ -34,6 +34,7 @@ PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_cente
 STEPS, ACCURACY = 40, 1e-9
 """Number of steps of a method without error control; accuracy (rad) of one with it."""
 ACCURACIES, HORIZON = (1e-6, 1e-12), 0.5
+ACCURACIES_ON_A_PLANE = (1e-3, 1e-6)
 """Accuracies (rad) and horizon (s) asked of `auto`."""
 FORCE, TORQUE = (0.03, -0.02, 0.0), (1e-3, 2e-3, 0.0)
 ON_AWKWARD = ('exact', 'dop8', 'taylor')
@@ -121,7 +122,10 @@ def states(name, method):
 
 def chosen(name):
     """Return the choice of `auto`: method, tolerance, expected error."""
-    found = (choose(scene_of(name), accuracy=one, horizon=HORIZON) for one in ACCURACIES)
+    scene = scene_of(name)
+    # without numba the trials of a body on a plane take ten seconds a scene at 1e-12 rad
+    asked = ACCURACIES if scene.body.surface is None else ACCURACIES_ON_A_PLANE
+    found = (choose(scene, accuracy=one, horizon=HORIZON) for one in asked)
     return {f'{one.accuracy:g} rad': [one.method, [one.tolerance, one.expected_error]]
             for one in found}
 
