@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from near import near
 
+from rigid_body_sim.motions.free_body import anchor as anchors
 from rigid_body_sim.motions.free_body import free_body as motion
 from rigid_body_sim.motions.solver import loops
 from rigid_body_sim.scene.bodies import IDENTITY, Body, Inertia
@@ -192,3 +193,14 @@ def rotated(state, vector):
 
 def momentum_in_world(state, tensor):
     return rotated(state, tensor @ state.angular_velocity)
+
+
+@pytest.mark.parametrize('omega', [(2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.0)])
+def test_a_body_about_a_principal_axis_is_steady_and_one_beside_it_is_not(omega):
+    moments = (1.0, 2.0, 3.0)
+    assert anchors._is_principal(moments, omega)
+    for k in range(3):
+        beside = tuple(omega[n] or (1.0 if n == k else 0.0) for n in range(3))
+        assert anchors._is_principal(moments, beside) == (beside == omega)
+        assert anchors._is_principal((1.0, 1.0, 3.0), beside) == (
+            beside == omega or beside[2] == 0.0)

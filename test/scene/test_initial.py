@@ -79,3 +79,17 @@ def test_an_override_takes_the_place_of_the_other_ways():
                                'initial.angular_momentum=[1, 2, 3]']).initial
     assert found.orientation[:2].tolist() == [0.0, 0.0]
     assert found.angular_velocity[2] == 1.0
+
+
+@pytest.mark.parametrize('constraint', [
+    'free', 'pivot', '{pivot: {at: [0.1, 0, 0]}}', "{pivot: {motion: ['t', 0, 0]}}",
+    '{hinge: {axis: [0, 0, 1]}}'])
+def test_every_motion_begins_at_time_zero(constraint):
+    scene = parse_scene(f"""
+scene: begins
+body: {{mass: 1.0, inertia: [1.0, 1.5, 2.0]}}
+constraint: {constraint}
+effects: []
+initial: {{}}
+""")
+    assert scene.initial.time == 0.0

@@ -61,16 +61,16 @@ def test_tennis_racket_by_hand():
 
 
 def test_erratum():
-    """I1 = 1, I2 = 3: as written the frequency is too large by sqrt(3).
+    """I1 = 2, I2 = 6: as written the frequency is too large by sqrt(3).
 
     The equations are not Euler's.
     """
-    assert np.abs(matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written)
-                  - jacobian(1.0, 3.0, 2.0)).max() > 1.0
-    written = matrix(1.0, 3.0, 2.0, theory.linear_rates_as_written)
-    squared = theory.frequency_squared_as_written(OMEGA0, 1.0, 3.0, 2.0)
+    assert np.abs(matrix(2.0, 6.0, 4.0, theory.linear_rates_as_written)
+                  - jacobian(2.0, 6.0, 4.0)).max() > 1.0
+    written = matrix(2.0, 6.0, 4.0, theory.linear_rates_as_written)
+    squared = theory.frequency_squared_as_written(OMEGA0, 2.0, 6.0, 4.0)
     assert (written @ written)[0, 0] == near(-squared, 1e-14)
-    assert squared / theory.frequency_squared(OMEGA0, 1.0, 3.0, 2.0) == near(3.0, 1e-14)
+    assert squared / theory.frequency_squared(OMEGA0, 2.0, 6.0, 4.0) == near(3.0, 1e-14)
 
 
 def test_least_energy_is_about_the_largest_axis():
