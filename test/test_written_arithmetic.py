@@ -26,7 +26,7 @@ CORRECT = {
           'broadcast_arrays concatenate count_nonzero cumsum diag diagonal diff divide empty '
           'empty_like errstate eye finfo flatnonzero float64 frexp frombuffer full inf int64 intp '
           'isfinite isnan maximum minimum nan ndarray newaxis nonzero ones ones_like outer prod '
-          'random repeat reshape roll searchsorted sort sqrt square stack tile uint8 uint32 '
+          'random ravel repeat reshape roll searchsorted sort sqrt square stack tile uint8 uint32 '
           'uint64 unique where zeros'}
 CORRECT = {module: set(names.split()) for module, names in CORRECT.items()}
 LIBRARIES = ('scipy', 'mpmath', 'cmath', 'statistics', 'sympy')
@@ -50,6 +50,7 @@ SUMS = {
     'compilation/layout.py: sum((1 for _ in _leaves(kind, self._name)))',
     'compilation/layout.py: sum((1 for _ in _leaves(kind, name)))',
     'integrators/equations/equations.py: sum((len(one.values) for one in acting))',
+    'integrators/equations/expanded.py: sum((weights.get(step[0], 0) for step in self._steps))',
     'integrators/families/collocation.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/families/one_step.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/marching/gauss_nodes.py: '

@@ -21,8 +21,8 @@ from rigid_body_sim.scene.scene import kept
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
 
-PROMISED = {'dop8': [{'tolerance': 10.0 ** -n, 'error': 10.0 ** -n, 'cost': 1.0}
-                     for n in range(1, 16)]}
+PROMISED = {'dop8': [{'tolerance': one, 'error': one, 'cost': 1.0}
+                     for one in (float(f'1e-{n}') for n in range(1, 16))]}
 
 
 @functools.cache

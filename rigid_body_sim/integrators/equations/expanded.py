@@ -106,7 +106,10 @@ class Expanded(Equations):
             for pull in self._pulls(time):
                 total += np.ravel(getattr(pull, name) or 0.0)
             found |= {f'_{name}{k}': part for k, part in enumerate(total.tolist())}
-        return found | {'_slowing': sum((pull.slowing for pull in self._pulls(time)), 0.0)}
+        slowing = 0.0    # added one by one: what `sum` does depends on the version of Python
+        for pull in self._pulls(time):
+            slowing += pull.slowing
+        return found | {'_slowing': slowing}
 
     def _vector(self, name, count=3):
         """Return the nodes of numbers that may change with time; those that stay 0 are ZERO."""

@@ -34,7 +34,7 @@ PACE = {'chandler_wobble': 1e5, 'needle': 0.01, 'fast_top': 0.1, 'billiard_cente
 STEPS, ACCURACY = 40, 1e-9
 """Number of steps of a method without error control; accuracy (rad) of one with it."""
 ACCURACIES, HORIZON = (1e-6, 1e-12), 0.5
-ACCURACIES_ON_A_PLANE = (1e-3, 1e-6)
+ACCURACIES_ON_A_PLANE = (1e-3,)
 """Accuracies (rad) and horizon (s) asked of `auto`."""
 FORCE, TORQUE = (0.03, -0.02, 0.0), (1e-3, 2e-3, 0.0)
 ON_AWKWARD = ('exact', 'dop8', 'taylor')
