@@ -157,7 +157,7 @@ def test_a_march_gives_up_where_the_way_ahead_asks_for_too_many_steps():
 
 BODY = {'mass': 1.0, 'inertia': [1.0, 2.0, 2.5]}
 ENDLESS = {
-    'impacts': ('auto', {
+    'impacts': ('dop8', {
         'constraint': {'table': {'restitution': 1.0}}, 'effects': [{'gravity': {'g': 9.81}}],
         'body': {'mass': 1.0, 'shape': {'ellipsoid': {'semi_axes': [0.1, 0.1, 0.1]}}},
         'initial': {'position': [0, 0, 1]}}),
