@@ -47,6 +47,7 @@ FARTHEST = 2.0 ** 12    # from one tolerance tried to the next, as a factor
 ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mostly round-off
 MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
+ROUNDED = 10.0  # times what rounding does: an error below it may be magnified rounding
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
 
@@ -116,9 +117,10 @@ def settle(scene, able, accuracy, horizon):
     next one is tried. Where none follows, all of them are tried again with more patience, since
     what acts may be faster than the body, and from the coarsest tolerance on, since rounding of
     what acts may be more than a fine one allows. Where none meets the accuracy, the most accurate
-    method of the table is taken. The parameters are those of
-    :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a long horizon, and errors
-    are taken to grow in proportion to time.
+    method of the table is taken. Where a trial shows that a method errs by more than the accuracy
+    and than rounding, the next one is tried, too, and the most accurate one is taken. The
+    parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of a
+    long horizon, and errors are taken to grow in proportion to time.
 
     Raises
     ------
@@ -129,23 +131,26 @@ def settle(scene, able, accuracy, horizon):
     measured_ones = [name for name in able if measured.on_such(scene, name)]
     failed = 'none'
     for patience in PATIENCE:
-        left = measured_ones.copy()
+        left, least, best = measured_ones.copy(), math.inf, None
         while left:
             method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
             trial = _Trial(scene, accuracy, horizon, method, promised, patience,
                            len(measured_ones) > 1)
+            left.remove(method)
             try:
-                if (trial.radians <= SHORT and promised <= accuracy
-                        and not (_slim(scene) or _flies(scene))):
-                    found = trial.finer_than(tolerance)
-                else:
-                    found = trial.tolerance_from(tolerance)
+                found = trial.take(tolerance)
+                excess = trial.excess(found) if left or best else 0.0
             except TooMuchWork as error:
-                left.remove(method)
                 failed = error
-            else:
-                return Settled(method, found, find=functools.partial(trial.forecast, found),
+                continue
+            if best is None or excess < HELPS * least:
+                least = excess
+                best = Settled(method, found, find=functools.partial(trial.forecast, found),
                                prototype=trial.prototype)
+            if not excess > 0.0:
+                break
+        if best:
+            return best
     raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
 
 
@@ -161,10 +166,6 @@ class _Trial:
     others : bool
         Whether other methods could run the scene.
 
-    Attributes
-    ----------
-    radians : float
-        By which the body turns at most, about.
     """
 
     def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
@@ -174,12 +175,25 @@ class _Trial:
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
         self._part, self._times = time / horizon, forecast.looks(time)
-        self.radians = (pace + 0.5 * push * time) * time
+        self._radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
         most = patience * (1 if others else ALONE) * (STEPS + int(
-            min(STEPS_PER_RADIAN * self.radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
+            min(STEPS_PER_RADIAN * self._radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         known = [entry['tolerance'] for entry in measured.rows(scene)[method]]
         self._finest, self._coarsest = min(known), max(known)
         self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
+
+    def take(self, tolerance):
+        """Return the tolerance to take, that of the table given.
+
+        Raises
+        ------
+        TooMuchWork
+            A run takes more steps than the motion asks for.
+        """
+        if (self._radians <= SHORT and self._promised <= self._accuracy
+                and not (self._flies or _slim(self._scene))):
+            return self._grid(tolerance / COARSER)
+        return self.tolerance_from(tolerance)
 
     def tolerance_from(self, tolerance):
         """Return the tolerance that meets the accuracy, from the one of the table on.
@@ -226,9 +240,23 @@ class _Trial:
             return good[0]
         return min(here, bad[0]) if here in self._runs else bad[0]
 
-    def finer_than(self, tolerance):
-        """Return the tolerance that is taken without a trial."""
-        return self._grid(tolerance / COARSER)
+    def excess(self, tolerance):
+        """Return the error at a tolerance, rad, where another method may do better; else 0.
+
+        That is where it is more than is asked, and more than rounding does to any method.
+        """
+        if tolerance not in self._runs:
+            return 0.0    # it was not tried
+        error = self._error(tolerance)
+        if error is None or error <= self._accuracy:
+            return 0.0
+        finer = self._reference(tolerance)
+        try:
+            lost = forecast.lost(self._scene, self.prototype.at(finer, self._most), self._times,
+                                 self._states(finer))
+        except TooMuchWork:
+            return 0.0    # nothing tells
+        return error if error > ROUNDED * float(lost.max()) / self._part else 0.0
 
     def forecast(self, tolerance):
         """Return the Forecast of a choice."""

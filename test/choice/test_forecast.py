@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 
-from rigid_body_sim.choice import forecast, trial
+from rigid_body_sim.choice import forecast, measured, trial
 from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.choice.trial import Settled
 from rigid_body_sim.numerics.rotations import angle_between
@@ -188,6 +188,21 @@ def test_one_finer_tolerance_that_does_not_help_is_not_the_last(error, most, mon
     assert error(tolerance) <= most
     # where nothing helps, the coarsest one that was tried is as good
     assert most < 1.4e-11 or (tolerance == max(asked) and len(asked) == 3)
+
+
+@pytest.mark.parametrize(('errors', 'taken'), [
+    ({'dop8': 0.0, 'gauss16': 0.0}, 'first'), ({'dop8': 0.0, 'gauss16': 1e-8}, 'dop8'),
+    ({'dop8': 1e-8, 'gauss16': 0.0}, 'gauss16'), ({'dop8': 1e-8, 'gauss16': 1e-9}, 'gauss16'),
+    ({'dop8': 1e-9, 'gauss16': 1e-8}, 'dop8'), ({'dop8': 1e-8, 'gauss16': 0.9e-8}, 'first'),
+    ({'dop8': 0.9e-8, 'gauss16': 1e-8}, 'first')])
+def test_another_method_is_tried_where_one_errs_by_more_than_rounding(errors, taken, monkeypatch):
+    scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
+    monkeypatch.setattr(trial._Trial, 'take', lambda self, tolerance: tolerance)
+    monkeypatch.setattr(
+        trial._Trial, 'excess', lambda self, tolerance: errors[self.prototype.method.NAME])
+    first, _, _ = measured.pick(scene, list(errors), 1e-11, 6.0)
+    found = trial.settle(scene, list(errors), 1e-11, 6.0)
+    assert found.method == (first if taken == 'first' else taken)
 
 
 COMMANDS = {
