@@ -43,9 +43,12 @@ class Live:
         Simulated seconds per second of the clock.
     expected : dict
         What theory predicts beside what was measured.
+    beside : None
+        Only a recording has a second one beside it.
     """
 
     pushes, edits, plays, paces = True, True, False, True
+    beside = None
 
     def __init__(self, text, settings, output=None):
         self.scene, self.generation, self.method = parse_scene(text), 0, ''

@@ -60,7 +60,7 @@ class NodeSource:
     """
 
     pushes, edits, plays, paces = True, False, False, False
-    speed = 1.0
+    speed, beside = 1.0, None
 
     def __init__(self, name):
         self._name = name if name.startswith('/') else f'/{name}'

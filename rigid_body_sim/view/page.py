@@ -123,7 +123,7 @@ class Page:
         self.mouse.pull = None
         if self._source.pushes:
             self.mouse.listen(stage.bodies)
-        beside = getattr(self._source, 'beside', None)
+        beside = self._source.beside
         if beside is not None:
             self._stages.append(Stage(self.server, beside.scene, 'beside', True, stage.unit))
         self.panel.begin(scene, stage.drawing.about, stage.cell, beside)
@@ -141,7 +141,7 @@ class Page:
 
     def _beside(self):
         """Return the Frame of the second recording, or None."""
-        beside = getattr(self._source, 'beside', None)
+        beside = self._source.beside
         return None if beside is None else beside.at(self.frame.time, self.frame.time)
 
     def _numbers(self):

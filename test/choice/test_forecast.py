@@ -205,6 +205,19 @@ def test_another_method_is_tried_where_one_errs_by_more_than_rounding(errors, ta
     assert found.method == (first if taken == 'first' else taken)
 
 
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('accuracy', 'error', 'expected'), [
+    (1e-11, 1e-8, 1e-8), (1e-11, 1e-12, 0.0), (1e-18, 1e-16, 0.0), (1e-11, None, 0.0)])
+def test_only_an_error_beyond_rounding_asks_for_another_method(
+        accuracy, error, expected, monkeypatch):
+    scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
+    tried = trial._Trial(scene, accuracy, 6.0, 'dop8', 1e-12, 1, True)
+    assert tried.excess(2.0 ** -30) == 0.0    # nothing was tried
+    tried._states(2.0 ** -30)
+    monkeypatch.setattr(tried, '_error', lambda tolerance: error)
+    assert tried.excess(2.0 ** -30) == expected
+
+
 COMMANDS = {
     'a held wrench': lambda simulation: simulation.hold(torque=(0.0, 1.0, 0.0)),
     'an impulse': lambda simulation: simulation.impulse(torque=(0.0, 1.0, 0.0)),
