@@ -105,6 +105,7 @@ class Plan:
 
     def __init__(self, spec, outputs=None):
         self.spec = spec
+        self._drawn = None
         self.dims = {key: len(values) for key, values in spec.vary.items()}
         if spec.runs:
             self.dims[RUN] = spec.runs
@@ -158,17 +159,32 @@ class Plan:
             else:
                 found[key] = [values[place] for place in places[key].tolist()]
         for key, sampled in self.spec.sample.items():
-            found[key] = self._samples(sampled, first, stop)
+            found[key] = self._samples(key, sampled, first, stop)
         return found
 
-    def _samples(self, sampled, first, stop):
+    def drawn(self):
+        """Return all samples of each key, array (samples, ...).
+
+        They are drawn once and kept: runs that this process computes take theirs from here.
+        """
+        if self._drawn is None:
+            self._drawn = {key: sampled.of_runs(0, self.spec.runs)
+                           for key, sampled in self.spec.sample.items()}
+        return self._drawn
+
+    def _samples(self, key, sampled, first, stop):
         runs = self.spec.runs
+        if self._drawn is None:
+            of_runs = sampled.of_runs
+        else:
+            def of_runs(begin, end):
+                return self._drawn[key][begin:end]
         if stop - first >= runs:
-            return sampled.of_runs(0, runs)[np.arange(first, stop) % runs]
+            return of_runs(0, runs)[np.arange(first, stop) % runs]
         begin, end = first % runs, (stop - 1) % runs + 1
         if begin < end:
-            return sampled.of_runs(begin, end)
-        return np.concatenate([sampled.of_runs(begin, runs), sampled.of_runs(0, end)])
+            return of_runs(begin, end)
+        return np.concatenate([of_runs(begin, runs), of_runs(0, end)])
 
     def overrides(self, run):
         """Return the value of each key at one run, as ``--set`` takes them."""

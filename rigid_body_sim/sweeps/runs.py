@@ -414,9 +414,12 @@ def _units(values):
     x, y, z, w = values.T
     with np.errstate(over='ignore', invalid='ignore', divide='ignore'):
         square = x * x + y * y + z * z + w * w
+        unit = np.abs(square - 1.0) <= TOLERATED
+        if unit.all():
+            return values, True
         size = np.abs(values).max(axis=1)
         good = (size > 1e-100) & (size < 1e100)    # the others are scaled first: one by one
-        divisor = np.where(np.abs(square - 1.0) <= TOLERATED, 1.0, np.sqrt(square))
+        divisor = np.where(unit, 1.0, np.sqrt(square))
         return values / divisor[:, np.newaxis], good
 
 

@@ -342,7 +342,7 @@ def in_memory(plan, arrays, texts):
     variables[plans.TEXT] = dims, told, {'long_name': 'why the run failed'}
     coords = {name: (where, values, _fitting(attrs))
               for name, (where, values, attrs) in plans.coordinates(plan).items()}
-    for key, sampled in plan.spec.sample.items():
-        coords[key] = (plans.sample_dims(sampled), sampled.of_runs(0, plan.spec.runs),
+    for key, values in plan.drawn().items():
+        coords[key] = (plans.sample_dims(plan.spec.sample[key]), values,
                        _fitting(plans.sample_attrs(key)))
     return xarray.Dataset(variables, coords, attributes(plan))

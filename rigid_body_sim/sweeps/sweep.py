@@ -116,6 +116,7 @@ def _to_memory(plan, workers, bar):
                        f'{limit / 1e9:.3g} GB may be taken', 'fewer runs or times, less in keep, '
                        'or a store')
     arrays, states = room(plan, spec.size)
+    plan.drawn()    # the result has all samples anyhow
     texts, rates = {}, []
 
     def submit(workers, piece):
