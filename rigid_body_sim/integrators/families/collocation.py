@@ -6,6 +6,8 @@ over the eight stages are the inner ones, on arrays in which the stages of an un
 side: the compiler makes vector code of them without being allowed to reorder any sum.
 """
 
+import functools
+
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
@@ -47,24 +49,31 @@ def equations_of(scene, wrench):
 
 def march(method, equations, adapts):
     """Return the module that marches: gauss_march.py bound to equations."""
-    size, groups = equations.kind.UNKNOWNS, equations.groups
-    kernels = equations.kernels.__name__
-    relative = sum(not absolute for _, _, absolute in groups)
-    places = _places(size)
+    size, kernels = equations.kind.UNKNOWNS, equations.kernels.__name__
     return specialise(
         gauss_march, rate=f'{kernels}:rate', settled=f'{kernels}:settled',
-        **{name: f'{name} = {place}\n' for name, place in places.items()},
-        load=unroll.load_source('load', size), put=unroll.put_source('put', size),
-        load_scales=unroll.load_source('load_scales', relative),
-        put_scales=unroll.put_source('put_scales', relative),
-        stage_rates=_stage_rates(size, equations.parameter_count),
-        relax=_relax(equations.relaxations, places),
+        relax=_relax(equations.relaxations, _places(size)),
         FLOOR=f'FLOOR = {RELAXED_FLOOR if equations.relaxations else FLOOR!r}\n',
         SETTLED=f'SETTLED = {RELAXED_SETTLED if equations.relaxations else 0.0!r}\n',
-        spread=_spread(size), combined=_combined(size, places['RATES']), advanced=_advanced(size),
-        along=_along(size, places['CURVE']), end_of_curve=_end_of_curve(size, places['CURVE']),
-        measure=_measure(groups), by_group=_by_group(groups), grown=_grown(groups),
-        fastest=unroll.fastest_source(groups), first_scales=_first_scales(groups))
+        **_of_unknowns(size, equations.groups, equations.parameter_count))
+
+
+@functools.cache
+def _of_unknowns(size, groups, parameter_count):
+    """Return what binds the part of gauss_march.py that the unknowns and their number decide."""
+    relative = sum(not absolute for _, _, absolute in groups)
+    places = _places(size)
+    return {
+        **{name: f'{name} = {place}\n' for name, place in places.items()},
+        'load': unroll.load_source('load', size), 'put': unroll.put_source('put', size),
+        'load_scales': unroll.load_source('load_scales', relative),
+        'put_scales': unroll.put_source('put_scales', relative),
+        'stage_rates': _stage_rates(size, parameter_count), 'spread': _spread(size),
+        'combined': _combined(size, places['RATES']), 'advanced': _advanced(size),
+        'along': _along(size, places['CURVE']),
+        'end_of_curve': _end_of_curve(size, places['CURVE']),
+        'measure': _measure(groups), 'by_group': _by_group(groups), 'grown': _grown(groups),
+        'fastest': unroll.fastest_source(groups), 'first_scales': _first_scales(groups)}
 
 
 def _places(size):
