@@ -25,6 +25,7 @@ LEGEND = {
     'frameon': False,
     'handlelength': 2.5,
 }
+MARGIN = 0.05    # about a path in space, share of its largest extent
 # a residual up to this many times the band is about round-off, and the band is labelled
 ROUND_OFF = 20
 
@@ -92,6 +93,12 @@ def space(one):
         (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), one.axes, strict=True
     ):
         set_label(label)
+    # said here: margins that matplotlib chooses differ between its versions
+    shown = np.concatenate([one.path, *(net.reshape(-1, 3) for net in one.surfaces.values())])
+    least, most = np.nanmin(shown, axis=0), np.nanmax(shown, axis=0)
+    margin = MARGIN * (np.max(most - least) or 1.0)
+    axes.set(**{f'{name}lim': bounds for name, bounds in zip(
+        'xyz', zip(least - margin, most + margin, strict=True), strict=True)})
     axes.set_aspect('equal')
     figure.colorbar(points, ax=axes, shrink=0.6, label='time since the first tick (s)')
     if one.surfaces:

@@ -152,7 +152,8 @@ class Choice:
         method = METHODS.get(self.method)
         if method is None or not method.FAMILY.TAKES_WRENCH:    # None: `exact`
             method = STEADY if stiff_relaxations(self.scene, OFTEN) else GENERAL
-        return Stepped(self.scene, method.NAME, self.tolerance, self.step, wrench, self.horizon)
+        return Stepped(self.scene, method.NAME, self.tolerance, self.step, wrench, self.horizon,
+                       wanted=self.accuracy)
 
 
 def _stiff(scene):
@@ -251,9 +252,9 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if 'dissipation' in stiff and tolerance is not None:
         tolerance = min(tolerance, ENDING)
     if prototype is not None and step is None:
-        prototype = prototype.at(tolerance)
+        prototype = prototype.at(tolerance, wanted=accuracy)
     else:
-        prototype = Stepped(scene, method, tolerance, step, horizon=horizon)
+        prototype = Stepped(scene, method, tolerance, step, horizon=horizon, wanted=accuracy)
     return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, settled)
 
 

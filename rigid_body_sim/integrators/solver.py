@@ -36,7 +36,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
-SLACK = 1e-2            # share of the accuracy: jumps between steps, not resolved
+SLACK = 1e-2            # share of the tolerance: jumps between steps, which the ledger passes over
 
 
 class _Ledger:
@@ -71,6 +71,9 @@ class Stepped:
         s.
     most : int, optional
         Steps between two times asked for, after which a march gives up (marching/work.py).
+    wanted : float, optional
+        Relative error that the ledger may have at most, where `accuracy` is a tolerance that was
+        found to be fine enough for it; by default the accuracy itself.
 
     Raises
     ------
@@ -79,10 +82,11 @@ class Stepped:
     """
 
     def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0,
-                 most=None):
+                 most=None, wanted=math.inf):
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         _check_control(self.method, accuracy, step)
         self.accuracy, self.step, self.horizon, self.most = accuracy, step, horizon, most
+        self.wanted = wanted
         on_table = scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE)
         if on_table and not self.method.TABLE:
             able = ', '.join(runnable(scene))
@@ -92,14 +96,14 @@ class Stepped:
         self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
 
-    def at(self, accuracy, most=None):
-        """Return a Stepped that differs in its accuracy, rad, and in its `most` steps.
+    def at(self, accuracy, most=None, wanted=math.inf):
+        """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
 
         It costs less than a new one: kernels and equations are shared.
         """
         _check_control(self.method, accuracy, self.step)
         other = object.__new__(Stepped)
-        other.__dict__ = self.__dict__ | {'accuracy': accuracy, 'most': most}
+        other.__dict__ = self.__dict__ | {'accuracy': accuracy, 'most': most, 'wanted': wanted}
         other._bound = self._bound.at(other)
         return other
 
@@ -254,7 +258,7 @@ class Stepped:
         if not actors.acts:
             return np.zeros(ENTRIES_SIZE)
         if self._exchange is None:
-            slack = SLACK * self.accuracy if self.step is None else 0.0
+            slack = min(SLACK * self.accuracy, self.wanted) if self.step is None else 0.0
             self._exchange = Exchange(actors, self._course.states, self.vector, slack,
                                       self._course.kinks)
         return self._exchange.until(self._course.exchanges_until(time) if self._departs else time)

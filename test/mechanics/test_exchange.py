@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.exchange import Actors, Exchange, _edges
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
 from rigid_body_sim.scene.scene import parse_scene
@@ -42,6 +43,17 @@ simulation = Simulation(scene, 'taylor', accuracy=1e-6, horizon=1.5)
 before = simulation.energy
 simulation.advance(1500)
 print(json.dumps(simulation.ledger() | {'lost': before - simulation.energy}))
+"""
+
+SLOW = """
+scene: slow
+body: {mass: 4.0, inertia: [0.011, 0.013, 0.024], center_of_mass: [-0.018, -0.022, 0.013]}
+constraint: {hinge: {axis: [-0.98, 0.04, 0.2], through: [-0.009, -0.005, 0.005]}}
+effects:
+- torque: {times: [0.07, 2.0], frame: body,
+           values: [[-0.002, -0.0065, 0.0037], [0.0113, 0.0015, -0.0003]]}
+- drag: {linear: 0.19, angular: 1.1e-4, quadratic: 5.5, angular_quadratic: 9.5e-5}
+initial: {angle: 1.19, rate: 2.12}
 """
 
 
@@ -96,13 +108,13 @@ def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
 
     def rate(t):
         left = np.exp(-0.5 * damping * t)
-        return 6.0 / damping * (1.0 - left), 3.0 * left
+        return -6.0 / damping * np.expm1(-0.5 * damping * t), 3.0 * left
     exchange = turning(scene, rate)
     for time in (1e-12, 0.3, 50.0):
-        heat = 9.0 * (1.0 - np.exp(-damping * time))
+        heat = -9.0 * np.expm1(-damping * time)
         entries = exchange.until(time)
         assert entries[DISSIPATED] == pytest.approx(heat, rel=1e-13, abs=1e-15)
-        impulse = 6.0 * (np.exp(-0.5 * damping * time) - 1.0)
+        impulse = 6.0 * np.expm1(-0.5 * damping * time)
         assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-13, abs=1e-15)
 
 
@@ -200,3 +212,36 @@ def test_edges_do_not_depend_on_where_a_call_begins():
     assert len(at_once) == 65
     assert np.array_equal(_edges(at_once[20], 10.0, np.inf, 0.1, 44), at_once[20:])
     assert _edges(9.95, 10.0, np.inf, 0.1, 8).tolist() == [9.95]
+
+
+def test_a_kink_of_what_acts_is_resolved_however_small_it_is():
+    """Drag by squares of a body that turns back: c |omega| omega has a kink there.
+
+    omega = a (t - b): the heat is c a^3 ((t - b)^4 + b^4)/4, the angular impulse that of the
+    torque, T t, less c a^2 ((t - b)^3 - b^3)/3 after the turn.
+    """
+    a, b, c, torque, end = 1.5, 0.37, 1e-5, 0.25, 2.0
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [2, 2, 2]}\nconstraint: free\n'
+                        f'effects: [torque: {{value: [0, 0, {torque}], frame: world}}, '
+                        f'drag: {{angular_quadratic: {c}}}]\n'
+                        f'initial: {{angular_velocity: [0, 0, {-a * b}]}}\n')
+    exchange = turning(scene, lambda t: (a * t * (0.5 * t - b), a * (t - b)))
+    entries = exchange.until(end)
+    after = end - b
+    heat = 0.25 * c * a ** 3 * (after ** 4 + b ** 4)
+    impulse = torque * end - c * a * a * (after ** 3 - b ** 3) / 3.0
+    assert entries[DISSIPATED] == pytest.approx(heat, rel=1e-14)                # 4.4e-16
+    assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-14)    # 0
+
+
+def test_a_coarse_tolerance_that_is_fine_enough_leaves_the_ledger_as_fine_as_was_asked():
+    """Slow torques: gauss16 meets 1e-11 with a tolerance of 0.1, whose own jumps are no bound."""
+    scene = parse_scene(SLOW)
+    start = scene.initial.vector
+    solver = Stepped(scene, 'gauss16', 0.1, horizon=7.0)
+    exact = Exchange(Actors(scene), solver.start(start).states, start, 0.0).until(7.0)
+    loose, fine = (solver.at(0.1, wanted=wanted).start(start).exchanged(7.0)
+                   for wanted in (np.inf, 1e-11))
+    size = np.abs(exact).max()
+    assert np.abs(fine - exact).max() <= 1e-15 * size    # 6.7e-17
+    assert np.abs(loose - exact).max() > 1e-9 * size     # 6.1e-6: what is asked matters
