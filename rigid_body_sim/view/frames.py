@@ -19,6 +19,8 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, 
 TURN_BETWEEN = 0.1
 """Largest turn between two states of a trail, rad, up to MOST_BETWEEN states."""
 MOST_BETWEEN = 40
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""A sum below this share of the sizes of its terms is the rounding of terms that cancel."""
 LONGEST_GAP = 0.5
 """Time between two states, s, beyond which a trail does not guess what was between them."""
 
@@ -87,7 +89,8 @@ class Arrows(NamedTuple):
     omega, momentum : array (3,)
         Angular velocity (rad/s), angular momentum about the point of reference (kg m^2/s).
     force, torque : array (3,)
-        Net force on the body (N), and dL/dt (N m), reactions of the constraint included.
+        Net force on the body (N), and dL/dt (N m), reactions of the constraint included. They are
+        zero where no more than the rounding of their terms is left.
     """
 
     omega: np.ndarray
@@ -117,14 +120,19 @@ class Mechanics:
         turn = Rotation.from_quat(vector[ORIENTATION])
         omega, growth = vector[ANGULAR_VELOCITY], np.asarray(balance.angular_acceleration)
         center = np.array(body.center_of_mass)
-        carried = np.cross(growth, center) + np.cross(omega, np.cross(omega, center))
-        force = body.mass * (np.asarray(balance.acceleration) + turn.apply(carried))
+        force = body.mass * _sum(np.asarray(balance.acceleration),
+                                 turn.apply(np.cross(growth, center)),
+                                 turn.apply(np.cross(omega, np.cross(omega, center))))
         inertia = constraint.inertia(body).matrix
-        torque = turn.apply(inertia @ growth + np.cross(omega, inertia @ omega))
+        changes = [turn.apply(inertia @ growth), turn.apply(np.cross(omega, inertia @ omega))]
         if constraint.mechanism is Mechanism.AXIS:
             axis = turn.apply(constraint.axis)
             arm = turn.apply(constraint.arm(body))
-            torque = axis * (axis @ (torque + np.cross(arm, force)))
+            along = axis @ _sum(*changes, np.cross(arm, force))
+            sizes = [*changes, np.linalg.norm(arm) * force]
+            torque = axis * _cleared(along, sizes)
+        else:
+            torque = _sum(*changes)
         return Arrows(turn.apply(omega), diagnosis[energy.MOMENTUM:].copy(), force, torque)
 
     def center(self, vector):
@@ -136,3 +144,14 @@ class Mechanics:
         """Return the velocity (m/s, world) of the body's point that is now at `point` (world)."""
         omega = Rotation.from_quat(vector[ORIENTATION]).apply(vector[ANGULAR_VELOCITY])
         return vector[VELOCITY] + np.cross(omega, point - vector[POSITION])
+
+
+def _sum(*terms):
+    """Return the sum of vectors (3,), or zero where only its rounding is left."""
+    return _cleared(np.sum(terms, axis=0), terms)
+
+
+def _cleared(value, terms):
+    """Return a number or vector that was made from terms (3,), zero if that is their rounding."""
+    size = sum(float(np.linalg.norm(term)) for term in terms)
+    return value if float(np.linalg.norm(value)) > ROUNDING * size else 0.0 * value

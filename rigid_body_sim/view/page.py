@@ -58,7 +58,8 @@ class Page:
         self.server.initial_camera.position = PRESETS['3/4']
         self.server.initial_camera.look_at = (0.0, 0.0, 0.0)
         self.server.initial_camera.fov = FIELD_OF_VIEW
-        self.server.on_client_connect(aim)
+        self._waits = False
+        self.server.on_client_connect(self._welcome)
         self.server.gui.main_panel.dock_right()
         self.panel = Panel(self.server, source, self._shown)
         self.mouse = mouse.Mouse()
@@ -74,6 +75,19 @@ class Page:
     def _theme(self, dark):
         self.server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False,
                                         control_width='small', brand_color=(0, 114, 178))
+
+    def _welcome(self, client):
+        """Aim the camera of a new client; the first one begins a motion that waits for it."""
+        aim(client)
+        if self._waits:
+            self._waits = False
+            self.panel.requests.put(('run', 'play'))
+
+    def await_client(self):
+        """Hold the motion until a client sees it; that of a node is not this page's to hold."""
+        if self._source.paces and not self.server.get_clients():
+            self._waits = True
+            self._source.tell('pause', True)
 
     def run(self, until=lambda: False):
         """Serve until `until` returns true or an interrupt comes."""
