@@ -165,7 +165,7 @@ class Page:
         self._numbers_due = now + NUMBERS_EVERY
         stage, frame = self._stages[0], self.frame
         stage.draw_traces()
-        arrows = stage.mechanics.arrows(frame.vector, frame.wrench) if stage.mechanics else None
+        arrows = stage.mechanics.of(frame) if stage.mechanics else None
         self.panel.draw(frame, arrows, self._source.expected, self._beside())
 
     def _push(self):

@@ -82,6 +82,13 @@ def test_a_body_that_flies_freely_feels_no_force_though_its_origin_is_carried_ro
     assert not found.force.any() and not found.torque.any()
 
 
+@pytest.mark.parametrize(('scene', 'needed'), [
+    ('tennis_racket', False), ('heavy_top', False), ('kater_pendulum', False),
+    ('billiard_low', True), ('tossed_coin', True)])
+def test_a_source_without_velocities_knows_whose_forces_need_them(scene, needed):
+    assert Mechanics(load_scene(scene)).need_velocity() is needed
+
+
 class Gui:
     """What is asked of viser for a chart."""
 
