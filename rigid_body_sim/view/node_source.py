@@ -9,6 +9,7 @@ releases it.
 """
 
 import math
+import re
 import time
 
 import numpy as np
@@ -64,6 +65,8 @@ class NodeSource:
 
     def __init__(self, name):
         self._name = name if name.startswith('/') else f'/{name}'
+        if not re.fullmatch(r'(/[A-Za-z_][A-Za-z0-9_]*)+', self._name):
+            raise BadInput('--node', f'got {name!r}', 'the name of a node, such as /sim_node')
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
         self._start, self._last, self._shown, self._net = None, {}, None, None

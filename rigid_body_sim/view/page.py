@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import socket
 import time
 
 import numpy as np
@@ -18,12 +19,29 @@ from rigid_body_sim.view.stage import Stage
 
 PERIOD = 1.0 / 60.0
 FIELD_OF_VIEW = 0.7
+LAST_PORT = 65000
+"""Largest first port to try: from there on some are left to try if it is taken."""
 NUMBERS_EVERY = 0.2
 """Time between two updates of numbers, curves and traces, s."""
 
 
 def serve(access, port):
-    """Return a viser server."""
+    """Return a viser server.
+
+    Raises
+    ------
+    BadInput
+        If the address cannot be listened on: viser would try ports for ever.
+    """
+    if not 0 <= port <= LAST_PORT:
+        raise BadInput('--port', f'got {port}', f'0 (any free one) to {LAST_PORT}')
+    try:
+        family, *_, address = socket.getaddrinfo(access.host, 0, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, socket.SOCK_STREAM) as tried:
+            tried.bind(address)
+    except (OSError, UnicodeError) as error:
+        raise BadInput('--host', f'{access.host!r} cannot be listened on ({error})',
+                       'an address of this machine') from None
     # viser prints an address without our token
     with access.guarding(), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=access.host, port=port, label='rigid_body_sim',

@@ -2,8 +2,9 @@
 """A simulation in a process of its own, at the pace of the clock, controlled through a pipe.
 
 The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
-Frame)``, ``('scene', About)``, ``('refused', text)`` and ``('failed', text)`` back. So a method
-that takes long never holds up the page, and the page never holds up the simulation.
+Frame)``, ``('scene', About)``, ``('refused', text)``, ``('failed', text)`` and, if the very first
+scene cannot run, ``('impossible', BadInput)`` back. So a method that takes long never holds up the
+page, and the page never holds up the simulation.
 """
 
 import contextlib
@@ -90,7 +91,8 @@ class Runner:
             self._rehearse(simulation.scene)
             self._record(simulation)
         except BadInput as error:
-            self._pipe.send(('refused', str(error)))
+            # with nothing to go on with, the page's process ends with this error
+            self._pipe.send(('refused', str(error)) if self._simulation else ('impossible', error))
             return
         self._simulation = simulation
         self._pipe.send(('scene', About(simulation.scene.text, simulation.choice.method,
