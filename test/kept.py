@@ -66,7 +66,8 @@ def differences(found, kept, where='', scale=0.0):
             yield f'{where}: {found!r} was {kept!r}'
     elif isinstance(found, str) and isinstance(kept, str) and found != kept:
         (words, numbers), (others, before) = (_split(text) for text in (found, kept))
-        yield from differences(words, others, where)
+        if words != others:
+            yield f'{where}: {found!r} was {kept!r}'
         yield from differences(numbers, before, where)
     elif found != kept:
         yield f'{where}: {found!r} was {kept!r}'

@@ -137,9 +137,9 @@ function bodyView(canvas, data) {
     vectors();
     const points = [];
     for (let k = 4 * Math.max(0, frame - 400); k <= 4 * (frame + share); k++) {
-      points.push(...rotate(attitude(k >> 2, (k & 3) / 4), data.axis), 0, 0, 1, 0, 0.45, 0.7);
+      points.push(...rotate(attitude(k >> 2, (k & 3) / 4), data.axis), 0, 0, 1, ...data.trace);
     }
-    points.push(...rotate(q, data.axis), 0, 0, 1, 0, 0.45, 0.7);
+    points.push(...rotate(q, data.axis), 0, 0, 1, ...data.trace);
     gl.bindBuffer(gl.ARRAY_BUFFER, trail);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points), gl.DYNAMIC_DRAW);
     draw({one: trail, count: points.length / 9}, same, sub(middle, origin), 0, gl.LINE_STRIP);

@@ -26,6 +26,8 @@ MOST_FRAMES, TURN_A_FRAME, LARGEST_TURN = 3000, 0.15, 0.8
 it, and the largest, between which body.js interpolates."""
 COLORS = {'base': (0.29, 0.56, 0.85), 'accent': (0.96, 0.67, 0.26), 'holder': (0.5, 0.5, 0.53)}
 ARROWS = {'angular velocity ω': (0.84, 0.37, 0.0), 'angular momentum L': (0.0, 0.62, 0.45)}
+TRACE = (0.0, 0.55, 0.85)
+"""Colour of the trace of an axis, legible on a light and on a dark page."""
 ARROW = 1.35
 """Length of the longest arrow, relative to the body's reach."""
 SHAPES = ((1.0, 0.018), (0.8, 0.028))
@@ -67,7 +69,7 @@ class Moving:
             'position': _round(self.position / unit, 5), 'middle': _round(middle / unit, 6),
             'floor': ground.height / unit, 'slope': list(ground.axes),
             'cell': cell_of(unit) / unit, 'follow': follows(self.scene),
-            'axis': _round(reach * axis, 5), 'traced': what,
+            'axis': _round(reach * axis, 5), 'traced': what, 'trace': list(TRACE),
             'surfaces': [_mesh(one, unit) for one in drawing.surfaces],
             'holder': [_mesh(one, unit, 'holder') for one in holder_of(self.scene, unit)],
             'start': _round(start_of(self.scene) / unit, 6),

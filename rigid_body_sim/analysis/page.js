@@ -18,10 +18,12 @@ function themed(layout) {
   return layout;
 }
 
-// The first blue of the palette is too dark for a dark page: its brighter brother stands for it there.
+// Thin lines in the colours of the palette are too dark for a dark page: brighter ones stand for them there.
+const BRIGHTER = {'#0072B2': '#56B4E9', '#D55E00': '#FF8C42', '#009E73': '#33D6A6', '#CC79A7': '#E8A3C9'};
+
 function brightened(data) {
   if (!matchMedia('(prefers-color-scheme: dark)').matches) return data;
-  for (const {line} of data) if (line && line.color === '#0072B2') line.color = '#56B4E9';
+  for (const {line} of data) if (line && line.color in BRIGHTER) line.color = BRIGHTER[line.color];
   return data;
 }
 

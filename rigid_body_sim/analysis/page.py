@@ -16,7 +16,7 @@ import numpy as np
 
 from rigid_body_sim.analysis import panels
 from rigid_body_sim.analysis.drift import FLOOR
-from rigid_body_sim.analysis.moving import ARROWS, moving
+from rigid_body_sim.analysis.moving import ARROWS, TRACE, moving
 from rigid_body_sim.analysis.space import spaces
 from rigid_body_sim.analysis.summary import lines, title
 
@@ -70,7 +70,7 @@ def _carried(name, text):
 def _section(number, packed, name, measured, found, spectrum, balance):
     """Yield the HTML of one body; what its scripts need goes into `packed`."""
     figures = packed['figures']
-    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(name)}</p>'
+    yield f'<h1>{html.escape(title(found))}</h1><p>{html.escape(_subtitle(name, measured))}</p>'
     yield _verdict(found, balance)
     moves = moving(measured)
     if moves:
@@ -107,6 +107,14 @@ def _section(number, packed, name, measured, found, spectrum, balance):
                   _table(('time (s)', 'kind', 'what', 'values'), rows))
     if measured.source.scene:
         yield _folded('Scene', f'<pre>{html.escape(measured.source.scene.text)}</pre>')
+
+
+def _subtitle(name, measured):
+    """Return the name of a recording, where its scene has another one, and what the scene says."""
+    scene = measured.source.scene
+    if scene is None or not scene.about:
+        return name
+    return scene.about if name == scene.name else f'{name}: {scene.about}'
 
 
 def _verdict(found, balance):
@@ -162,7 +170,7 @@ def heading_of(moves):
 
 def player(number, moves):
     """Return the HTML of a moving body, which body.js and player.js fill."""
-    legend = {**ARROWS, 'trace of an axis': (0.0, 0.45, 0.7)}
+    legend = {**ARROWS, 'trace of an axis': TRACE}
     shown = ''.join(
         f'<span><i style="background:rgb({",".join(str(int(255 * c)) for c in color)})">'
         f'</i>{html.escape(name)}</span>' for name, color in legend.items())
@@ -246,6 +254,7 @@ def _over_time(over_time, source):
     for row, panel in enumerate(over_time, 2):
         _add_panel(figure, row, panel)
     figure.update_yaxes(visible=bool(marks), row=1, col=1)
+    figure.update_xaxes(visible=bool(marks), row=1, col=1)
     figure.update_xaxes(title_text='time since the first tick (s)', row=rows, col=1)
     return _layout(figure, PANEL_HEIGHT * rows, hovermode='x')
 

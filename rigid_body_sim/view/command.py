@@ -54,6 +54,7 @@ def _serve(options):
     except BaseException:
         source.close()
         raise
+    page.await_client()
     print(f'{page.address}   (Ctrl-C ends it)', flush=True)
     try:
         page.run()

@@ -19,6 +19,10 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION, 
 TURN_BETWEEN = 0.1
 """Largest turn between two states of a trail, rad, up to MOST_BETWEEN states."""
 MOST_BETWEEN = 40
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""A sum below this share of the sizes of its terms is the rounding of terms that cancel."""
+LARGEST_TURN = 0.2
+"""Turn from state to state, rad, up to which their differences tell the slopes between them."""
 LONGEST_GAP = 0.5
 """Time between two states, s, beyond which a trail does not guess what was between them."""
 
@@ -42,6 +46,9 @@ class Frame(NamedTuple):
         Time (s) and text of what happened since the last frame.
     restarted : bool
         Whether traces and curves begin anew with this frame.
+    net : tuple of (array (3,), array (3,)), optional
+        Net force (N) and torque (N m), world axes, from a source whose states lack the velocity;
+        NaN where unknown. Else they follow from the state and the held command.
     """
 
     time: float
@@ -53,6 +60,11 @@ class Frame(NamedTuple):
     momentum_residual: float
     events: tuple = ()
     restarted: bool = False
+    net: tuple | None = None
+
+
+UNKNOWN = (np.full(3, np.nan), np.full(3, np.nan))
+"""The `net` of a Frame whose source cannot tell."""
 
 
 def trail_between(before, after):
@@ -87,7 +99,8 @@ class Arrows(NamedTuple):
     omega, momentum : array (3,)
         Angular velocity (rad/s), angular momentum about the point of reference (kg m^2/s).
     force, torque : array (3,)
-        Net force on the body (N), and dL/dt (N m), reactions of the constraint included.
+        Net force on the body (N), and dL/dt (N m), reactions of the constraint included. They are
+        zero where no more than the rounding of their terms is left.
     """
 
     omega: np.ndarray
@@ -111,21 +124,71 @@ class Mechanics:
     def arrows(self, vector, wrench):
         """Return the Arrows of a state (14,) under a held Wrench."""
         body, constraint = self.scene.body, self.scene.constraint
-        diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
-        self._energies.diagnose(self.packed, vector, diagnosis)
         balance = self._dynamics.balance(vector, wrench)
         turn = Rotation.from_quat(vector[ORIENTATION])
         omega, growth = vector[ANGULAR_VELOCITY], np.asarray(balance.angular_acceleration)
         center = np.array(body.center_of_mass)
-        carried = np.cross(growth, center) + np.cross(omega, np.cross(omega, center))
-        force = body.mass * (np.asarray(balance.acceleration) + turn.apply(carried))
+        force = body.mass * _sum(np.asarray(balance.acceleration),
+                                 turn.apply(np.cross(growth, center)),
+                                 turn.apply(np.cross(omega, np.cross(omega, center))))
         inertia = constraint.inertia(body).matrix
-        torque = turn.apply(inertia @ growth + np.cross(omega, inertia @ omega))
+        changes = [turn.apply(inertia @ growth), turn.apply(np.cross(omega, inertia @ omega))]
         if constraint.mechanism is Mechanism.AXIS:
             axis = turn.apply(constraint.axis)
             arm = turn.apply(constraint.arm(body))
-            torque = axis * (axis @ (torque + np.cross(arm, force)))
-        return Arrows(turn.apply(omega), diagnosis[energy.MOMENTUM:].copy(), force, torque)
+            along = axis @ _sum(*changes, np.cross(arm, force))
+            sizes = [*changes, np.linalg.norm(arm) * force]
+            torque = axis * _cleared(along, sizes)
+        else:
+            torque = _sum(*changes)
+        return Arrows(turn.apply(omega), self.momentum(vector), force, torque)
+
+    def momentum(self, vector):
+        """Return the angular momentum of a state, world axes, kg m^2/s."""
+        diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
+        self._energies.diagnose(self.packed, vector, diagnosis)
+        return diagnosis[energy.MOMENTUM:].copy()
+
+    def of(self, frame):
+        """Return the Arrows of a Frame."""
+        arrows = self.arrows(frame.vector, frame.wrench)
+        if frame.net is None:
+            return arrows
+        return arrows._replace(force=frame.net[0], torque=frame.net[1])
+
+    def need_velocity(self):
+        """Return whether force and torque depend on the velocity of the body's origin."""
+        if self.scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE):
+            return True
+        found = []
+        for speed in (0.0, 1.0):
+            vector = self.scene.initial.vector.copy()
+            vector[VELOCITY] = speed
+            found.append(self.arrows(vector, Wrench()))
+        return any(np.any(one != other) for one, other in zip(*(each[2:] for each in found),
+                                                              strict=True))
+
+    def net_between(self, states):
+        """Return net force and torque by the differences of three states (3, 14).
+
+        They are those of the middle state. UNKNOWN if the states are not as far apart from one
+        another, or if the body turns by more than LARGEST_TURN from one to the next.
+        """
+        before, after = np.diff(states[:, TIME])
+        step = 0.5 * (before + after)
+        speed = float(np.linalg.norm(states[1, ANGULAR_VELOCITY]))
+        if not abs(after - before) < 1e-3 * step or speed * step > LARGEST_TURN:
+            return UNKNOWN
+        turns = Rotation.from_quat(states[:, ORIENTATION])
+        centers = states[:, POSITION] + turns.apply(self.scene.body.center_of_mass)
+        momenta = np.array([self.momentum(state) for state in states])
+        if self.scene.constraint.mechanism is Mechanism.AXIS:
+            axis = turns[1].apply(self.scene.constraint.axis)
+            momenta = np.outer(momenta @ axis, axis)
+        bends = self.scene.body.mass / step**2 * np.array([centers[0], -2.0 * centers[1],
+                                                           centers[2]])
+        slopes = np.array([-momenta[0], momenta[2]]) / (2.0 * step)
+        return _sum(*bends), _sum(*slopes)
 
     def center(self, vector):
         """Return the centre of mass of a state in the world, m."""
@@ -136,3 +199,14 @@ class Mechanics:
         """Return the velocity (m/s, world) of the body's point that is now at `point` (world)."""
         omega = Rotation.from_quat(vector[ORIENTATION]).apply(vector[ANGULAR_VELOCITY])
         return vector[VELOCITY] + np.cross(omega, point - vector[POSITION])
+
+
+def _sum(*terms):
+    """Return the sum of vectors (3,), or zero where only its rounding is left."""
+    return _cleared(np.sum(terms, axis=0), terms)
+
+
+def _cleared(value, terms):
+    """Return a number or vector that was made from terms (3,), zero if that is their rounding."""
+    size = sum(float(np.linalg.norm(term)) for term in terms)
+    return value if float(np.linalg.norm(value)) > ROUNDING * size else 0.0 * value

@@ -82,10 +82,18 @@ class Live:
         return self._pipe.poll(seconds)
 
     def poll(self):
-        """Return the Frames that have come since the last call."""
+        """Return the Frames that have come since the last call.
+
+        Raises
+        ------
+        BadInput
+            If the first scene cannot run with the settings given.
+        """
         frames = []
         while self._pipe.poll():
             name, value = self._pipe.recv()
+            if name == 'impossible':
+                raise value
             if name == 'frame':
                 frames.append(value)
             elif name == 'scene':

@@ -9,6 +9,7 @@ releases it.
 """
 
 import math
+import re
 import time
 
 import numpy as np
@@ -34,7 +35,7 @@ from rigid_body_sim.simulation.command_rows import (
     TORQUE,
     wrench_of,
 )
-from rigid_body_sim.view.frames import Frame, trail_between
+from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics, trail_between
 
 APPEARS_WITHIN = 8.0
 """Longest time for the node to be discovered, s."""
@@ -64,9 +65,11 @@ class NodeSource:
 
     def __init__(self, name):
         self._name = name if name.startswith('/') else f'/{name}'
+        if not re.fullmatch(r'(/[A-Za-z_][A-Za-z0-9_]*)+', self._name):
+            raise BadInput('--node', f'got {name!r}', 'the name of a node, such as /sim_node')
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
-        self._start, self._last, self._shown = None, {}, None
+        self._start, self._last, self._shown, self._net = None, {}, None, None
         # signals are the command's: those of rclpy take its context away while it is in use
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node('rigid_body_sim_view')
@@ -128,6 +131,8 @@ class NodeSource:
             self.scene = parse_scene(texts[-1], where=f'{self._name}: scene')
             self.generation += 1
             self._shown = None
+            # the topics for pages have no velocities
+            self._net = UNKNOWN if Mechanics(self.scene).need_velocity() else None
         return bool(texts)
 
     wait = staticmethod(time.sleep)
@@ -160,7 +165,7 @@ class NodeSource:
         self._shown = vector
         return Frame(stamp - self._start, vector, trail, self._wrench, energy,
                      self._residuals.get('energy_residual', math.nan),
-                     self._residuals.get('momentum_residual', math.nan), events)
+                     self._residuals.get('momentum_residual', math.nan), events, net=self._net)
 
     def _diagnose(self, message):
         for status in message.status:

@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import socket
 import time
 
 import numpy as np
@@ -18,12 +19,29 @@ from rigid_body_sim.view.stage import Stage
 
 PERIOD = 1.0 / 60.0
 FIELD_OF_VIEW = 0.7
+LAST_PORT = 65000
+"""Largest first port to try: from there on some are left to try if it is taken."""
 NUMBERS_EVERY = 0.2
 """Time between two updates of numbers, curves and traces, s."""
 
 
 def serve(access, port):
-    """Return a viser server."""
+    """Return a viser server.
+
+    Raises
+    ------
+    BadInput
+        If the address cannot be listened on: viser would try ports for ever.
+    """
+    if not 0 <= port <= LAST_PORT:
+        raise BadInput('--port', f'got {port}', f'0 (any free one) to {LAST_PORT}')
+    try:
+        family, *_, address = socket.getaddrinfo(access.host, 0, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, socket.SOCK_STREAM) as tried:
+            tried.bind(address)
+    except (OSError, UnicodeError) as error:
+        raise BadInput('--host', f'{access.host!r} cannot be listened on ({error})',
+                       'an address of this machine') from None
     # viser prints an address without our token
     with access.guarding(), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=access.host, port=port, label='rigid_body_sim',
@@ -58,7 +76,8 @@ class Page:
         self.server.initial_camera.position = PRESETS['3/4']
         self.server.initial_camera.look_at = (0.0, 0.0, 0.0)
         self.server.initial_camera.fov = FIELD_OF_VIEW
-        self.server.on_client_connect(aim)
+        self._waits = False
+        self.server.on_client_connect(self._welcome)
         self.server.gui.main_panel.dock_right()
         self.panel = Panel(self.server, source, self._shown)
         self.mouse = mouse.Mouse()
@@ -74,6 +93,19 @@ class Page:
     def _theme(self, dark):
         self.server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False,
                                         control_width='small', brand_color=(0, 114, 178))
+
+    def _welcome(self, client):
+        """Aim the camera of a new client; the first one begins a motion that waits for it."""
+        aim(client)
+        if self._waits:
+            self._waits = False
+            self.panel.requests.put(('run', 'play'))
+
+    def await_client(self):
+        """Hold the motion until a client sees it; that of a node is not this page's to hold."""
+        if self._source.paces and not self.server.get_clients():
+            self._waits = True
+            self._source.tell('pause', True)
 
     def run(self, until=lambda: False):
         """Serve until `until` returns true or an interrupt comes."""
@@ -151,7 +183,7 @@ class Page:
         self._numbers_due = now + NUMBERS_EVERY
         stage, frame = self._stages[0], self.frame
         stage.draw_traces()
-        arrows = stage.mechanics.arrows(frame.vector, frame.wrench) if stage.mechanics else None
+        arrows = stage.mechanics.of(frame) if stage.mechanics else None
         self.panel.draw(frame, arrows, self._source.expected, self._beside())
 
     def _push(self):

@@ -246,7 +246,8 @@ class Panel:
                                       ('L', arrows.momentum, 'N m s'),
                                       ('net force', arrows.force, 'N'),
                                       ('net torque', arrows.torque, 'N m')):
-                rows.append((name, f'{math.hypot(*value):.5g} {unit}'))
+                size = math.hypot(*value)
+                rows.append((name, f'{size:.5g} {unit}' if math.isfinite(size) else 'unknown'))
         if beside is not None:
             angle, distance = _apart(frame.vector, beside.vector)
             rows += [('to the grey one', f'{angle:.3g} rad'), ('', f'{distance:.3g} m')]

@@ -13,13 +13,15 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE
-from rigid_body_sim.view.frames import Frame
+from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics
 
 MOST_STATES = 1_000_000
 """Most states that are kept; of a longer recording every n-th is kept."""
 MOST_BETWEEN = 40
 MOST_MARKS = 60
 """With more marks only those of commands and resets are kept."""
+PARTED = 4.0
+"""Ratio of a difference to that beside it from which on something happened between its states."""
 NANOSECONDS = 1e9
 
 
@@ -49,6 +51,7 @@ class Player:
         self._times, self._vectors, self._energies, source = states_of(path)
         self.scene, self.generation = source.scene, 1
         self.name = pathlib.Path(path).name
+        self._mechanics = Mechanics(self.scene) if self.scene else None
         self.method = source.run.get('method', 'a recording')
         self.marks = [((mark.stamp - source.start) / NANOSECONDS,
                        f'{mark.kind} {mark.name}'.strip()) for mark in source.history.marks]
@@ -86,7 +89,19 @@ class Player:
         events = tuple(mark for mark in self.marks if going_on and before < mark[0] <= when)
         return Frame(when, self._vectors[place], self._vectors[[*between[::step], place]],
                      Wrench(), float(self._energies[place]), math.nan, math.nan, events,
-                     not going_on)
+                     not going_on, self._net(place))
+
+    def _net(self, place):
+        """Return net force and torque at a state, from states that no strike parts."""
+        if self._mechanics is None:
+            return UNKNOWN
+        last = len(self._vectors) - 3
+        if last < 0:
+            return UNKNOWN
+        around = min(max(place - 1, 0), last)
+        found = [self._mechanics.net_between(self._vectors[one:one + 3])
+                 for one in (around, max(place - 2, 0), min(place, last))]
+        return tuple(_steady(*parts) for parts in zip(*found, strict=True))
 
     def seek(self, when):
         """Go to a time, s."""
@@ -108,6 +123,15 @@ class Player:
 
     def close(self):
         """Do nothing: there is nothing to close."""
+
+
+def _steady(value, *others):
+    """Return a difference, or the least of those beside it where something parts its states.
+
+    What a strike or an impact makes of a difference is larger by far.
+    """
+    least = min(others, key=np.linalg.norm)
+    return least if np.linalg.norm(value) > PARTED * np.linalg.norm(least) else value
 
 
 def states_of(path):

@@ -2,8 +2,9 @@
 """A simulation in a process of its own, at the pace of the clock, controlled through a pipe.
 
 The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
-Frame)``, ``('scene', About)``, ``('refused', text)`` and ``('failed', text)`` back. So a method
-that takes long never holds up the page, and the page never holds up the simulation.
+Frame)``, ``('scene', About)``, ``('refused', text)``, ``('failed', text)`` and, if the very first
+scene cannot run, ``('impossible', BadInput)`` back. So a method that takes long never holds up the
+page, and the page never holds up the simulation.
 """
 
 import contextlib
@@ -56,7 +57,7 @@ class Runner:
         self._simulation = self._recording = None
         self._events = []
         self._speed, self._paused, self._steps = 1.0, False, 0
-        self._cost = 0.0
+        self._cost, self._last = 0.0, 0.0
         self._told = {'scene': self._begin, 'command': self._command, 'speed': self._set_speed,
                       'pause': self._pause, 'step': self._step, 'reset': self._reset}
 
@@ -71,14 +72,18 @@ class Runner:
 
     def run(self):
         """Serve until the page's process closes the pipe."""
-        due = last = time.monotonic()
+        due = self._last = time.monotonic()
         while True:
             while self._pipe.poll(max(due - time.monotonic(), 0.0)):
                 self.told(*self._pipe.recv())
-            now = time.monotonic()
-            self._advance(now - last)
-            last = now
-            due = max(due + PERIOD, now)
+            due = max(due + PERIOD, self._follow_clock())
+
+    def _follow_clock(self):
+        """Advance by the time since the last call, or since a scene began; return the clock."""
+        now = time.monotonic()
+        elapsed, self._last = now - self._last, now
+        self._advance(elapsed)
+        return now
 
     def _begin(self, text):
         try:
@@ -86,7 +91,8 @@ class Runner:
             self._rehearse(simulation.scene)
             self._record(simulation)
         except BadInput as error:
-            self._pipe.send(('refused', str(error)))
+            # with nothing to go on with, the page's process ends with this error
+            self._pipe.send(('refused', str(error)) if self._simulation else ('impossible', error))
             return
         self._simulation = simulation
         self._pipe.send(('scene', About(simulation.scene.text, simulation.choice.method,
@@ -162,10 +168,12 @@ class Runner:
         simulation.ledger()
 
     def _restarted(self):
-        self._time = self._shown = 0.0
+        self._time = 0.0
         self._cost = 0.0
         self._expected = expectation(self._simulation.scene, self._simulation.state)
         self._send(self._simulation.vector.copy()[np.newaxis], restarted=True)
+        # what the preparation took is no time of the motion
+        self._last = time.monotonic()
 
     def _command(self, rows):
         if self._simulation is None:

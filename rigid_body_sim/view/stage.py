@@ -32,7 +32,7 @@ CLEAR = 0.35
 COLORS = {'omega': (214, 94, 0), 'momentum': (0, 158, 115), 'force': (204, 60, 60),
           'torque': (160, 90, 200), 'spring': (230, 200, 40)}
 AXES = ((214, 60, 60), (60, 170, 60), (60, 90, 214))
-TRACES = {'axis': (0, 114, 178), 'polhode': (214, 94, 0), 'herpolhode': (230, 159, 0)}
+TRACES = {'axis': (0, 140, 217), 'polhode': (214, 94, 0), 'herpolhode': (230, 159, 0)}
 TRACE_POINTS = 1500
 ARROW, LEAST_ARROW, GROWTH = 1.3, 0.45, 1.5
 """How far the first arrow of a kind reaches, in units; its least length beyond the ball that hides
@@ -205,7 +205,7 @@ class Stage:
             self._offset = target + self._lead
 
     def _draw_arrows(self, frame):
-        arrows = self.mechanics.arrows(frame.vector, frame.wrench)
+        arrows = self.mechanics.of(frame)
         center = self.mechanics.center(frame.vector) / self.unit - self._about
         for key, value in arrows._asdict().items():
             start = center if value is arrows.force else np.zeros(3)

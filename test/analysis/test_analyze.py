@@ -157,7 +157,7 @@ def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
     assert json.loads((tmp_path / 'all' / 'report.json').read_text()) == results
     for name in PAGE:
         text = (tmp_path / 'all' / name).read_text(encoding='utf-8')
-        assert '<p>one.a</p>' in text and '<p>one.a_0.mcap</p>' in text and 'id="time1"' in text
+        assert '<p>one.a: The' in text and '<p>one.a_0.mcap: The' in text and 'id="time1"' in text
     assert not (tmp_path / 'all' / 'one.a_report' / 'report.html').exists()
 
 

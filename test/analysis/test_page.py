@@ -55,6 +55,7 @@ def test_the_page_is_complete_in_itself_and_small(written):
     for name in ('time0', 'more0', 'polhode0', 'axis0', 'spectrum0', 'time1'):
         assert f'id="{name}"' in own and name in packed['figures']
     assert set(packed['bodies']) == {'0', '1'} and 'id="body0"' in own and 'id="body1"' in own
+    assert '<p>run: The middle axis is unstable' in own
     assert 'cmd_impulse' in own and 'scene: tennis_racket' in own
 
 
@@ -125,3 +126,38 @@ def test_without_plotly_the_rest_is_made_and_it_is_said(tmp_path, monkeypatch, c
     assert ('report.html was not made: it needs plotly' in captured.err
             and 'report.html' not in captured.out)
     assert (tmp_path / 'run_report' / 'polhode.png').exists()
+
+
+def luminance(color):
+    """Return the relative luminance of a colour '#rrggbb' (WCAG 2)."""
+    parts = [int(color[k:k + 2], 16) / 255.0 for k in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+              for part in parts]
+    return float(np.dot((0.2126, 0.7152, 0.0722), linear))
+
+
+def contrast(one, other):
+    """Return the contrast of two colours."""
+    darker, lighter = sorted((luminance(one), luminance(other)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def test_thin_lines_are_told_from_a_light_and_a_dark_page():
+    style, script = ((page.HERE / name).read_text() for name in ('page.css', 'page.js'))
+    light, dark = re.findall(r'--page: (#\w+)', style)
+    brighter = dict(re.findall(r"'(#\w+)': '(#\w+)'", script))
+    assert brighter.keys() == set(page.COLORS)
+    for color in page.COLORS:
+        assert contrast(color, light.replace('#fff', '#ffffff')) > 3.0
+        assert contrast(brighter[color], dark) > 7.0
+    trace = '#' + ''.join(f'{round(255 * part):02x}' for part in page.TRACE)
+    for box in re.findall(r'--box: (#\w+)', style):
+        assert contrast(trace, box) > 3.0
+
+
+def test_without_events_there_is_no_row_for_them(tmp_path):
+    made.record(tmp_path / 'still', 'symmetric_top', 50)
+    with Recording(tmp_path / 'still') as recording:
+        [measured] = measure(recording, sources(recording))
+        figure = page._over_time(page.panels.overview(measured), measured.source)
+    assert not figure.layout.xaxis.visible and not figure.layout.yaxis.visible

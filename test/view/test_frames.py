@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.analysis.drift import FLOOR
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.curves import POINTS, Curves
 from rigid_body_sim.view.frames import (
@@ -60,6 +60,33 @@ def test_arrows_are_the_slopes_of_momentum(name):
     assert found.torque == pytest.approx(slope, rel=1e-5, abs=1e-5)
     center = now[8:11] + turn.apply([0.1, -0.2, 0.3])
     assert mechanics.center(now) == pytest.approx(center)
+
+
+@pytest.mark.parametrize('scene', ['tennis_racket', 'chandler_wobble', 'needle', 'baseball_bat'])
+def test_the_rounding_of_a_torque_that_is_zero_is_no_arrow(scene):
+    """The terms of dL/dt cancel; an arrow is drawn to the scale of the first one of its kind."""
+    scene = load_scene(scene)
+    mechanics, simulation = Mechanics(scene), Simulation(scene)
+    for vector in simulation.states(np.linspace(1.0, 20.0, 20)).vector:
+        assert not mechanics.arrows(vector, Wrench()).torque.any()
+    held = Wrench(torque=tuple(1e-6 * mechanics.arrows(vector, Wrench()).momentum))
+    size = np.linalg.norm(held.torque)
+    assert mechanics.arrows(vector, held).torque == pytest.approx(held.torque, abs=1e-5 * size)
+
+
+def test_a_body_that_flies_freely_feels_no_force_though_its_origin_is_carried_round():
+    scene = parse_scene(f'scene: s\nbody: {{mass: 2, inertia: {TENSOR}, center_of_mass: '
+                        '[0.1, -0.2, 0.3]}\nconstraint: free\neffects: []\n'
+                        f'initial: {{{START}, angular_velocity: [1, 2, 3]}}\n')
+    found = Mechanics(scene).arrows(Simulation(scene).states([1.7]).vector[0], Wrench())
+    assert not found.force.any() and not found.torque.any()
+
+
+@pytest.mark.parametrize(('scene', 'needed'), [
+    ('tennis_racket', False), ('heavy_top', False), ('kater_pendulum', False),
+    ('billiard_low', True), ('tossed_coin', True)])
+def test_a_source_without_velocities_knows_whose_forces_need_them(scene, needed):
+    assert Mechanics(load_scene(scene)).need_velocity() is needed
 
 
 class Gui:

@@ -187,6 +187,29 @@ def test_pause_step_speed_and_reset(page):
     until(page, lambda: page.frame.time == 0.0)
 
 
+def test_the_motion_waits_for_the_first_page_and_a_second_one_lets_a_pause_be(open_tab):
+    """A tossed coin lay still before a browser was there to show it."""
+    page = Page(Live(load_scene('tennis_racket').text, {'rate': 1000.0}), port=0)
+
+    def after(seconds):
+        deadline = time.monotonic() + seconds
+        page.run(lambda: time.monotonic() > deadline)
+        return page.frame.time
+    try:
+        page.await_client()
+        until(page, lambda: page.frame)
+        assert after(0.3) == after(0.3) == 0.0
+        open_tab(page.address)
+        until(page, lambda: page.frame.time > 0.5)
+        page.panel.requests.put(('run', 'pause'))
+        after(1.0)
+        open_tab(page.address)
+        until(page, lambda: len(page.server.get_clients()) == 2)
+        assert after(0.3) == after(0.3)
+    finally:
+        page.close()
+
+
 def answer(page, path='/', **headers):
     """Return the status of a request and the cookie that it gave."""
     connection = http.client.HTTPConnection('127.0.0.1', page.server.get_port())

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from analysis import made
 
+from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.view import player
+from rigid_body_sim.view import frames, player
 from rigid_body_sim.view.player import Player
 
 RATE, TICKS = 100.0, 60
@@ -65,6 +66,33 @@ def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(pat
     assert any('commands' in text for _, text in frame.events)
     assert one.at(0.195, 0.305).restarted
     assert one.at(-1.0, -2.0).vector[0] == 0.0
+
+
+@pytest.mark.parametrize('scene', ['billiard_follow', 'heavy_top', 'kater_pendulum', 'rattleback'])
+def test_force_and_torque_of_a_recording_are_those_of_its_motion(tmp_path, scene):
+    """The topics have no velocity: a ball that rolls seemed to slip, at full friction."""
+    made.record(tmp_path / 'run', scene, 400, rate=4000.0)
+    played = Player(tmp_path / 'run')
+    mechanics = frames.Mechanics(played.scene)
+    simulation = Simulation(played.scene, accuracy=1e-9)
+    for at in (0.005, 0.025, 0.075, 0.0975):
+        found = mechanics.of(played.at(at + 1e-6, at))    # the tick itself
+        true = mechanics.arrows(simulation.states([at]).vector[0], Wrench())
+        for name in ('force', 'torque'):
+            scale = max(np.linalg.norm(getattr(true, name)), 1e-6)
+            assert getattr(found, name) == pytest.approx(getattr(true, name), abs=2e-3 * scale)
+
+
+def test_a_strike_is_no_force_of_the_states_beside_it(path):
+    played = Player(path)
+    for k in range(TICKS + 1):
+        _, torque = played.at(k / RATE + 1e-9, 0.0).net
+        assert np.linalg.norm(torque) < 1e-9
+
+
+def test_states_too_far_apart_for_differences_tell_no_force(tmp_path):
+    made.record(tmp_path / 'run', 'heavy_top', 60, rate=60.0)
+    assert np.isnan(Player(tmp_path / 'run').at(0.5, 0.5).net).all()
 
 
 def test_a_trail_across_many_states_has_a_few_dozen(path, monkeypatch):

@@ -84,6 +84,26 @@ def test_it_keeps_the_pace_of_the_clock_and_its_trail_is_dense(running):
     assert len(frame.trail) == 1 + runner.MOST_BETWEEN
 
 
+@pytest.mark.parametrize('request_', ['scene', 'reset'])
+def test_what_a_preparation_takes_is_no_time_of_the_motion(running, monkeypatch, request_):
+    """A motion leapt by the seconds in which its kernels were compiled."""
+    one, pipe = running
+    clock = [100.0]
+    monkeypatch.setattr(runner.time, 'monotonic', lambda: clock[0])
+    one._follow_clock()
+    prepare = runner.expectation
+
+    def slowly(*arguments):
+        clock[0] += 9.0
+        return prepare(*arguments)
+    monkeypatch.setattr(runner, 'expectation', slowly)
+    one.told(request_, SCENE.text)
+    pipe.frames()
+    clock[0] += 0.01
+    one._follow_clock()
+    assert pipe.frames()[0].time == pytest.approx(0.01)
+
+
 def test_work_that_takes_long_makes_the_motion_lag(running):
     one, pipe = running
     pipe.frames()
