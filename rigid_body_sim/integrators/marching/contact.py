@@ -399,10 +399,14 @@ class _Phase:
             return arrived()
 
         if not arrived():
+            before, steps = work.done, int(meta[contact_march.STEPS])
             try:
                 work.go(follow, lambda: float(self.front[TIME]), elapsed)
             except TooMuchWork as error:
                 raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
+            # `go` leaves out the last slice, whose size depends on the clock
+            made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
+            work.count(made, float(self.front[TIME]), elapsed)
         return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
 
     def write(self, elapsed, time, place, out):
