@@ -107,16 +107,10 @@ class OnPlane:
         return [one for actor in [*self._actors, self._wrench]
                 for one in actor.acting(self._frame, time)]
 
-    def parameters(self, time, began, origin):
-        """Return the parameters that hold just after a time (s), an array of the caller's own.
-
-        `began` (s) and `origin` (m, along the plane) are time and place of a course's start.
-        """
+    def parameters(self, time):
+        """Return the parameters that hold just after a time (s), an array of the caller's own."""
         values = [value for one in self._acting(time) for value in one.values]
-        p = np.array([*self._fixed, *values])
-        p[STARTED] = began
-        p[ORIGIN] = origin
-        return p
+        return np.array([*self._fixed, *values])
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: this one."""
@@ -142,9 +136,10 @@ class PlaneCourse:
         self._work = np.zeros((contact_step.WORK_ROWS, ROW.size))
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most)
         self._phases, self._events, self._over, self._why = [], [], None, ''
-        p, y = bound.parameters(self._begin, self._begin, (0.0, 0.0)), np.empty(SIZE)
-        x, yy, height = read(p, self._start, y)
-        self._place = p[ORIGIN] = x, yy
+        y = np.empty(SIZE)
+        x, yy, height = read(bound.parameters(self._begin), self._start, y)
+        self._place = x, yy
+        p = self._parameters(self._begin)
         self._length = length = _length(p, bound.rates, y, self._work[0])
         self._heaviness = max(weight(bound.scene), 1e-3)
         speed = self._speed(y)
@@ -163,6 +158,12 @@ class PlaneCourse:
         else:
             self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
 
+    def _parameters(self, time):
+        """Return the parameters that hold just after a time (s), of this course."""
+        p = self._bound.parameters(time)
+        p[STARTED], p[ORIGIN] = self._begin, self._place
+        return p
+
     def _speed(self, y):
         """Return a speed beside which rounding is judged, m/s."""
         rate = hypot3(*y[OMEGA].tolist())
@@ -172,7 +173,7 @@ class PlaneCourse:
     def _open(self, mode, p, y):
         """Begin a phase."""
         time = self._begin + float(y[TIME])
-        p = self._bound.parameters(time, self._begin, self._place)
+        p = self._parameters(time)
         k = bisect.bisect_right(self._bound.breakpoints, time)
         later = self._bound.breakpoints[k:]
         p[UNTIL] = later[0] - self._begin if later else math.inf
@@ -314,7 +315,7 @@ class PlaneCourse:
 
     def _wake(self, y, time):
         """Let a body rest on that is held under what acts from now on, else let it move."""
-        p = self._bound.parameters(time, self._begin, self._place)
+        p = self._parameters(time)
         p[SWIFT] = self._speed(y)
         self._land(p, y, (0.0, 0.0))
 
