@@ -12,6 +12,11 @@ that does to the attitude is found when somebody asks for the expected error (fo
 
 Where a body that is not slim turns too little for a trial to pay, and no force moves it, the
 tolerance of the table is taken, and eight times less to be safe: its scenes are others.
+
+On a plane no table says how many steps a radian takes, and an eighth of a tolerance costs a third
+more. So where a trial would be dear, none is made: two coarse runs tell how the errors of the
+motion go with the tolerance, and an eighth of what follows is taken. All is counted in steps, so
+that the choice does not depend on the clock, or on numba.
 """
 
 import functools
@@ -21,10 +26,14 @@ import numpy as np
 
 from rigid_body_sim.choice import forecast, measured
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching.contact import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.numerics.functions import log, power
+from rigid_body_sim.mechanics.contact.numbers import weight
+from rigid_body_sim.numerics.functions import hypot3, log, power
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
@@ -49,6 +58,10 @@ MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 ROUNDED = 10.0  # times what rounding does: an error below it may be magnified rounding
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
+DEAR = 12288        # steps of the finer run of a trial on a plane: where it has more, none is made
+COARSE = 2.0 ** -10, 2.0 ** -14     # tolerances of the two runs that are made instead
+WITHIN = 4 * DEAR   # steps of each of them; beyond, the finest tolerance is taken
+CAREFUL = 8.0       # share of the tolerance that follows from them
 
 
 class Settled:
@@ -190,6 +203,8 @@ class _Trial:
         TooMuchWork
             A run takes more steps than the motion asks for.
         """
+        if self._scene.constraint.mechanism is Mechanism.PLANE and self._dear(tolerance):
+            return self._careful()
         if (self._radians <= SHORT and self._promised <= self._accuracy
                 and not (self._flies or _slim(self._scene))):
             return self._grid(tolerance / COARSER)
@@ -240,6 +255,45 @@ class _Trial:
             return good[0]
         return min(here, bad[0]) if here in self._runs else bad[0]
 
+    def _dear(self, tolerance):
+        """Return whether a trial at a tolerance on a plane would take more than DEAR steps."""
+        finer = self._grid(FINER * COARSER * tolerance)
+        share = power(finer / COARSE[0], 1.0 / dop8.ORDER)    # steps of a coarse run in its steps
+        try:
+            self._run(COARSE[0], int(DEAR * min(1.0, share)))
+        except TooMuchWork:
+            return True
+        return False
+
+    def _careful(self):
+        """Return a tolerance that meets the accuracy, from two coarse runs over the whole time.
+
+        Errors are taken to go with the tolerance, or faster, as those of order eight do. Where the
+        coarse runs part, or would be too long, nothing is known: the finest tolerance is taken
+        that another run can be compared with.
+        """
+        finest, coarse = self._grid(max(self._finest / FINER, self._cancelling())), COARSE[0]
+        try:
+            for one in COARSE:
+                self._runs[one] = self._run(one, WITHIN)
+        except TooMuchWork:
+            return finest
+        error = self._error(coarse)
+        if error > SATURATED:
+            return finest
+        return max(finest, self._grid(self._accuracy / (CAREFUL * max(1.0, error / coarse))))
+
+    def _cancelling(self):
+        """Return a tolerance that steps on a plane still follow, rad: a NEAR of it is the limit.
+
+        The rounding of forces that cancel bounds the tolerance of a second (marching/contact.py).
+        """
+        heaviness, size = max(weight(self._scene), 1e-3), max(self._scene.body.surface.size)
+        start = self._scene.initial
+        speed = (hypot3(*start.velocity) + hypot3(*start.angular_velocity) * size
+                 + math.sqrt(heaviness * size))
+        return CANCELS / NEAR * heaviness / speed * self._horizon
+
     def excess(self, tolerance):
         """Return the error at a tolerance, rad, where another method may do better; else 0.
 
@@ -280,11 +334,13 @@ class _Trial:
     def _states(self, tolerance):
         """Return the states of a trial run."""
         if tolerance not in self._runs:
-            self._runs[tolerance] = forecast.run(
-                self._scene, self.prototype.at(tolerance, self._most),
-                self._scene.initial.vector,
-                self._times)
+            self._runs[tolerance] = self._run(tolerance, self._most)
         return self._runs[tolerance]
+
+    def _run(self, tolerance, most):
+        """Return the states of a run that takes at most so many steps."""
+        return forecast.run(self._scene, self.prototype.at(tolerance, most),
+                            self._scene.initial.vector, self._times)
 
     def _reference(self, tolerance):
         """Return the tolerance of a finer run, or None if none is within the work."""

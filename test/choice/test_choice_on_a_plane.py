@@ -8,10 +8,14 @@ compared with the finest run.
 import functools
 import json
 import pathlib
+from typing import ClassVar
 
 import numpy as np
 import pytest
 
+from rigid_body_sim.choice import trial
+from rigid_body_sim.compilation import threads
+from rigid_body_sim.integrators.marching import contact
 from rigid_body_sim.numerics.rotations import angles_between
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -78,3 +82,54 @@ def test_a_rattleback_says_until_when_an_accuracy_is_met_that_its_motion_does_no
     assert 'is missed' in simulation.missed
     times = tuple((0.045 * until * np.arange(1, 21)).tolist())
     assert error(simulation, times, finest('rattleback', times)) <= 1e-9
+
+
+LONG = 'tippe_top', 'rising_egg', 'rattleback', 'tossed_coin'
+
+
+class Counting(contact.Work):
+    """A Work that is kept."""
+
+    made: ClassVar[list] = []
+
+    def __init__(self, *settings):
+        super().__init__(*settings)
+        self.made.append(self)
+
+
+def choice_and_steps(name, accuracy, horizon, monkeypatch):
+    """Return (tolerance of auto, steps that the choice took)."""
+    monkeypatch.setattr(contact, 'Work', Counting)
+    Counting.made.clear()
+    tolerance = Simulation(load_scene(name), 'auto', accuracy, horizon=horizon).choice.tolerance
+    return tolerance, sum(work.done for work in Counting.made)
+
+
+@pytest.mark.parametrize('accuracy', [1e-3, 1e-12])
+@pytest.mark.parametrize('name', LONG)
+def test_a_long_horizon_asks_for_no_long_choice(name, accuracy, monkeypatch):
+    """One run of the tippe top to 1e-12 has 145,000 steps: minutes in plain Python."""
+    _, steps = choice_and_steps(name, accuracy, 100.0, monkeypatch)
+    # measured: 17,000 to 88,000, of which the events of the coin, 256 each, are 65,000
+    assert steps < 2 * trial.WITHIN
+
+
+@pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
+@pytest.mark.parametrize('name', LONG)
+def test_the_errors_over_a_long_time_are_those_that_were_asked_or_foretold(name, accuracy):
+    times = tuple((0.78125 * np.arange(1, 65)).tolist())
+    simulation = Simulation(load_scene(name), 'auto', accuracy, horizon=50.0)
+    found = error(simulation, times, finest(name, times))
+    # the rattleback magnifies rounding a thousand million times, and says so
+    assert (simulation.expected_error > accuracy) == (name == 'rattleback' and accuracy < 1e-3)
+    assert found <= max(accuracy, 3.0 * simulation.expected_error)
+    # the finest run errs, too; what rounding does at impacts is foretold up to ten times too large
+    assert simulation.expected_error <= 3.0 * found + 1e-10
+
+
+def test_what_a_choice_counts_does_not_depend_on_the_clock(monkeypatch):
+    found = []
+    for slices in (0.0, 1e3):    # work goes in the smallest slices, or in ever larger ones
+        monkeypatch.setattr(threads, 'SLICE', slices)
+        found.append(choice_and_steps('tippe_top', 1e-6, 5.0, monkeypatch))
+    assert found[0] == found[1]

@@ -28,7 +28,6 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Vector
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.contact_rest import holds_still
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
@@ -46,6 +45,7 @@ from rigid_body_sim.mechanics.contact.forces import (
     Push,
     along_body,
     held,
+    holds_still,
     leaving,
     patch_of,
     posture,
@@ -71,7 +71,8 @@ from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rota
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.surfaces import TORUS
 
-# (p, q, omega, v of the centre of mass) -> force (world), couple (body), power of work and heat
+# (p, q, omega, v of the centre of mass, time and place of it) -> force (world), couple (body),
+# power of work and heat, and the part of the couple from within the body
 applied = UNBOUND
 
 ROUNDING = 2.0 ** -50    # of a normal velocity, beside the speeds
@@ -121,15 +122,42 @@ class Contact(NamedTuple):
     pace: float
 
 
+class Applied(NamedTuple):
+    """What acts beside the contact.
+
+    Attributes
+    ----------
+    force : Vector
+        Axes of the plane, N.
+    couple, inner : Vector
+        About the centre of mass, body axes, N m; what of it acts against parts inside the body.
+    work, heat : float
+        Powers, W.
+    """
+
+    force: Vector
+    couple: Vector
+    work: float
+    heat: float
+    inner: Vector
+
+
 @compiled_inline
-def _applied(p, c, q, omega, v):
-    """Return force (axes of the plane), couple (body axes) and powers of what else acts."""
+def _applied(p, c, now, at, omega, v, ahead):
+    """Return the Applied at an attitude, with velocities, a time `ahead` (s) of the unknowns."""
+    time = c.began + now.time + ahead
+    # the height is that of the attitude: the gap less r . n
+    height = (now.gap if c.mode == FLIGHT else 0.0) - dot(at.axes[2], at.r)
+    place = (c.origin[0] + now.place[0] + ahead * v[0],
+             c.origin[1] + now.place[1] + ahead * v[1], height)
     if c.inclined == 0.0:
-        fx, fy, fz, tx, ty, tz, work, heat = applied(p, *q, *omega, *v)
-        return (fx, fy, fz), (tx, ty, tz), work, heat
-    fx, fy, fz, tx, ty, tz, work, heat = applied(
-        p, *multiply(*c.plane, *q), *omega, *rotate(*c.plane, *v))
-    return rotate_back(*c.plane, fx, fy, fz), (tx, ty, tz), work, heat
+        fx, fy, fz, tx, ty, tz, work, heat, ix, iy, iz = applied(
+            p, *at.q, *omega, *v, time, *place)
+        return Applied((fx, fy, fz), (tx, ty, tz), work, heat, (ix, iy, iz))
+    fx, fy, fz, tx, ty, tz, work, heat, ix, iy, iz = applied(
+        p, *multiply(*c.plane, *at.q), *omega, *rotate(*c.plane, *v), time,
+        *rotate(*c.plane, *place))
+    return Applied(rotate_back(*c.plane, fx, fy, fz), (tx, ty, tz), work, heat, (ix, iy, iz))
 
 
 @compiled_inline
@@ -139,10 +167,10 @@ def _short(c):
 
 
 @compiled
-def _ahead(p, c, at, f, touch):
+def _ahead(p, c, now, at, f, touch):
     """Return Posture and Push a short time later under a force and a couple of the contact."""
-    F, T, _, _ = _applied(p, c, at.q, at.omega, scaled(-1.0, apply(at.axes, at.carried)))
-    torque = plus(plus(T, touch), cross(at.r, along_body(at.axes, f)))
+    acts = _applied(p, c, now, at, at.omega, scaled(-1.0, apply(at.axes, at.carried)), 0.0)
+    torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
     grown = apply(c.inverse, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
     short = _short(c)
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
@@ -151,14 +179,14 @@ def _ahead(p, c, at, f, touch):
                    at.q[3] + half * w)
     omega = plus(at.omega, scaled(short, grown))
     later = posture(c, q, omega)
-    F, T, _, _ = _applied(p, c, q, omega, scaled(-1.0, apply(later.axes, later.carried)))
+    acts = _applied(p, c, now, later, omega, scaled(-1.0, apply(later.axes, later.carried)), short)
     viscous, wrung, _, _ = couples(c, later.axes[2], later.moved)
-    torque = minus(plus(T, viscous), cross(omega, apply(c.inertia, omega)))
-    return later, Push(F, torque, viscous, wrung)
+    torque = minus(plus(acts.couple, viscous), cross(omega, apply(c.inertia, omega)))
+    return later, Push(acts.force, torque, viscous, wrung)
 
 
 @compiled
-def _lagging(p, c, at, push, slow):
+def _lagging(p, c, now, at, push, slow):
     """Return the direction of a creep |u|: it lags behind the direction d, which turns.
 
     With the angle phi of u, |u| phi' is the part of u' across u. Where d turns at the rate phi', u
@@ -173,7 +201,7 @@ def _lagging(p, c, at, push, slow):
     dx, dy = leaving(system, c.mu)
     _, _, N, _ = slipping(system, c.mu, dx, dy)
     f = -c.mu * N * dx, -c.mu * N * dy, N
-    later, pushed = _ahead(p, c, at, f, plus(push.viscous, scaled(N, push.wrung)))
+    later, pushed = _ahead(p, c, now, at, f, plus(push.viscous, scaled(N, push.wrung)))
     ex, ey, _ = departure(system_of(c, later, pushed), c.mu, dx, dy)
     _, _, slope, _ = turning(system, c.mu, dx, dy)
     if not slope < 0.0:
@@ -185,7 +213,7 @@ def _lagging(p, c, at, push, slow):
 
 
 @compiled
-def _parting(p, c, at, push, slow):
+def _parting(p, c, now, at, push, slow):
     """Return the direction of a creep |w| of a patch that holds no more.
 
     It lags behind the direction along which the slip begins, as in `_lagging`.
@@ -197,7 +225,7 @@ def _parting(p, c, at, push, slow):
     _, N, _ = patch_slipping(patch, c.mu, d)
     f = -c.mu * N * d[0], -c.mu * N * d[1], N
     twist = scaled(-c.mu * N * c.patch * d[2], at.axes[2])
-    later, pushed = _ahead(p, c, at, f,
+    later, pushed = _ahead(p, c, now, at, f,
                            plus(plus(push.viscous, scaled(N, push.wrung)), twist))
     ahead, _ = patch_departure(patch_of(c, later, pushed), c.mu, d)
     return patch_lagging(patch, c.mu, d, scaled(slow / _short(c), minus(ahead, d)))
@@ -264,13 +292,13 @@ def _creeping(p, c, now, at, push, v, speed, film):
     """Return the Contact of a body that is CREEPING, at the speed u[0]."""
     slow = now.u[0]
     if c.patch > 0.0:
-        d = _parting(p, c, at, push, slow)
+        d = _parting(p, c, now, at, push, slow)
         slipped, N, A = patch_slipping(patch_of(c, at, push), c.mu, d)
         growth = dot(d, slipped)
         push = wrung_by(push, minus(push.wrung, scaled(c.mu * c.patch * d[2], at.axes[2])))
     else:
         system = system_of(c, at, push)
-        dx, dy = _lagging(p, c, at, push, slow)
+        dx, dy = _lagging(p, c, now, at, push, slow)
         growth = turning(system, c.mu, dx, dy)[0]
         _, _, N, A = slipping(system, c.mu, dx, dy)
         d = dx, dy, 0.0
@@ -306,10 +334,13 @@ def _centre(c, now, at):
 @compiled_inline
 def _resting(p, c, now, at):
     """Return the Row of a body that rests: the contact balances what else acts."""
-    F, _, _, _ = _applied(p, c, at.q, at.omega, _centre(c, now, at))
-    nothing = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, ZERO, 0.0)
+    acts = _applied(p, c, now, at, at.omega, _centre(c, now, at), 0.0)
+    # the plane holds body and rotors: it takes what a motor gives to its rotor
+    held_back = scaled(-1.0, apply(at.axes, acts.inner))
+    nothing = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
     still = Unknowns((0.0, 0.0, 0.0, 0.0), ZERO, ZERO, (0.0, 0.0), 0.0, 1.0, nothing)
-    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0), scaled(-1.0, F), ZERO,
+    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0), scaled(-1.0, acts.force),
+               ZERO,
                (0.0, 0.0), ZERO, apply(at.axes, at.r), 1.0)
 
 
@@ -327,7 +358,7 @@ def rate(p, y, k):
         store_row(k, _resting(p, c, now, at))
         return
     v = _centre(c, now, at)
-    F, T, work, heat = _applied(p, c, at.q, at.omega, v)
+    F, T, work, heat, inner = _applied(p, c, now, at, at.omega, v, 0.0)
     torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
     gap, motion = 0.0, 1.0
     if c.mode == FLIGHT:
@@ -347,7 +378,8 @@ def rate(p, y, k):
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
-    turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch), T))
+    turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch),
+                               minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
               + c.rolling * contact.f[2] * contact.speed)
     entries = Exchanged(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
@@ -366,7 +398,8 @@ def rate(p, y, k):
 
 @compiled
 def stays(p, y):
-    """Return whether a body that has almost stopped is at rest (contact_rest.py)."""
+    """Return whether a body that has almost stopped is at rest (mechanics/contact/forces.py)."""
     c, now = load_contact(p), load_unknowns(y)
-    F, T, _, _ = _applied(p, c, now.q, ZERO, ZERO)
-    return holds_still(c, posture(c, now.q, now.omega), F, T)
+    at = posture(c, now.q, now.omega)
+    acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
+    return holds_still(c, at, acts.force, acts.couple)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The end of the motion of a convex body on a plane: whether it rests, jams, or rolls back.
+"""The end of the motion of a convex body on a plane: it jams, halts, or rolls back.
 
 Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 """
@@ -8,14 +8,12 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.integrators.equations.contact_views import LEDGER, ROLLING, UNKNOWNS
-from rigid_body_sim.mechanics.contact.forces import along_body, posture
+from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
-from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
-from rigid_body_sim.scene.surfaces import TORUS, shifted
+from rigid_body_sim.scene.surfaces import TORUS
 
-SPINLESS = 1e-9          # share of the speeds below which a body that rests does not spin
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
@@ -38,38 +36,6 @@ def jams(p, y):
     edge = c.kind == TORUS and c.size[1] == 0.0
     return (edge and c.rolling + c.rolling_viscous + c.film > 0.0
             and math.sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]) < LOW)
-
-
-@compiled
-def holds_still(c, at, F, T):
-    """Return whether a body that has almost stopped is at rest: a flat disk, or dry friction.
-
-    Dry rolling friction holds the couple -(S h) x n of a force |h| <= C N, Coulomb's friction the
-    force that balances the others. A spin about the normal is not held.
-
-    Parameters
-    ----------
-    F, T : Vector
-        What acts on the resting body: force (axes of the plane), couple (body axes).
-    """
-    e1, e2, gamma = at.axes
-    if c.kind == TORUS and c.size[1] == 0.0:
-        return True
-    held = scaled(-1.0, F)
-    if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:
-        return False
-    far = math.sqrt(dot(at.r, at.r))
-    if abs(dot(at.omega, gamma)) * far > SPINLESS * c.swift:
-        return False
-    couple = scaled(-1.0, plus(T, cross(at.r, along_body(at.axes, held))))
-    if abs(dot(couple, gamma)) > 1e-12 * held[2] * far:
-        return False
-    wanted = scaled(-1.0, cross(gamma, couple))    # S h
-    first, second = shifted(c.kind, c.size, gamma, e1), shifted(c.kind, c.size, gamma, e2)
-    a, b, d = dot(e1, first), dot(e1, second), dot(e2, second)
-    x, z = dot(wanted, e1), dot(wanted, e2)
-    share = 1.0 / (a * d - b * b)
-    return hypot(share * (d * x - b * z), share * (a * z - b * x)) <= c.rolling * held[2]
 
 
 @compiled

@@ -289,10 +289,11 @@ def force_source(calls, state=STATE):
 
 
 def applied_source(acting, at):
-    """Return the source of ``applied(p, q, omega, v)``, all that acts beside a contact.
+    """Return the source of ``applied(p, q, omega, v, t, place)``, all that acts beside a contact.
 
-    It returns force (world), couple (frame), the power of work and that which goes into heat. The
-    values of the Actings stand in p from the place `at` on.
+    It returns force (world), couple (frame), the power of work and that which goes into heat, and
+    the part of the couple that acts against parts inside the body. The values of the Actings stand
+    in p from the place `at` on.
     """
     calls = list(_calls(acting, at))
     power = {'work': [], 'heat': [], 'potential': []}
@@ -304,7 +305,8 @@ def applied_source(acting, at):
     couples = _sums([call for call in calls if call.gives == 'torque'])
     heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'
     work = ' + '.join(power['work']) or '0.0'
-    return _kernel('applied', calls, (*forces, *couples, work, heat))
+    inner = _sums([call for one, call in zip(acting, calls, strict=True) if one.inner])
+    return _kernel('applied', calls, (*forces, *couples, work, heat, *inner), STATE + FIELD)
 
 
 def turning_source(calls):

@@ -52,10 +52,12 @@ AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
                                           'rolling', 'restitution'))
+STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
 VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
-NORMAL, GRIP, FIRMNESS = (WATCHED.part(name).first for name in ('normal', 'grip', 'firmness'))
+NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
+    'normal', 'grip', 'firmness', 'motion'))
 SLIP = slice(U.start, U.start + 2)    # of the unknown u, along the plane
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
@@ -85,11 +87,14 @@ class OnPlane:
         self._frame = scene.frame
         self.breakpoints = sorted({time for one in self._actors for time in one.breakpoints})
         acting = self._acting(-math.inf)
-        if any(one.in_field or one.modes or one.gives == 'turning' for one in acting):
-            raise BadInput(f'{scene.name}: effects', 'an expression of time or place or with a '
-                           'kink, or an effect that turns the axes, for a body on a plane',
-                           'numbers that hold, pieces in time, or expressions of attitude and '
-                           'angular velocity')
+        if any(one.modes or one.gives == 'turning' for one in acting):
+            raise BadInput(f'{scene.name}: effects', 'an expression with a kink, or an effect '
+                           'that turns the axes, for a body on a plane',
+                           'a smooth expression, numbers that hold, or pieces in time')
+        if scene.contact.rolling > 0.0 and any(one.timed for one in acting):
+            raise BadInput(f'{scene.name}: effects', 'an expression of time for a body on a plane '
+                           'that dry rolling friction may bring to rest',
+                           'pieces in time, or viscous rolling friction')
         source = equations.applied_source(acting, CONTACT.size)
         self.rates = specialise(contact_rates, applied=source)
         rate = f'{self.rates.__name__}:rate'
@@ -131,9 +136,10 @@ class PlaneCourse:
         self._work = np.zeros((contact_step.WORK_ROWS, ROW.size))
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most)
         self._phases, self._events, self._over, self._why = [], [], None, ''
-        p, y = bound.parameters(self._begin), np.empty(SIZE)
-        x, yy, height = read(p, self._start, y)
+        y = np.empty(SIZE)
+        x, yy, height = read(bound.parameters(self._begin), self._start, y)
         self._place = x, yy
+        p = self._parameters(self._begin)
         self._length = length = _length(p, bound.rates, y, self._work[0])
         self._heaviness = max(weight(bound.scene), 1e-3)
         speed = self._speed(y)
@@ -152,6 +158,12 @@ class PlaneCourse:
         else:
             self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
 
+    def _parameters(self, time):
+        """Return the parameters that hold just after a time (s), of this course."""
+        p = self._bound.parameters(time)
+        p[STARTED], p[ORIGIN] = self._begin, self._place
+        return p
+
     def _speed(self, y):
         """Return a speed beside which rounding is judged, m/s."""
         rate = hypot3(*y[OMEGA].tolist())
@@ -161,7 +173,7 @@ class PlaneCourse:
     def _open(self, mode, p, y):
         """Begin a phase."""
         time = self._begin + float(y[TIME])
-        p = self._bound.parameters(time)
+        p = self._parameters(time)
         k = bisect.bisect_right(self._bound.breakpoints, time)
         later = self._bound.breakpoints[k:]
         p[UNTIL] = later[0] - self._begin if later else math.inf
@@ -191,6 +203,9 @@ class PlaneCourse:
             self._fly(p, y)
             return
         mode = p[MODE]
+        if mode == ROLLING and not (row[MOTION] > 0.0 or any(y[OMEGA])) and rates.stays(p, y):
+            self._open(RESTING, p, y)    # it does not begin to move
+            return
         if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]:
             self._creep_off(p, y)
             return
@@ -293,8 +308,16 @@ class PlaneCourse:
             self._bound.rates.rate(p, y, row)
             y[SLIP] = row[ROW.part('slip').places]
             self._open(SLIDING, p, y)
+        elif why == contact_march.JUMP and p[MODE] == RESTING:
+            self._wake(y, time)
         else:
             self._open(int(p[MODE]), p, y)
+
+    def _wake(self, y, time):
+        """Let a body rest on that is held under what acts from now on, else let it move."""
+        p = self._parameters(time)
+        p[SWIFT] = self._speed(y)
+        self._land(p, y, (0.0, 0.0))
 
     def reach(self, elapsed):
         """March until the time since the start is passed."""
@@ -399,10 +422,14 @@ class _Phase:
             return arrived()
 
         if not arrived():
+            before, steps = work.done, int(meta[contact_march.STEPS])
             try:
                 work.go(follow, lambda: float(self.front[TIME]), elapsed)
             except TooMuchWork as error:
                 raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
+            # `go` leaves out the last slice, whose size depends on the clock
+            made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
+            work.count(made, float(self.front[TIME]), elapsed)
         return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
 
     def write(self, elapsed, time, place, out):

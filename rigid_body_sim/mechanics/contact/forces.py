@@ -21,7 +21,9 @@ from rigid_body_sim.mechanics.contact.touch import lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
-from rigid_body_sim.scene.surfaces import shifted
+from rigid_body_sim.scene.surfaces import TORUS, shifted
+
+SPINLESS = 1e-9    # share of the speeds below which a body that rests does not spin
 
 
 class Posture(NamedTuple):
@@ -171,3 +173,35 @@ def leaving(system, mu):
     guess = (-stuck[0] / size, -stuck[1] / size) if size > 0.0 else (1.0, 0.0)
     dx, dy, _ = departure(system, mu, *guess)
     return dx, dy
+
+
+@compiled
+def holds_still(c, at, F, T):
+    """Return whether a body that has almost stopped is at rest: a flat disk, or dry friction.
+
+    Dry rolling friction holds the couple -(S h) x n of a force |h| <= C N, Coulomb's friction the
+    force that balances the others. A spin about the normal is not held.
+
+    Parameters
+    ----------
+    F, T : Vector
+        What acts on the resting body: force (axes of the plane), couple (body axes).
+    """
+    e1, e2, gamma = at.axes
+    if c.kind == TORUS and c.size[1] == 0.0:
+        return True
+    held = scaled(-1.0, F)
+    if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:
+        return False
+    far = math.sqrt(dot(at.r, at.r))
+    if abs(dot(at.omega, gamma)) * far > SPINLESS * c.swift:
+        return False
+    couple = scaled(-1.0, plus(T, cross(at.r, along_body(at.axes, held))))
+    if abs(dot(couple, gamma)) > 1e-12 * held[2] * far:
+        return False
+    wanted = scaled(-1.0, cross(gamma, couple))    # S h
+    first, second = shifted(c.kind, c.size, gamma, e1), shifted(c.kind, c.size, gamma, e2)
+    a, b, d = dot(e1, first), dot(e1, second), dot(e2, second)
+    x, z = dot(wanted, e1), dot(wanted, e2)
+    share = 1.0 / (a * d - b * b)
+    return hypot(share * (d * x - b * z), share * (a * z - b * x)) <= c.rolling * held[2]

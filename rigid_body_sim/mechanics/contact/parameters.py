@@ -3,7 +3,7 @@
 
 from typing import NamedTuple
 
-from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
+from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, layout
 
 FLAT = 1e-6              # rad: a disk that is inclined by less lies flat, where friction stops it
 FILMY = 1e-4             # rad: and where a film of air does
@@ -44,7 +44,11 @@ class ContactParameters(NamedTuple):
     creep : float
         A slip that has just begun is slaved to its direction up to this speed, m/s.
     until : float
-        Time at which what acts jumps, s; infinite if never.
+        Time at which what acts jumps, since the start of the course, s; infinite if never.
+    began : float
+        Time of that start, s.
+    origin : Pair
+        Where the centre of mass was then, along the plane, m.
     """
 
     mode: float
@@ -66,6 +70,8 @@ class ContactParameters(NamedTuple):
     swift: float
     creep: float
     until: float
+    began: float
+    origin: Pair
 
 
 CONTACT = layout(ContactParameters)

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The balance of forces of a body above, or in contact with, a plane at one instant."""
 
-from rigid_body_sim.mechanics.contact.forces import Posture, Push, patch_of, system_of
+from rigid_body_sim.mechanics.contact.forces import (
+    Posture,
+    Push,
+    holds_still,
+    patch_of,
+    system_of,
+)
 from rigid_body_sim.mechanics.contact.laws import (
     departure,
     patch_departure,
@@ -32,6 +38,7 @@ class Standing:
 
     def __init__(self, scene):
         self._c = CONTACT.load(contact_parameters(scene).tolist())
+        self._is_disk = self._c.kind == TORUS and self._c.size[1] == 0.0
 
     def force(self, R, omega, position, velocity, force, couple):
         """Return what the plane exerts on the body.
@@ -70,12 +77,14 @@ class Standing:
             return NOTHING, NOTHING, r
         moved = shifted(c.kind, c.size, gamma, cross(gamma, omega))
         pressed = rotate_back(*c.plane, *force)[2] < 0.0
-        if pressed and not any(omega) and not any(velocity) and self._lies(gamma):
+        stands = Posture(None, omega, axes, r, cross(omega, r), moved)
+        if pressed and not any(omega) and not any(velocity) and (
+                self._lies(gamma) if self._is_disk else c.rolling > 0.0
+                and holds_still(c, stands, rotate_back(*c.plane, *force), couple)):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         viscous, wrung, _, _ = couples(c, gamma, moved)
         torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
-        stands = Posture(None, omega, axes, r, cross(omega, r), moved)
         push = Push(rotate_back(*c.plane, *force), torque, viscous, wrung)
         if c.patch > 0.0:
             f, twist = self._patch_force(patch_of(c, stands, push), u, dot(gamma, omega), speed)
@@ -87,13 +96,11 @@ class Standing:
         return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
 
     def _lies(self, gamma):
-        """Return whether a disk is so low that it counts as flat once nothing moves.
+        """Return whether the body, a disk, is so low that it counts as flat once nothing moves.
 
         It then rests on its face, or is jammed by dry friction: no force at one point holds it.
         """
         c = self._c
-        if c.kind != TORUS or c.size[1] != 0.0:
-            return False
         lowest = (LOW if c.rolling > 0.0 else FILMY if c.film > 0.0
                   else FLAT if c.rolling_viscous > 0.0 else FLATTER)
         return hypot(gamma[0], gamma[1]) < lowest * (1.0 + 1e-6)

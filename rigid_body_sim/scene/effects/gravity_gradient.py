@@ -8,7 +8,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3, sin_cos
 from rigid_body_sim.numerics.rotations import rotate_back
-from rigid_body_sim.numerics.vectors import cross, dot, plus, scaled
+from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
@@ -42,6 +42,7 @@ class GravityGradient(Effect):
     most: float
     ahead: tuple[float, ...] = (0.0, 0.0, 0.0)
     rate: float = 0.0
+    tensor: tuple[tuple[float, ...], ...] | None = None    # where the frame's axes are not its own
     name: ClassVar[str] = 'gravity_gradient'
     SCHEMA: ClassVar[dict] = described(mapping_of(
         mu=described(POSITIVE, 'G M in m^3/s^2'),
@@ -53,14 +54,16 @@ class GravityGradient(Effect):
             'world axes; mu/r^3 = rate^2')),
         'Gamma = (3 mu/r^3) n x I n about the centre of mass, n = position/r; booked as '
         'potential, on an orbit as work')
-    mechanisms: ClassVar = (Mechanism.FREE,)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.PLANE)
 
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
                    where: str) -> Self:
         """Return the effect of its settings in a scene file."""
+        rows = tuple(map(tuple, body.about_center.matrix.tolist()))
+        tensor = rows if constraint.mechanism is Mechanism.PLANE else None
         if 'orbit' in settings:
-            return cls._on_orbit(settings, body, f'{where}.orbit')
+            return cls._on_orbit(settings, body, f'{where}.orbit', tensor)
         for key in ('mu', 'position'):
             if key not in settings:
                 raise BadInput(where, f'the key {key!r} is missing',
@@ -72,14 +75,14 @@ class GravityGradient(Effect):
                            'a place that is not the attracting point itself')
         share = 1.5 * (float(settings['mu']) / r / r / r)
         n = vectors.to_body(vectors.constant(scaled(1.0 / r, place)))
-        rows = body.about_center.matrix.tolist()
         pulled = tuple(vectors.dot(vectors.constant(row), n) for row in rows)
         energy = tree.times(tree.number(share), vectors.dot(n, pulled))
         return cls(energy, 2.0 * share, scaled(1.0 / r, place),
-                   share * (max(body.about_center.moments) - min(body.about_center.moments)))
+                   share * (max(body.about_center.moments) - min(body.about_center.moments)),
+                   tensor=tensor)
 
     @classmethod
-    def _on_orbit(cls, settings, body, where):
+    def _on_orbit(cls, settings, body, where, tensor):
         """Return the effect on a circular orbit."""
         if len(settings) > 1:
             raise BadInput(where, 'stands beside mu or position', 'give one of the two')
@@ -99,18 +102,26 @@ class GravityGradient(Effect):
         share = 1.5 * rate * rate
         return cls(None, 2.0 * share, toward,
                    share * (max(body.about_center.moments) - min(body.about_center.moments)),
-                   cross(normal, toward), rate)
+                   cross(normal, toward), rate, tensor)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque."""
         I1, I2, I3 = frame.moments
         if I1 == I2 == I3:
             return ()
+        if self.tensor is not None:
+            values = *(self.share * one for row in self.tensor for one in row), *self.toward
+            if self.energy is None:
+                return Acting(f'{__name__}:tensor_torque_on_orbit',
+                              (*values, *self.ahead, self.rate), 'torque', 'work', in_field=True,
+                              timed=True),
+            return Acting(f'{__name__}:tensor_torque', values, 'torque', 'potential'),
         pulled = tuple(self.share * (one - other)
                        for one, other in ((I3, I2), (I1, I3), (I2, I1)))
         if self.energy is None:
             values = *pulled, *self.toward, *self.ahead, self.rate
-            return Acting(f'{__name__}:torque_on_orbit', values, 'torque', 'work', in_field=True),
+            return Acting(f'{__name__}:torque_on_orbit', values, 'torque', 'work', in_field=True,
+                          timed=True),
         return Acting(f'{__name__}:torque', (*pulled, *self.toward), 'torque', 'potential'),
 
     @property
@@ -146,3 +157,21 @@ def torque_on_orbit(a, b, c, ux, uy, uz, vx_, vy_, vz_, rate,
     nx, ny, nz = rotate_back(qx, qy, qz, qw, *plus(scaled(cosine, (ux, uy, uz)),
                                                    scaled(sine, (vx_, vy_, vz_))))
     return a * (ny * nz), b * (nz * nx), c * (nx * ny)
+
+
+@compiled
+def tensor_torque(xx, xy, xz, yx, yy, yz, zx, zy, zz, ux, uy, uz,
+                  qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
+    """Return n x I n with n = R^T u (N m, frame components); the share is in the tensor."""
+    n = rotate_back(qx, qy, qz, qw, ux, uy, uz)
+    return cross(n, apply(((xx, xy, xz), (yx, yy, yz), (zx, zy, zz)), n))
+
+
+@compiled
+def tensor_torque_on_orbit(xx, xy, xz, yx, yy, yz, zx, zy, zz, ux, uy, uz, vx_, vy_, vz_, rate,
+                           qx, qy, qz, qw, wx, wy, wz, vx, vy, vz, t, x, y, z):
+    """Return that torque with n = R^T (u cos(rate t) + v sin(rate t)), v a quarter turn ahead."""
+    sine, cosine = sin_cos(rate * t)
+    n = rotate_back(qx, qy, qz, qw, *plus(scaled(cosine, (ux, uy, uz)),
+                                          scaled(sine, (vx_, vy_, vz_))))
+    return cross(n, apply(((xx, xy, xz), (yx, yy, yz), (zx, zy, zz)), n))

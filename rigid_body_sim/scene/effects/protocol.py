@@ -49,6 +49,8 @@ class Acting:
         True if it depends on time, place, or the velocity of a free body that no force moves.
         The kernel then has four more arguments ``t, x, y, z``: the time (s) and the place of the
         point of reference (world, m).
+    timed : bool
+        True if it depends on time by itself, not only by where the body is.
     of_motion : bool
         True if it depends on velocities and does not book heat, which says so by itself.
     inner : bool
@@ -76,6 +78,7 @@ class Acting:
     switching: str = ''
     modes: tuple[int, ...] = ()
     grip: float = 0.0
+    timed: bool = False
 
 
 @dataclass(frozen=True)

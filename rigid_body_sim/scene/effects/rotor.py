@@ -63,7 +63,7 @@ class Rotor(Effect):
         torque=described(NUMBER, 'N m, of the motor on the rotor', 0)),
         "Gamma = -omega x h a - h' a, with a along axis; h = momentum, or h = inertia "
         'rate + torque t')
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod
@@ -92,7 +92,7 @@ class Rotor(Effect):
         if self.torque:
             acting.append(Acting(f'{__name__}:gyroscopic_driven',
                                  (self.momentum_at_start, self.torque, *axis), 'torque', 'work',
-                                 in_field=True, of_motion=True, inner=True))
+                                 in_field=True, of_motion=True, inner=True, timed=True))
             acting.append(Acting('rigid_body_sim.scene.effects.elementary:constant',
                                  scaled(-self.torque, axis), 'torque', 'work', inner=True))
         elif self.momentum_at_start:

@@ -48,7 +48,7 @@ class Spring(Effect):
         'U = k (|d| - l)^2/2 with d from anchor to point, F = -c (d.v/|d|) d/|d| as heat; '
         'on a hinge, without at and anchor, U = k (angle - phi)^2/2 and the torque -c '
         'rate')
-    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS)
+    mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 
     @classmethod

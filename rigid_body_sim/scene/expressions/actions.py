@@ -43,7 +43,7 @@ def _acting(lines, trees, frame, result, gives, books):
         modes = tuple(order.index(mode) for mode in lines.switches)
     moving = books != 'heat' and bool(used & OF_MOTION)
     return Acting(made.name, made.values, gives, books, in_field, moving,
-                  switching=switching, modes=modes)
+                  switching=switching, modes=modes, timed=bool(used & {*TIME}))
 
 
 @functools.lru_cache(maxsize=256)
