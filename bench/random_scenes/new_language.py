@@ -15,7 +15,8 @@ import numpy as np
 
 from random_scenes.draw import ENERGIES, FIELDS, FORCES, GROUND, KINKED_TURNS, KINKS, TORQUES
 
-TURNS = 30.0    # rad/s times s, at most
+TURNS = 12.0    # rad/s times s, at most
+FALL = 20.0     # sizes, at most: fields have the size of the body
 CONSTRAINTS = {'free': 4, 'pivot': 2, 'displaced': 2, 'moving': 2, 'hinge': 3}
 MOTIONS = (
     (('d*sin(w0*t)', 0, 'd*cos(k*w0*t)'),
@@ -98,6 +99,9 @@ class _Scene:
             effects = [one for one in effects if 'dry_friction' not in one]
         if self.kinked:
             self.duration = round(min(self.duration, KINKED_TURNS / self.spin), 3)
+        if self.constraint == 'free' and any('gravity: ' in one for one in effects):
+            falling = math.sqrt(2.0 * FALL * self.size / 9.81)
+            self.duration = round(min(self.duration, falling), 3)
         place = self.vector(self.size * self.chance.uniform(0.1, 0.8))
         return (f'scene: new_{number}\nparameters: {json.dumps(self.parameters)}\n'
                 f'body: {{mass: {self.mass!r}, inertia: {self.inertia}, '
@@ -130,7 +134,8 @@ class _Scene:
             f'{self.vector(spin)}', f'angular_momentum: {self.vector(spin * self.least)}'))
         place = ''
         if self.constraint == 'free':
-            place = f', position: {self.vector(1.0)}, velocity: {self.vector(1.0)}'
+            place = (f', position: {self.vector(self.size)}, '
+                     f'velocity: {self.vector(0.3 * self.size * spin)}')
         return f'{{{turn}, {omega}{place}}}'
 
     def _at(self):

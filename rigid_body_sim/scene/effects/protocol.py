@@ -87,16 +87,20 @@ class Formulas:
     Attributes
     ----------
     torque : tuple of 3 Nodes
-        About the reference point, body components, N m.
+        About the reference point, body components (those of the frame if `of_frame`), N m.
     force : tuple of 3 Nodes
         At the centre of mass, world components, N. Only where ``frame.moves``; else zeros, and
         the torque has its moment.
     parameters : tuple of (str, float)
+    of_frame : bool
+        True if the names mean what the arguments of an Acting's kernel mean: the attitude of the
+        frame, its angular velocity (frame components), place and velocity of the reference point.
     """
 
     torque: tuple[Node, Node, Node]
     force: tuple[Node, Node, Node] = (ZERO, ZERO, ZERO)
     parameters: tuple[tuple[str, float], ...] = ()
+    of_frame: bool = False
 
 
 @dataclass(frozen=True)
