@@ -23,6 +23,7 @@ from rigid_body_sim.integrators.marching import (
 TAKES_WRENCH = False
 LANES = True
 KINKS = False
+ROOTS = True
 LEAST = unroll.NOTHING * unroll.NOTHING    # squared scale of what does not move yet
 SAFETY = 0.25    # steps planned a point earlier err by up to four times the allowed
 

@@ -65,15 +65,18 @@ def change(S, base, h):
 
 
 @compiled
-def expanded(p, S, y, t, planned):
+def expanded(p, control, y, t, planned):
     """Fill S; return the length of the step where a base is about to pass zero, else 0.
 
     A series of sqrt(u^2) is u or -u: it does not show that u passes zero, and near that the higher
     coefficients are rounding. The step over it is so short that they do not count; nor does what
     the root is in it. A base that stays 0 is none of these.
     """
+    S = control[WORK:]
     expand(p, S, y)
-    least = max(LEAST * planned, TICKS * abs(t))
+    if control[FIXED] > 0.0:
+        return 0.0
+    least = max(LEAST * max(planned, UNMOVED), TICKS * abs(t))
     for base in range(SIZE, SIZE + BASED):
         if not change(S, base, least) <= CHANGE * S[PLACES + base]:
             S[PLACES * (LOW + 1):] = 0.0
@@ -82,12 +85,18 @@ def expanded(p, S, y, t, planned):
 
 
 @compiled
-def within(S, h):
-    """Return h, or a shorter step within which all bases stay positive."""
-    for base in range(SIZE, SIZE + BASED):
+def within(S, h, step, last, over):
+    """Return a step within which all bases stay positive, h at most, and the plan for the next.
+
+    `over` is what `expanded` returned; the plan, `step` or the `last` one, knows nothing of bases.
+    """
+    chosen_one = h
+    if over > 0.0:
+        h = min(h, over)
+    for base in range(SIZE, SIZE + (BASED if over == 0.0 else 0)):
         while h > 0.0 and not change(S, base, h) <= CHANGE * S[PLACES + base]:
             h *= 0.5
-    return h
+    return h, last if h < chosen_one and last > 0.0 else step
 
 
 @compiled
@@ -104,11 +113,7 @@ def march(p, control, point, following, target, end, limit):
     scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
     good = True
     while t < end:
-        over = 0.0
-        if fixed > 0.0:
-            expand(p, S, y)
-        else:
-            over = expanded(p, S, y, t, max(last, UNMOVED))
+        over = expanded(p, control, y, t, last)
         scales1 = grown(scales, y, load(S, PLACES), last if fixed == 0.0 else fixed)
         if fixed > 0.0:
             step = last + 1.0
@@ -117,10 +122,7 @@ def march(p, control, point, following, target, end, limit):
                 t1, h = end, end - t
         else:
             final, before = measured(S, ORDER, scales1), measured(S, ORDER - 1, scales1)
-            h, step = chosen(final, before, tolerance, last)
-            possible = over if over > 0.0 else within(S, h)
-            if possible < h:    # what is planned does not know of bases
-                h, step = possible, last if last > 0.0 else step
+            h, step = within(S, *chosen(final, before, tolerance, last), last, over)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
         y1, c1, size = added(y, c, along(S, (h,)))
@@ -151,10 +153,7 @@ def between(p, control, point, following, dt):
         return y
     S = control[WORK:]
     if control[FOR] != point[TIME]:
-        if control[FIXED] > 0.0:
-            expand(p, S, y)
-        else:
-            expanded(p, S, y, point[TIME], max(point[STEP], UNMOVED))
+        expanded(p, control, y, point[TIME], point[STEP])
         control[FOR] = point[TIME]
     y, _, _ = added(y, load(point, VALUES + SIZE), along(S, (dt,)))
     return y

@@ -156,19 +156,24 @@ class ShapedDrag(Effect):
             if not any(map(any, matrix)):
                 continue
             values = square, *_flat(matrix, frame)
+            rooted = square == 1.0
             if frame.path is not None:
                 values = *values, *frame.arm
-                acting.append(Acting(f'{__name__}:carried_force', values, 'force', 'heat'))
-                acting.append(Acting(f'{__name__}:carried_moment', values, 'torque', 'heat'))
+                acting += [Acting(f'{__name__}:carried_force', values, 'force', 'heat',
+                                  rooted=rooted),
+                           Acting(f'{__name__}:carried_moment', values, 'torque', 'heat',
+                                  rooted=rooted)]
             elif frame.moves:
-                acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat'))
+                acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat',
+                                     rooted=rooted))
             elif any(frame.arm):
                 acting.append(Acting(f'{__name__}:shaped_moment', (*values, *frame.arm),
-                                     'torque', 'heat'))
+                                     'torque', 'heat', rooted=rooted))
         for matrix, square in ((self.angular, 0.0), (self.angular_quadratic, 1.0)):
             if any(map(any, matrix)):
                 values = square, *_flat(matrix, frame)
-                acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat'))
+                acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat',
+                                     rooted=square == 1.0))
         return tuple(acting)
 
     def series(self, frame: Frame, time: float) -> Pull:

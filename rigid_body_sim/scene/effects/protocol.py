@@ -64,6 +64,9 @@ class Acting:
     grip : float
         Torque with which it holds a body on a hinge at rest, N m: that of dry friction, whose one
         switch is the rate.
+    rooted : bool
+        True if it takes a root, or a power that is not whole, of what moves: where that comes near
+        zero, as |v| does, it is all but a kink.
     """
 
     kernel: str
@@ -76,6 +79,7 @@ class Acting:
     switching: str = ''
     modes: tuple[int, ...] = ()
     grip: float = 0.0
+    rooted: bool = False
 
 
 @dataclass(frozen=True)

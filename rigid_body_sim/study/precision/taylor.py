@@ -124,7 +124,10 @@ class Turning:
         return int(mp.nint(mp.ldexp(mpf(x), self.bits)))
 
     def _prepare(self):
-        """Set unit of time, constants and directions of the interval that begins now."""
+        """Set unit of time, constants and directions of the interval that begins now.
+
+        More than forty lines: each number of the series once, in the order of the equations.
+        """
         given, fixed = self._given, self._fixed
         constant, columns, self._directions = ZERO, [], []
         for times, values, frame in given.couples:
