@@ -253,9 +253,11 @@ class Laws:
         """Return force and torque of an energy, by steps along the imaginary axis."""
         q, o = known['q'], known['o']
 
-        def slope(turned, moved):
+        def slope(turned, moved, along=0):
             inner = dict(zip(('t', 'qx', 'qy', 'qz', 'qw', 'x', 'y', 'z'),
                              (known['t'], *turned.T, *moved.T), strict=True))
+            if 'angle' in known:
+                inner['angle'] = known['angle'] + 1j * STEP * along
             if name == 'potential':
                 energy = self._vector([one['energy']], inner)[:, 0]
             else:
@@ -269,7 +271,8 @@ class Laws:
         for e in np.eye(3, dtype=WIDE):
             u = cross(q[:, :3], e) + q[:, 3:] * e
             by = np.concatenate((u, -(q[:, :3] @ e)[:, None]), axis=1) / 2
-            G.append(slope(q + 1j * STEP * by, o.astype(wide)))
+            along = 0 if self.held.axis is None else e @ self.held.axis
+            G.append(slope(q + 1j * STEP * by, o.astype(wide), along))
         # the force acts at the origin
         return F, np.stack(G, axis=1) - cross(self.held.center[None], back(q, F))
 
