@@ -2,12 +2,15 @@
 """What `auto` promises on random scenes: error, expected error and ledger beside a truth.
 
     .venv/bin/python bench/choice_random.py [--seed 11] [--count 300] [--first 0] [--keep FILE]
+                                            [--new]
 
 Scenes are drawn from the whole scene language (random_scenes/draw.py): bodies from slim to nearly
 symmetric, all constraints, gravity along any direction, several torques, drag of numbers and
 matrices, internal dissipation, rotors, friction of a ball and of a hinge, strikes, forces,
 potentials, springs, torsion springs, magnets, gravity gradients, expressions of time and state,
-with kinks too, all ways to say the start. Convex bodies on a plane are not among them.
+with kinks too, all ways to say the start. Convex bodies on a plane are not among them. With --new
+each has only effects in the scene's own words (random_scenes/new_language.py), on pivots off the
+origin and on a path too.
 
 The truth shares no formula with the package: Newton's and Euler's equations in body axes with the
 full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates the expressions.
@@ -33,6 +36,7 @@ import tempfile
 import time
 
 import numpy as np
+from random_scenes import new_language
 from random_scenes.draw import drawn
 from random_scenes.wide import WIDE
 
@@ -47,6 +51,8 @@ def main():
     parser.add_argument('--count', type=int, default=300)
     parser.add_argument('--first', type=int, default=0)
     parser.add_argument('--keep', type=pathlib.Path, help='lines of JSON: what is in it stands')
+    parser.add_argument('--new', action='store_true',
+                        help="scenes of effects in the scene's own words only")
     parser.add_argument('--only', choices=KINDS, help='the scenes that one process runs')
     options = parser.parse_args()
     if np.finfo(WIDE).nmant < 63:
@@ -71,8 +77,8 @@ def _both(options, keep):
         settings = os.environ | ({'NUMBA_DISABLE_JIT': '1'} if kind == 'plain' else {})
         each.append(subprocess.Popen(
             [sys.executable, __file__, '--only', kind, '--keep', str(keep), '--seed',
-             str(options.seed), '--count', str(options.count), '--first', str(options.first)],
-            env=settings))
+             str(options.seed), '--count', str(options.count), '--first', str(options.first),
+             *['--new'] * options.new], env=settings))
     for process in each:
         process.wait()
 
@@ -81,10 +87,11 @@ def _run(options):
     """Run the scenes of one kind that are not kept yet, and keep them."""
     from random_scenes.judge import judged
     results = _kept(options.keep, options.seed)
+    draw = new_language.drawn if options.new else drawn
     for number in range(options.first, options.first + options.count):
-        if number in results or _kind(drawn(number, options.seed)[0]) != options.only:
+        if number in results or _kind(draw(number, options.seed)[0]) != options.only:
             continue
-        result = judged(number, options.seed)
+        result = judged(number, options.seed, draw)
         print('\n'.join(line for line, *_ in result), flush=True)
         with options.keep.open('a') as file:
             file.write(json.dumps([options.seed, number, result]) + '\n')
@@ -92,8 +99,8 @@ def _run(options):
 
 
 def _kind(text):
-    effects = text[text.index('effects:'):text.index('initial:')]
-    return 'plain' if any(word in effects for word in COMPILES_LONG) else 'compiled'
+    acts = text[text.index('constraint:'):text.index('initial:')]
+    return 'plain' if any(word in acts for word in COMPILES_LONG) else 'compiled'
 
 
 def _kept(path, seed):

@@ -50,7 +50,7 @@ SUMS = {
     'compilation/layout.py: sum((1 for _ in _leaves(kind, self._name)))',
     'compilation/layout.py: sum((1 for _ in _leaves(kind, name)))',
     'integrators/equations/equations.py: sum((len(one.values) for one in acting))',
-    'integrators/equations/expanded.py: sum((weights.get(step[0], 0) for step in self._steps))',
+    'integrators/equations/plan.py: sum((weights.get(step[0], 0) for step in self._steps))',
     'integrators/families/collocation.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/families/one_step.py: sum((not absolute for _, _, absolute in groups))',
     'integrators/marching/gauss_nodes.py: '

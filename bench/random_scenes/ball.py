@@ -12,7 +12,7 @@ from random_scenes.wide import WIDE, cross, rotated
 class BallTruth:
     """A ball that slides, then rolls: v and omega are linear in time, q by extrapolation."""
 
-    def __init__(self, scene, settings, _):
+    def __init__(self, scene, settings, *_):
         one, self.radius = dict(settings)['sliding_friction'], WIDE(scene.body.radius)
         vector, base = scene.initial.vector, WIDE(HALF_ULP * MOVED)
         rows = [np.concatenate((vector[5:8], vector[11:13])).astype(WIDE)]

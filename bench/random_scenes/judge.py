@@ -9,6 +9,7 @@ import yaml
 from random_scenes.ball import BallTruth
 from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
+from random_scenes.new_language import MOTIONS
 from random_scenes.truth import HALF_ULP, Truth
 from random_scenes.wide import WIDE, angle
 from rigid_body_sim.compilation.environment import HAVE_NUMBA
@@ -28,7 +29,15 @@ def truth_of(scene):
     settings = [next(iter(one.items())) for one in read['effects']]
     kinked = any(word in scene.text for word in WORDS)
     follow = BallTruth if scene.constraint.kind == 'table' else Kinked if kinked else Truth
-    return follow(scene, settings, read.get('parameters', {}))
+    motion = next((one for one in MOTIONS if str(list(one[0])) == str(_motion(read))), None)
+    return follow(scene, settings, read.get('parameters', {}), motion)
+
+
+def _motion(read):
+    """Return the path of a pivot as a scene says it, None where it does not move."""
+    held = read['constraint']
+    settings = held.get('pivot') if isinstance(held, dict) else None
+    return (settings or {}).get('motion')
 
 
 def known(scene, duration):
@@ -45,9 +54,9 @@ def known(scene, duration):
     return times, attitudes, max(floors)
 
 
-def tried(number, seed):
+def tried(number, seed, draw=drawn):
     """Yield (text of a line, met, foretold, balanced) for one scene at each accuracy."""
-    text, duration = drawn(number, seed)
+    text, duration = draw(number, seed)
     scene = parse_scene(text)
     times, attitudes, floor = known(scene, duration)
     what = ' '.join([scene.constraint.kind, *(effect.name for effect in scene.effects)])
@@ -81,12 +90,12 @@ def _late(*_):
     raise TimeoutError(f'it takes more than {_longest()} s')
 
 
-def judged(number, seed):
+def judged(number, seed, draw=drawn):
     """Return what `tried` yields, as a list; one line if something is raised or hangs."""
     signal.signal(signal.SIGVTALRM, _late)
     signal.setitimer(signal.ITIMER_VIRTUAL, _longest())
     try:
-        return list(tried(number, seed))
+        return list(tried(number, seed, draw))
     except Exception as error:    # whatever a scene raises is a finding, and the next is tried
         said = ' '.join(str(error).split())
         return [(f'{number:4} {type(error).__name__}: {said}  RAISED', False, False, False)]

@@ -20,8 +20,8 @@ class Kinked:
 
     floor = Truth.floor
 
-    def __init__(self, scene, settings, parameters):
-        base = Truth(scene, settings, parameters)
+    def __init__(self, scene, settings, parameters, motion=None):
+        base = Truth(scene, settings, parameters, motion)
         self._copies = [_Copy(base, row, parameters) for row in range(len(base.y))]
 
     def to(self, time):

@@ -116,6 +116,11 @@ class Laws:
         self.parameters = {name: WIDE(value) for name, value in parameters.items()}
         self._codes = {}
         self.friction, self.grip = None, None    # its place among the sides; the torque it bears
+        self.point = 0    # where the held point is, less its path
+        if held.kind != 'free':
+            behind, first = (held.arm - held.center)[None], held.y[:1]
+            self.point = (held.origin - rotated(first[:, :4], behind)[0]
+                          - self._moved(first[:, 4:7], WIDE(0))[0])
 
     def acting(self, y, t, since):
         """Return force (world), torque about the centre of mass (body) and extra turning.
@@ -125,13 +130,15 @@ class Laws:
         q, w, v, c = y[:, :4], y[:, 4:7], y[:, 7:10], y[:, 10:]
         held, known, loosened, pulled = self.held, None, None, 0
         force, torque = np.zeros_like(w), np.zeros_like(w)
+        moved = self._moved(w, t)
         if held.kind != 'free':
-            v = rotated(q, cross(w, held.arm[None]))
+            v = rotated(q, cross(w, held.arm[None])) + moved[1]
         self.sides.begin()
         for name, one in self.effects:
             if name == 'gravity':
                 g = one['g']
-                force = force + held.mass * (array(g) if isinstance(g, list) else -WIDE(g) * Z)
+                weight = held.mass * (array(g) if isinstance(g, list) else -WIDE(g) * Z) + 0 * w
+                force, pulled = force + weight, pulled + self._about(q, weight)
             elif name == 'torque' and not is_text(one):
                 value = array(value_at(one, since))[None] + 0 * w
                 torque = torque + (back(q, value) if one.get('frame') == 'world' else value)
@@ -141,11 +148,10 @@ class Laws:
             elif name == 'internal_dissipation':
                 loosened = WIDE(one['coefficient'])
             elif name == 'gravity_gradient':
-                place = array(one['position'])
-                r = np.sqrt(place @ place)
-                n = back(q, place[None] / r + 0 * w)
-                G = 3 * WIDE(one['mu']) / r ** 3 * cross(n, times(held.about_center, n))
-                torque, pulled = torque + G, pulled + G
+                n, share = _away(one, t, w)
+                n = back(q, n)
+                G = share * cross(n, times(held.about_center, n))
+                torque, pulled = torque + G, pulled + ('mu' in one) * G
             elif name == 'rotor':
                 torque = torque + _rotor(one, w, t)
             elif name == 'dry_friction':
@@ -155,15 +161,28 @@ class Laws:
             elif name == 'spring' and 'at' not in one:
                 torque = torque + self._torsion(one, q, w)
             elif name != 'strike':
-                known = known or self._known(q, w, v, c, t)
+                known = known or self._known(q, w, v, c, t, moved)
                 F, G = self._field(name, one, known)    # world at the centre of mass, body
                 force, torque = force + F, torque + G
+                if name == 'spring' and one.get('damping'):
+                    F, G = self._field(name, one | {'damping': 0.0}, known)
                 if name in ('potential', 'spring') or (name == 'magnetic' and not timed(one)):
-                    pulled = pulled + G
+                    pulled = pulled + G + self._about(q, F)
+        if held.motion is not None:
+            force = force - held.mass * moved[2]    # seen from the pivot
         if loosened is None:
             return force, torque, 0
-        # only free bodies are drawn: a pivot's weight would be among the potentials
         return force, torque, loosened * (cross(times(held.I, w), w) + pulled)
+
+    def _about(self, q, force):
+        """Return the moment of a force at the centre of mass about the held point, body axes."""
+        return cross(self.held.arm[None], back(q, force))
+
+    def _moved(self, w, t):
+        """Return place, velocity and acceleration of the held point, from where it began."""
+        if self.held.motion is None:
+            return (0 * w,) * 3
+        return [self._vector(texts, {'t': t + 0 * w[:, 0]}) for texts in self.held.motion]
 
     def _torsion(self, one, q, w):
         n = self.held.axis
@@ -176,7 +195,7 @@ class Laws:
         """Return the angle of a hinge, rad."""
         return 2 * np.arctan2((q[:, :3] * self.held.axis).sum(1), q[:, 3])
 
-    def _known(self, q, w, v, c, t):
+    def _known(self, q, w, v, c, t, moved):
         """Return what expressions know, by name; o and vo are place and velocity of the origin."""
         held = self.held
         center = held.center[None] + 0 * w
@@ -185,7 +204,8 @@ class Laws:
             vo = v - rotated(q, cross(w, center))
         else:
             behind = (held.arm - held.center)[None] + 0 * w    # from the held point to the origin
-            o, vo = rotated(q, behind), rotated(q, cross(w, behind))
+            o = self.point + moved[0] + rotated(q, behind)
+            vo = moved[1] + rotated(q, cross(w, behind))
         W = rotated(q, w)
         names = {'t': t + 0 * w[:, 0], 'q': q, 'w': w, 'o': o, 'vo': vo}
         for group, of in (('x y z', o), ('vx vy vz', vo), ('qx qy qz qw', q), ('wx wy wz', w),
@@ -233,9 +253,11 @@ class Laws:
         """Return force and torque of an energy, by steps along the imaginary axis."""
         q, o = known['q'], known['o']
 
-        def slope(turned, moved):
+        def slope(turned, moved, along=0):
             inner = dict(zip(('t', 'qx', 'qy', 'qz', 'qw', 'x', 'y', 'z'),
                              (known['t'], *turned.T, *moved.T), strict=True))
+            if 'angle' in known:
+                inner['angle'] = known['angle'] + 1j * STEP * along
             if name == 'potential':
                 energy = self._vector([one['energy']], inner)[:, 0]
             else:
@@ -249,7 +271,8 @@ class Laws:
         for e in np.eye(3, dtype=WIDE):
             u = cross(q[:, :3], e) + q[:, 3:] * e
             by = np.concatenate((u, -(q[:, :3] @ e)[:, None]), axis=1) / 2
-            G.append(slope(q + 1j * STEP * by, o.astype(wide)))
+            along = 0 if self.held.axis is None else e @ self.held.axis
+            G.append(slope(q + 1j * STEP * by, o.astype(wide), along))
         # the force acts at the origin
         return F, np.stack(G, axis=1) - cross(self.held.center[None], back(q, F))
 
@@ -264,6 +287,20 @@ def _dragged(one, prefix, first, v):
         else:
             total = total - matrix * size * v
     return total
+
+
+def _away(one, t, w):
+    """Return the direction from what attracts, world axes, and 3 mu/r^3."""
+    if 'orbit' not in one:
+        place = array(one['position'])
+        r = np.sqrt(place @ place)
+        return place[None] / r + 0 * w, 3 * WIDE(one['mu']) / r ** 3
+    orbit = one['orbit']
+    rate = WIDE(orbit['rate'])
+    normal, toward = (array(orbit[key]) for key in ('normal', 'toward'))
+    normal, toward = normal / np.sqrt(normal @ normal), toward / np.sqrt(toward @ toward)
+    angle = (rate * t + 0 * w[:, 0])[:, None]
+    return np.cos(angle) * toward + np.sin(angle) * cross(normal, toward), 3 * rate ** 2
 
 
 def _rotor(one, w, t):

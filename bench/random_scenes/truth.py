@@ -23,7 +23,7 @@ class Truth:
     Unknowns: q (4), omega (3, body), velocity and place of the centre of mass (3 and 3, world).
     """
 
-    def __init__(self, scene, settings, parameters):
+    def __init__(self, scene, settings, parameters, motion=None):
         body, kind = scene.body, scene.constraint.kind
         self.kind, self.effects = kind, settings
         self.mass = WIDE(body.mass)
@@ -49,7 +49,7 @@ class Truth:
         self.y, tensors = np.array(copies), tensor[None]
         self.y[:, :4] /= np.sqrt((self.y[:, :4] ** 2).sum(1))[:, None]
         self.arm = np.zeros(3, dtype=WIDE)
-        if kind in ('pivot', 'hinge'):
+        if kind != 'free':
             self.arm = np.array(scene.constraint.arm(body), dtype=float).astype(WIDE)
             r = self.arm
             tensors = tensors + self.mass * ((r @ r) * np.eye(3, dtype=WIDE) - np.outer(r, r))
@@ -64,6 +64,8 @@ class Truth:
         self.y[:, 7:10] += rotated(q, cross(w, center[None]))
         self.y[:, 10:] += rotated(q, center[None] + 0 * w)
         self.center, self.t, self.struck = center, WIDE(0), set()
+        self.origin = self.y[0, 10:] - rotated(q, center[None] + 0 * w)[0]
+        self.motion = motion    # texts of place, velocity and acceleration
         self.laws = Laws(settings, parameters, self)
 
     def rates(self, y, t):

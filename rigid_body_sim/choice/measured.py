@@ -76,10 +76,21 @@ def on_such(scene, method):
     """Return whether a method was measured on scenes of this kind.
 
     Power series were where what acts is in numbers; formulas of a scene have a series of their
-    own, which takes seconds to compile.
+    own, which takes seconds to compile. Collocation was where what acts is smooth: its estimate of
+    an error takes the curve of a step for one, and where |v| of drag by squares nearly passes
+    zero it errs by thousands of what is asked and does not say so.
     """
-    formulas = METHODS[method].NEEDS == 'series' and has_formulas(scene)
-    return bool(rows(scene).get(method)) and not formulas
+    if METHODS[method].NEEDS == 'series' and has_formulas(scene):
+        return False
+    if _rooted(scene) and not METHODS[method].FAMILY.ROOTS:
+        return False
+    return bool(rows(scene).get(method))
+
+
+def _rooted(scene):
+    """Return whether what acts takes roots of what moves."""
+    return any(one.rooted for effect in scene.effects if effect.acting is not None
+               for one in effect.acting(scene.frame, 0.0))
 
 
 def pick(scene, able, accuracy, horizon):

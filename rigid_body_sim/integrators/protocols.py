@@ -145,11 +145,14 @@ class Family(Protocol):
         Whether it has a function ``batch`` (LanesFamily).
     KINKS : bool
         Whether its marches stop at the kinks of what acts (marching/switched.py).
+    ROOTS : bool
+        Whether its steps see that a root of what moves comes near zero (`rooted` of an Acting).
     """
 
     TAKES_WRENCH: bool
     LANES: bool
     KINKS: bool
+    ROOTS: bool
 
     def bind(self, method: Method, stepped: Any) -> 'Bound':
         """Return the method's kernels on a scene's equations.

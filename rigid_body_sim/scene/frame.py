@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.scene.expressions.source import Kernel
+from rigid_body_sim.scene.expressions.path import Path
 
 
 class Hinging(NamedTuple):
@@ -49,7 +49,7 @@ class Frame:
         From the reference point to the centre of mass, frame components, m.
     hinge : Hinging, optional
         Of a body that turns about one axis only.
-    path : Kernel, optional
+    path : Path, optional
         Of a point of reference that moves as the scene says (expressions/path.py).
     """
 
@@ -60,7 +60,7 @@ class Frame:
     point: tuple[float, float, float]
     arm: tuple[float, float, float]
     hinge: Hinging | None = None
-    path: Kernel | None = None
+    path: Path | None = None
 
     @property
     def pushed(self) -> bool:

@@ -31,6 +31,15 @@ def test_the_error_is_met_foretold_and_balanced(judge, number):
 
 
 @pytest.mark.without_numba
+@pytest.mark.parametrize('number', [0, 2, 186], ids=['a moving pivot', 'dissipation at a pivot',
+                                                     'a swing whose velocity nearly vanishes'])
+def test_so_it_is_for_effects_in_the_words_of_a_scene(judge, number):
+    from random_scenes import new_language
+    for line, *good in judge.judged(number, 21, new_language.drawn):
+        assert all(good), line
+
+
+@pytest.mark.without_numba
 def test_a_wrong_law_is_seen(judge, monkeypatch):
     from random_scenes import laws
     right = laws._dragged

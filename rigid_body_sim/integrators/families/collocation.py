@@ -22,6 +22,7 @@ from rigid_body_sim.mechanics.bounds import swing_rate
 TAKES_WRENCH = True
 LANES = False
 KINKS = True
+ROOTS = False
 FLOOR = 2.0 ** -50          # share of the unknowns that is rounding
 RELAXED_FLOOR = 2.0 ** -39  # the same where slopes of the stages take the place of rates
 RELAXED_SETTLED = 2.0 ** -46

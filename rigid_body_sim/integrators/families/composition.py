@@ -55,6 +55,7 @@ TAKES = ('step',)
 TAKES_WRENCH = True
 LANES = False
 KINKS = True
+ROOTS = True
 
 
 def step_source(method, equations):

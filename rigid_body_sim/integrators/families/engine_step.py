@@ -24,6 +24,7 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
 TAKES_WRENCH = True
 LANES = False
 KINKS = True
+ROOTS = True
 
 TURN = """
     w1, w2, w3 = y[4] + h * k0[4], y[5] + h * k0[5], y[6] + h * k0[6]

@@ -23,6 +23,7 @@ from rigid_body_sim.integrators.marching import (
 TAKES_WRENCH = False
 LANES = True
 KINKS = False
+ROOTS = True
 LEAST = unroll.NOTHING * unroll.NOTHING    # squared scale of what does not move yet
 SAFETY = 0.25    # steps planned a point earlier err by up to four times the allowed
 
@@ -59,17 +60,19 @@ def march(method, equations, adapts):
 
 def _expanded_march(equations):
     """Return expanded_march.py bound to equations."""
-    size, groups = equations.kind.UNKNOWNS, equations.groups
+    size, groups, based = equations.kind.UNKNOWNS, equations.groups, equations.based
+    places = recurrences.places(size + based)
     relative = [group for group in groups if not group[2]]
     return specialise(
         expanded_march, expand=equations.expand,
-        along=f'from {recurrences.__name__} import along as along_of\nalong = along_of({size})\n',
+        along=f'from {recurrences.__name__} import along as along_of\n'
+              f'along = along_of({size}, {places})\n',
         settled=f'{equations.kernels.__name__}:settled',
         load=unroll.load_source('load', size), put=unroll.put_source('put', size),
         load_scales=unroll.load_source('load_scales', len(relative)),
         put_scales=unroll.put_source('put_scales', len(relative)),
         grown=_grown(relative), measured=_measured(groups), added=_added(size),
-        SIZE=f'SIZE = {size}\n', PLACES=f'PLACES = {recurrences.places(size)}\n')
+        SIZE=f'SIZE = {size}\n', BASED=f'BASED = {based}\n', PLACES=f'PLACES = {places}\n')
 
 
 def _squares(text, first, last):

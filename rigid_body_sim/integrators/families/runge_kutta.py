@@ -13,6 +13,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 TAKES_WRENCH = True
 LANES = False
 KINKS = True
+ROOTS = True
 
 
 def bind(method, stepped):

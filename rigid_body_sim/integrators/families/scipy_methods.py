@@ -23,6 +23,7 @@ from rigid_body_sim.scene.state import TIME
 TAKES_WRENCH = True
 LANES = False
 KINKS = False
+ROOTS = True
 FINEST = 100.0 * np.finfo(float).eps
 DEAR = 10    # steps of a compiled march that a trial takes for one step here
 COST = 200   # steps of a compiled march that cost as much as one step here

@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.marching.taylor_march import (
     NEARLY,
     ORIGIN,
     TOLERANCE,
+    UNMOVED,
     WORK,
     chosen,
 )
@@ -33,7 +34,13 @@ grown = UNBOUND
 measured = UNBOUND
 added = UNBOUND
 SIZE = UNBOUND
+BASED = UNBOUND
 PLACES = UNBOUND
+
+CHANGE = 0.9               # of a base within a step, relative to it
+LEAST = 2.0 ** -25         # of the step that is planned, and
+TICKS = 2.0 ** -50         # of the time: the step over the zero of a base
+LOW = 2                    # order of the series of that step
 
 
 @compiled
@@ -43,6 +50,53 @@ def begin(p, control, point):
     point[STEP] = 0.0
     y = load(point, VALUES)
     put_scales(grown(load_scales(point, SCALES), y, y, 0.0), point, SCALES)
+
+
+@compiled
+def change(S, base, h):
+    """Return by how much a base can change within a step, at most.
+
+    Bases are what roots and powers are taken of; S has their integrals behind the unknowns.
+    """
+    found = 0.0
+    for k in range(ORDER, 1, -1):
+        found = h * (found + k * abs(S[PLACES * k + base]))
+    return found
+
+
+@compiled
+def expanded(p, control, y, t, planned):
+    """Fill S; return the length of the step where a base is about to pass zero, else 0.
+
+    A series of sqrt(u^2) is u or -u: it does not show that u passes zero, and near that the higher
+    coefficients are rounding. The step over it is so short that they do not count; nor does what
+    the root is in it. A base that stays 0 is none of these.
+    """
+    S = control[WORK:]
+    expand(p, S, y)
+    if control[FIXED] > 0.0:
+        return 0.0
+    least = max(LEAST * max(planned, UNMOVED), TICKS * abs(t))
+    for base in range(SIZE, SIZE + BASED):
+        if not change(S, base, least) <= CHANGE * S[PLACES + base]:
+            S[PLACES * (LOW + 1):] = 0.0
+            return least
+    return 0.0
+
+
+@compiled
+def within(S, h, step, last, over):
+    """Return a step within which all bases stay positive, h at most, and the plan for the next.
+
+    `over` is what `expanded` returned; the plan, `step` or the `last` one, knows nothing of bases.
+    """
+    chosen_one = h
+    if over > 0.0:
+        h = min(h, over)
+    for base in range(SIZE, SIZE + (BASED if over == 0.0 else 0)):
+        while h > 0.0 and not change(S, base, h) <= CHANGE * S[PLACES + base]:
+            h *= 0.5
+    return h, last if h < chosen_one and last > 0.0 else step
 
 
 @compiled
@@ -59,7 +113,7 @@ def march(p, control, point, following, target, end, limit):
     scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
     good = True
     while t < end:
-        expand(p, S, y)
+        over = expanded(p, control, y, t, last)
         scales1 = grown(scales, y, load(S, PLACES), last if fixed == 0.0 else fixed)
         if fixed > 0.0:
             step = last + 1.0
@@ -68,7 +122,7 @@ def march(p, control, point, following, target, end, limit):
                 t1, h = end, end - t
         else:
             final, before = measured(S, ORDER, scales1), measured(S, ORDER - 1, scales1)
-            h, step = chosen(final, before, tolerance, last)
+            h, step = within(S, *chosen(final, before, tolerance, last), last, over)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
         y1, c1, size = added(y, c, along(S, (h,)))
@@ -99,7 +153,7 @@ def between(p, control, point, following, dt):
         return y
     S = control[WORK:]
     if control[FOR] != point[TIME]:
-        expand(p, S, y)
+        expanded(p, control, y, point[TIME], point[STEP])
         control[FOR] = point[TIME]
     y, _, _ = added(y, load(point, VALUES + SIZE), along(S, (dt,)))
     return y

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Taylor series of a scene's own equations: recurrences from trees, for eight lanes (lanes.py).
 
-equations/expanded.py makes a plan of the trees of the rates: a list of steps, each of which makes
+equations/plan.py makes a plan of the trees of the rates: a list of steps, each of which makes
 a series of those before it. With v = sum of i u_i t^i, which is t u', and u without its first
 coefficient written u~:
 
@@ -96,7 +96,7 @@ class _Recurrence:
     ----------
     o : operations
     plan : tuple
-        Steps, as expanded.py writes them. An operand is the number of a step, or -1 - j for the
+        Steps, as plan.py writes them. An operand is the number of a step, or -1 - j for the
         number j of `fixed`.
     firsts, fixed : lists of numbers
         The first coefficient of each step; what the steps take beside them.
@@ -240,13 +240,14 @@ def expansion(plan, rates, width):
     return compiled_lanes(recurrence, 0)
 
 
-def along(size):
-    """Return the kernel ``(S, (h,)) -> tuple``: by how much `size` unknowns change in a time h."""
-    width = places(size)
+def along(size, width):
+    """Return the kernel ``(S, (h,)) -> tuple``: by how much `size` unknowns change in a time h.
 
+    `width` is that of `expansion`.
+    """
     def moved(o, S, h):
         found = []
-        for block in range(0, width, LANES):
+        for block in range(0, places(size), LANES):
             terms = [o.load(S, width * k + block) for k in range(1, ORDER + 1)]
             power = o.everywhere(h)
             step = power

@@ -4,7 +4,7 @@
 A torque is constant in the body or in the world. The centre of mass of a free body moves in closed
 form (falling.py), drag or not; a body on a hinge is one that takes no torque across it
 (power_series.py). Where an effect gives formulas, the series is that of the scene's own equations
-(equations/expanded.py, marching/recurrences.py).
+(equations/trees.py, plan.py, marching/recurrences.py).
 
 Coefficients follow one from the other by Cauchy's products, eight orders at once in the vector
 unit (taylor_series.py); a step, as long as the last two coefficients allow, is three to five times

@@ -14,7 +14,7 @@ from rigid_body_sim.scene.bodies import Body, Inertia, moved, refuse_beyond, squ
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.expressions import path, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
-from rigid_body_sim.scene.expressions.source import TIME, Kernel
+from rigid_body_sim.scene.expressions.source import TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
@@ -143,7 +143,7 @@ class MovingPivot(Constraint):
         return found
 
     @property
-    def path(self) -> Kernel:
+    def path(self) -> path.Path:
         """The path of the pivot, without `initial.position`."""
         return path.path(self.trees, self.parameters)
 

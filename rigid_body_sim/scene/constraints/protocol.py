@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol, Self
 
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body, Inertia
-from rigid_body_sim.scene.expressions.source import Kernel
+from rigid_body_sim.scene.expressions.path import Path
 from rigid_body_sim.scene.frame import Frame, turned_back
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
@@ -137,7 +137,7 @@ class Constraint(Protocol):
         return None
 
     @property
-    def path(self) -> Kernel | None:
+    def path(self) -> Path | None:
         """The path of the point that it holds (expressions/path.py); None if it stays."""
         return None
 

@@ -11,8 +11,8 @@ from typing import ClassVar, Self
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.pivot import MovingPivot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect
-from rigid_body_sim.scene.expressions import actions, path, tree
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.expressions import actions, formulas, path, tree
 from rigid_body_sim.scene.frame import Frame
 
 
@@ -53,3 +53,9 @@ class Carrying(Effect):
         # a motion in closed form sees that something acts, even if it turns nothing
         return found or (Acting('rigid_body_sim.scene.effects.elementary:constant',
                                 (0.0, 0.0, 0.0), 'torque', 'work'),)
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the torque."""
+        if frame.path is None:
+            return Pull()
+        return formulas.force(self.trees, 'world', self.parameters, self.center, frame)

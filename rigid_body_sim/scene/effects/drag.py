@@ -13,7 +13,9 @@ from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, plus, scaled, transposed
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.effects.protocol import Acting, Effect, Formulas, Pull
+from rigid_body_sim.scene.expressions import formulas, tree, vectors
+from rigid_body_sim.scene.expressions.source import RATES, VELOCITY
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import MATRIX, described, mapping_of
 
@@ -61,8 +63,7 @@ class Drag(Effect):
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and couple; a coefficient of zero does not act."""
         if frame.path is not None:    # the kernels of a shape know a moving pivot
-            return ShapedDrag(*(_matrix(c, '') for c in (self.linear, self.angular, 0.0, 0.0))
-                              ).acting(frame, time)
+            return self._shaped.acting(frame, time)
         acting = []
         if self.linear and frame.moves:
             acting.append(Acting(f'{__name__}:force', (self.linear,), 'force', 'heat'))
@@ -73,8 +74,14 @@ class Drag(Effect):
             acting.append(Acting(f'{__name__}:couple', (self.angular,), 'torque', 'heat'))
         return tuple(acting)
 
+    @property
+    def _shaped(self) -> 'ShapedDrag':
+        return ShapedDrag(*(_matrix(c, '') for c in (self.linear, self.angular, 0.0, 0.0)))
+
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple, and the force as a moment about a bearing or as it slows a flight."""
+        if frame.path is not None:
+            return self._shaped.series(frame, time)
         x, y, z = frame.arm
         # the matrices of the kernels `couple` and `moment`, without the difference r^2 - z^2
         of_arm = np.array(((y * y + z * z, -x * y, -x * z), (-x * y, z * z + x * x, -y * z),
@@ -149,20 +156,63 @@ class ShapedDrag(Effect):
             if not any(map(any, matrix)):
                 continue
             values = square, *_flat(matrix, frame)
+            rooted = square == 1.0
             if frame.path is not None:
                 values = *values, *frame.arm
-                acting.append(Acting(f'{__name__}:carried_force', values, 'force', 'heat'))
-                acting.append(Acting(f'{__name__}:carried_moment', values, 'torque', 'heat'))
+                acting += [Acting(f'{__name__}:carried_force', values, 'force', 'heat',
+                                  rooted=rooted),
+                           Acting(f'{__name__}:carried_moment', values, 'torque', 'heat',
+                                  rooted=rooted)]
             elif frame.moves:
-                acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat'))
+                acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat',
+                                     rooted=rooted))
             elif any(frame.arm):
                 acting.append(Acting(f'{__name__}:shaped_moment', (*values, *frame.arm),
-                                     'torque', 'heat'))
+                                     'torque', 'heat', rooted=rooted))
         for matrix, square in ((self.angular, 0.0), (self.angular_quadratic, 1.0)):
             if any(map(any, matrix)):
                 values = square, *_flat(matrix, frame)
-                acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat'))
+                acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat',
+                                     rooted=square == 1.0))
         return tuple(acting)
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return force and couple."""
+        omega, v = vectors.named(RATES), vectors.named(VELOCITY)
+        torque = _resisted(self.angular, self.angular_quadratic, omega, frame)
+        if frame.moves and _is_number(self.linear) and _is_number(self.quadratic):
+            force = _resisted(self.linear, self.quadratic, v)    # in world axes: shorter
+            return Pull(formulas=(Formulas(torque, force, of_frame=True),))
+        arm, v = vectors.constant(frame.arm), vectors.to_body(v)
+        if not frame.moves:
+            carried = vectors.cross(omega, arm)
+            v = carried if frame.path is None else vectors.total(v, carried)
+        force = _resisted(self.linear, self.quadratic, v, frame)
+        if frame.moves:
+            return Pull(formulas=(Formulas(torque, vectors.to_world(force), of_frame=True),))
+        torque = vectors.total(torque, vectors.cross(arm, force))
+        return Pull(formulas=(Formulas(torque, of_frame=True),))
+
+
+def _is_number(matrix: Matrix) -> bool:
+    """Return whether a matrix is a number times the identity."""
+    return matrix == _matrix(matrix[0][0], '')
+
+
+def _resisted(linear, square, v, frame=None):
+    """Return -(C + |v| D) v, trees, for matrices in body axes and v along the frame's."""
+    def times_v(matrix):
+        if not any(map(any, matrix)):
+            return formulas.NONE
+        if _is_number(matrix):
+            return vectors.scaled(tree.number(-matrix[0][0]), v)
+        three = iter(_flat(matrix, frame))
+        rows = zip(three, three, three, strict=True)
+        return tuple(map(tree.negative, vectors.apply(rows, v)))
+    by_square = times_v(square)
+    if by_square is not formulas.NONE:
+        by_square = vectors.scaled(tree.node('sqrt', vectors.dot(v, v)), by_square)
+    return vectors.total(times_v(linear), by_square)
 
 
 @compiled

@@ -11,8 +11,16 @@ from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential
+from rigid_body_sim.scene.effects.protocol import (
+    Acting,
+    Bounds,
+    Effect,
+    Formulas,
+    Potential,
+    Pull,
+)
 from rigid_body_sim.scene.expressions import actions, tree, vectors
+from rigid_body_sim.scene.expressions.source import TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import POSITIVE, VECTOR, described, mapping_of
 
@@ -106,8 +114,8 @@ class GravityGradient(Effect):
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque."""
-        I1, I2, I3 = frame.moments
-        if I1 == I2 == I3:
+        pulled = self._differences(frame)
+        if not any(pulled):
             return ()
         if self.tensor is not None:
             values = *(self.share * one for row in self.tensor for one in row), *self.toward
@@ -116,13 +124,30 @@ class GravityGradient(Effect):
                               (*values, *self.ahead, self.rate), 'torque', 'work', in_field=True,
                               timed=True),
             return Acting(f'{__name__}:tensor_torque', values, 'torque', 'potential'),
-        pulled = tuple(self.share * (one - other)
-                       for one, other in ((I3, I2), (I1, I3), (I2, I1)))
         if self.energy is None:
             values = *pulled, *self.toward, *self.ahead, self.rate
             return Acting(f'{__name__}:torque_on_orbit', values, 'torque', 'work', in_field=True,
                           timed=True),
         return Acting(f'{__name__}:torque', (*pulled, *self.toward), 'torque', 'potential'),
+
+    def _differences(self, frame: Frame) -> tuple[float, float, float]:
+        """Return a, b, c of the torque (a n2 n3, b n3 n1, c n1 n2), N m."""
+        I1, I2, I3 = frame.moments
+        a, b, c = (self.share * (one - other)
+                   for one, other in ((I3, I2), (I1, I3), (I2, I1)))
+        return a, b, c
+
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the torque."""
+        n = vectors.constant(self.toward)
+        if self.energy is None:
+            turned = tree.times(tree.number(self.rate), tree.node('name', *TIME))
+            n = vectors.total(vectors.scaled(tree.node('cos', turned), n), vectors.scaled(
+                tree.node('sin', turned), vectors.constant(self.ahead)))
+        n1, n2, n3 = vectors.to_body(n)
+        torque = map(tree.times, vectors.constant(self._differences(frame)),
+                     (tree.times(n2, n3), tree.times(n3, n1), tree.times(n1, n2)))
+        return Pull(formulas=(Formulas(tuple(torque), of_frame=True),))
 
     @property
     def potential(self):

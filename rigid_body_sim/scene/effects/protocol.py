@@ -66,6 +66,9 @@ class Acting:
     grip : float
         Torque with which it holds a body on a hinge at rest, N m: that of dry friction, whose one
         switch is the rate.
+    rooted : bool
+        True if it takes a root, or a power that is not whole, of what moves: where that comes near
+        zero, as |v| does, it is all but a kink.
     """
 
     kernel: str
@@ -79,6 +82,7 @@ class Acting:
     modes: tuple[int, ...] = ()
     grip: float = 0.0
     timed: bool = False
+    rooted: bool = False
 
 
 @dataclass(frozen=True)
@@ -90,16 +94,20 @@ class Formulas:
     Attributes
     ----------
     torque : tuple of 3 Nodes
-        About the reference point, body components, N m.
+        About the reference point, body components (those of the frame if `of_frame`), N m.
     force : tuple of 3 Nodes
         At the centre of mass, world components, N. Only where ``frame.moves``; else zeros, and
         the torque has its moment.
     parameters : tuple of (str, float)
+    of_frame : bool
+        True if the names mean what the arguments of an Acting's kernel mean: the attitude of the
+        frame, its angular velocity (frame components), place and velocity of the reference point.
     """
 
     torque: tuple[Node, Node, Node]
     force: tuple[Node, Node, Node] = (ZERO, ZERO, ZERO)
     parameters: tuple[tuple[str, float], ...] = ()
+    of_frame: bool = False
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,13 @@ from rigid_body_sim.scene.effects.protocol import (
     Acting,
     Bounds,
     Effect,
+    Formulas,
     Momentum,
     Pull,
     Vector,
 )
+from rigid_body_sim.scene.expressions import tree, vectors
+from rigid_body_sim.scene.expressions.source import RATES, TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import NUMBER, POSITIVE, VECTOR, described, mapping_of
 
@@ -100,13 +103,17 @@ class Rotor(Effect):
                                  'torque', 'work', of_motion=True, inner=True))
         return tuple(acting)
 
-    @property
-    def series(self):
-        """The gyroscopic torque of a constant momentum; None with a motor."""
-        return None if self.torque else self._pull
-
-    def _pull(self, frame: Frame, time: float) -> Pull:
-        x, y, z = scaled(self.momentum_at_start, frame.from_body(self.axis))
+    def series(self, frame: Frame, time: float) -> Pull:
+        """Return the gyroscopic torque and that of the motor."""
+        axis = frame.from_body(self.axis)
+        if self.torque:
+            h = tree.plus(tree.number(self.momentum_at_start),
+                          tree.times(tree.number(self.torque), tree.node('name', *TIME)))
+            turning = vectors.cross(vectors.constant(axis), vectors.named(RATES))
+            torque = vectors.total(vectors.scaled(h, turning),
+                                   vectors.constant(scaled(-self.torque, axis)))
+            return Pull(formulas=(Formulas(torque, of_frame=True),))
+        x, y, z = scaled(self.momentum_at_start, axis)
         # -omega x h = h x omega
         return Pull(drag=((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 

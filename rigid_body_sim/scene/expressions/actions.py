@@ -15,6 +15,7 @@ from rigid_body_sim.scene.expressions.source import (
     IDENTITY,
     PLACE,
     RATES,
+    STATE_NAMES,
     TIME,
     VELOCITY,
     WORLD_RATES,
@@ -43,7 +44,24 @@ def _acting(lines, trees, frame, result, gives, books):
         modes = tuple(order.index(mode) for mode in lines.switches)
     moving = books != 'heat' and bool(used & OF_MOTION)
     return Acting(made.name, made.values, gives, books, in_field, moving,
-                  switching=switching, modes=modes, timed=bool(used & {*TIME}))
+                  switching=switching, modes=modes, timed=bool(used & {*TIME}),
+                  rooted=_rooted(trees))
+
+
+def _rooted(trees):
+    """Return whether trees have a root or a broken power of what moves."""
+    moving = set()
+    for one in tree.parts(*trees):
+        if one.args[0] in moving and (
+                one.op == 'sqrt' or (one.op == '^' and not _is_whole(one.args[1]))):
+            return True
+        if one.args[0] in STATE_NAMES or not moving.isdisjoint(one.args):
+            moving.add(one)
+    return False
+
+
+def _is_whole(exponent):
+    return exponent.op == 'number' and exponent.args[0] == int(exponent.args[0])
 
 
 @functools.lru_cache(maxsize=256)

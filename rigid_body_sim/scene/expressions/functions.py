@@ -21,6 +21,12 @@ def divided(a, b):
 
 
 @compiled
+def divided_or_zero(a, b):
+    """Return a/b; 0 for b = 0."""
+    return 0.0 if b == 0.0 else a / b
+
+
+@compiled
 def root(x):
     """Return the square root of x; NaN below 0."""
     return math.sqrt(x) if x >= 0.0 else math.nan

@@ -3,6 +3,7 @@
 
 import functools
 import importlib
+from dataclasses import dataclass
 
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import KINKED, TIME, Kernel, Lines, kernel, prelude
@@ -13,31 +14,41 @@ def kinks(trees: tuple[tree.Node, ...]) -> list[str]:
     return sorted({one.op for one in tree.parts(*trees)} & {*KINKED, 'where'})
 
 
-def accelerations(trees: tuple[tree.Node, ...]) -> tuple[tree.Node, ...]:
-    """Return the second derivatives of trees by time."""
-    rates = [tree.derivatives(one, TIME)[0] for one in trees]
-    return tuple(tree.derivatives(one, TIME)[0] for one in rates)
+@dataclass(frozen=True)
+class Path(Kernel):
+    """The path of a point: a kernel, and the trees that it is made of.
 
+    The kernel is ``(value, ..., value, t)`` -> place (m), velocity (m/s), acceleration (m/s^2):
+    nine floats.
 
-@functools.lru_cache(maxsize=256)
-def path(trees: tuple[tree.Node, ...], parameters: tuple[tuple[str, float], ...]) -> Kernel:
-    """Return the Kernel of a path.
-
-    Parameters
+    Attributes
     ----------
     trees : tuple of 3 Nodes
         Place as a function of the time (s), m, world axes.
     parameters : tuple of (str, float)
-
-    Returns
-    -------
-    Kernel
-        ``(value, ..., value, t)`` -> place (m), velocity (m/s), acceleration (m/s^2): nine floats.
     """
+
+    trees: tuple[tree.Node, ...]
+    parameters: tuple[tuple[str, float], ...]
+
+
+def velocities(trees: tuple[tree.Node, ...]) -> tuple[tree.Node, ...]:
+    """Return the derivatives of trees by time."""
+    return tuple(tree.derivatives(one, TIME)[0] for one in trees)
+
+
+def accelerations(trees: tuple[tree.Node, ...]) -> tuple[tree.Node, ...]:
+    """Return the second derivatives of trees by time."""
+    return velocities(velocities(trees))
+
+
+@functools.lru_cache(maxsize=256)
+def path(trees: tuple[tree.Node, ...], parameters: tuple[tuple[str, float], ...]) -> Path:
+    """Return the Path of a place as a function of the time; arguments as its attributes."""
     lines = Lines(dict(parameters))
-    rates = tuple(tree.derivatives(one, TIME)[0] for one in trees)
-    found = lines.of(*trees, *rates, *accelerations(trees))
-    return kernel('path', 't', lines, prelude(lines, {*TIME}, None), f'({", ".join(found)},)')
+    found = lines.of(*trees, *velocities(trees), *accelerations(trees))
+    made = kernel('path', 't', lines, prelude(lines, {*TIME}, None), f'({", ".join(found)},)')
+    return Path(made.name, made.values, trees, parameters)
 
 
 def along(found: Kernel, time: float) -> tuple[tuple[float, ...], ...]:

@@ -22,16 +22,18 @@ angle of a hinge (rad, within two turns) and its rate (rad/s)."""
 PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
+OR_ZERO = '/ or 0'
+"""The operation of a quotient that is 0 where its divisor is: none of expressions."""
 CALLS = {'/': 'divided', 'log': 'logarithm', 'tan': 'tangent', 'tanh': 'hyperbolic_tangent',
-         'sin': 'sin', 'cos': 'cos', 'exp': 'exp'}
+         'sin': 'sin', 'cos': 'cos', 'exp': 'exp', OR_ZERO: 'divided_or_zero'}
 KINKED = {'abs', 'sign', 'min', 'max', 'less'}
 HEAD = """from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics.functions import atan2, cos, exp, sin
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
-    divided, hyperbolic_tangent, logarithm, raised, raised_beyond, root, root_beyond, side,
-    tangent)
+    divided, divided_or_zero, hyperbolic_tangent, logarithm, raised, raised_beyond, root,
+    root_beyond, side, tangent)
 """
 
 

@@ -25,6 +25,16 @@ def difference(a, b):
     return tuple(map(minus, a, b))
 
 
+def scaled(c, a):
+    """Return c a for a tree c."""
+    return tuple(times(c, part) for part in a)
+
+
+def apply(rows, a):
+    """Return the product of a matrix of numbers and a."""
+    return tuple(dot(constant(row), a) for row in rows)
+
+
 def dot(a, b):
     """Return a . b."""
     x, y, z = map(times, a, b)

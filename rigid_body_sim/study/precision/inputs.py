@@ -9,8 +9,21 @@ import math
 import random
 from dataclasses import dataclass
 
+import yaml
 from mpmath import mp, mpf
 
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.drag import Drag
+from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.effects.internal_dissipation import InternalDissipation
+from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
+from rigid_body_sim.scene.effects.spring import Spring
+from rigid_body_sim.scene.effects.strike import Strike
+from rigid_body_sim.scene.effects.torque import Torque
+
+KINDS = 'free', 'pivot', 'hinge', 'table'
+LAWS = Drag, Gravity, InternalDissipation, SlidingFriction, Spring, Strike, Torque
+"""Constraints, and kinds of effects, that references know."""
 ZERO = (mpf(0),) * 3
 
 
@@ -47,7 +60,7 @@ class Inputs:
         free, pivot, hinge or table.
     mass, g, linear, angular, inner, mu, radius : mpf
         Units kg and m/s^2, coefficients of drag, internal dissipation and sliding friction, and
-        m; 0 where the scene has none.
+        m; 0 where the scene has none. The damper of a torsion spring is among `angular`.
     moments : tuple of 3 mpf
         Principal moments about the point of reference, kg m^2.
     axes : tuple of 4 mpf
@@ -63,6 +76,9 @@ class Inputs:
         axes), height (mpf), 'body' or 'world').
     orientation, omega, velocity : tuples of mpf
         Start: unit quaternion from body to world, rad/s in body axes, m/s in the world.
+    stiffness, slack : mpf
+        Of a torsion spring at a hinge, N m/rad: the torque -stiffness (phi - slack), phi (rad)
+        counted from the orientation at the start.
     """
 
     kind: str
@@ -82,6 +98,8 @@ class Inputs:
     orientation: tuple
     omega: tuple
     velocity: tuple
+    stiffness: object
+    slack: object
 
 
 def unit(vector):
@@ -93,13 +111,16 @@ def unit(vector):
 def of(scene, move):
     """Return the Inputs of a scene at mpmath's current precision.
 
-    `move` is applied to each of its doubles: `exactly` or Moved(seed).
+    `move` is applied to each of its doubles: `exactly` or Moved(seed). BadInput for effects and
+    constraints that the references do not know.
     """
     body, constraint, kind = scene.body, scene.constraint, scene.constraint.kind
     inertia, held = constraint.inertia(body), constraint.holds_a_point
     center = tuple(map(move, body.center_of_mass))
     through = tuple(map(move, constraint.point(body))) if held else ZERO
     arm = tuple(c - p for c, p in zip(center, through)) if held else ZERO
+    refuse_unknown(scene)
+    stiffness, slack, damping = torsion(scene, move)
     gravity, drag, inner, friction = map(
         scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction'))
     couples = tuple((effect.times, tuple(tuple(map(move, value)) for value in effect.values),
@@ -118,11 +139,43 @@ def of(scene, move):
         unit(tuple(map(move, inertia.axes))), arm,
         unit(tuple(map(move, constraint.axis))) if kind == 'hinge' else None,
         move(gravity.g if gravity else friction.g if friction else 0.0),
-        move(drag.linear if drag else 0.0), move(drag.angular if drag else 0.0),
+        move(drag.linear if drag else 0.0), move(drag.angular if drag else 0.0) + damping,
         move(inner.coefficient if inner else 0.0), move(friction.mu if friction else 0.0),
         move(body.radius if kind == 'table' else 0.0), couples, tuple(strikes),
         unit(tuple(map(move, initial.orientation))), tuple(map(move, initial.angular_velocity)),
-        tuple(map(move, initial.velocity)))
+        tuple(map(move, initial.velocity)), stiffness, slack)
+
+
+def refuse_unknown(scene):
+    """Raise BadInput for effects and constraints that the references do not know."""
+    held = scene.constraint.kind
+    if held not in KINDS:
+        raise BadInput(f'{scene.name}: constraint', f'no reference is made for {held!r}',
+                       ', '.join(KINDS))
+    for effect in scene.effects:
+        if (not isinstance(effect, LAWS) or (isinstance(effect, Spring) and effect.at is not None)
+                or (isinstance(effect, InternalDissipation) and held != 'free')):
+            raise BadInput(
+                f'{scene.name}: effects', f'no reference is made for {effect.name} as it is here',
+                'gravity downward, torques in numbers, strikes, drag by two numbers, internal '
+                'dissipation of a free body, a torsion spring, sliding friction')
+
+
+def torsion(scene, move):
+    """Return stiffness, slack and friction of a torsion spring, 0 where there is none.
+
+    Slack is the angle from the start at which the spring pulls nothing. The effect keeps its law
+    as trees, so the numbers are read from the scene's text.
+    """
+    read = yaml.safe_load(scene.text)
+    settings = [one['spring'] for one in read.get('effects', ())
+                if isinstance(one, dict) and 'spring' in one]
+    if not settings:
+        return ZERO
+    if len(settings) > 1:
+        raise BadInput(f'{scene.name}: effects', 'no reference is made for several springs', 'one')
+    k, angle, c = (move(settings[0].get(key, 0.0)) for key in ('stiffness', 'angle', 'damping'))
+    return k, angle - move((read.get('initial') or {}).get('angle', 0.0)), c
 
 
 def cross(a, b):

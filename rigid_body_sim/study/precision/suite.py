@@ -116,6 +116,16 @@ _PROBLEMS = {
             '{angle: 0.0, rate: 6.2641839015}',
         ),
     ),
+    'torsion_spring': (
+        'a door: weight, a torsion spring and its damper on a slanting hinge',
+        20.0,
+        _written(
+            '{mass: 2.0, inertia: [0.48, 0.5, 0.02], center_of_mass: [0.3, 0, 0.1]}',
+            '{hinge: {axis: [0.1, 0, 1]}}',
+            '[gravity: {g: 9.81}, spring: {stiffness: 12.0, angle: 0.4, damping: 0.02}]',
+            '{angle: -1.2, rate: 3.0}',
+        ),
+    ),
     'sleeping_top_unstable': (
         'P_gamma^2 at 0.999 of 4 I1 M g l, a seed of 1e-6 rad/s',
         20.0,

@@ -11,8 +11,9 @@ own):
 q is the attitude (x, y, z, w); g_j are the directions fixed in the world that a torque needs (the
 vertical; the direction of a torque given in world axes); u is internal dissipation;
 torque = K + D omega + sum of A_j g_j: couples in the body, drag, weight and couples in the world.
-At a hinge only n . torque acts. The motion of the centre of mass of a free body does not act back
-on its rotation. Nothing here uses a closed form.
+At a hinge only n . torque acts, and a torsion spring pulls by the angle: phi' = n . omega. The
+motion of the centre of mass of a free body does not act back on its rotation. Nothing here uses a
+closed form.
 
 Numbers are integers in units of 2^-bits, so that a coefficient of the series, a convolution, is
 one loop of exact integer products.
@@ -55,7 +56,7 @@ class Turning:
             across = cross(inputs.axis, self._arm)
             self._moment = (dot(n, [i * x for i, x in zip(inputs.moments, n)])
                             + inputs.mass * dot(across, across))
-        self._strikes = list(inputs.strikes)
+        self._strikes, self._angle = list(inputs.strikes), mpf(0)
         self.time = 0.0
         self._q, self._omega = (
             product(inputs.orientation, self._frame), turned_back(self._frame, inputs.omega))
@@ -89,6 +90,7 @@ class Turning:
             *self._q,
             *(w * self._unit for w in self._omega),
             *(x for direction in self._directions for x in direction),
+            self._angle,
         ]
         state = [self._fixed(x) for x in values]
         while now < end:
@@ -102,6 +104,7 @@ class Turning:
             tuple(w / self._unit for w in numbers[4:7]),
             until,
         )
+        self._angle = numbers[-1]
 
     def _strike(self, impulse, lever, _, frame):
         """Change omega by an impulse of force at a point."""
@@ -121,7 +124,10 @@ class Turning:
         return int(mp.nint(mp.ldexp(mpf(x), self.bits)))
 
     def _prepare(self):
-        """Set unit of time, constants and directions of the interval that begins now."""
+        """Set unit of time, constants and directions of the interval that begins now.
+
+        More than forty lines: each number of the series once, in the order of the equations.
+        """
         given, fixed = self._given, self._fixed
         constant, columns, self._directions = ZERO, [], []
         for times, values, frame in given.couples:
@@ -139,11 +145,15 @@ class Turning:
             self._directions.append(turned_back(self._q, (mpf(0), mpf(0), mpf(1))))
             columns.append(_matrix(lambda e: [-given.mass * given.g * x
                                               for x in cross(self._arm, e)]))
+        twist = ZERO
+        if given.stiffness:
+            twist = tuple(-given.stiffness * x for x in given.axis)
+            constant = tuple(a - given.slack * b for a, b in zip(constant, twist))
         held = given.linear if given.kind in ('pivot', 'hinge') else mpf(0)
         damping = _matrix(lambda e: [-given.angular * a - held * b
                                      for a, b in zip(e, cross(self._arm, cross(e, self._arm)))])
         weight = max((abs(x) for matrix in columns for row in matrix for x in row),
-                     default=mpf(0)) + max(map(abs, constant))
+                     default=mpf(0)) + max(map(abs, constant)) + given.stiffness
         heavy = [i for i in ([self._moment] if self._hinged else given.moments) if i]
         # in this unit of time rates are of order one
         fastest = (mp.sqrt(dot(self._omega, self._omega))
@@ -154,6 +164,8 @@ class Turning:
             rows = zip(*(self._answer(column) for column in zip(*matrix)))
             return [[fixed(factor * x) for x in row] for row in rows]
         self._constant = [fixed(U * U * x) for x in self._answer(constant)]
+        self._twist = [fixed(U * U * x) for x in self._answer(twist)] if given.stiffness else None
+        self._axis = [fixed(x) for x in given.axis or ZERO]
         self._damping = answered(damping, U) if any(x for row in damping for x in row) else None
         self._pull = [answered(matrix, U * U) for matrix in columns]
         i1, i2, i3 = given.moments
@@ -173,7 +185,8 @@ class Turning:
         half = bits + 1
         series = [[x] for x in state]
         qx, qy, qz, qw, *omega = series[:7]
-        directions = [series[k:k + 3] for k in range(7, len(series), 3)]
+        directions = [series[k:k + 3] for k in range(7, len(series) - 1, 3)]
+        angle = series[-1]
         lag = [[], [], []]                          # u
         back, turn = [[], [], []], [[], [], []]     # omega and omega + u, newest coefficient first
 
@@ -209,6 +222,8 @@ class Turning:
                     x, y, z = vector[0][k], vector[1][k], vector[2][k]
                     rates = [rate + a * x + b * y + c * z
                              for rate, (a, b, c) in zip(rates, matrix)]
+            if self._twist:
+                rates = [rate + a * angle[k] for rate, a in zip(rates, self._twist)]
             b1, b2, b3 = turn
             new = [(times(qw, b1) + times(qy, b3) - times(qz, b2)) // n >> half,
                    (times(qw, b2) + times(qz, b1) - times(qx, b3)) // n >> half,
@@ -221,6 +236,7 @@ class Turning:
                     (times(z, b1) - times(x, b3)) // n >> bits,
                     (times(x, b2) - times(y, b1)) // n >> bits,
                 ]
+            new.append(sum(a * rate[k] for a, rate in zip(self._axis, omega)) // n >> bits)
             for coefficients, x in zip(series, new):
                 coefficients.append(x)
         return series

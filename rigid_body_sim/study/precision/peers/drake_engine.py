@@ -117,6 +117,7 @@ def _joined(plant, turning, scene, numbers):
         FixedOffsetFrame,
         QuaternionFloatingJoint,
         RevoluteJoint,
+        RevoluteSpring,
     )
     world, frame = plant.world_frame(), turning.body_frame()
     if isinstance(numbers, pendulum.Pendulum):
@@ -127,6 +128,8 @@ def _joined(plant, turning, scene, numbers):
             'base', world, RigidTransform(turn, turn.matrix() @ through)))
         joint = plant.AddJoint(RevoluteJoint('hinge', base, held, numbers.axis, numbers.friction))
         plant.AddJointActuator('motor', joint)
+        if numbers.stiffness:
+            plant.AddForceElement(RevoluteSpring(joint, numbers.slack, numbers.stiffness))
         return joint
     if isinstance(numbers, ball.Ball):
         friction = CoulombFriction(numbers.mu, numbers.mu)

@@ -99,9 +99,10 @@ def _rolling(numbers, tolerance, _):
 def swinging(numbers, number, phi, rate):
     """Return the right-hand sides of a pendulum, without terms that are zero."""
     import heyoka
-    a, b, k, d = numbers.numbers.astype(number)
+    a, b, k, d, s = numbers.numbers.astype(number)
     parts = [c * e
-             for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate)) if c != 0.0]
+             for c, e in ((a, heyoka.cos(phi)), (b, heyoka.sin(phi)), (-d, rate), (-s, phi))
+             if c != 0.0]
     right = sum(parts[1:], parts[0]) if parts else 0.0 * rate
     return [rate, right + k if k else right]
 

@@ -12,7 +12,8 @@ from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'MuJoCo'
-SCENE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" \
+SCENE = """<mujoco><compiler angle="radian"/>\
+<option integrator="{integrator}" timestep="{step!r}" \
 gravity="0 0 {gravity!r}" cone="elliptic">
 <flag contact="{contact}"/></option><worldbody>{table}
 <body pos="{origin}" quat="{attitude}">{joint}\
@@ -59,7 +60,8 @@ def _text(scene, numbers, integrator, step):
     if kind == 'hinge':
         attitude = numbers.orientation
         joint = (f'<joint type="hinge" axis="{_spaced(numbers.axis)}" '
-                 f'pos="{_spaced(scene.constraint.through)}" damping="{numbers.friction!r}"/>')
+                 f'pos="{_spaced(scene.constraint.through)}" damping="{numbers.friction!r}" '
+                 f'stiffness="{numbers.stiffness!r}" springref="{numbers.slack!r}"/>')
     elif kind == 'table':
         origin, table, shape = (
             (0.0, 0.0, numbers.radius),

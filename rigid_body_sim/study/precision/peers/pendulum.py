@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A hinged body as a peer's user writes it down: one angle phi.
 
-phi'' = a cos phi + b sin phi + k - d phi'.
+phi'' = a cos phi + b sin phi + k - d phi' - s phi.
 """
 
 import math
@@ -11,6 +11,7 @@ import numba
 import numpy as np
 
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
+from rigid_body_sim.study.precision import inputs
 from rigid_body_sim.study.precision.peers import start
 
 
@@ -22,11 +23,13 @@ class Pendulum:
     ----------
     axis : array (3,)
         Direction of the hinge, body axes, unit length.
-    numbers : array (4,)
-        a, b, k (rad/s^2) and d (1/s) in 80-bit numbers, because their rounding matters near a
-        separatrix.
-    torque, friction : float
-        I k (N m), I d (N m s).
+    numbers : array (5,)
+        a, b, k (rad/s^2), d (1/s) and s (1/s^2) in 80-bit numbers, because their rounding
+        matters near a separatrix.
+    torque, friction, stiffness : float
+        I k (N m) without the pull of the spring at phi = 0, I d (N m s), I s (N m/rad).
+    slack : float
+        The phi at which the spring pulls nothing, rad.
     orientation : tuple
         q at phi = 0.
     start : array (2,)
@@ -37,6 +40,8 @@ class Pendulum:
     numbers: np.ndarray
     torque: float
     friction: float
+    stiffness: float
+    slack: float
     orientation: tuple
     start: np.ndarray
 
@@ -65,14 +70,17 @@ def of(scene):
         if effect.name == 'torque':
             torque += (axis @ effect.values[0] if effect.frame == 'body'
                        else np.dot(rotate(*q, *axis.astype(float)), effect.values[0]))
+    stiffness, slack, damping = map(long, map(float, inputs.torsion(scene, inputs.exactly)))
+    friction += damping
     numbers = (np.array([weight * (axis @ np.cross(up, out)),
-                         weight * (axis @ np.cross(up, np.cross(axis, out))), torque, friction])
-               / moment)
-    return Pendulum(axis.astype(float), numbers, float(torque), float(friction), q,
-                    np.array([0.0, np.dot(constraint.axis, omega)]))
+                         weight * (axis @ np.cross(up, np.cross(axis, out))),
+                         torque + stiffness * slack, friction, stiffness]) / moment)
+    return Pendulum(axis.astype(float), numbers, float(torque), float(friction), float(stiffness),
+                    float(slack), q, np.array([0.0, np.dot(constraint.axis, omega)]))
 
 
 @numba.njit(cache=True)
 def rates(p, phi, rate):
     """Return the rates of phi and phi' for p = Pendulum.numbers."""
-    return rate, p[0] * math.cos(phi) + p[1] * math.sin(phi) + p[2] - p[3] * rate
+    return (rate,
+            p[0] * math.cos(phi) + p[1] * math.sin(phi) + p[2] - p[3] * rate - p[4] * phi)

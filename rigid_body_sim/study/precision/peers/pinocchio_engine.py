@@ -72,7 +72,8 @@ def _swinging(scene, numbers, step_of, step):
         scene.body.about_center.matrix)
 
     def rate(q, v):
-        return pinocchio.aba(model, data, q, v, numbers.torque - numbers.friction * v)
+        pull = numbers.stiffness * (numbers.slack - q)
+        return pinocchio.aba(model, data, q, v, numbers.torque + pull - numbers.friction * v)
     return _looped(pinocchio, model, rate, numbers.start[:1], numbers.start[1:], step_of, step,
                    lambda q, v: numbers.state((q[0], v[0])))
 

@@ -134,12 +134,14 @@ def _swinging(scene, numbers, step):
     engine.setJointMotorControl2(one, 0, engine.VELOCITY_CONTROL, force=0.0, **world)
 
     def push():
-        torque = numbers.torque - numbers.friction * engine.getJointState(one, 0, **world)[1]
+        angle, rate = engine.getJointState(one, 0, **world)[:2]
+        torque = (numbers.torque + numbers.stiffness * (numbers.slack - angle)
+                  - numbers.friction * rate)
         engine.setJointMotorControl2(one, 0, engine.TORQUE_CONTROL, force=torque, **world)
 
     return _stepping(engine, world, step,
                      lambda: engine.resetJointState(one, 0, 0.0, float(numbers.start[1]), **world),
-                     push if numbers.torque or numbers.friction else None,
+                     push if numbers.torque or numbers.friction or numbers.stiffness else None,
                      lambda: numbers.state(engine.getJointState(one, 0, **world)[:2]))
 
 
