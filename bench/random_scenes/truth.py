@@ -79,8 +79,8 @@ class Truth:
         if self.axis is not None:
             out[:, 4:7] = ((torque @ self.axis) / self.about)[:, None] * self.axis
         else:
-            m = times(self.I, w)
-            out[:, 4:7] = times(self.inverse, torque + cross(m, w + turning))
+            out[:, 4:7] = times(self.inverse, torque + self._gyroscopic(w)
+                                + cross(times(self.I, w), turning + 0 * w))
         rate = w + turning
         x, s = q[:, :3], q[:, 3:]
         out[:, :3] = (s * rate + cross(x, rate)) / 2
@@ -88,6 +88,18 @@ class Truth:
         out[:, 7:10] = force / self.mass if moves else 0
         out[:, 10:] = v if moves else 0
         return out
+
+    def _gyroscopic(self, w):
+        """Return m x omega of the principal axes by differences of moments, else as it stands.
+
+        In slim bodies m x omega is a small difference of large numbers.
+        """
+        moments = np.diagonal(self.I, axis1=1, axis2=2)
+        if np.count_nonzero(self.I) > np.count_nonzero(moments):
+            return cross(times(self.I, w), w)
+        I1, I2, I3 = moments.T
+        x, y, z = w.T
+        return np.stack(((I2 - I3) * y * z, (I3 - I1) * z * x, (I1 - I2) * x * y), axis=1)
 
     def to(self, time):
         """Go on to a time, with the jumps on the way."""
