@@ -30,7 +30,8 @@ SETTLED = 10.0
 MINUTE = 60.0
 CAMERA = {'type': 'ViewerCameraMessage', 'wxyz': (1.0, 0.0, 0.0, 0.0),
           'position': (2.2, -3.2, 1.7), 'fov': 0.7, 'near': 0.01, 'far': 1000.0,
-          'image_height': 900, 'image_width': 1400, 'look_at': (0.0, 0.0, 0.0), 'up_direction': (0.0, 0.0, 1.0)}
+          'image_height': 900, 'image_width': 1400, 'look_at': (0.0, 0.0, 0.0),
+          'up_direction': (0.0, 0.0, 1.0)}
 """What a browser sends once it draws: the motion waits for it."""
 SCENES = ('tennis_racket', 'heavy_top', 'rolling_disk', 'kater_pendulum')
 
