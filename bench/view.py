@@ -21,12 +21,18 @@ import subprocess
 import sys
 import time
 
+import msgspec
 import viser
 import websockets
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SETTLED = 10.0
 MINUTE = 60.0
+CAMERA = {'type': 'ViewerCameraMessage', 'wxyz': (1.0, 0.0, 0.0, 0.0),
+          'position': (2.2, -3.2, 1.7), 'fov': 0.7, 'near': 0.01, 'far': 1000.0,
+          'image_height': 900, 'image_width': 1400, 'look_at': (0.0, 0.0, 0.0),
+          'up_direction': (0.0, 0.0, 1.0)}
+"""What a browser sends once it draws: the motion waits for it."""
 SCENES = ('tennis_racket', 'heavy_top', 'rolling_disk', 'kater_pendulum')
 
 
@@ -55,6 +61,7 @@ async def watch(address, pid, seconds):
             address.replace('http', 'ws'), subprotocols=[f'viser-v{viser.__version__}'],
             max_size=None, origin=address.rstrip('/')) as socket:
         size = len(await socket.recv())
+        await socket.send(msgspec.msgpack.encode(CAMERA))
         began, before, half, marks, curve = time.monotonic(), None, None, 0, []
         while True:
             size += len(await socket.recv())
