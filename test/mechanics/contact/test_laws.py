@@ -8,6 +8,7 @@ import pytest
 
 from rigid_body_sim.mechanics.contact.laws import (
     System,
+    _patch_turn,
     departure,
     impulse,
     slipping,
@@ -128,3 +129,20 @@ def test_a_blow_straight_down_with_no_slip_before_it_guesses_by_what_would_stick
     assert slip > 0.0
     assert math.hypot(J[0], J[1]) == pytest.approx(0.05 * J[2])
     assert after[:2] * 0.05 * J[2] == pytest.approx(-np.array(J[:2]) * slip, abs=1e-13)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_direction_is_turned_by_what_its_slopes_ask_for_up_to_the_most(seed):
+    """Newton's step across d solves the two by two slopes; a longer one keeps its direction."""
+    draw = np.random.default_rng(seed)
+    first, second, d = np.linalg.qr(draw.normal(size=(3, 3)))[0]
+    slopes, wanted = draw.normal(size=(2, 2)), draw.normal(size=2)
+    step = np.linalg.solve(slopes, wanted)
+    for most in (1e9, 0.3 * np.hypot(*step)):
+        found, size = _patch_turn(tuple(d), tuple(first), tuple(second), tuple(slopes.ravel()),
+                                  *wanted, most)
+        assert size == pytest.approx(np.hypot(*step), rel=1e-12)
+        kept = step * min(1.0, most / np.hypot(*step))
+        turned = np.array(found) / np.dot(found, d)
+        assert [np.dot(turned, first), np.dot(turned, second)] == pytest.approx(kept, rel=1e-11)
+        assert np.dot(found, found) == pytest.approx(1.0, abs=1e-15)
