@@ -576,3 +576,29 @@ def test_what_stays_out_is_refused_in_one_line(body, effects, initial, table, wo
 def test_a_step_is_refused():
     with pytest.raises(BadInput, match='accuracy'):
         Simulation(scene(BALL, 'sliding_friction: {mu: 0.1}', '{}'), 'dop8', step=1e-3)
+
+
+# -- a disk on its face -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(('constraint', 'mu', 'velocity', 'slides'), [
+    ('table', 0.3, 0.0, False), ('table', 0.3, 1e-3, False), ('table', '.inf', 0.0, False),
+    ('table', 0.05, 2.0, True), ('table', 0.0, 1e-3, True),
+    ('{table: {normal: [0.35, 0, 1]}}', 0.2, 0.0, True),
+    ('{table: {normal: [0.1, 0, 1]}}', 0.3, 0.0, False)])
+def test_a_disk_that_falls_on_its_face_rests_or_the_run_ends(constraint, mu, velocity, slides):
+    """It once stood still at once, however fast it slid and however steep the plane was."""
+    scene = parse_scene(
+        'scene: disk\nbody: {mass: 0.0075, shape: {disk: {radius: 0.012}}}\n'
+        f'constraint: {constraint}\neffects: [gravity: {{g: 9.81}}, '
+        f'sliding_friction: {{mu: {mu}}}, rolling_friction: {{viscous: 1.0e-4}}]\n'
+        f'initial: {{euler_zyz: [0, 0.05, 0], velocity: [{velocity}, 0, 0]}}\n')
+    sim = Simulation(scene, 'dop8', 1e-6)
+    if not slides:
+        sim.advance(100)
+        assert [event.name for event in sim.events][-1] == 'rest'
+        assert not sim.state.vector[11:].any()
+        return
+    with pytest.raises(NotConverged, match='lies flat and goes on sliding on its face') as error:
+        sim.advance(100)
+    assert len(str(error.value).splitlines()) == 1

@@ -234,6 +234,7 @@ def test_a_kink_of_what_acts_is_resolved_however_small_it_is():
     assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-14)    # 0
 
 
+@pytest.mark.without_numba
 def test_a_coarse_tolerance_that_is_fine_enough_leaves_the_ledger_as_fine_as_was_asked():
     """Slow torques: gauss16 meets 1e-11 with a tolerance of 0.1, whose own jumps are no bound."""
     scene = parse_scene(SLOW)

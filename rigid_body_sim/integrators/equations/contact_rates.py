@@ -77,6 +77,7 @@ applied = UNBOUND
 
 ROUNDING = 2.0 ** -50    # of a normal velocity, beside the speeds
 SLOW = 1e-13             # share of the speeds below which a body does not roll
+SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
 SHORT = 1e-6             # time of a difference, over that in which the body moves by its size
 ZERO = (0.0, 0.0, 0.0)
 
@@ -403,3 +404,23 @@ def stays(p, y):
     at = posture(c, now.q, now.omega)
     acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
     return holds_still(c, at, acts.force, acts.couple)
+
+
+@compiled
+def slides_on(p, y):
+    """Return whether a body that has come down on its face, a disk, goes on sliding there.
+
+    Friction stops one that does not within SLID of its radius, where the plane holds it at all.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    if c.kind != TORUS or c.size[1] != 0.0:
+        return False
+    at = posture(c, now.q, now.omega)
+    held = scaled(-1.0, _applied(p, c, now, at, ZERO, ZERO, 0.0).force)
+    v = apply(at.axes, cross(at.r, now.omega))
+    if c.mode != ROLLING:
+        v = plus(v, (now.u[0], now.u[1], 0.0))
+    radius = c.size[0]
+    speed = hypot(v[0], v[1]) + abs(dot(at.axes[2], now.omega)) * radius
+    braking = c.mu * held[2] - hypot(held[0], held[1])
+    return not c.mass * speed * speed <= 2.0 * SLID * radius * braking

@@ -64,6 +64,8 @@ PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
+SLIDES = ('at t = {} s the disk lies flat and goes on sliding on its face, which is not solved: a '
+          'body touches the plane at one point; more friction or a level plane lets it rest')
 HELD = (': dry rolling friction holds a body there that still slides or spins, which is not '
         'solved; viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
@@ -249,6 +251,9 @@ class PlaneCourse:
         if not self._bound.rates.stays(p, y):
             pause(p, y)
             self._open(int(p[MODE]), p, y)
+            return
+        if self._bound.rates.slides_on(p, y):
+            self._end(y, SLIDES)
             return
         halt(p, y)
         self._events.append((time, 'rest', {}))
