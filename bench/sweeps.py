@@ -83,7 +83,7 @@ def dask():
     import distributed
 
     scene = load_scene('tennis_racket')
-    wide = 3000
+    wide = 6000
     spec = grid(scene, 0.01, wide, 10.0, [{'minimum': 'cos_tilt'}])
     clock, busy = {}, {}
     for workers in (1, 2):
