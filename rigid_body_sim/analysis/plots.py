@@ -95,10 +95,12 @@ def space(one):
         set_label(label)
     # said here: margins that matplotlib chooses differ between its versions
     shown = np.concatenate([one.path, *(net.reshape(-1, 3) for net in one.surfaces.values())])
-    least, most = np.nanmin(shown, axis=0), np.nanmax(shown, axis=0)
-    margin = MARGIN * (np.max(most - least) or 1.0)
-    axes.set(**{f'{name}lim': bounds for name, bounds in zip(
-        'xyz', zip(least - margin, most + margin, strict=True), strict=True)})
+    shown = shown[np.isfinite(shown).all(axis=1)]
+    if len(shown):
+        least, most = shown.min(axis=0), shown.max(axis=0)
+        margin = MARGIN * (np.max(most - least) or 1.0)
+        axes.set(**{f'{name}lim': bounds for name, bounds in zip(
+            'xyz', zip(least - margin, most + margin, strict=True), strict=True)})
     axes.set_aspect('equal')
     figure.colorbar(points, ax=axes, shrink=0.6, label='time since the first tick (s)')
     if one.surfaces:

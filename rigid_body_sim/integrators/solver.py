@@ -72,8 +72,8 @@ class Stepped:
     most : int, optional
         Steps between two times asked for, after which a march gives up (marching/work.py).
     wanted : float, optional
-        Relative error that the ledger may have at most, where `accuracy` is a tolerance that was
-        found to be fine enough for it; by default the accuracy itself.
+        Relative error that the ledger may have, where `accuracy` is a coarser tolerance that was
+        found to be fine enough for it; by default the accuracy alone bounds it.
 
     Raises
     ------

@@ -27,8 +27,8 @@ TAIL = COUNT - FIRST_TAIL
 LOST, ENERGY, MOMENTUM = ENTRIES_SIZE, 2 * ENTRIES_SIZE, 2 * ENTRIES_SIZE + 1
 SUMS = 2 * ENTRIES_SIZE + 2
 ROUNDING = 2.0 ** -54    # share of a size: a smaller error is rounding
-SEEN = 2.0 ** -40       # share of an integrand: c_14 and c_15 that are smaller are rounding
-SMOOTH = 2.0 ** -42     # the same in a panel twice as long
+SEEN = 2.0 ** -40        # share of an integrand: c_14 and c_15 that are smaller are rounding
+SMOOTH = 2.0 ** -42      # the same in a panel twice as long
 FITS = 2.0 ** -20        # share of an integrand: how well its value at the beginning fits
 TURNED = 12.0            # rad: the largest turn of the body in a panel
 # advice on a panel's length

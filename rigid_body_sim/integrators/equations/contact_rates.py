@@ -417,10 +417,7 @@ def slides_on(p, y):
         return False
     at = posture(c, now.q, now.omega)
     held = scaled(-1.0, _applied(p, c, now, at, ZERO, ZERO, 0.0).force)
-    v = apply(at.axes, cross(at.r, now.omega))
-    if c.mode != ROLLING:
-        v = plus(v, (now.u[0], now.u[1], 0.0))
-    radius = c.size[0]
+    v, radius = _centre(c, now, at), c.size[0]
     speed = hypot(v[0], v[1]) + abs(dot(at.axes[2], now.omega)) * radius
     braking = c.mu * held[2] - hypot(held[0], held[1])
     return not c.mass * speed * speed <= 2.0 * SLID * radius * braking
