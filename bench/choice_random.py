@@ -17,7 +17,7 @@ full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates
 The floor is what half an ulp on each number of the start does, by finite differences of the truth.
 The error is the largest at 24 times. Scenes with expressions run in plain Python, in a process of
 their own: their kernels would take longer to compile than to run, and the bits are the same. With
---keep a run that was stopped goes on where it was. Exit 1 unless on every scene
+--keep a run that was stopped resumes. Exit 1 unless on every scene
 
     the error is at most max(asked, 3 floor),
     the expected error is within a factor of 3 of max(error, floor), or says that nothing is known
@@ -112,7 +112,7 @@ def _kept(path, seed):
 
 
 def _told(options, results, seconds):
-    """Print what the verdicts are together; return the exit status."""
+    """Print a summary of the verdicts; return the exit status."""
     numbers = range(options.first, options.first + options.count)
     whole = [results[number] for number in numbers if len(results.get(number, ())) > 1]
     for rows in zip(*whole, strict=True):

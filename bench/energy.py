@@ -6,8 +6,8 @@
 An asymmetric heavy top runs by split4 with steps of 5e-4 s; the energy is formed at a thousand
 states, as a share of the largest of |kinetic| and |potential|. The figures are the largest
 residual, the rise of a straight line fitted to it over the run, and the largest residual of L_z,
-which gravity conserves too, as a share of |L|. The exit status is 1 if the compensated energy
-leaves 1e-14 or its line rises by a tenth of that.
+which gravity conserves too, as a share of |L|. The exit status is 1 if the residual of the
+compensated energy exceeds 1e-14 or its line rises by a tenth of that.
 """
 
 import argparse

@@ -56,7 +56,7 @@ window.FOXGLOVE_STUDIO_VERSION = '1.48.0';</script>
 
 
 class Ranges(http.server.SimpleHTTPRequestHandler):
-    """Serves files and parts of them, which a recording is read by."""
+    """Serves files and parts of files; a recording is read in parts."""
 
     def log_message(self, *_):
         """Say nothing."""

@@ -32,7 +32,7 @@ CASES = 'rolling_disk', 'routh_sphere', 'tippe_top'
 LIMIT = 2.5      # s
 STICKY = 1e3
 STEPS = 2e-3, 1e-3, 5e-4, 1e-4, 5e-5, 1e-5
-THICK = 2e-4     # of a disk, share of its radius
+THICK = 2e-4     # half the thickness of a disk over its radius
 
 
 class Body:

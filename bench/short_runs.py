@@ -33,7 +33,7 @@ from rigid_body_sim.scene.scene import parse_scene
 
 GOALS = (1e-3, 1e-6, 1e-9, 1e-12)
 DURATIONS = (0.1, 1.0, 5.0)
-REPEATS, SAMPLE = 15, 3e-4    # a sample takes so many seconds at least
+REPEATS, SAMPLE = 15, 3e-4    # a sample takes at least so many seconds
 OURS = ('taylor', 'gauss16', 'dop8')
 TOLERANCES = 10.0 ** -np.arange(1.0, 15.0)
 LEAST_STEPS, MOST_STEPS = 1, 2 ** 17

@@ -43,7 +43,7 @@ STILL = Wrench()
 PLANES = json.loads(
     (pathlib.Path(__file__).parents[1] / 'test/data/plane_scenes.json').read_text())
 INVERSION = 'tippe_top', 1e-9, 5e-3
-"""The scene on a plane that a time is aimed at for, the accuracy, and the CPU time, s."""
+"""The goal on a plane: the scene, the accuracy, and the CPU time, s."""
 
 
 def _drawn_top(seed):

@@ -4,8 +4,8 @@
     .venv/bin/python bench/sweeps.py [--only overhead dask heyoka] [--runs 1e8 --store FOLDER]
 
 `overhead` compares CPU seconds of all threads, which other work on the machine disturbs less than
-the clock; both sides make their starts. `--runs` sweeps so many runs of a racket in closed form
-into a store and tells the time and the largest memory of this process.
+the clock; both sides make their starts. `--runs` sweeps that many runs of a racket in closed form
+into a store and prints the time and the largest memory of this process.
 """
 
 import argparse
@@ -22,7 +22,9 @@ import numpy as np
 from rigid_body_sim import ensemble, load_scene, parse_scene, sweep
 from rigid_body_sim.numerics.rotations import angle_between, multiply
 
-REPEATS, GOAL = 9, 1e-9
+GOAL = 1e-9
+REPEATS = 9
+TURNS, PATIENCE = 41, 3_000_000    # turns at most, and states of all of them
 KEYS = ('initial.angular_velocity.0', 'initial.angular_velocity.2')
 CASE = 'top 1'
 PARTS = ('overhead', 'dask', 'heyoka')
@@ -66,7 +68,7 @@ def overhead():
         spent = [[], []]
         for act in both:
             act()
-        for _ in range(REPEATS):
+        for _ in range(max(REPEATS, min(TURNS, PATIENCE // (count * len(times))))):
             for values, act in zip(spent, both, strict=True):
                 begin = time.process_time()
                 act()
@@ -186,7 +188,7 @@ def beside_heyoka():
 
 
 def many(runs, folder):
-    """Sweep a grid of so many runs into a store; print time, memory, size."""
+    """Sweep a grid of that many runs into a store; print time, memory, size."""
     wide = round(runs**0.5)
     store = pathlib.Path(folder) / 'many.zarr'
     shutil.rmtree(store, ignore_errors=True)

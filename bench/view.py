@@ -4,10 +4,10 @@
     .venv/bin/python bench/view.py [--scenes heavy_top kater_pendulum] [--seconds 20] [--json]
 
 A client on the page's websocket takes what a browser would take, and draws nothing. CPU is in
-percent of one core, of the process that serves the page and of the one that simulates; pictures
-are the messages that bring one, a second, and ms/picture is the CPU time of both for one of them,
-which other load on the machine changes little; growth is that of the resident memory of both from
-ten seconds after the first picture (or a tenth of the time) on, and in the second half; a long run
+percent of one core, of the process that serves the page and of the one that simulates. Pictures
+are counted by the second, and ms/picture is the CPU time of both processes for one of them, which
+other load on the machine changes little. Growth is that of the resident memory of both from ten
+seconds after the first picture (or a tenth of the time) on, and in the second half. A long run
 prints the memory of each minute. The goals are 60 pictures a second, 20 % of a core (3.3 ms a
 picture), and no growth in an hour (--seconds 3600).
 """

@@ -9,7 +9,7 @@ def landing(run):
 
     Parameters
     ----------
-    run : rigid_body_sim.sweeps.runs.Run
+    run : rigid_body_sim.sweeps.functions.Run
 
     Returns
     -------

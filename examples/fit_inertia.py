@@ -26,7 +26,7 @@ initial: {angular_velocity: [0.4, 1.5, 0.7]}
 TRUE = np.array([1.4, 2.1, 0.4, 1.5, 0.7])
 GUESS = np.array([1.3, 1.9, 0.5, 1.4, 0.8])
 NAMES = ('I2/I1', 'I3/I1', 'w1 (rad/s)', 'w2 (rad/s)', 'w3 (rad/s)')
-STEP = 1e-6    # of the central differences; their error is its square
+STEP = 1e-6    # step of the central differences; their error is its square
 
 
 def attitudes(scene, points, times):
@@ -65,8 +65,8 @@ def record(scene, times, noise, seed=1):
 def main():
     """Record, fit, compare."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--noise', type=float, default=1e-3, help='of the instrument, rad (1e-3)')
-    parser.add_argument('--seconds', type=float, default=20.0, help='of the recording (20)')
+    parser.add_argument('--noise', type=float, default=1e-3, help='noise, rad (1e-3)')
+    parser.add_argument('--seconds', type=float, default=20.0, help='duration (20)')
     options = parser.parse_args()
     scene = parse_scene(SCENE)
     times = np.linspace(0.0, options.seconds, 400)

@@ -6,9 +6,9 @@
     python test/cold.py                          # all files, hours of compiling; make test-cold
     python test/cold.py test/motions             # those below some folders
 
-As many files run at a time as there are cores. What passed is kept in .cache/cold.json and passed
-over by the next run, until an edit changes the file or a source of the package or the tests: a run
-that is ended goes on where it was. The table names the kernels that a file compiled; a file with
+As many files run at a time as there are cores. Files that passed are kept in .cache/cold.json, and
+the next run skips them until an edit changes the file or a source of the package or the tests; so
+a run that was interrupted resumes. The table names the kernels that a file compiled; a file with
 none does not depend on the cache.
 """
 

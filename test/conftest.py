@@ -38,37 +38,55 @@ def ros_domain(tmp_path, monkeypatch):
         yield domain
 
 
+SHARED = pytest.StashKey()
+"""Of a session: the folder that its workers share."""
+
+
+@pytest.fixture(scope='session', autouse=True)
+def shared(request, tmp_path_factory):
+    """Return the folder that the workers share."""
+    folder = tmp_path_factory.getbasetemp()
+    if 'PYTEST_XDIST_WORKER' in os.environ:
+        folder = folder.parent
+    request.session.stash[SHARED] = folder
+    return folder
+
+
+def done_once(folder, words, do):
+    """Return the text of do(), which only the first worker that asks for these words calls."""
+    name = hashlib.sha256('\0'.join(words).encode()).hexdigest()
+    kept = folder / f'{name}.json'
+    with open(folder / f'{name}.lock', 'w', encoding='utf-8') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            kept.write_text(do(), encoding='utf-8')
+    return kept.read_text(encoding='utf-8')
+
+
 @pytest.fixture(scope='session')
-def plain(tmp_path_factory):
+def plain(shared):
     """Return a function that runs a script of test/ in plain Python, and returns its JSON.
 
     Plain Python compiles nothing. Workers share what one of them has run.
     """
-    folder = tmp_path_factory.getbasetemp()
-    if 'PYTEST_XDIST_WORKER' in os.environ:
-        folder = folder.parent
     environment = os.environ | {'NUMBA_DISABLE_JIT': '1',
                                 'PYTHONPATH': os.pathsep.join((str(TEST.parent), str(TEST)))}
 
     def run(script, *arguments):
-        name = hashlib.sha256('\0'.join((script, *arguments)).encode()).hexdigest()
-        kept = folder / f'{name}.json'
-        with open(folder / f'{name}.lock', 'w', encoding='utf-8') as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            if not kept.exists():
-                done = subprocess.run(
-                    [sys.executable, '-W', 'ignore', TEST / script, *arguments],
-                    env=environment, capture_output=True, text=True, timeout=280)
-                assert done.returncode == 0, done.stderr
-                kept.write_text(done.stdout, encoding='utf-8')
-        return json.loads(kept.read_text(encoding='utf-8'))
+        def do():
+            done = subprocess.run(
+                [sys.executable, '-W', 'ignore', TEST / script, *arguments],
+                env=environment, capture_output=True, text=True, timeout=280)
+            assert done.returncode == 0, done.stderr
+            return done.stdout
+        return json.loads(done_once(shared, (script, *arguments), do))
     return run
 
 
 WITHOUT_NUMBA = pytest.StashKey()
-"""Of a session: what the tests that ran without numba came to, by name."""
+"""Of a session: the results of the tests that ran without numba, by name."""
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
-"""Variable with the file in which a process without numba leaves what its tests came to."""
+"""Variable with the path of the file in which a process without numba leaves its results."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -89,21 +107,28 @@ def pytest_pyfunc_call(pyfuncitem):
 
 
 def _without_numba(wanted):
-    """Return name -> what failed, '' if nothing, of a test and those like it later in its file.
+    """Return name -> what failed, '' if nothing, of the tests like it in the file of a test.
 
-    Those before it are another worker's.
+    Workers share what one of them has run.
     """
-    items = wanted.session.items
-    names = [item.nodeid for item in items[items.index(wanted):] if item.path == wanted.path
+    names = [item.nodeid for item in wanted.session.items if item.path == wanted.path
              and item.get_closest_marker('without_numba') is not None]
+    return json.loads(done_once(wanted.session.stash[SHARED], names,
+                                lambda: json.dumps(_run_without_numba(names, wanted.config))))
+
+
+def _run_without_numba(names, config):
+    """Run tests in a process that does not compile; return as `_without_numba` does."""
+    # it is no worker, and has folders of its own
+    environment = {key: value for key, value in os.environ.items() if 'XDIST' not in key}
     with tempfile.TemporaryDirectory() as folder:
         outcomes = pathlib.Path(folder) / 'outcomes'
         outcomes.touch()
         # the plugins of other packages take a second to import
         done = subprocess.run(
             [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '-p',
-             'pytest_timeout', *names], cwd=wanted.config.rootpath, capture_output=True,
-            text=True, timeout=280, env=os.environ | {
+             'pytest_timeout', *names], cwd=config.rootpath, capture_output=True,
+            text=True, timeout=280, env=environment | {
                 'NUMBA_DISABLE_JIT': '1', 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1',
                 OUTCOMES: str(outcomes)})
         found = [json.loads(line) for line in outcomes.read_text().splitlines()]
@@ -111,7 +136,7 @@ def _without_numba(wanted):
 
 
 def pytest_runtest_logreport(report):
-    """Leave what a test came to where another process asks for it."""
+    """Write the result of a test to a file if another process asks for it."""
     if OUTCOMES in os.environ and (report.failed or report.when == 'call'):
         with open(os.environ[OUTCOMES], 'a', encoding='utf-8') as file:
             file.write(json.dumps([report.nodeid, report.longreprtext if report.failed else ''])

@@ -5,10 +5,10 @@
 
     python test/covering.py test/mechanics test/scene    # each gets a file in .cache/covering
 
-coverage.py traces the lines (each test is a context of its own), and so are the digests of the
-table in study/machines. What a fixture of a module runs counts for each test that uses it, and
-what a bound template runs for the lines of the template. What other processes run is not seen.
-Where a file has been edited since, whatever ran any of its lines counts for all of them.
+coverage.py traces the lines; each test is a context of its own, and so is each digest of the table
+in study/machines. Lines that a fixture of a module runs count for each test that uses it, and
+lines of a bound template count as those of the template. Lines that other processes run are not
+seen. If a file has been edited since, each test that ran any of its lines counts for all of them.
 """
 
 import functools
@@ -28,9 +28,9 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDER = ROOT / '.cache' / 'covering'
 DIGEST = 'digest: '
-"""What the name of a context begins with that is a digest."""
+"""Beginning of the name of a context that is a digest."""
 LONGEST = 90    # s of a test that is noted
-PATIENCE = 60.0    # s, the least that a chosen test may take
+PATIENCE = 60.0    # s, the least time that a chosen test is given
 SHORT = 2.0     # CPU seconds of a test that passes, however busy the machine is
 
 
@@ -169,7 +169,8 @@ def _contexts(file):
 def covering(file, first, last):
     """Return name -> CPU seconds of the tests and digests that run a line of `first` to `last`.
 
-    If no test runs them, as what is run when a module is imported, it is all that run any line.
+    If no test runs them, because they run when the module is imported, it is all that run any
+    line.
     """
     lines, seconds, users = _contexts(file)
     found = set().union(*(lines.get(line, ()) for line in (0, *range(first, last + 1)))) - {''}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a picture was when it was looked at, kept beside the tests: nothing of it changes unseen.
+"""Pictures as they were when last looked at, kept beside the tests, so no change goes unseen.
 
 A picture is plain data here: what is drawn, with which colours, sizes and words. Arrays are kept
 by their shape, bounds, mean and a few samples. After a change that is meant::

@@ -7,14 +7,15 @@
     python test/machines.py ARM64 OpenBLAS   # those whose names begin with one of these words
     python test/machines.py --digests        # without the numeric tests, which take longest
 
-This machine stands for others by settings, which its libraries take from the environment; ARM64
-is emulated (Debian's qemu-user-static). On each one the digests are computed and compared with
-those kept in rigid_body_sim/simulation/digests.json, and a recording made here runs again to the
-bit; on some the numeric tests run as well. What a machine lacks is said, and is no failure.
+This machine stands for others by settings, which its libraries take from the environment; ARM64 is
+emulated (Debian's qemu-user-static). On each one the digests are computed and compared with those
+kept in rigid_body_sim/simulation/digests.json, and a recording made here runs again to the bit; on
+some the numeric tests run as well. If this machine cannot stand for another one, what it lacks is
+printed, and that is no failure.
 
-As many machines are visited at a time as there are cores. What is found is kept in
-docs/machines.json, a row a machine, from which docs/make_machines.py makes the table of the page;
-a visit to a few machines leaves the rows of the others.
+As many machines are visited at a time as there are cores. The results are kept in
+docs/machines.json, one row for each machine, from which docs/make_machines.py makes the table of
+the page; a visit to a few machines leaves the rows of the others.
 """
 
 import concurrent.futures
@@ -46,7 +47,7 @@ PLAIN = {'NUMBA_DISABLE_JIT': '1'}
 TESTS = ('test/numerics', 'test/motions', 'test/integrators/test_taylor.py',
          'test/integrators/test_batch.py', 'test/scene/test_bodies.py')
 PATIENCE = 4.0 * 3600.0    # s, for one run; a busy machine compiles slowly
-SHOWN = 10           # of what differs on one machine
+SHOWN = 10           # most differences shown of one machine
 
 
 class Unavailable(Exception):
@@ -217,7 +218,7 @@ def main(words):
     CACHE.mkdir(parents=True, exist_ok=True)
     recording = _record()
     wanted = _wanted([word for word in words if word != '--digests'])
-    # the first one compiles what those that differ in their libraries only find compiled
+    # the first one compiles the kernels that machines with other libraries then find in the cache
     rows = [_visited(one, recording) for one in wanted[:1]]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         rows += pool.map(lambda one: _visited(one, recording), wanted[1:])

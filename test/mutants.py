@@ -18,8 +18,8 @@ equivalent_mutants.yaml, and do not count. Exit status 1 if fewer than 95 % are 
 
 Why no library: mutmut (3.8) replaces each function by a switch between all its mutants, which
 neither numba nor compilation/templates.py, which rewrites sources, can take; Cosmic Ray (8.7) runs
-one test command for every mutant, and draws no sample. The drawing below takes fewer lines than
-either would to be led around these.
+one test command for every mutant, and draws no sample. The drawing below takes fewer lines than it
+would take to work around these limits.
 """
 
 import argparse
@@ -68,7 +68,7 @@ names = sorted(table, key=lambda name: hash(tuple(map(ord, name))))
 sys.exit(any({part: digests.digest(of) for part, of in table[name].run().items()} != kept[name]
              for name in names))
 """
-"""The same as the test DIGESTS, but that the first digest that differs ends it."""
+"""The same as the test DIGESTS, but it ends at the first digest that differs."""
 WIDER = {
     'compilation': (DIGESTS, 'test/numerics', 'test/motions'),
     'numerics': (DIGESTS, 'test/motions', 'test/theory'),
@@ -509,7 +509,7 @@ class Trial:
             self._trees.put(tree)
 
     def _passes(self, test, tree, compiled):
-        """Return whether a test, or some on lines, pass on what is not mutated."""
+        """Return whether a test, or some that run lines, pass on what is not mutated."""
         if test in covering.short():
             return True
         if test not in self._sound:

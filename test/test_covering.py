@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which test runs which line: what is noted is what chooses the tests of a mutant."""
+"""The notes of which test runs which line: by them the tests of a mutant are chosen."""
 
 import json
 

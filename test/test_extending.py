@@ -27,7 +27,7 @@ from rigid_body_sim.motions import MOTIONS
 from rigid_body_sim.motions.protocol import Motion
 from rigid_body_sim.numerics.rotations import angle_between, rotate
 from rigid_body_sim.scene import initial
-from rigid_body_sim.scene.constraints import CONSTRAINTS
+from rigid_body_sim.scene.constraints import CONSTRAINTS, Pivot
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects import EFFECTS as KNOWN
 from rigid_body_sim.scene.effects.gravity import Gravity
@@ -125,6 +125,19 @@ def test_the_check_finds_a_potential_of_the_wrong_sign(package):
         check_effect(Unbooked(moment, field))
     with pytest.raises(AssertionError, match='energy residual'):
         check_effect(Turned(moment, field))
+
+
+@pytest.mark.without_numba
+def test_a_force_on_a_held_body_is_refused_and_not_lost(package):
+    """A bearing would take it: the effect must give its torque."""
+    class Wind(of('paddle').Paddle):
+        def acting(self, frame, time):
+            one, = super().acting(frame, time)
+            return dataclasses.replace(one, gives='force'),
+
+    with pytest.raises(BadInput, match='paddle: gives a force, and a bearing holds the body; the '
+                                       'torque'):
+        check_effect(Wind(0.01), constraint=Pivot())
 
 
 @pytest.mark.without_numba
@@ -249,7 +262,7 @@ initial: {{euler_zyz: [0, 2.6, 0], rate: 1.0}}
         'known', 'mine')
     assert len(setting.holder_of(mine, 1.0)) == 1
     seen = [expectation(scene, scene.initial) for scene in (mine, known)]
-    assert type(seen[0]) is type(seen[1]) and seen[0] is not None
+    assert seen[0] is not None and seen[0].__class__ is seen[1].__class__
     assert predicted_lines(mine) == predicted_lines(known) != ()
 
 
@@ -323,5 +336,3 @@ def test_a_package_that_cannot_be_imported_is_refused_in_one_line(package):
         parse_scene(SPHERE, ['effects=[constant]'])
     with pytest.raises(BadInput, match="did you mean 'drag'"):
         parse_scene(SPHERE, ['effects=[drg: {}]'])
-
-

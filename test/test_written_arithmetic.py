@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a scene to its states only arithmetic that has the same bits on every machine is written.
+"""From a scene to its states, sources use only arithmetic with the same bits on every machine.
 
 The sources are read, not run. What they may take from `math` and `numpy` is listed: operations
 that IEEE 754 rounds correctly, exact ones, and moves of data. Everything else needs a reason here.

@@ -9,7 +9,7 @@ import re
 import numpy as np
 
 TURNS = 60.0             # rad/s times s, at most: the truth takes a second for each hundred
-KINKED_TURNS = 4.0       # where kinks are to be located, in each copy of the start by itself
+KINKED_TURNS = 4.0       # with kinks, which are located for each copy of the start
 CONSTRAINTS = 'free', 'pivot', 'hinge', 'table'
 
 

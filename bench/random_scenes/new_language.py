@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random scenes of effects in the scene's own words alone: what came after the first six effects.
+"""Random scenes whose effects are in the scene's own words: those added after the first six.
 
 Forces, torques and potentials in expressions, springs, rotors, magnets, gravity gradients (in
 place and on an orbit), shaped drag, gravity as a vector, friction of a hinge, internal dissipation

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The truth of a scene: Newton's and Euler's equations in body axes, with 64-bit mantissas.
 
-They have the full tensor, and go by extrapolation. The floor is what half an ulp on each number of
-the start does, by finite differences.
+They use the full tensor and are integrated by extrapolation. The floor is what half an ulp on each
+number of the start does, by finite differences.
 """
 
 import math
@@ -14,7 +14,7 @@ from random_scenes.wide import WIDE, angle, back, cross, inverse, rotated, times
 
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
 LINEAR = 0.1             # rad
-LEVELS = 9               # of the extrapolation
+LEVELS = 9               # levels of the extrapolation
 
 
 class Truth:

@@ -5,6 +5,7 @@ The shape is the one that reports and the browser view show. A scene with a bare
 the box of equal inertia stands for it.
 """
 
+import re
 import types
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LightSource, to_rgb
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 from scipy.spatial.transform import Rotation
 
 from figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
@@ -84,9 +86,9 @@ BODIES = {
     'free_body': Labelled('free_body'),
     'symmetric_top': Labelled('symmetric_top'),
     'chandler_wobble': Labelled('chandler_wobble', axes='13'),
-    'asymmetric_top': Labelled('asymmetric_top', axes='12'),
-    'tennis_racket': Labelled('tennis_racket', axes='13'),
-    'major_axis_relaxation': Labelled('major_axis_relaxation', axes='23'),
+    'asymmetric_top': Labelled('asymmetric_top'),
+    'tennis_racket': Labelled('tennis_racket'),
+    'major_axis_relaxation': Labelled('major_axis_relaxation'),
     'euler_angles': Labelled('heavy_top', ('initial.euler_zyz=[0.7, 0.5, 0.4]',), **TOP),
     'heavy_top': Labelled('heavy_top', **TOP),
     'steady_precession': Labelled('steady_precession', **TOP),
@@ -126,10 +128,13 @@ def draw(name):
     figure = Figure(figsize=(3.6, 3.2), dpi=100)
     FigureCanvasAgg(figure)
     axes = figure.add_axes([-0.1, -0.1, 1.2, 1.2], projection='3d', computed_zorder=False)
-    seen = [world(drawing.vertices)]
+    seen, drawn, labels = [world(drawing.vertices)], [], []
 
-    def arrow(start, vector, *style):
-        _arrow(axes, start, vector, *style)
+    def arrow(start, vector, text, color, width=2.0, head=0.13):
+        axes.quiver(*start, *vector, color=color, linewidth=width, arrow_length_ratio=head,
+                    zorder=6)
+        labels.append((text, start + vector, color))
+        drawn.append((start, start + vector))
         seen.append([start, start + 1.2 * vector])
 
     omega, named = scene.initial.angular_velocity, 'ω'
@@ -147,8 +152,7 @@ def draw(name):
         vector = turn.apply(direction)
         if about.inwards:
             start = world(at) + vector
-            axes.text(*(start + 0.12 * vector), text, color=GREEN, fontsize=12, zorder=9,
-                      ha='right')
+            labels.append((text, start, GREEN))
             arrow(start, -vector, '', GREEN, 2.0, 0.25)
         else:
             arrow(world(at), vector, text, GREEN)
@@ -158,12 +162,13 @@ def draw(name):
     for text, point in about.points.items():
         seen.append([world(point)])
         axes.plot(*world(point), 'o', color=BLACK, markersize=4, zorder=8)
-        axes.text(*(world(point) + 0.06), text, fontsize=12, zorder=9)
+        labels.append((text, world(point), BLACK))
     for text, ends in about.lengths.items():
         first, last = (world(point) for point in ends)
         axes.plot(*np.transpose([first, last]), color=BLUE, linewidth=1.4, zorder=7,
                   marker='_', markersize=6)
-        axes.text(*(0.5 * (first + last) + 0.05), text, color=BLUE, fontsize=12, zorder=9)
+        labels.append((text, 0.5 * (first + last), BLUE))
+        drawn.append((first, last))
         seen.append([first, last])
     least, most = (function(np.concatenate(seen), axis=0) for function in (np.min, np.max))
     middles, half = 0.5 * (least + most), 0.5 * (most - least).max()
@@ -172,7 +177,44 @@ def draw(name):
     axes.set_box_aspect((1.0, 1.0, 1.0), zoom=1.0)
     axes.view_init(*about.view)
     axes.set_axis_off()
+    _label(axes, labels, drawn)
     return figure
+
+
+def _label(axes, labels, drawn):
+    """Write each label beside its point, in the direction that has the most room.
+
+    Parameters
+    ----------
+    axes : Axes3D
+        With its limits and view.
+    labels : list of (str, (3,) array, color)
+        What is written, beside which point.
+    drawn : list of ((3,) array, (3,) array)
+        The ends of the lines to keep away from.
+    """
+    axes.apply_aspect()
+    projection = axes.get_proj()
+
+    def pixels(point):
+        x, y, _ = proj_transform(*point, projection)
+        return axes.transData.transform((x, y))
+
+    share = np.linspace(0.0, 1.0, 40)[:, np.newaxis]
+    taken = [pixels(first) * (1.0 - share) + pixels(last) * share for first, last in drawn]
+    turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    for text, point, color in labels:
+        if not text:
+            continue
+        # half the size of a letter of 12 points is 7 pixels, and a label may have several
+        half = np.array([4.0 * len(re.sub(r'\$_(.)\$|[ ,]', r'\1', text)) + 3.0, 9.0])
+        places = pixels(point) + np.column_stack([np.cos(turns), np.sin(turns)]) * (half + 7.0)
+        near = [np.linalg.norm((np.concatenate(taken) - place) / half, axis=1).min()
+                for place in places]
+        place = places[int(np.argmax(near))]
+        axes.figure.text(*axes.figure.transFigure.inverted().transform(place), text, color=color,
+                         fontsize=12, ha='center', va='center', zorder=9)
+        taken.append(place + half * np.array([[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0]]))
 
 
 def _fill(axes, surface, vertices):
@@ -188,8 +230,3 @@ def _fill(axes, surface, vertices):
     axes.add_collection3d(Poly3DCollection(
         corners[kept], facecolors=np.column_stack([colors, np.full(len(colors), ALPHA)]),
         linewidths=0.0, zorder=1))
-
-
-def _arrow(axes, start, vector, text, color, width=2.0, head=0.13):
-    axes.quiver(*start, *vector, color=color, linewidth=width, arrow_length_ratio=head, zorder=6)
-    axes.text(*(start + 1.12 * vector), text, color=color, fontsize=12, zorder=9)

@@ -2,6 +2,8 @@
 """The map of config/sweeps/coin.yaml beside Keller's stripes, cos(2 omega u/g) = 0."""
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.patches import Patch
 
 from figures.style import label, panels
 from rigid_body_sim import sweep
@@ -25,7 +27,10 @@ def draw():
     for k in range(8):
         axes[0].plot(speed, (k + 0.5) * np.pi * G / (2.0 * speed), color='#D55E00', linewidth=0.8)
     axes[0].set_ylim(spin[0], spin[-1])
-    label(axes[0], 'speed of the toss u (m/s)', 'spin ω (rad/s)', legend=False)
+    sides = [Patch(color=colormaps['cividis'](share), label=name)
+             for share, name in ((1.0, 'heads (light)'), (0.0, 'tails (dark)'))]
+    label(axes[0], 'speed of the toss u (m/s)', 'spin ω (rad/s)', handles=sides, ncols=2,
+          loc='lower center', bbox_to_anchor=(0.5, 1.0), handlelength=1.0)
     row = int(np.argmin(np.abs(spin - SHOWN)))
     axes[1].plot(speed, predicted[:, row], color='#777777', linewidth=1.0, label='cos(2 ω u/g)')
     axes[1].plot(

@@ -31,7 +31,7 @@ def draw():
     axes[0].set_facecolor('#dddddd')
     figure.colorbar(shown, ax=axes[0], label='spin back in 12 s over that at the start')
     axes[0].plot(spin, needed, color='white', linestyle='--', linewidth=1.5,
-                 label='rocking grows for 12 s')
+                 label='rocking grows\nfor 12 s')
     axes[0].set_yscale('log')
     axes[0].set_ylim(pitch[0], pitch[-1])
     label(axes[0], 'spin at the start (rad/s)', 'pitch at the start (rad)', labelcolor='white',

@@ -40,7 +40,7 @@ def draw():
         'height of the centre of mass l (m)',
         'spin (rad/s)',
         labelcolor='white',
-        loc='lower right',
+        loc='upper left',
     )
     middle = len(height) // 2
     axes[1].plot(spin, predicted[middle], color='#777777', linewidth=1.0, label='formula')

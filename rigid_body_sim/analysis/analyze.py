@@ -18,7 +18,7 @@ from rigid_body_sim.recording.reader import Recording, newest_recording
 def analyze(path, folder, short=False, shared_page=None):
     """Analyse a recording.
 
-    Return (list of summaries, one a body; paths of what was written, the text first).
+    Return (list of summaries, one per body; paths of what was written, the text first).
 
     Parameters
     ----------

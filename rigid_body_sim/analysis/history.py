@@ -35,7 +35,7 @@ class Segment:
     Attributes
     ----------
     stamp : int
-        Of its first tick, ns.
+        Stamp of its first tick, ns.
     scene : Scene or None
         As it runs; None where it is not known.
     rate, pace : float

@@ -26,7 +26,7 @@ class Measured:
     ----------
     source : Source
     energy, momentum : Residual
-        Of the energy and of L^2.
+        Residuals of the energy and of L^2.
     angular_velocity : Curve
         Components in body axes, rad/s.
     punctuality : Punctuality

@@ -36,7 +36,7 @@ class Motion:
     euler : Curve
         z-y-z angles alpha, beta, gamma, rad.
     momentum : Residual or None
-        Of the angular momentum that the scene conserves, see `conserved`.
+        Residual of the angular momentum that the scene conserves, see `conserved`.
     slip : Curve or None
         Speed of the point of contact of a sphere on the table, m/s; from differences of
         neighbouring positions.

@@ -18,10 +18,12 @@ from rigid_body_sim.analysis import panels
 from rigid_body_sim.analysis.drift import FLOOR
 from rigid_body_sim.analysis.moving import ARROWS, TRACE, moving
 from rigid_body_sim.analysis.space import spaces
-from rigid_body_sim.analysis.summary import lines, title
+from rigid_body_sim.analysis.summary import counted, lines, title
 
 COLORS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7')
 DASHES = ('solid', 'dash', 'dashdot', 'dot')
+MARK = '#7C5CD6'    # of what happened: legible on light and on dark ground
+FLAT, AROUND = 1e-6, 0.2    # share of its size by which a flat curve changes, and is shown in
 MOST_MARKS = 500
 MOST_POINTS = 3000
 """Points of a curve; of a longer one each stretch shows its extremes."""
@@ -136,7 +138,7 @@ def _verdict(found, balance):
         if parts > 1:
             text += ' ' + _between(found)
     else:
-        text = 'Neither energy nor L² is constant in this scene.'
+        text = 'Energy and L² need not be constant in this scene.'
         if balance:
             residual = float(np.nanmax(np.abs(balance[1]['energy_residual'])))
             text += f' The ledger balances energy to {residual:.1e} (relative).'
@@ -150,7 +152,7 @@ def _verdict(found, balance):
                  f'measured, within {off:.1e}.')
     counts = [f'{count} x {html.escape(name)}' for name, count in found['events'].items()]
     counts += [f'{found["strikes"]} x strike'] if found['strikes'] else []
-    counts += [f'{found["commands"]} ticks with commands'] if found['commands'] else []
+    counts += [counted(found['commands'], 'tick', ' with commands')] if found['commands'] else []
     text += f' {", ".join(counts)}.' if counts else ''
     return f'<p class="verdict{"" if good else " bad"}">{text}</p>'
 
@@ -249,7 +251,8 @@ def _over_time(over_time, source):
     ]
     figure.add_trace(go.Scatter(
         x=[(mark.stamp - source.start) * 1e-9 for mark in marks], y=[mark.kind for mark in marks],
-        mode='markers', marker={'color': '#8a8f98', 'size': 8, 'symbol': 'line-ns-open'},
+        mode='markers', marker={'color': MARK, 'size': 12, 'symbol': 'line-ns',
+                                'line': {'color': MARK, 'width': 2}},
         text=texts, hovertemplate='%{text}<extra></extra>', showlegend=False), 1, 1)
     for row, panel in enumerate(over_time, 2):
         _add_panel(figure, row, panel)
@@ -276,12 +279,27 @@ def _add_panel(figure, row, panel):
     figure.update_yaxes(title_text=panel.label.replace('\n', '<br>'), title_font_size=11,
                         title_standoff=8, automargin=True, exponentformat='power', row=row, col=1,
                         type='log' if panel.log else 'linear')
+    figure.update_yaxes(range=_range(panel), row=row, col=1)
     if panel.band:
         figure.add_hrect(-panel.band, panel.band, fillcolor='#888888', opacity=0.25, line_width=0,
                          row=row, col=1)
     for name, begin, end in panel.spans:
         figure.add_vrect(begin, end, fillcolor='#E69F00', opacity=0.15, line_width=0,
                          annotation_text=name, annotation_position='top left', row=row, col=1)
+
+
+def _range(panel):
+    """Return the range of the axis of curves that stay where they are, else None.
+
+    plotly shows a constant from 1 below it to 1 above it, whatever its size.
+    """
+    values = np.concatenate([line.y for line in panel.lines])
+    values = values[np.isfinite(values)]
+    size = float(np.abs(values).max(initial=0.0))
+    if panel.log or panel.band or size == 0.0 or np.ptp(values) > FLAT * size:
+        return None
+    middle = 0.5 * float(values.min() + values.max())
+    return [middle - AROUND * size, middle + AROUND * size]
 
 
 def _in_space(space):

@@ -42,7 +42,7 @@ class Panel:
     log : bool
         Logarithmic y axis.
     limits : tuple of float, optional
-        Of the y axis.
+        Limits of the y axis.
     steps : bool
         A value holds up to the next x.
     band : float

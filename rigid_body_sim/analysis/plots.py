@@ -18,7 +18,7 @@ MARKS = {
     'parameters': ('s', COLORS[0]),
     'gap': ('x', BLACK),
 }
-MOST_MARKS = 500    # of each kind
+MOST_MARKS = 500    # most marks of a kind
 LEGEND = {
     'loc': 'center left',
     'bbox_to_anchor': (1.0, 0.5),

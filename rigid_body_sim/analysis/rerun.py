@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from rigid_body_sim.choice.trial import Settled
+from rigid_body_sim.choice.settling import Settled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.timeline import NANOSECONDS, Timeline
 from rigid_body_sim.recording.about import SIMULATION_PARAMETERS

@@ -27,7 +27,7 @@ EPS = float(np.finfo(float).eps)
 
 
 def resimulate(path, method=None):
-    """Run a recording again and compare; return a list of (Source, Rerun, Comparison), one a body.
+    """Run a recording again; return a list of (Source, Rerun, Comparison), one per body.
 
     Parameters
     ----------

@@ -127,13 +127,18 @@ def _others(found):
     others = [f'{count} x {name}' for name, count in found['events'].items() if name != 'flip']
     others += [f'{found["strikes"]} x strike'] if found['strikes'] else []
     return others + [
-        f'{found[kind]} {name}'
-        for kind, name in (
-            ('commands', 'ticks with commands'),
-            ('parameter_changes', 'changes of parameters'),
+        counted(found[kind], *names)
+        for kind, *names in (
+            ('commands', 'tick', ' with commands'),
+            ('parameter_changes', 'change', ' of parameters'),
         )
         if found[kind]
     ]
+
+
+def counted(number, noun, rest=''):
+    """Return a number with its noun, in the plural but for one."""
+    return f'{number} {noun}{"" if number == 1 else "s"}{rest}'
 
 
 def _late(timing):

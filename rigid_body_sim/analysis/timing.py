@@ -15,7 +15,7 @@ from rigid_body_sim.messages.timeline import NANOSECONDS
 SLEW = 5e-4                 # s per second: a clock that is slewed changes by no more
 STANDSTILL = 100_000_000    # ns; a node that is further behind slips (realtime/ticking.py)
 FEWEST = 20                 # fewest ticks in a group, which otherwise lasts a second
-BINS = 100_000              # of 1 us: up to STANDSTILL
+BINS = 100_000              # bins of 1 us, up to STANDSTILL
 
 
 class Punctuality:

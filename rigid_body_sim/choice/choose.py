@@ -2,7 +2,8 @@
 """The choice of the method that runs a scene.
 
 A motion that absorbs the scene solves it exactly. Otherwise `auto` takes the cheapest method that
-was measured to meet the accuracy (measured.py), after a trial run on the scene itself (trial.py).
+was measured to meet the accuracy (measured.py), after trial runs on the scene itself
+(settling.py).
 """
 
 import functools
@@ -12,12 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.choice import measured, trial
+from rigid_body_sim.choice import measured, settling
 from rigid_body_sim.choice.forecast import Forecast, missed, of_exact
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
-from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
 from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
@@ -32,7 +32,6 @@ from rigid_body_sim.scene.scene import Scene
 FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # multiple of the rotation rate above which dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
-OFTEN = 13      # largest number of unknowns of the equations
 KEPT = 64       # choices
 HORIZON = 100.0
 """Time over which an accuracy holds where no duration is given, s."""
@@ -66,7 +65,7 @@ class Choice:
         Time over which the accuracy holds, s.
     tolerance : float or None
         The accuracy that the method is given: what `auto` found sufficient, else `accuracy`.
-    settled : trial.Settled or None
+    settled : settling.Settled or None
         What `auto` chose, as `choose` takes it again; None of a method that was named.
     """
 
@@ -77,32 +76,44 @@ class Choice:
     horizon: float
     tolerance: float | None
     _prototype: Solver = field(repr=False)
-    settled: trial.Settled | None = field(repr=False)
+    settled: settling.Settled | None = field(repr=False)
 
-    @property
+    @functools.cached_property
     def _forecast(self):
-        return self.settled.forecast if self.settled else Forecast(None, None)
+        if self.settled:
+            return self.settled.forecast
+        if self.step is not None:
+            return Forecast(None, None)
+        return settling.of_named(self.scene, self._prototype, self.accuracy, self.horizon)
 
     @property
     def expected_error(self):
-        """Largest error of the attitude within the horizon (rad), where `auto` chose, or None."""
+        """Largest error of the attitude within the horizon (rad); None where nothing tells.
+
+        Trial runs tell it, when it is first asked for. Fixed steps are not tried.
+        """
         return self._forecast.error
 
     @property
     def met_until(self):
-        """Time until which the accuracy is met (s), where `auto` chose: the horizon, or less."""
+        """Time until which the accuracy is met (s), at most the horizon; None where unknown."""
         return self._forecast.met_until
 
     @property
     def missed(self):
-        """One line that says that the accuracy is missed and until when it is met; else None."""
+        """One line that says that the accuracy is missed and until when it is met; else None.
+
+        A method that was named is tried only where it was never measured on such scenes.
+        """
+        if self.settled is None and measured.on_such(self.scene, self.method):
+            return None
         return missed(self.accuracy, self.horizon, self.expected_error, self.met_until)
 
     def solver(self, start, wrench):
         """Return a Solver from a state on, shape (14,), under a held wrench.
 
-        A motion takes no wrench, nor do methods whose family does not account for one: the
-        general method solves the hold. It also goes on where a command has brought the body to a
+        The general method solves a held wrench where the choice is a motion, or a method whose
+        family does not account for one. It also goes on where a command has brought the body to a
         state from which the motion does not hold.
         """
         if not wrench and (not self._asks or self._prototype.takes(start)):
@@ -151,7 +162,7 @@ class Choice:
         """Return the solver that stands in where the prototype cannot go on."""
         method = METHODS.get(self.method)
         if method is None or not method.FAMILY.TAKES_WRENCH:    # None: `exact`
-            method = STEADY if stiff_relaxations(self.scene, OFTEN) else GENERAL
+            method = STEADY if measured.is_stiff(self.scene) else GENERAL
         return Stepped(self.scene, method.NAME, self.tolerance, self.step, wrench, self.horizon,
                        wanted=self.accuracy)
 
@@ -167,7 +178,7 @@ def _stiff(scene):
         momentum = apply(inertia, scene.initial.angular_velocity.tolist())
         if scene.inner_dissipation * hypot3(*momentum) > STIFF:
             found.add('dissipation')
-    if stiff_relaxations(scene, OFTEN):
+    if measured.is_stiff(scene):
         found.add('drag')
     return found
 
@@ -186,7 +197,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
         s.
     horizon : float
         s.
-    settled : trial.Settled, optional
+    settled : settling.Settled, optional
         An earlier choice by `auto`, which is taken again whatever the table says now.
 
     Raises
@@ -218,7 +229,7 @@ class _Same:
 
 @functools.lru_cache(maxsize=KEPT)
 def _chosen(same, integrator, accuracy, step, horizon, settled):
-    """Return what `choose` returns, for settings that a scene could have.
+    """Return the Choice for settings that have been checked.
 
     A Choice never changes: whoever runs the same scene again gets the same one.
     """
@@ -232,7 +243,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
             # the forecast of a closed form decides nothing, so it is made on demand
             find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
             return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
-                          settled or trial.Settled('exact', accuracy, find=find))
+                          settled or settling.Settled('exact', accuracy, find=find))
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
         raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
                        'leave it out, or name a method that does')
@@ -241,7 +252,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
-        settled = settled or trial.settle(scene, fit, finer, horizon)
+        settled = settled or settling.settle(scene, fit, finer, horizon)
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:
         settled = None

@@ -73,8 +73,10 @@ def missed(accuracy, horizon, expected, met_until):
     if met_until is not None:
         until = (f'; it is met until {met_until:.3g} s' if met_until > 0.0
                  else '; it is met at no time')
+    figures = (f'{expected:.{places}e}' for places in range(1, 18))
+    shown = next(figure for figure in figures if not float(figure) <= accuracy)
     return (f'the accuracy asked, {accuracy:g} rad, is missed: the error expected within '
-            f'{horizon:g} s is {expected:.1e} rad{until}')
+            f'{horizon:g} s is {shown} rad{until}')
 
 
 def looks(time):
@@ -199,20 +201,27 @@ def rounding(scene, states, times):
     return HALF_ULP * (numbers + fastest * times)
 
 
-def conditioning(scene, prototype, times, states):
+def conditioning(scene, prototype, times, states, enough=math.inf):
     """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
 
     Parameters
     ----------
     states : array (n, 14)
         The run from the scene's own start.
+    enough : float, optional
+        rad. It is given where the only question is whether the change reaches it. The start is
+        then moved by half an ulp alone, and no more often than it takes to see that. A change that
+        is no longer proportional to its cause counts as having reached it.
     """
     start, found = scene.initial.vector, np.full(len(times), math.inf)
-    for many in MOVED:
+    least = min(enough, LINEAR) if enough < math.inf else math.inf
+    for many in MOVED if enough == math.inf else MOVED[-1:]:
         squares = np.zeros(len(times))
         for signs in SIGNS:
             moved = run(scene, prototype, _moved(scene, start, signs, many), times)
             squares += np.square(apart(moved, states))
+            if squares.max() >= len(SIGNS) * least * least:
+                return np.maximum(enough, np.sqrt(squares))
         change = np.sqrt(squares / len(SIGNS))
         small = np.maximum.accumulate(change) <= LINEAR
         found = np.where(small & (found == math.inf), change / many, found)
@@ -221,7 +230,7 @@ def conditioning(scene, prototype, times, states):
     return np.where(found == math.inf, change, found)
 
 
-def lost(scene, prototype, times, states):
+def lost(scene, prototype, times, states, enough=math.inf):
     """Return the error of the attitude of a run by rounding, rad, shape (n,).
 
     Each strike starts the motion anew, with roundings of its own, which grow from then on: squares
@@ -231,9 +240,11 @@ def lost(scene, prototype, times, states):
     ----------
     states : array (n, 14)
         The run from the scene's own start.
+    enough : float, optional
+        rad. As in :func:`conditioning`.
     """
     found = np.maximum(rounding(scene, states, times),
-                       conditioning(scene, prototype, times, states))
+                       conditioning(scene, prototype, times, states, enough))
     squares = np.square(found)
     for strike in strikes(scene):
         since = 1.0 - max(strike.time, 0.0) / times
@@ -257,7 +268,9 @@ def _moved(scene, start, signs, many):
 
 
 def forecast(errors, times, accuracy, horizon):
-    """Return the Forecast from errors (rad) at times (s), which grow with time beyond the last.
+    """Return the Forecast that follows from errors at times.
+
+    Beyond the last time the error is taken to grow in proportion to time.
 
     Parameters
     ----------

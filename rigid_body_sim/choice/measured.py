@@ -12,6 +12,7 @@ import json
 import pathlib
 
 from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
 from rigid_body_sim.integrators.equations.series import has_formulas
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.numerics.functions import hypot3
@@ -20,6 +21,7 @@ from rigid_body_sim.scene.scene import kept
 
 FILE = pathlib.Path(__file__).with_name('measured.json')
 HALF_ULP = 2.0 ** -53
+OFTEN = 13      # largest number of unknowns of the equations
 
 PROMISED = {'dop8': [{'tolerance': one, 'error': one, 'cost': 1.0}
                      for one in (float(f'1e-{n}') for n in range(1, 16))]}
@@ -53,8 +55,8 @@ def _free_directions(scene):
 
 
 def pace(scene):
-    """Return a bound of the rate of a body (rad/s): its start's plus what weight adds."""
-    return hypot3(*scene.initial.angular_velocity) + swing_rate(scene)
+    """Return a bound on the rate of a body (rad/s): that at the start, plus what weight adds."""
+    return hypot3(*scene.initial.angular_velocity.tolist()) + swing_rate(scene)
 
 
 def floor(scene, horizon):
@@ -75,20 +77,26 @@ def rows(scene):
 def on_such(scene, method):
     """Return whether a method was measured on scenes of this kind.
 
-    Power series were where what acts is in numbers; formulas of a scene have a series of their
-    own, which takes seconds to compile. Collocation was where what acts is smooth: its estimate of
-    an error takes the curve of a step for one, and where |v| of drag by squares nearly passes
-    zero it errs by thousands of what is asked and does not say so.
+    Power series were measured where what acts is given in numbers; formulas of a scene have a
+    series of their own, which takes seconds to compile. Collocation was measured where what acts
+    is smooth: its error estimate assumes that. Where |v| of quadratic drag nearly passes zero it
+    errs by thousands of times what is asked and does not say so. Stiff drag lets nothing swing
+    through zero; few methods are left there, and it is the only one of high order.
     """
     if METHODS[method].NEEDS == 'series' and has_formulas(scene):
         return False
-    if _rooted(scene) and not METHODS[method].FAMILY.ROOTS:
+    if _rooted(scene) and not METHODS[method].FAMILY.ROOTS and not is_stiff(scene):
         return False
     return bool(rows(scene).get(method))
 
 
+def is_stiff(scene):
+    """Return whether drag in proportion to velocity is stiff in a scene."""
+    return bool(stiff_relaxations(scene, OFTEN))
+
+
 def _rooted(scene):
-    """Return whether what acts takes roots of what moves."""
+    """Return whether anything that acts takes a root of what moves."""
     return any(one.rooted for effect in scene.effects if effect.acting is not None
                for one in effect.acting(scene.frame, 0.0))
 

@@ -131,7 +131,7 @@ def _check_duration(options):
 
 
 def _warn(simulation):
-    """Say what the scene's notes say, and that the accuracy is missed, if it is."""
+    """Print the notes of the scene, and a line if the accuracy is missed."""
     for line in simulation.scene.notes:
         print(f'{simulation.scene.name}: {line}', file=sys.stderr)
     if simulation.missed:

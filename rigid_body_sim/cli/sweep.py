@@ -21,13 +21,13 @@ PART = 2**22         # runs whose status is read at once
 def main(arguments=None):
     """Run the command; return the exit status."""
     parser = command_line.parser(
-        'sweep', 'Run a scene over grids or samples of its keys, to a Zarr or Parquet store. The '
-        'same command goes on where an earlier one was cut.',
+        'sweep', 'Run a scene over grids or samples of its keys, to a Zarr or Parquet store. '
+        'Repeat the command to resume a sweep that was cut short.',
         'python -m rigid_body_sim sweep config/sweeps/racket_periods.yaml --output maps.zarr')
     add = parser.add_argument
     add('spec', metavar='SPEC.yaml', help='what to run: scene, vary, sample, times, keep')
     add('--output', metavar='STORE',
-        help='folder to make or to go on with: NAME.zarr, or NAME.parquet for one row a run')
+        help='folder to make or to go on with: NAME.zarr, or NAME.parquet for one row per run')
     add('--dask', metavar='ADDRESS', help='scheduler of a Dask cluster, tcp://host:8786')
     add('--dry-run', action='store_true',
         help='say how many runs, how long and how large, and run nothing')
@@ -38,7 +38,7 @@ def main(arguments=None):
 def _run(options):
     need('xarray')
     if not options.output and not options.dry_run:
-        raise BadInput('--output', 'is missing', 'NAME.zarr, or NAME.parquet for one row a run')
+        raise BadInput('--output', 'is missing', 'NAME.zarr, or NAME.parquet for one row per run')
     with command_line.ending_like_ctrl_c(), _client(options.dask) as client:
         if options.dry_run:
             return _tell_forecast(forecast(options.spec, client), options)

@@ -43,7 +43,7 @@ def layout(view, stride=1):
     Parameters
     ----------
     stride : int
-        Distance of two neighbouring numbers of a view. An array of columns, one a number, holds
+        Distance of two neighbouring numbers of a view. An array of columns, one per number, holds
         up to `stride` views side by side, which ``load`` and ``store`` tell apart by `at`.
 
     Raises

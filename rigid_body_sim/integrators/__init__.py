@@ -25,7 +25,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 METHODS = {method.NAME: method for method in (
     dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
 STEADY = gauss16
-"""The method that stands in for them where drag is stiff."""
+"""The method that replaces them where drag is stiff."""
 GENERAL = dop8
 """The method that runs every scene, under any wrench, with the ledger: it stands in for methods
 whose family does not account for these, and for motions while a wrench is held."""
@@ -34,10 +34,10 @@ whose family does not account for these, and for motions while a wrench is held.
 def runnable(scene):
     """Return the names of the methods that can run a scene.
 
-    These find the view they need in every effect, bear the heat that the effects make, know the
-    time and place of their stages where an effect asks for them, and stop at kinks where an effect
-    has some. No method sees an effect that
-    is an impulse and nothing else. On the table only methods that declare TABLE run.
+    They find the view that they need in every effect, allow the heat that the effects make, know
+    the time and place of their stages if an effect depends on them, and stop at kinks if an effect
+    has some. No method sees an effect that is only an impulse. On the table only methods that
+    declare TABLE run.
     """
     if scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE):
         return [name for name, method in METHODS.items() if method.TABLE]

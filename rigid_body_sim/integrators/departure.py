@@ -2,16 +2,19 @@
 """The departure of a free body with internal dissipation from rotation about a principal axis.
 
 As long as the other two components of omega are so small that their products are rounding, they
-obey linear equations, whose solution holds for 1e-300 as for 1e-9: i, j, k in turn, k the axis,
+obey linear equations, whose solution holds for 1e-300 as for 1e-9 (i, j, k cyclic, k the axis):
 
     omega_i' = a omega_j - g_i omega_i,    a = (I_j - I_k) omega_k/I_i
     omega_j' = b omega_i - g_j omega_j,    b = (I_k - I_i) omega_k/I_j
     g_i = c I_k omega_k^2 (I_k - I_i)/I_i, and the same of j
 
-The momentum stays in the world, so the attitude is the turn about it by omega_k t, and the small
-tilt of the axis against it. A march takes over where the two are no longer so small; near an axis
-that attracts, where they never are, it is not needed. So a march ends where it has come near the
-axis that attracts: how fast and how long the body then turns costs nothing.
+With m = -(g_i + g_j)/2, d = (g_j - g_i)/2 and s = d^2 + a b, both are sums of e^(r t) with
+r = m + sqrt(s) and m - sqrt(s); where s < 0 they turn with sqrt(-s) and change as e^(m t).
+
+The momentum is constant in the world, so the attitude is a turn about it by omega_k t and a small
+tilt of the axis against it. A march takes over when the two components are no longer so small.
+Near an axis that attracts they stay small, and no march is needed: a march ends when it has come
+near that axis, and however fast and long the body then turns costs nothing.
 """
 
 import math
@@ -31,9 +34,9 @@ from rigid_body_sim.scene.state import (
     VELOCITY,
 )
 
-NEAR = 1e-9      # of omega, the other components: their products are below half an ulp
-FOLDS = 20.0     # by e, until the other components of omega are that small
-HALVES = 350.0   # of an exponent that a double holds twice
+NEAR = 1e-9      # other components over omega: their products are below half an ulp
+FOLDS = 20.0     # e-folds until the other components of omega are that small
+HALVES = 350.0   # half of the largest exponent that exp takes
 
 
 def applies(scene, wrench):
@@ -232,8 +235,8 @@ class Departing:
 class Arriving:
     """A course that goes on without steps once the body turns about the axis that attracts.
 
-    Whether it has arrived is looked at after fixed times, each twice the one before: what it finds
-    does not depend on the times that are asked for.
+    It checks for the arrival at fixed times, each twice the one before, so the result does not
+    depend on the times that are asked for.
 
     Parameters
     ----------

@@ -36,11 +36,11 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
-SLACK = 1e-2            # share of the tolerance: jumps between steps, which the ledger passes over
+SLACK = 1e-2            # share of the tolerance: jumps between steps that the ledger ignores
 
 
 class _Ledger:
-    """What only the ledger asks for: made when it does, once for all starts."""
+    """What only the ledger needs: made on its first use, once for all starts."""
 
     def __init__(self, scene, wrench):
         self._scene, self._wrench = scene, wrench

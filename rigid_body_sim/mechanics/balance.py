@@ -43,7 +43,7 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.expressions.path import along
 from rigid_body_sim.scene.state import STATE
 
-STICKS = 1e-11    # share of the speeds: a smaller slip is the rounding of rolling
+STICKS = 1e-11    # relative to the speeds: a smaller slip is the rounding of rolling
 NOTHING = (0.0, 0.0, 0.0)
 
 
@@ -53,7 +53,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     acceleration : array (3,)
-        Of the body's origin, world axes, m/s^2.
+        That of the body's origin, world axes, m/s^2.
     angular_acceleration : array (3,)
         omega', body axes, rad/s^2.
     force, torque : array (3,)
@@ -81,7 +81,7 @@ class Motion(NamedTuple):
     omega : tuple of 3 floats
         Angular velocity, body axes, rad/s.
     position, velocity : tuple of 3 floats
-        Of the body's origin, world axes, m and m/s.
+        Those of the body's origin, world axes, m and m/s.
     time : float
         s.
     """
@@ -137,7 +137,7 @@ class Dynamics:
         body, constraint = scene.body, scene.constraint
         self._effects = [effect for effect in scene.effects if effect.acting is not None]
         self._scene = scene_parameters(scene)
-        # effects are asked as if the body were free: only then do they name their forces
+        # effects are asked as for a free body: only then do they state their forces
         hinge = constraint.frame(body).hinge
         self._frame = dataclasses.replace(Free().frame(body), hinge=hinge)
         self._path = constraint.path
@@ -224,7 +224,7 @@ class Dynamics:
     def _pivot(self, motion, acting):
         force, through = acting.force, self._scene.through
         arm, turning = minus(self._scene.center, through), acting.turning
-        if self._path is not None:    # of the pivot
+        if self._path is not None:    # the pivot moves
             accelerated = along(self._path, motion.time)[2]
             force = minus(force, scaled(self._scene.mass, accelerated))
         moment = plus(cross(arm, apply(transposed(motion.R), force)),
@@ -247,7 +247,7 @@ class Dynamics:
         arm, n, through = minus(scene.center, scene.through), scene.hinge_axis, scene.through
         torque = plus(acting.couple, cross(arm, apply(transposed(R), force)))
         along = dot(n, torque)
-        if not any(omega):    # dry friction bears some of it, or all
+        if not any(omega):    # dry friction balances some of it, or all
             borne = max(-scene.grip, min(along, scene.grip))
             torque, along = minus(torque, scaled(borne, n)), along - borne
         growth = scaled(along / scene.hinge_moment, n)
@@ -289,7 +289,7 @@ class Dynamics:
         return of_origin, growth, force, apply(R, couple), plus(place, apply(R, arm))
 
     def _grip(self, flat, torque, normal, down):
-        """Return the friction that keeps the lowest point at rest, or the strongest one."""
+        """Return the friction that keeps the lowest point at rest, or the largest one."""
         mass, moment = self._scene.mass, self._scene.moments[0]
         driven = plus(scaled(1.0 / mass, flat), cross(scaled(1.0 / moment, torque), down))
         gives = 1.0 / mass + self._radius * self._radius / moment

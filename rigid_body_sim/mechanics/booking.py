@@ -51,8 +51,8 @@ def rates(p, states, out):
 def _taken(scene, omega, torque):
     """Return the part of a torque that turns the body, body axes.
 
-    Of a hinged body it is the one along the axis, less what dry friction bears of one at rest.
-    There is none about an axis of zero moment.
+    On a hinge it is the part along the axis; at rest dry friction balances some of it. There is
+    none about an axis of zero moment.
     """
     if scene.kind == HINGE:
         along = dot(scene.hinge_axis, torque)

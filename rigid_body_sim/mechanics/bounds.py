@@ -12,16 +12,16 @@ from rigid_body_sim.scene.scene import kept
 
 @kept
 def swing_rate(scene):
-    """Return what potentials can add to the rate of a held body (rad/s).
+    """Return how much potentials can add to the angular speed of a held body (rad/s).
 
-    By the energy it is 2 sqrt(U/I) with 2 U the range of the potential: M g r for the weight, r
-    the arm from the constraint to the centre of mass.
+    It is 2 sqrt(U/I) by conservation of energy, with 2 U the range of the potential: U = M g r for
+    the weight, r the arm from the constraint to the centre of mass.
     """
     body, constraint = scene.body, scene.constraint
     energy = reduce(add, (bounds.energy for bounds in _bounds(scene)), 0.0)
     if energy == 0.0:
         return 0.0
-    # of the moments across the arm of a symmetric body, whatever the third one is
+    # the moments across the arm of a symmetric body count, whatever the third one is
     across = (sorted(constraint.inertia(body).moments)[1] if constraint.axis is None
               else moment_about_hinge(body, constraint))
     return 2.0 * math.sqrt(energy / across)
@@ -58,7 +58,7 @@ def unbounded(scene):
 
 
 def borne(scene):
-    """Return the angular acceleration that dry friction at a hinge bears, rad/s^2."""
+    """Return the largest angular acceleration that dry friction at a hinge prevents, rad/s^2."""
     grip = reduce(add, (effect.grip for effect in scene.effects), 0.0)
     return grip / moment_about_hinge(scene.body, scene.constraint) if grip > 0.0 else 0.0
 

@@ -25,7 +25,7 @@ BLINK = 0.0625    # s
 MOST_LOOKS = 2 ** 22
 FLIP, TURNING_POINT = 'flip', 'turning point'
 WATCHED = FLIP, TURNING_POINT
-"""Names of what `watches` decides on, whatever solves a scene."""
+"""Names of the events that `watches` decides on, whatever solves a scene."""
 LOOKS_A_TICK = 20000    # at most
 
 
@@ -36,7 +36,7 @@ class Watch:
     Attributes
     ----------
     name : str
-        Of the event.
+        Name of the event.
     value : callable
         State vector -> float, relative to its natural size.
     share : float
@@ -129,7 +129,7 @@ class Watcher:
     drive : float
         Rate that drives may add in a second, rad/s^2 (mechanics/bounds.py).
     unbounded : bool, optional
-        Whether these are no bounds: then looks are at most BLINK apart.
+        Whether these bounds may be exceeded: then looks are at most BLINK apart.
     """
 
     def __init__(self, solver, watched, start, swing, drive, unbounded=False):

@@ -32,7 +32,7 @@ from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE, STATE_SIZE, TIME
 
-RADIANS = 8.0            # of the fastest turn, in the longest panel
+RADIANS = 8.0            # angle of the fastest turn in the longest panel
 UNMOVED = 1.0            # s, the first panel where nothing moves
 AT_ONCE = 256            # panels
 CLOCK = 2.0 ** -46       # share of the time, 64 ulps: the clock resolves no shorter panel
@@ -48,7 +48,7 @@ They are spread evenly, and give the mean of what acts.
 
 
 class Actors:
-    """Everything that acts in a scene, in the form for the ledger.
+    """Everything that acts in a scene, in the form that the ledger takes.
 
     Parameters
     ----------

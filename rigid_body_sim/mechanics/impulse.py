@@ -106,7 +106,7 @@ def apply_impulse(p, state, force, couple, out):
         work += _push_center(scene, now, state, along_table, d)
         reaction = (0.0, 0.0, along_table[2] - J[2])
     else:
-        # M dV of the centre of mass: the bearing supplies what J does not
+        # M dV of the centre of mass: the bearing supplies the rest of it
         pushed = scaled(scene.mass, rotate(*q, *cross(d, arm)))
         reaction = minus(pushed, J)
         if scene.kind == CARRIED:    # what moves the pivot does work, too

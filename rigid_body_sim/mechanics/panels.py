@@ -15,17 +15,20 @@ Source of the rule: NIST DLMF 3.5(v).
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE
 from rigid_body_sim.numerics.gauss import rule
 
 COUNT = 16
-POINTS = COUNT + 1       # of a panel: its beginning and the nodes
-COLUMNS = ENTRIES_SIZE + 1    # of the rates of a point: those of the entries, then |omega|
+POINTS = COUNT + 1       # points of a panel: its beginning and the nodes
+COLUMNS = ENTRIES_SIZE + 1    # rates at a point: those of the entries, then |omega|
 FIRST_TAIL = 12
 TAIL = COUNT - FIRST_TAIL
-# places in the array `sums`
-LOST, ENERGY, MOMENTUM = ENTRIES_SIZE, 2 * ENTRIES_SIZE, 2 * ENTRIES_SIZE + 1
-SUMS = 2 * ENTRIES_SIZE + 2
+IMPULSE = ENTRIES.part('angular_impulse').first    # entries before it are energies
+# places in the array `sums`, behind the entries: what they lost, and the sizes of what they sum
+LOST = ENTRIES_SIZE
+ENERGY = LOST + ENTRIES_SIZE
+MOMENTUM = ENERGY + 1
+SUMS = MOMENTUM + 1
 ROUNDING = 2.0 ** -54    # share of a size: a smaller error is rounding
 SEEN = 2.0 ** -40        # share of an integrand: c_14 and c_15 that are smaller are rounding
 SMOOTH = 2.0 ** -42      # the same in a panel twice as long
@@ -72,7 +75,7 @@ def _advice(rates, at, first, last, length, size, slack):
     first, last : int
         Columns; they count as one vector.
     length : float
-        Of the panel, s.
+        Length of the panel, s.
     size : float
         That of the integral: errors count relative to it.
     slack : float
@@ -119,7 +122,7 @@ def _add(rates, at, length, sums):
         after = sums[k] + total
         sums[LOST + k] = total - (after - sums[k])
         sums[k] = after
-        sums[ENERGY if k < 2 else MOMENTUM] += size
+        sums[ENERGY if k < IMPULSE else MOMENTUM] += size
 
 
 @compiled

@@ -17,7 +17,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
 CARRIED = len(Mechanism)    # a pivot that moves
-KINDS = {Mechanism.PLANE: FREE}    # between impacts a body over a plane is a free one
+KINDS = {Mechanism.PLANE: FREE}    # between impacts a body above a plane is free
 NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
 
@@ -46,7 +46,7 @@ class SceneParameters(NamedTuple):
     hinge_moment : float
         Moment of inertia about the hinge, kg m^2; 0 where there is none.
     grip : float
-        Torque that dry friction at the hinge bears, N m.
+        Largest torque that dry friction at the hinge balances, N m.
     """
 
     kind: float

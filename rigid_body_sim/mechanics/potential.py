@@ -30,7 +30,7 @@ def _bound(parts, carried, on_axis):
 def _source(parts):
     """Return the source of ``potential(p, scene, q, position)``, the sum of the parts.
 
-    Of each part there is its kernel and how many values it takes.
+    A part is its kernel and the number of values that it takes.
     """
     head = ['@compiled', 'def potential(p, scene, q, position):']
     if not parts:
@@ -51,7 +51,7 @@ def _source(parts):
 def _carried(parts, at, on_axis):
     """Return the source of ``with_parts(p, scene, time, momentum)``; values from `at` on in p.
 
-    Of each part there is its kernel and how many values it takes.
+    A part is its kernel and the number of values that it takes.
     """
     head = ['@compiled', 'def with_parts(p, scene, time, momentum):']
     lines, imports = [], []

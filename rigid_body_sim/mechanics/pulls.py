@@ -9,7 +9,7 @@ from rigid_body_sim.scene.scene import kept
 
 NOTHING = (0.0, 0.0, 0.0)
 BOOKS = {'force': 'potential', 'torque': 'work', 'drag': 'heat'}
-"""Where the ledger has each kind of action in a motion in closed form."""
+"""Where the ledger books each kind of action in a motion in closed form."""
 
 
 class Total(NamedTuple):

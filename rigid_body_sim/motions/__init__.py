@@ -18,7 +18,7 @@ MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
            'rigid_body_sim.motions.damped_body',
            'rigid_body_sim.motions.driven_body',
            'rigid_body_sim.motions.fixed_axis')
-"""Modules in the order in which a scene is offered to them; each is imported when it is asked."""
+"""Modules in the order in which they are offered a scene; each is imported when its turn comes."""
 
 
 @kept

@@ -2,7 +2,7 @@
 """Motion of a free or pivoted body, without torque or with drag in proportion to its inertia.
 
 A free body may also fly under a constant force and linear drag (flight.py): the drag on the centre
-of mass leaves the rotation alone. Of a pivoted body the centre of mass is the pivot, or nothing
+of mass leaves the rotation alone. The centre of mass of a pivoted body is the pivot, or nothing
 pulls at it.
 
 With r the rate of the drag, Euler's equations are I omega' = -omega x I omega - r I omega. In the

@@ -38,6 +38,7 @@ from rigid_body_sim.numerics.vectors import plus as sum_of
 from rigid_body_sim.numerics.vectors import scaled as stretched
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.principal_axes import ULPS
+from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ()
@@ -95,12 +96,13 @@ def absorbs(scene):
     total = total_pull(scene)
     return (total is not None and not any(map(any, total.drag))
             and (scene.constraint.mechanism is Mechanism.FREE or not any(total.force))
-            and drive(scene, total) is not None)
+            and drive(scene) is not None)
 
 
-def drive(scene, total):
-    """Return the Drive of a scene and its Total (mechanics/pulls.py), or None."""
-    inertia = scene.constraint.inertia(scene.body)
+@kept
+def drive(scene):
+    """Return the Drive of a scene that has a Total (mechanics/pulls.py), or None."""
+    inertia, total = scene.constraint.inertia(scene.body), total_pull(scene)
     moments = inertia.moments
     if any(total.torque) == any(total.couple) or min(moments) == 0.0:
         return None
@@ -131,7 +133,7 @@ def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
     numbers = np.zeros(PARAMETER_SIZE)
-    PARAMETERS.part('drive').store(numbers, drive(scene, total))
+    PARAMETERS.part('drive').store(numbers, drive(scene))
     numbers[PARAMETERS.part('field').places] = field_of(scene, total)
     return numbers
 

@@ -107,7 +107,7 @@ def _weight_is_idle(scene, total, start):
 
 
 def _stays(scene, total, k, start):
-    """Return whether a free body turns about its principal axis k, and nothing takes it away."""
+    """Return whether a free body turns about its principal axis k and stays there."""
     moments, axes = scene.body.about_center.moments, scene.body.about_center.axes
     q = start[ORIENTATION].tolist()
     omega = rotate_back(*axes, *start[ANGULAR_VELOCITY].tolist())

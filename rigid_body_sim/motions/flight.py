@@ -25,7 +25,7 @@ from rigid_body_sim.scene.state import StateView
 class Field(NamedTuple):
     """Numbers of the scene."""
 
-    center: Vector       # of reference, body axes, m
+    center: Vector       # the reference point, body axes, m
     moves: float         # 1.0, or 0.0 if a bearing holds it
     force: Vector        # over the mass, world axes, m/s^2
     slowing: float       # linear drag over the mass, 1/s

@@ -71,7 +71,7 @@ def ensemble(parameters, starts, times, out):
     Parameters
     ----------
     parameters : array (bodies, PARAMETER_SIZE) or (1, PARAMETER_SIZE)
-        One row a body, or one for all.
+        One row per body, or one for all.
     starts : array (bodies, 14)
         Each with its own time.
     times : array (n,)

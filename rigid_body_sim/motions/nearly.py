@@ -29,7 +29,7 @@ from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.scene import Scene
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-NEARLY = 1e-9                           # of the larger moment
+NEARLY = 1e-9                           # difference of two moments over the larger one
 STRETCHES = 32                          # kicks about each axis, and looks at what they do
 LOOKS_A_RADIAN, MOST_LOOKS = 8.0, 2 ** 17
 SHOWN = 1e-7                            # rad/s over those of the body: kicks that rounding spares

@@ -32,7 +32,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
-from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE
+from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES, ENTRIES_SIZE
 from rigid_body_sim.numerics.functions import hypot, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import HALF_STEP, RIM, ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
@@ -74,7 +74,7 @@ class Rolling(NamedTuple):
     velocity: Pair
     position: Pair
     spin: Pair             # horizontal part of omega, rad/s
-    axis: Vector           # of omega
+    axis: Vector           # direction of omega
     rate: float            # |omega|, rad/s
 
 
@@ -91,7 +91,7 @@ class Anchor(NamedTuple):
     ball: Parameters
     start: StateView       # with the angular velocity in world axes
     slide: Slide
-    duration: float        # of the slide, s; infinite if it never ends
+    duration: float        # time that the slide takes, s; infinite if it never ends
     rolling: Rolling
     track: Track
 
@@ -109,6 +109,7 @@ ANCHOR_SIZE = ATTITUDES + QUATERNION.size * CHECKPOINTS
 load_parameters, load_state, store_state = PARAMETERS.load, STATE.load, STATE.store
 load_anchor = ANCHOR.load
 load_start, store_start = ANCHOR.part('start').load, ANCHOR.part('start').store
+store_angular_impulse = ENTRIES.part('angular_impulse').store
 load_ball, store_ball = ANCHOR.part('ball').load, ANCHOR.part('ball').store
 load_slide, store_slide = ANCHOR.part('slide').load, ANCHOR.part('slide').store
 load_duration, store_duration = ANCHOR.part('duration').load, ANCHOR.part('duration').store
@@ -327,7 +328,8 @@ def exchanged(anchor, time, out):
     push = held.ball.M * slide.deceleration
     impulse = held.ball.a * push * slid_for
     out[DISSIPATED] = push * slide.u * slid_for * (1.0 - 0.5 * share)
-    out[2], out[3] = -impulse * slide.e[1], impulse * slide.e[0]
+    ex, ey = slide.e
+    store_angular_impulse(out, (-impulse * ey, impulse * ex, 0.0))
 
 
 @compiled

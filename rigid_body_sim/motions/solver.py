@@ -33,7 +33,7 @@ def loops(motion):
 
 
 class _Asked:
-    """Objects that only the ledger and the events of a scene need, made on demand."""
+    """Objects that only the ledger and the events of a scene need, made when first used."""
 
     def __init__(self, scene, motion):
         self.scene, self.motion = scene, motion

@@ -41,7 +41,7 @@ class TakenElsewhere(CallbackGroup):
     """A group of subscriptions whose messages the tick thread takes, not the executor."""
 
     def can_execute(self, entity):
-        """Return that the executor does not serve an entity."""
+        """Return False: the executor serves none of these entities."""
         return False
 
     beginning_execution = can_execute

@@ -9,7 +9,7 @@ import concurrent.futures
 from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.choice.choose import HORIZON
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.node.commands import Commands
 from rigid_body_sim.node.diagnostics import Diagnostics
@@ -43,7 +43,7 @@ class Engine:
     node : rclpy.node.Node
     settings : parameters.Settings
     at_end : callable
-        Called in the tick thread when that ends: when the duration is over, or by a failure.
+        Called in the tick thread at its end: when the duration is over, or after a failure.
 
     Raises
     ------
@@ -216,8 +216,11 @@ class Engine:
             self.ticker.stop()
             self.ticker.join(STOP_WITHIN)
         self._source.close()
-        if not self.ticker.is_alive():
-            self.session.take_balance()
+        if not self.ticker.is_alive() and self.ticker.failure is None:
+            try:
+                self.session.take_balance()
+            except NotConverged as error:
+                self.ticker.failure = error
         self.journal.close(STOP_WITHIN)
         self._report()
         status, name = 0, self._node.get_name()

@@ -33,7 +33,7 @@ class Journal:
     settings : parameters.Settings
     simulation : Simulation
     publishing : publishing.Publishing
-    frames : topics.Frames
+    frames : state_topics.Frames
 
     Attributes
     ----------

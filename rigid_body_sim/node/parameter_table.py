@@ -171,7 +171,7 @@ TABLE = (
     Entry(
         'integrator',
         'auto',
-        'method; auto: the exact one if there is, else the cheapest that meets accuracy',
+        'method; auto: the exact one if there is one, else the cheapest that meets accuracy',
         changeable=True,
     ),
     Entry(
@@ -249,7 +249,7 @@ TABLE = (
     Entry(
         'recording.compression',
         'auto',
-        'of chunks; auto: zstd',
+        'compression of chunks; auto: zstd',
         choices=('auto', *compression.NAMES),
     ),
     Entry(

@@ -33,8 +33,8 @@ class Settings:
         Whether the node runs from the start to the end; a managed node sets :attr:`running`
         itself.
     shared : set of str
-        Names of overrides that may be meant for other nodes (overrides.settled): of those that
-        are unknown the log tells, and the node goes on.
+        Names of overrides that may be meant for other nodes (overrides.settled): unknown ones are
+        logged, and the node goes on.
 
     Attributes
     ----------

@@ -47,14 +47,14 @@ class Publishing:
     outputs : state_topics.Outputs
     frames : state_topics.Frames
     messages : state_topics.SceneMessages
-        Of these outputs, for the scene that runs first.
+        The makers of these outputs for the scene that runs first.
     described : bool
         Whether to publish ``robot_description``.
 
     Attributes
     ----------
     messages : state_topics.SceneMessages
-        Of the present scene.
+        Those of the present scene.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class Publishing:
         self._display.tick(messages)
 
     def paced(self, messages: list[bytes]) -> list[tuple[str, bytes]]:
-        """Publish messages of the outputs with a rate of their own; return them by topic."""
+        """Publish the messages of outputs that have a rate of their own; return them by topic."""
         for (_, publish), message in zip(self._publish_paced, messages):
             publish(message)
         return [(topic, message) for (topic, _), message in zip(self._publish_paced, messages)]

@@ -49,7 +49,7 @@ class SubscriptionMismatch:
     node : rclpy.node.Node
     topic : str
     profile : rclpy.qos.QoSProfile
-        Of the subscription.
+        The profile of the subscription.
     """
 
     def __init__(self, node, topic, profile):

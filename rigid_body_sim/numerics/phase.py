@@ -12,7 +12,7 @@ from rigid_body_sim.numerics.double_double import two_product, two_sum
 
 ROUNDER = 6755399441055744.0    # 1.5 * 2^52: adding and subtracting it rounds to an integer
 COUNTABLE = 2.0 ** 51           # half turns; beyond, two events have the same time as a double
-TRIES = 8    # of a next event; if none is later, doubles do not tell two events apart
+TRIES = 8    # at a next event; if none is later, doubles do not tell two events apart
 
 
 @compiled_inline

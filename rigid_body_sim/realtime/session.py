@@ -66,7 +66,7 @@ class Session:
     event_counts : collections.Counter
         Events so far, by name.
     prediction : prediction.Prediction
-        Of the motion since the last disturbance.
+        Prediction for the motion since the last disturbance.
     """
 
     def __init__(self, simulation, command_queue, publishing, journal, settings, epoch):

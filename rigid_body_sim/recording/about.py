@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 
 import numpy
 
+from rigid_body_sim.choice.forecast import Forecast
 from rigid_body_sim.compilation import environment
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.simulation import arithmetic
@@ -91,8 +92,9 @@ def run_of(simulation):
 
 def method_of(choice):
     """Return a Choice as a dict; `settled` of choice.choose takes it back."""
+    told = choice.settled.forecast if choice.settled else Forecast(None, None)    # no trial here
     return {'method': choice.method, 'horizon': choice.horizon, 'tolerance': choice.tolerance,
-            'expected_error': choice.expected_error, 'met_until': choice.met_until}
+            'expected_error': told.error, 'met_until': told.met_until}
 
 
 def state_entry(tick, stamp, simulation):

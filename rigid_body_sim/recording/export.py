@@ -2,10 +2,10 @@
 """The command `export`: a recording to CSV, Parquet or NumPy.
 
 It is read a chunk at a time, so its length does not matter. Topics whose messages keep their form
-(numbers, times, frames) become tables, one a topic: a column a number (``pose.orientation.x``), a
-column ``seconds`` since the start of the recording, times in ns. What was recorded at every tick
-is also joined into one table, `ticks`. All other topics (diagnostics, events, scene, journal)
-become ``.jsonl``: one decoded message a line.
+(numbers, times, frames) become tables, one per topic: a column per number
+(``pose.orientation.x``), a column ``seconds`` since the start of the recording, times in ns. What
+was recorded at every tick is also joined into one table, `ticks`. All other topics (diagnostics,
+events, scene, journal) become ``.jsonl``: one decoded message per line.
 """
 
 import csv
@@ -60,7 +60,7 @@ class CsvTable:
 
 
 class ParquetTable:
-    """A Parquet file, compressed by zstd, a row group a hundred thousand rows."""
+    """A Parquet file, compressed by zstd, a row group per hundred thousand rows."""
 
     SUFFIX = '.parquet'
     _GROUP = 100_000
@@ -91,7 +91,7 @@ class ParquetTable:
 
 
 class NumpyTable:
-    """A ``.npy`` file: one structured array, a field a column.
+    """A ``.npy`` file: one structured array, a field per column.
 
     ``numpy.load(..., mmap_mode='r')`` opens it without reading it all.
     """
@@ -235,7 +235,7 @@ def _file_name(topic):
 
 
 def _export_texts(recording, topic, folder, done):
-    """Write one decoded message a line; return the file's name."""
+    """Write one decoded message per line; return the file's name."""
     name = f'{_file_name(topic.name)}.jsonl'
     with open(folder / name, 'w', encoding='utf-8') as stream:
         for log_time, message in recording.decoded(topic.name):
@@ -249,7 +249,7 @@ def _export_texts(recording, topic, folder, done):
 def main(arguments=None):
     """Run the command; return the exit status."""
     parser = command_line.parser(
-        'export', 'Write a recording to CSV, Parquet or NumPy: one file a topic, and one table '
+        'export', 'Write a recording to CSV, Parquet or NumPy: one file per topic, and one table '
         'of all that was recorded at every tick.',
         'python -m rigid_body_sim export recordings/racket --output racket_csv --format csv')
     parser.add_argument('recording', help='folder of a recording, or an .mcap file; a folder of '

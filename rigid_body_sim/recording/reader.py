@@ -52,7 +52,7 @@ class RecordedTopic:
     ----------
     name, type : str
     hash : str
-        Of the type.
+        Hash of the type.
     qos : str
         YAML text of the offered profiles.
     count : int
@@ -280,7 +280,7 @@ class Recording:
         return joined
 
     def to_pandas(self, topic, start=0, end=2**63):
-        """Return one topic as a pandas.DataFrame: a column a number, seconds as the index.
+        """Return one topic as a pandas.DataFrame: a column per number, seconds as the index.
 
         Seconds count from the start of the recording. BadInput where pandas is not installed.
         """
@@ -349,7 +349,7 @@ def _bodies():
 def _files_of(path):
     """Return the paths of a recording folder's files and its custom_data."""
     where = path / metadata.FILE_NAME
-    remedy = 'the folder of a recording; "recover" makes one whole whose recorder was killed'
+    remedy = 'the folder of a recording; if its recorder was killed, "recover" makes it whole'
     try:
         if os.path.getsize(where) > 2**26:
             raise BadInput(str(where), 'is larger than 64 MB',

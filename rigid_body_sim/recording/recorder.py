@@ -61,7 +61,7 @@ class Status:
     waiting : int
         Bytes.
     restarts : int
-        Of the recorder.
+        How often the recorder was started again.
     error : str
         The problem right now, or ''.
     closed : bool
@@ -123,7 +123,7 @@ class Recorder:
         self._ticks = self._dropped_now = self._restarts = 0
         self._dropping = self._ready = self._left = self.state_wanted = False
         self._report, self._look_at = Report(), 0.0
-        self._keeping = threading.Lock()        # of starting and ending recorders
+        self._keeping = threading.Lock()        # held while recorders are started and ended
         self._start(resume=False)
         deadline = time.monotonic() + 30.0
         while not self._ready and time.monotonic() < deadline and self._process.poll() is None:

@@ -41,9 +41,9 @@ class Inertia:
     def of_matrix(cls, matrix):
         """Diagonalise a symmetric 3 x 3 tensor.
 
-        The order and the signs of the principal axes are those nearest to the body axes; where
-        moments are equal, so is the choice within their plane. A diagonal tensor is taken as it
-        stands, to the last bit.
+        Of all orders and signs of the principal axes, and of all choices within the plane of equal
+        moments, the one nearest to the body axes is taken. A diagonal tensor is kept to the last
+        bit.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
@@ -73,7 +73,7 @@ class Body:
         About the centre of mass and about the body's origin; the one that was given is kept to the
         last bit.
     radius : float or None
-        Of a sphere, m; None for every other body.
+        Radius of a sphere, m; None for every other body.
     surface : Surface or None
         What touches a plane (surfaces.py).
     """
@@ -89,9 +89,9 @@ class Body:
 def moved(inertia, M, shift, sign):
     """Return the tensor moved by the parallel-axis theorem.
 
-    It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass.
-    There no moment is below the least one about the centre: what rounding leaves below zero, on a
-    body that is small beside the shift, is that one.
+    It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass. No
+    moment is then below the least one about the centre, which therefore replaces a moment that
+    rounding leaves below zero, on a body that is small beside the shift.
     """
     if not any(shift):
         return inertia
@@ -167,7 +167,7 @@ def _not_negative(inertia):
 
 
 def square_of(arm):
-    """Return the squared length of an arm, inf where a double holds no more."""
+    """Return the squared length of an arm, or inf if it overflows."""
     length = hypot3(*arm)
     return length * length
 
@@ -210,7 +210,7 @@ def of_shape(name, M, dimensions, center_of_mass=(0.0, 0.0, 0.0), where='body'):
 
 
 def hole(part):
-    """Return the part that takes away what another one adds: negative mass and moments."""
+    """Return a part with negative mass and moments, which removes what another one adds."""
     return Body(-part.mass, part.center_of_mass, _negative(part.about_center),
                 _negative(part.about_origin), part.radius)
 
@@ -235,7 +235,7 @@ def composite(parts, where='body'):
     BadInput
         If the holes take away more than there is.
     """
-    # sum() of floats rounds otherwise from Python 3.12 on: the same file would be another body
+    # sum() of floats rounds differently from Python 3.12 on: one file would make two bodies
     M = reduce(add, (part.mass for part, _, _ in parts))
     if not M > 0.0:
         raise BadInput(f'{where}.parts', f'have the mass {M!r} kg together',

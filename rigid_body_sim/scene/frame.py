@@ -34,13 +34,13 @@ class Frame:
     Attributes
     ----------
     moves : bool
-        True if the reference point is the centre of mass and moves as forces tell it. False if a
-        bearing holds the point: then a force acts through its torque about the point.
+        True if the reference point is the centre of mass, which forces move. False if a bearing
+        holds the point: then a force acts through its torque about the point.
     mass : float
         kg.
     moments : tuple of 3 floats
-        Principal moments about the reference point, kg m^2. Of a body on an axis only the moment
-        about that axis counts, and these are those about the centre of mass.
+        Principal moments about the reference point, kg m^2. For a body on an axis they are about
+        the centre of mass, and only the moment about the axis counts.
     axes : tuple of 4 floats
         Quaternion that turns frame components into body components.
     point : tuple of 3 floats
@@ -48,9 +48,9 @@ class Frame:
     arm : tuple of 3 floats
         From the reference point to the centre of mass, frame components, m.
     hinge : Hinging, optional
-        Of a body that turns about one axis only.
+        Given for a body that turns about one axis only.
     path : Path, optional
-        Of a point of reference that moves as the scene says (expressions/path.py).
+        Given for a reference point that moves as the scene says (expressions/path.py).
     """
 
     moves: bool
@@ -64,7 +64,7 @@ class Frame:
 
     @property
     def pushed(self) -> bool:
-        """Whether forces are asked for: they move the body, or work on what carries it."""
+        """Whether forces count: they move the body, or do work on what carries it."""
         return self.moves or self.path is not None
 
     def from_body(self, vector: Sequence[float]) -> tuple[float, float, float]:

@@ -37,7 +37,7 @@ class Start:
     omega : tuple of 3 floats
         Angular velocity, body axes, rad/s.
     position, velocity : tuple of 3 floats
-        Of the body's origin, world axes, m and m/s; zero if they are not given.
+        Those of the body's origin, world axes, m and m/s; zero if they are not given.
     """
 
     mapping: dict[str, Any]

@@ -35,7 +35,7 @@ def json_schema():
 
 
 def _one_key(name, settings):
-    """Return the schema of a mapping with one key; its settings may be absent if none need be."""
+    """Return the schema of a mapping with one key; settings may be absent if none is required."""
     value = settings if settings.get('required') else {'anyOf': [settings, NOTHING]}
     return {'type': 'object', 'properties': {name: value}, 'required': [name],
             'additionalProperties': False}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Painleve's paradox: the coefficient of friction below which a slip always has its force.
+"""Painleve's paradox: the coefficient of friction below which every slip has a solution.
 
 Source: F. Genot and B. Brogliato, Eur. J. Mech. A 18 (1999) 653.
 """
@@ -21,7 +21,7 @@ def inverse_of(matrix):
 
 
 def painleve_bound(body):
-    """Return mu_P: for a smaller coefficient of friction a slip always has its force.
+    """Return mu_P: below this coefficient of friction the force of every slip has one solution.
 
     It is the least of G_nn/|G_nt| over the attitudes with G of mechanics/contact/laws.py, looked
     for on a grid and refined; infinite for a sphere about its centre of mass.

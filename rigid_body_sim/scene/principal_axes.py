@@ -11,8 +11,8 @@ from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.vectors import cross, dot
 
 PLANES = (0, 1), (0, 2), (1, 2)
-DIGITS, SWEEPS = 40, 20    # of the eigenvectors; four sweeps do for most tensors
-NEGLIGIBLE = Decimal('1e-70')    # square of an entry beside the product of the diagonal ones
+DIGITS, SWEEPS = 40, 20    # digits kept, most sweeps; four suffice for most tensors
+NEGLIGIBLE = Decimal('1e-70')    # square of an entry over the product of the diagonal ones
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
 
 

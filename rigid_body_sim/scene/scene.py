@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: a YAML file -> a validated Scene (docs/scenes.md shows how to write one).
+"""Read scenes: a YAML file becomes a validated Scene (docs/scenes.md shows how to write one).
 
 A scene names a body, what holds it (constraint), what else acts (effects) and how it starts
 (initial). Everything is checked here, before anything runs, and refused with the file, the key
@@ -132,7 +132,7 @@ class Scene:
             effect.acting is not None
             and any(effect.acting(frame, time) for time in (0.0, *effect.breakpoints))))
 
-    @property
+    @functools.cached_property
     def field(self) -> Vector:
         """The acceleration of a free fall, world components, m/s^2: the sum of uniform fields."""
         x, y, z = _summed((0.0, 0.0, 0.0), [
@@ -140,7 +140,7 @@ class Scene:
             if effect.uniform_field is not None])
         return x, y, z
 
-    @property
+    @functools.cached_property
     def weight(self) -> float | None:
         """The g of a uniform field along -z, m/s^2, if that is all that acts; else None.
 
@@ -267,7 +267,7 @@ def changed_scene(scene: Scene, overrides: Overrides) -> Scene:
 def _overridden(mapping, overrides, where):
     """Return the validated scene of a mapping, which is changed, with overrides.
 
-    A value set by an override stands in no line of the text, nor need a fault be where it shows.
+    A value that an override sets is in no line of the text, and its fault may show elsewhere.
     """
     for assignment in yaml_text.assignments(overrides):
         yaml_text.override(mapping, assignment, where)
@@ -428,7 +428,7 @@ def _effects(entries, body, constraint, parameters, where):
             hint = f'did you mean {near!r}?' if near else \
                 f'the effects are {", ".join(EFFECTS)}'
             raise BadInput(f'{where}.{place}', f'got {yaml_text.brief(entry)}',
-                           f'{hint} (one effect an entry)')
+                           f'{hint} (one effect per entry)')
         if name in seen and not effect.repeatable:
             raise BadInput(at, 'stands twice', 'list it once')
         seen.add(name)

@@ -13,7 +13,7 @@ from rigid_body_sim.scene import yaml_text
 Schema = dict[str, Any]
 
 LARGEST = 1e75
-"""Largest size of a number in a scene, SI units: the product of four is a double."""
+"""Largest size of a number in a scene, SI units: a product of four of them is a finite double."""
 
 NUMBER: Schema = {'type': 'number'}
 POSITIVE: Schema = {'type': 'number', 'exclusiveMinimum': 0}
@@ -125,5 +125,5 @@ def _refuse_non_finite(value: Any, where: str) -> None:
         raise BadInput(where, f'got {value!r}', 'needs a finite number')
     elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) > LARGEST:
         raise BadInput(where, f'got {yaml_text.brief(value)}',
-                       f'needs a number from {-LARGEST:g} to {LARGEST:g}: products of those are '
-                       'doubles')
+                       f'needs a number from {-LARGEST:g} to {LARGEST:g}, whose products fit a '
+                       'double')

@@ -103,7 +103,7 @@ def surface_of(mapping: Mapping[str, Any], where: str) -> Surface:
     Raises
     ------
     BadInput
-        Dimensions so far from each other or so large that doubles lose them.
+        For dimensions so different or so large that doubles lose them.
     """
     (kind, settings), = mapping.items()
     center = settings.get('center', (0.0, 0.0, 0.0))

@@ -255,7 +255,7 @@ def override(mapping, assignment, where):
 def _value(text, where):
     if NUMBERS.fullmatch(text):
         try:
-            return json.loads(text)    # JSON says the same of numbers and lists of them, sooner
+            return json.loads(text)    # JSON reads numbers and lists of them alike, and faster
         except ValueError:
             pass    # as 1. or +1
     return parse(f'value: {text}', where)['value']

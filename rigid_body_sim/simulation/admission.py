@@ -57,7 +57,7 @@ load_push, store_push = PUSH.load, PUSH.store
 
 
 class Refusal(NamedTuple):
-    """A command that is not taken; nothing comes of it.
+    """A command that is not taken and has no effect.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class Given(NamedTuple):
 
     @classmethod
     def at(cls, vector: np.ndarray) -> 'Given':
-        """Return that of no commands at a state (14,)."""
+        """Return the Given of no commands at a state (14,)."""
         return cls(vector.copy(), np.zeros(6), vector.copy(), np.zeros(RESPONSE_SIZE))
 
     @property

@@ -15,8 +15,6 @@ import dataclasses
 import functools
 import html
 import math
-import numbers
-import operator
 import typing
 
 import numpy as np
@@ -32,8 +30,9 @@ from rigid_body_sim.scene import yaml_text
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Overrides, Scene, changed_scene, load_scene
-from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE, TIME, State, States
+from rigid_body_sim.scene.state import STATE_SIZE, TIME, State, States
 from rigid_body_sim.simulation.admission import Given, admit, refusals, scene_refuses
+from rigid_body_sim.simulation.checks import number_of_ticks, refuse_no_number, refuse_start
 from rigid_body_sim.simulation.command_rows import (
     HOLD,
     IMPULSE,
@@ -42,12 +41,16 @@ from rigid_body_sim.simulation.command_rows import (
     row_of,
     wrench_of,
 )
-from rigid_body_sim.simulation.spans import Event, Span
+from rigid_body_sim.simulation.spans import (
+    Event,
+    Span,
+    events_between,
+    states_at,
+    wrenches_at,
+)
 from rigid_body_sim.simulation.strikes import Strikes
 
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
-LAST_TICK = 2**53
-"""Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
 KEPT = (
     'tick', 'events', 'vector', 'departed', '_origin', '_origin_time', '_beginning', '_initial',
     '_commands',
@@ -74,7 +77,7 @@ class Simulation:
         Fixed step of the method, s, instead of step control.
     horizon : float
         Duration over which the accuracy is asked for, s.
-    settled : choice.trial.Settled, optional
+    settled : choice.settling.Settled, optional
         What `auto` chose in an earlier run (choice.choose).
     overrides : mapping of str to value, or sequence of str
         Changes of the scene: ``{'body.mass': 2.0}``, or lines ``body.mass=2.0``.
@@ -82,7 +85,7 @@ class Simulation:
     Attributes
     ----------
     tick : int
-        Ticks so far; it never falls, also across :meth:`reset`.
+        Ticks so far; it never falls, not even by :meth:`reset`.
     vector : array (14,)
         The present state; it changes with the next call, so copy what you keep (or take
         :attr:`state`).
@@ -119,7 +122,7 @@ class Simulation:
         self.scene = scene
         given = {'accuracy': accuracy, 'rate': rate, 'horizon': horizon}
         for name, value in (given if step is None else {**given, 'step': step}).items():
-            _refuse_no_number(name, value)
+            refuse_no_number(name, value)
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
@@ -145,13 +148,13 @@ class Simulation:
 
         Commands, held wrench and events are forgotten; the scene's strikes come again. In closed
         form what follows has the bits of a new Simulation of the scene with that start. Otherwise
-        the method and the tolerance stay that were chosen, without a new trial.
+        the chosen method and tolerance stay, without a new trial.
 
         Parameters
         ----------
         initial : State or array (14,)
-            It is taken as it is, as the starts of :func:`ensemble` are: what the constraint asks
-            of a state it must have. Its time is not taken.
+            It is taken as it is, like the starts of :func:`ensemble`, so it has to satisfy the
+            constraint. Its time is ignored.
 
         Raises
         ------
@@ -251,7 +254,7 @@ class Simulation:
         diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
         fault = self._energies.diagnose_start(self._mechanics, start, diagnosis)
         if fault:
-            self._refuse_start(fault, start, diagnosis)
+            refuse_start(self.scene.name, fault, start, diagnosis)
         solver, given = choice.solver(start, NOTHING_HELD), np.zeros(self._entries_size)
         spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
         if self._strikes:
@@ -259,26 +262,12 @@ class Simulation:
         spans[-1].solver.state(0.0, self.vector)
         self._diagnosed_tick = None
         self.choice, self.tick, self._beginning = choice, tick, start
-        own = self.scene.initial.vector    # of another start the choice of the scene knows nothing
+        own = self.scene.initial.vector    # the choice of the scene holds for its own start only
         elsewhere = choice is self._chosen and start.tobytes() != own.tobytes()
         self.departed = 0.0 if elsewhere else None
         self._origin, self._origin_time = tick, 0.0
         self._initial = diagnosis
         self._spans, self._commands, self._foreseen = spans, None, NOTHING_FORESEEN
-
-    def _refuse_start(self, fault, start, diagnosis):
-        where = f'{self.scene.name}: initial'
-        if fault == energy.NOT_FINITE:
-            raise BadInput(where, 'got numbers that are not finite', 'a finite state')
-        if fault == energy.NOT_UNIT:
-            q = start[ORIENTATION].tolist()
-            raise BadInput(where, f'got the orientation {q}', 'a unit quaternion')
-        raise BadInput(
-            where,
-            'energy or momentum is beyond what a double holds '
-            f'({float(diagnosis[0])!r} J)',
-            'a smaller angular velocity, velocity or height',
-        )
 
     def _span(self, time, start, wrench, strikes, given):
         """Return a Span from a state (14 doubles) on."""
@@ -337,8 +326,9 @@ class Simulation:
     def expected_error(self) -> float | None:
         """Largest error of the attitude that is expected within the horizon, rad.
 
-        None where nothing is known: of a method that was named, and after a command, since no
-        trial has seen what it does to the motion. `choice.expected_error` is that of the scene.
+        None where nothing is known: of fixed steps, and after a command, since no trial has seen
+        what it does to the motion. `choice.expected_error` is that of the scene. Trial runs tell
+        it when it is first asked for: of a method that was named, too.
         """
         return self.choice.expected_error if self.departed is None else None
 
@@ -348,11 +338,10 @@ class Simulation:
 
         After a command it says what was missed before.
         """
-        if self.departed is not None:
-            met = self.choice.met_until
-            if met is None or met >= self.departed:
-                return None
-        return self.choice.missed
+        line = self.choice.missed
+        if line is None or self.departed is None or self.choice.met_until < self.departed:
+            return line
+        return None
 
     def advance(self, ticks: int = 1) -> None:
         """Go on by a number of ticks; events on the way are appended to `events`.
@@ -365,10 +354,10 @@ class Simulation:
         Raises
         ------
         BadInput
-            What is no such number. The simulation stays where it was, as after any other error.
+            Any other value. The simulation stays where it was, as after any other error.
         """
         before, tick = self.time, self.tick
-        self.tick = tick + self._count('advance', ticks)
+        self.tick = tick + number_of_ticks('advance', ticks, self.tick)
         commands, self._commands = self._commands, None
         foreseen = self._foreseen
         place = self.tick - foreseen.tick
@@ -386,26 +375,12 @@ class Simulation:
             self._arrive()
             raise
 
-    def _count(self, what, ticks):
-        """Return a number of ticks to go as an int; BadInput if it is none."""
-        try:
-            count = -1 if isinstance(ticks, bool) else operator.index(ticks)
-        except TypeError:
-            count = -1
-        if not 0 <= count <= LAST_TICK - self.tick:
-            raise BadInput(
-                what,
-                f'got {ticks!r}',
-                f'a number of ticks: an integer from 0 to {LAST_TICK - self.tick}',
-            )
-        return count
-
     def advance_through(self, ticks: int) -> States:
         """Go on by a number of ticks and return the States at all of them.
 
         They have the bits of the states that :meth:`advance` meets one by one.
         """
-        ticks = self._count('advance_through', ticks)
+        ticks = number_of_ticks('advance_through', ticks, self.tick)
         states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
         self.advance(ticks)
         return states
@@ -418,7 +393,7 @@ class Simulation:
         There are `ticks` of them, or as many as come before the tick of the next event. They are
         kept: to advance to one of them costs nothing more.
         """
-        ticks = self._count('foresee', ticks)
+        ticks = number_of_ticks('foresee', ticks, self.tick)
         times = self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1))
         if not ticks:
             return self.states(times)
@@ -441,7 +416,7 @@ class Simulation:
     def states(self, times) -> States:
         """Return the States at any times (s, any order) from the last :meth:`forget_past` on.
 
-        Later ones are as if no command came.
+        Those after the present are as if no command came.
 
         Raises
         ------
@@ -456,17 +431,7 @@ class Simulation:
                 f'finite times from {self._spans[0].time!r} s on',
             )
         spans = self._spans_until(times.max()) if len(times) else []
-        out = np.empty((len(times), STATE_SIZE))
-        if len(spans) == 1:
-            spans[0].solver.states(times, out)
-            return States(out)
-        place = _places(spans, times)
-        for k, span in enumerate(spans):
-            chosen = np.flatnonzero(place == k)
-            part = np.empty((len(chosen), STATE_SIZE))
-            span.solver.states(times[chosen], part)
-            out[chosen] = part
-        return States(out)
+        return States(states_at(spans, times))
 
     def at_event(self, name: str, within: float = HORIZON) -> State:
         """Return the State at the next event of a name, without going there.
@@ -483,7 +448,7 @@ class Simulation:
         BadInput
             No such event comes within that time; those that come are named.
         """
-        _refuse_no_number('within', within)
+        refuse_no_number('within', within)
         if not 0.0 < within < math.inf:
             raise BadInput('within', f'got {within!r}', 'a positive number of seconds')
         now, reach = self.time, within / LOOKS
@@ -541,7 +506,7 @@ class Simulation:
     def command(self, rows):
         """Apply commands at the present tick, in order.
 
-        They have the same bits as one by one, but are computed once.
+        The bits are those of commands given one by one, but the state is computed once.
 
         Parameters
         ----------
@@ -551,8 +516,8 @@ class Simulation:
         Returns
         -------
         list of admission.Refusal
-            The commands that are not taken, for the same reasons as of :meth:`impulse`; nothing
-            comes of them.
+            The commands that are not taken, for the same reasons as in :meth:`impulse`; they have
+            no effect.
         """
         rows = np.ascontiguousarray(rows, dtype=float)
         if rows.ndim != 2 or rows.shape[1] != WIDTH:
@@ -605,13 +570,13 @@ class Simulation:
         return balance.acceleration, balance.angular_acceleration
 
     def reactions(self, times):
-        """Return what the constraint exerts on the body at times (s), as dynamics.Reactions.
+        """Return what the constraint exerts on the body at times (s), as balance.Reactions.
 
         Force (N) and torque (N m) in world axes; the torque about `point` (m, world): the fixed
         point (torque 0), the point `through` of a hinge, the point of contact with the table
         (torque 0).
 
-        Of a strike or an impulse the reaction is an impulse too and not among these.
+        The reaction to a strike or an impulse is an impulse too, and is not among these.
 
         Raises
         ------
@@ -626,9 +591,7 @@ class Simulation:
             )
         states = self.states(times)
         spans = self._spans_until(states.time.max()) if len(states) else []
-        return self._dynamics.reactions(
-            states.vector, [spans[k].wrench for k in _places(spans, states.time)]
-        )
+        return self._dynamics.reactions(states.vector, wrenches_at(spans, states.time))
 
     @property
     def energy(self) -> float:
@@ -637,7 +600,7 @@ class Simulation:
 
     @property
     def angular_momentum_squared(self) -> float:
-        """L . L about the point of reference (mechanics.py), (kg m^2/s)^2."""
+        """L . L about the point of reference (mechanics/parameters.py), (kg m^2/s)^2."""
         return float(self._diagnose()[energy.MOMENTUM_SQUARED])
 
     def ledger(self) -> dict[str, float]:
@@ -665,12 +628,9 @@ class Simulation:
     def _events_between(self, spans, before, now):
         """Yield the events after `before` up to the tick at `now` (s), in their order."""
         last_tick = self._origin + round((now - self._origin_time) * self.rate)
-        for k, span in enumerate(spans):
-            end = spans[k + 1].time if k + 1 < len(spans) else now
-            if end > before:
-                for time, name, values in span.events(before, min(end, now), 1.0 / self.rate):
-                    tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
-                    yield Event(min(tick, last_tick), time, name, values)
+        for time, name, values in events_between(spans, before, now, 1.0 / self.rate):
+            tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
+            yield Event(min(tick, last_tick), time, name, values)
 
     def _spans_until(self, time):
         """Return the spans up to a time, with the scene's strikes on the way."""
@@ -718,14 +678,6 @@ class Simulation:
         return f'<table><tbody>{body}</tbody></table>{self.state._repr_html_()}'
 
 
-def _refuse_no_number(name, value):
-    """Refuse values that cannot be compared with a number."""
-    if type(value) is float:
-        return
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise BadInput(name, f'got {value!r}', 'a number')
-
-
 def _restored(made, spans, kept):
     """Return the Simulation that :meth:`Simulation.__reduce__` took apart."""
     simulation = Simulation(*made)
@@ -758,8 +710,3 @@ class _Foreseen(typing.NamedTuple):
 
 
 NOTHING_FORESEEN = _Foreseen(None, 0, ())
-
-
-def _places(spans, times):
-    """Return for each time the number of the span it lies in."""
-    return np.searchsorted([span.time for span in spans], times, side='right') - 1

@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spans, stretches of the motion between two commands or strikes, and their events."""
+"""Spans, stretches of the motion between two commands or strikes, and their events.
+
+The spans of a motion are a list in the order of their times. Each ends where the next one begins;
+the last one has no end.
+"""
 
 from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_body_sim.scene.state import STATE_SIZE
 
 
 @dataclass(frozen=True)
@@ -40,3 +48,39 @@ class Span:
             self._looked_until = until
         self._told = [event for event in self._told if event[0] > after]
         return [event for event in self._told if event[0] <= until]
+
+
+def states_at(spans, times):
+    """Return the states of a motion at times (s, any order), shape (n, 14)."""
+    out = np.empty((len(times), STATE_SIZE))
+    if len(spans) == 1:
+        spans[0].solver.states(times, out)
+        return out
+    place = _places(spans, times)
+    for k, span in enumerate(spans):
+        chosen = np.flatnonzero(place == k)
+        part = np.empty((len(chosen), STATE_SIZE))
+        span.solver.states(times[chosen], part)
+        out[chosen] = part
+    return out
+
+
+def wrenches_at(spans, times):
+    """Return the Wrench that is held at each time (s), a list."""
+    return [spans[k].wrench for k in _places(spans, times)]
+
+
+def events_between(spans, after, until, tick):
+    """Yield the (time, name, values) of a motion after one time (s) up to another, in order.
+
+    `tick` is the length of a tick, s; `after` never falls from call to call.
+    """
+    for k, span in enumerate(spans):
+        end = spans[k + 1].time if k + 1 < len(spans) else until
+        if end > after:
+            yield from span.events(after, min(end, until), tick)
+
+
+def _places(spans, times):
+    """Return for each time the number of the span it lies in."""
+    return np.searchsorted([span.time for span in spans], times, side='right') - 1

@@ -16,7 +16,7 @@ from rigid_body_sim.numerics.functions import log, sin_cos
 UNIFORM, NORMAL, DIRECTION, ROTATION = range(4)
 KINDS = {'uniform': UNIFORM, 'normal': NORMAL, 'direction': DIRECTION, 'rotation': ROTATION}
 WIDTHS = {UNIFORM: 1, NORMAL: 1, DIRECTION: 3, ROTATION: 4}
-WORDS = 4                   # of 64 bits, for each run
+WORDS = 4                   # words of 64 bits for each run
 UNIT = 2.0 ** -53
 TWO_PI = 2.0 * math.pi
 

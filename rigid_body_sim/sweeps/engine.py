@@ -22,8 +22,12 @@ SECONDS = 1.0
 SECONDS_TO_LEAD = 0.005
 """Cost of a block for the leading process and the scheduler, s: blocks are longer if many workers
 would make it the limit."""
-PIECES = 8
-"""Blocks for each worker, if there is enough work, so that the last one to finish is short."""
+BLOCKS = 8
+"""Blocks of a store for each worker, if there is enough work: the last one to finish is short."""
+PIECES = 4
+"""The same of a result in memory, where no process needs a block to begin with."""
+ENOUGH_QUICK = 24_576
+"""Runs that are enough work for a piece, of single states in closed form: some 10 ms."""
 FIRST_PIECE, FIRST_QUICK = 16, 2**15
 """Runs of the first pieces, which show how long runs take: of any kind, and of single states in
 closed form."""
@@ -193,7 +197,7 @@ def seconds_a_run(plan, patience=LOOK):
 def block_runs(plan, seconds, workers):
     """Return how many runs a block of a store has, where a run takes `seconds`."""
     whole = seconds * plan.spec.size
-    target = min(max(SECONDS, SECONDS_TO_LEAD * workers), max(0.05, whole / (PIECES * workers)))
+    target = min(max(SECONDS, SECONDS_TO_LEAD * workers), max(0.05, whole / (BLOCKS * workers)))
     return max(1, min(int(target / seconds), BLOCK_BYTES // plan.bytes))
 
 
@@ -215,7 +219,9 @@ def pieces_in_memory(plan, workers, rate):
             return
         known = rate()
         count = unknown if known is None else int(known * SECONDS)
-        fair = -(-2 * size // (PIECES * workers.count))
+        pieces = min(PIECES, max(1, size // (ENOUGH_QUICK * workers.count))) if plan.is_quick \
+            else PIECES
+        fair = -(-size // (pieces * workers.count))
         stop = min(size, first + max(1, min(count, fair, most)))
         yield first, stop, number
         first = stop

@@ -15,7 +15,7 @@ class Layout:
     Attributes
     ----------
     shape : tuple of int
-        Of the grid of runs.
+        Shape of the grid of runs.
     along : int
     chunk : int
         Places along that dimension which are read at once.

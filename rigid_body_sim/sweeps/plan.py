@@ -88,7 +88,7 @@ class Plan:
         A run of the sweep that is valid; it has all its keys.
     template_run : int
     choice : Choice
-        Of a method for the template.
+        Choice of a method for the template.
     direct : dict of str to slice
         Keys that set places of the start and change nothing else of a scene that
         `starts_alone_differ`.
@@ -123,6 +123,11 @@ class Plan:
     def starts_alone_differ(self):
         """Whether runs of the template differ in their starts alone, see starts_alone_differ."""
         return starts_alone_differ(self.template, self.spec.integrator)
+
+    def differs_in_starts_alone(self, scene):
+        """Return whether runs of a scene of the plan differ in their starts alone."""
+        return (self.starts_alone_differ if scene is self.template else
+                starts_alone_differ(scene, self.spec.integrator))
 
     @property
     def is_quick(self):

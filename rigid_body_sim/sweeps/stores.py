@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stores of a sweep: Zarr 3 for grids and trajectories, Parquet for one row a run.
+"""Stores of a sweep: Zarr 3 for grids and trajectories, Parquet for one row per run.
 
 The worker that computed a block writes it, into files that belong to that block alone. A block
 counts once it is marked as done, by the one process that leads the sweep. Every file appears
@@ -244,7 +244,7 @@ class ParquetStore(Store):
         for one in plan.variables:
             if len(one.shape) > 1:
                 raise BadInput('store', f'{one.name} has a value for each time',
-                               'a path that ends in .zarr; Parquet has one row a run')
+                               'a path that ends in .zarr; Parquet has one row per run')
         size = plan.spec.size
         layout = Layout.of((size,), block_runs, block_runs)
         part.mkdir(parents=True)

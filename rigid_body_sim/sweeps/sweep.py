@@ -24,9 +24,10 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.simulation.ensemble import SHARE, free_memory
 from rigid_body_sim.sweeps import engine, stores
 from rigid_body_sim.sweeps import spec as specs
+from rigid_body_sim.sweeps.functions import outputs_of
 from rigid_body_sim.sweeps.needed import need
 from rigid_body_sim.sweeps.plan import Plan
-from rigid_body_sim.sweeps.runs import outputs_of, room
+from rigid_body_sim.sweeps.results import room
 from rigid_body_sim.sweeps.work import Task, do, work
 
 if typing.TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Forecast:
     runs, workers : int
     seconds : float
     bytes : int
-        Of the result, before compression.
+        Size of the result, before compression.
     """
 
     runs: int
@@ -62,7 +63,7 @@ def sweep(spec, executor=None, store=None, *, progress: bool = False) -> 'xarray
     executor : concurrent.futures.Executor or distributed.Client, optional
         Where the runs are computed; by default threads of this process.
     store : path, optional
-        A folder to make, or to go on with: ``.zarr``, or ``.parquet`` for one row a run. Without
+        A folder to make, or to go on with: ``.zarr``, or ``.parquet`` for one row per run. Without
         it the result is in memory.
     progress : bool
         Whether to show a bar on stderr: runs done, rate, time left.

@@ -11,7 +11,8 @@ from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps import stores
 from rigid_body_sim.sweeps.layout import Layout
 from rigid_body_sim.sweeps.plan import DONE, Plan
-from rigid_body_sim.sweeps.runs import Block, compute
+from rigid_body_sim.sweeps.results import Block
+from rigid_body_sim.sweeps.runs import compute
 
 _PLANS = {}
 _STORES = {}
@@ -30,11 +31,11 @@ class Task:
     carried : dict of str to callable
         Spec.carried.
     versions : dict of str to str
-        Of the process that leads the sweep.
+        Those of the process that leads the sweep.
     store : str
         Path, '' where the results are returned.
     layout : Layout or None
-        Of the store.
+        Layout of the store.
     """
 
     spec: str

@@ -70,25 +70,50 @@ UNKNOWN = (np.full(3, np.nan), np.full(3, np.nan))
 def trail_between(before, after):
     """Return states (n, 14) from one state to a later one, dense enough for a trace.
 
-    The body is taken to turn evenly, as many times as its angular velocity says: a source that
-    has sixty states a second shows a fast top by this. The last row is `after`.
+    The body is taken to turn evenly, as many times as its angular velocity says, so that a source
+    of sixty states a second can show a fast top. The last row is `after`.
     """
     elapsed = after[TIME] - before[TIME]
     if not 0.0 < elapsed < LONGEST_GAP:
         return after[np.newaxis]
+    turn = _turn_between(before, after)
+    count = min(1 + int(np.linalg.norm(turn) / TURN_BETWEEN), MOST_BETWEEN)
+    states = _states_between(before, after, turn, np.arange(1, count + 1) / count)
+    states[-1] = after
+    return states
+
+
+def state_between(before, after, share):
+    """Return the state (14,) at a share (0 to 1) of the time from one state to a later one.
+
+    The body is taken to turn evenly, as for :func:`trail_between`. States too far apart do not
+    tell what is between them: the earlier one is returned.
+    """
+    if not 0.0 < after[TIME] - before[TIME] < LONGEST_GAP:
+        return before
+    return _states_between(before, after, _turn_between(before, after), np.array([share]))[0]
+
+
+def _states_between(before, after, turn, shares):
+    """Return the states at shares (n,) of a turn (rotation vector, body axes) between two."""
+    share = shares[:, np.newaxis]
+    states = before + share * (after - before)
     start = Rotation.from_quat(before[ORIENTATION])
-    turn = (start.inv() * Rotation.from_quat(after[ORIENTATION])).as_rotvec()
+    states[:, ORIENTATION] = (start * Rotation.from_rotvec(share * turn)).as_quat()
+    return states
+
+
+def _turn_between(before, after):
+    """Return the rotation vector (body axes) from one state to a later one, whole turns too."""
+    elapsed = after[TIME] - before[TIME]
+    start, end = Rotation.from_quat(before[ORIENTATION]), Rotation.from_quat(after[ORIENTATION])
+    turn = (start.inv() * end).as_rotvec()
     expected = 0.5 * elapsed * (before[ANGULAR_VELOCITY] + after[ANGULAR_VELOCITY])
     angle = float(np.linalg.norm(turn))
     if angle > 0.0:
         axis = turn / angle
         turn = turn + 2.0 * np.pi * round(float(axis @ expected - angle) / (2.0 * np.pi)) * axis
-    count = min(1 + int(np.linalg.norm(turn) / TURN_BETWEEN), MOST_BETWEEN)
-    share = np.arange(1, count + 1)[:, np.newaxis] / count
-    states = before + share * (after - before)
-    states[:, ORIENTATION] = (start * Rotation.from_rotvec(share * turn)).as_quat()
-    states[-1] = after
-    return states
+    return turn
 
 
 class Arrows(NamedTuple):
@@ -171,8 +196,8 @@ class Mechanics:
     def net_between(self, states):
         """Return net force and torque by the differences of three states (3, 14).
 
-        They are those of the middle state. UNKNOWN if the states are not as far apart from one
-        another, or if the body turns by more than LARGEST_TURN from one to the next.
+        They hold at the middle state. They are UNKNOWN if the states are not evenly spaced in
+        time, or if the body turns by more than LARGEST_TURN from one to the next.
         """
         before, after = np.diff(states[:, TIME])
         step = 0.5 * (before + after)

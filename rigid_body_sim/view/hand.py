@@ -17,13 +17,21 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, apply_impulse
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.state import ORIENTATION
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, LET_GO, WIDTH, WORLD
 
 PULL = 2.0 * math.pi * 0.8
 """Angular frequency at which the grabbed point follows the cursor, rad per second of the clock."""
 DAMPING = 0.7
 """Damping of the spring, relative to critical."""
+STEADY = 0.2
+"""Largest angle of the spring's oscillation from one frame to the next, rad.
+
+A wrench is held from frame to frame and acts a frame or two late: a faster spring would be driven
+by its own delay. With a delay of two frames the limit is 0.3 rad.
+"""
+FOLLOWS = 0.3
+"""Turn of the body from frame to frame, rad, at which a hand follows a point only halfway."""
 SLACK = 1e-2
 """The hand exerts no torque about an axis whose moment is this small, relative to the largest.
 
@@ -43,9 +51,15 @@ class Hand:
     def __init__(self, mechanics):
         self._mechanics = mechanics
         self._slack = _slack_axes(mechanics.scene)
+        scene = mechanics.scene
+        rolls = scene.constraint.mechanism is Mechanism.PLANE and scene.contact.mu == math.inf
+        self._normal = np.array(scene.constraint.normal) if rolls else None
+        self._middle = np.array(mechanics.scene.constraint.point(mechanics.scene.body))
 
     def pull(self, vector, grabbed, cursor, pace):
         """Return the row that holds the spring's wrench.
+
+        A body that has to roll is pulled along its plane or towards it, never off it.
 
         Parameters
         ----------
@@ -63,11 +77,37 @@ class Hand:
         """
         velocity = self._mechanics.velocity_at(vector, grabbed)
         wanted = pace * (pace * (np.subtract(cursor, grabbed)) - 2.0 * DAMPING * velocity)
+        if self._normal is not None:
+            wanted = wanted - max(float(wanted @ self._normal), 0.0) * self._normal
         size = float(np.linalg.norm(wanted))
         if size == 0.0 or not math.isfinite(size):
             return None
         mass = self.felt_mass(vector, grabbed, wanted / size)
         return None if mass is None else self._row(HOLD, vector, grabbed, mass * wanted)
+
+    def held_point(self, vector, grip, lag):
+        """Return the point (world, m) where a hand holds the body.
+
+        It is the grabbed point of the body while the body turns little from frame to frame. A hand
+        cannot follow a point that whirls about an axis: it holds such a body at the axis.
+
+        Parameters
+        ----------
+        vector : array (14,)
+            State of the body.
+        grip : array (3,)
+            The grabbed point in body axes, m.
+        lag : float
+            Simulated time from frame to frame, s.
+        """
+        turn, omega = Rotation.from_quat(vector[ORIENTATION]), vector[ANGULAR_VELOCITY]
+        rate = float(np.linalg.norm(omega))
+        arm = grip - self._middle
+        share = 1.0 / (1.0 + (rate * lag / FOLLOWS) ** 2)
+        if rate > 0.0 and share < 1.0:
+            on_axis = omega * (float(omega @ arm) / rate**2)
+            arm = on_axis + share * (arm - on_axis)
+        return vector[POSITION] + turn.apply(self._middle + arm)
 
     def strike(self, vector, point, impulse):
         """Return the row of an impulse (array (3,), N s, world) at a point of the body (world)."""
@@ -96,6 +136,28 @@ class Hand:
         for axis in turn.apply(self._slack) if len(self._slack) else ():
             couple = couple - axis * (axis @ couple)
         return force, couple
+
+
+def together(rows):
+    """Return the row of several pulls at once, each of shape (1, 8) and in the same axes."""
+    row = rows[0].copy()
+    row[:, 2:] = np.sum(rows, axis=0)[:, 2:]
+    return row
+
+
+def pace_of(strength, speed, lag):
+    """Return the angular frequency of the spring, rad per simulated second.
+
+    Parameters
+    ----------
+    strength : float
+        Its stiffness relative to the usual one.
+    speed : float
+        Simulated seconds per second of the clock.
+    lag : float
+        Simulated time from frame to frame, or from tick to tick if that is longer, s.
+    """
+    return min(PULL * math.sqrt(strength) / speed, STEADY / lag)
 
 
 def release():

@@ -3,8 +3,10 @@
 
 import math
 import multiprocessing
+import time
 
 import numpy as np
+import yaml
 
 from rigid_body_sim.command_line import deaf_children
 from rigid_body_sim.scene.scene import parse_scene
@@ -13,8 +15,8 @@ from rigid_body_sim.view import runner
 SLOWEST = 1e-3
 """A body that turns more slowly than this (rad/s) is not shown in real time."""
 
-FINISHED_WITHIN = 10.0
-"""Time that the process may take to end a step and to finish its recording, s."""
+FINISHED_WITHIN = 60.0
+"""Time that a process that records may take to end a step and to finish its recording, s."""
 
 
 class Live:
@@ -41,6 +43,8 @@ class Live:
         Errors since the page last looked; the page empties the list.
     speed : float
         Simulated seconds per second of the clock.
+    tick : float
+        Simulated time between two moments at which commands act, s.
     expected : dict
         What theory predicts beside what was measured.
     beside : None
@@ -54,6 +58,8 @@ class Live:
         self.scene, self.generation, self.method = parse_scene(text), 0, ''
         self.speed = pace_for(self.scene)
         self.messages, self.expected = list(self.scene.notes), {}
+        self.tick = 1.0 / settings['rate']
+        self._output, self._asked, self._next, self._doing = output, None, None, ''
         context = multiprocessing.get_context('spawn')
         self._pipe, other = context.Pipe()
         self._process = context.Process(target=runner.serve, args=(other, settings, output),
@@ -64,9 +70,28 @@ class Live:
         self.begin(text)
 
     def begin(self, text):
-        """Begin a scene from its YAML text."""
+        """Begin a scene from its YAML text, after the one that is being prepared."""
+        if self._asked is not None:
+            self._next = text
+            return
+        self._asked = yaml.safe_load(text)['scene'].replace('_', ' '), time.monotonic()
+        self._doing = 'starting'
         self.tell('scene', text)
         self.set_speed(self.speed)
+
+    @property
+    def preparing(self):
+        """What a page waits for, in words, or an empty text."""
+        if self._asked is None:
+            return ''
+        name, since = self._asked
+        return f'Preparing {name}: {self._doing}, {time.monotonic() - since:.0f} s'
+
+    def _prepared(self):
+        """Go on to the scene that was asked for meanwhile."""
+        self._asked, later, self._next = None, self._next, None
+        if later is not None:
+            self.begin(later)
 
     def set_speed(self, speed):
         """Run at another pace."""
@@ -86,7 +111,7 @@ class Live:
 
         Raises
         ------
-        BadInput
+        BadInput, NotConverged
             If the first scene cannot run with the settings given.
         """
         frames = []
@@ -103,18 +128,24 @@ class Live:
                 frames.clear()
             elif name == 'expected':
                 self.expected = value
+            elif name == 'preparing':
+                self._doing = value
+            elif name == 'prepared':
+                self._prepared()
             else:
                 self.messages.append(value)
         return frames
 
     def command(self, rows):
-        """Give commands (simulation.command_rows) to the body."""
-        self.tell('command', rows)
+        """Give commands (simulation.command_rows) to the body, unless another one is awaited."""
+        if self._asked is None:
+            self.tell('command', rows)
 
     def close(self):
-        """End the process."""
+        """End the process; one that records finishes its recording."""
         self._pipe.close()
-        self._process.join(FINISHED_WITHIN)
+        if self._output:
+            self._process.join(FINISHED_WITHIN)
         if self._process.is_alive():
             self._process.terminate()
 

@@ -13,37 +13,47 @@ from rigid_body_sim.scene.state import ORIENTATION, POSITION
 
 
 class Pull(NamedTuple):
-    """A drag in progress: the grabbed point and the cursor, on the page."""
+    """A drag in progress: the grabbed point where it began, and the cursor, on the page."""
 
-    grabbed: np.ndarray
+    begun: np.ndarray
     cursor: np.ndarray
 
 
 class Mouse:
-    """The mouse's actions on the body of a page.
+    """The mouse's actions on the body of a page; each browser has a mouse of its own.
 
     Attributes
     ----------
-    pull : Pull or None
-        The drag that goes on.
+    pulls : dict of {int: Pull}
+        The drag that goes on in each browser, by its number.
     clicks : list of (origin, direction)
         Rays of clicks that wait, on the page.
     """
 
     def __init__(self):
-        self.pull, self.clicks = None, []
+        self.pulls, self.clicks = {}, []
 
     def listen(self, handles):
-        """Listen to the surfaces of the body."""
+        """Listen to the surfaces of a body that appears; drags of the one before are over."""
+        self.pulls, self.clicks = {}, []
         for handle in handles:
             handle.on_drag('left')(self._drag)
             handle.on_click(self._click)
 
     async def _drag(self, event):
-        if event.phase == 'end':
-            self.pull = None
-        else:
-            self.pull = Pull(np.array(event.start_position), np.array(event.end_position))
+        """Take an event of a drag. viser reports the end also where the browser is gone.
+
+        It reports no motion of the grabbed point while the mouse is still, so the page follows
+        that itself from where it began.
+        """
+        if event.phase == 'start':
+            self.pulls[event.client_id] = Pull(np.array(event.start_position),
+                                               np.array(event.end_position))
+        elif event.phase == 'end':
+            self.pulls.pop(event.client_id, None)
+        elif event.client_id in self.pulls:    # else its body is gone
+            begun = self.pulls[event.client_id].begun
+            self.pulls[event.client_id] = Pull(begun, np.array(event.end_position))
 
     async def _click(self, event):
         self.clicks.append((np.array(event.ray_origin), np.array(event.ray_direction)))

@@ -16,8 +16,10 @@ import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Vector3Stamped, WrenchStamped
+from rcl_interfaces.srv import GetParameters
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
+from scipy.spatial.transform import Rotation
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
@@ -25,7 +27,14 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import display
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
-from rigid_body_sim.scene.state import State
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    ORIENTATION,
+    POSITION,
+    TIME,
+    VELOCITY,
+    State,
+)
 from rigid_body_sim.simulation.command_rows import (
     AXES,
     BODY,
@@ -35,10 +44,18 @@ from rigid_body_sim.simulation.command_rows import (
     TORQUE,
     wrench_of,
 )
-from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics, trail_between
+from rigid_body_sim.view.frames import (
+    LONGEST_GAP,
+    UNKNOWN,
+    Frame,
+    Mechanics,
+    trail_between,
+)
 
 APPEARS_WITHIN = 8.0
 """Longest time for the node to be discovered, s."""
+GONE_AFTER = 2.0
+"""Time without a state after which a page asks if the node is still there, s."""
 DISPLAY_WITHIN = 1.0
 """Longest time for a node that publishes a scene to show its topics for pages, s."""
 STATES = {'angular_velocity': Vector3Stamped, 'energy': Float64, 'pose': PoseStamped}
@@ -61,7 +78,7 @@ class NodeSource:
     """
 
     pushes, edits, plays, paces = True, False, False, False
-    speed, beside = 1.0, None
+    speed, tick, beside, preparing = 1.0, 0.0, None, ''
 
     def __init__(self, name):
         self._name = name if name.startswith('/') else f'/{name}'
@@ -70,6 +87,8 @@ class NodeSource:
         self.generation, self.method, self.messages, self.expected = 0, 'a running node', [], {}
         self._residuals, self._wrench = {}, Wrench()
         self._start, self._last, self._shown, self._net = None, {}, None, None
+        self._velocity, self._asked = np.zeros(3), False
+        self._heard, self._gone = time.monotonic(), False
         # signals are the command's: those of rclpy take its context away while it is in use
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node('rigid_body_sim_view')
@@ -92,7 +111,8 @@ class NodeSource:
         self._clients = {
             'pause': self._asking.create_client(SetBool, f'{self._name}/pause'),
             'step': self._asking.create_client(Trigger, f'{self._name}/step'),
-            'reset': self._asking.create_client(Trigger, f'{self._name}/reset')}
+            'reset': self._asking.create_client(Trigger, f'{self._name}/reset'),
+            'timeout': self._asking.create_client(GetParameters, f'{self._name}/get_parameters')}
         deadline = time.monotonic() + APPEARS_WITHIN
         while not self._take_scene():
             if time.monotonic() > deadline:
@@ -130,7 +150,8 @@ class NodeSource:
         if texts:
             self.scene = parse_scene(texts[-1], where=f'{self._name}: scene')
             self.generation += 1
-            self._shown = None
+            self._shown, self._velocity = None, np.zeros(3)
+            self._middle = np.array(self.scene.body.center_of_mass)
             # the topics for pages have no velocities
             self._net = UNKNOWN if Mechanics(self.scene).need_velocity() else None
         return bool(texts)
@@ -147,9 +168,22 @@ class NodeSource:
         for topic in STATES:
             for message in self._take(topic):
                 self._last[topic], fresh = message, True
+        self._miss(fresh)
         if not fresh or not {'pose', 'angular_velocity'} <= self._last.keys():
             return []
         return [self._frame()]
+
+    def _miss(self, fresh):
+        """Say once that the node is gone, where nothing of it has come for a while."""
+        now = time.monotonic()
+        if fresh:
+            self._heard, self._gone = now, False
+        elif not self._gone and now - self._heard > GONE_AFTER:
+            topic = self._subscriptions['scene'].topic_name
+            self._gone = not self._node.count_publishers(topic)
+            if self._gone:
+                self.messages.append(f'{self._name} is gone, and its last state is shown; the '
+                                     'terminal that it ran in says why')
 
     def _frame(self):
         pose, turning = self._last['pose'], self._last['angular_velocity'].vector
@@ -161,11 +195,29 @@ class NodeSource:
         events = tuple((stamp - self._start, message.message or message.name)
                        for message in self._take('events'))
         energy = self._last['energy'].data if 'energy' in self._last else math.nan
+        self._add_velocity(vector)
         trail = vector[np.newaxis] if self._shown is None else trail_between(self._shown, vector)
         self._shown = vector
         return Frame(stamp - self._start, vector, trail, self._wrench, energy,
                      self._residuals.get('energy_residual', math.nan),
                      self._residuals.get('momentum_residual', math.nan), events, net=self._net)
+
+    def _add_velocity(self, vector):
+        """Fill in the velocity of a state, which no topic has, by the centre's last two moves.
+
+        It damps a pull. The smaller of the two differences is taken, since a reset is no motion.
+        """
+        turn = Rotation.from_quat(vector[ORIENTATION])
+        lever = turn.apply(self._middle)
+        before = self._shown
+        elapsed = 0.0 if before is None else vector[TIME] - before[TIME]
+        found = self._velocity
+        if 0.0 < elapsed < LONGEST_GAP:
+            was = before[POSITION] + Rotation.from_quat(before[ORIENTATION]).apply(self._middle)
+            now = (vector[POSITION] + lever - was) / elapsed
+            found = min(now, self._velocity, key=np.linalg.norm)
+            self._velocity = now
+        vector[VELOCITY] = found - np.cross(turn.apply(vector[ANGULAR_VELOCITY]), lever)
 
     def _diagnose(self, message):
         for status in message.status:
@@ -186,9 +238,25 @@ class NodeSource:
             if row[KIND] == IMPULSE:
                 self._struck.publish(message)
             else:
+                self._ask_for_timeout()
                 # a release is a wrench of zero
                 self._held.publish(message)
                 self._wrench = wrench_of(row)
+
+    def _ask_for_timeout(self):
+        """Warn once, at the first pull, if the node would hold it when this process has ended."""
+        if self._asked or not self._clients['timeout'].service_is_ready():
+            return
+        self._asked = True
+
+        def answered(future):
+            [value] = future.result().values
+            if value.double_value == 0.0:
+                self.messages.append(
+                    f'{self._name} holds a pull until it is replaced, even if this page is '
+                    f'killed: "ros2 param set {self._name} command_timeout 0.5" ends it then')
+        request = GetParameters.Request(names=['command_timeout'])
+        self._clients['timeout'].call_async(request).add_done_callback(answered)
 
     def tell(self, name, value=None):
         """Call a service of the node: ``pause`` with a bool, ``step`` or ``reset``."""

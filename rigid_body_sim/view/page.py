@@ -6,7 +6,6 @@ import io
 import socket
 import time
 
-import numpy as np
 import viser
 
 from rigid_body_sim.drawing.setting import follows
@@ -21,6 +20,8 @@ PERIOD = 1.0 / 60.0
 FIELD_OF_VIEW = 0.7
 LAST_PORT = 65000
 """Largest first port to try: from there on some are left to try if it is taken."""
+PULLED_EVERY = 0.1
+"""Time after which a pull is sent again where no frame comes, s."""
 NUMBERS_EVERY = 0.2
 """Time between two updates of numbers, curves and traces, s."""
 
@@ -82,7 +83,8 @@ class Page:
         self.panel = Panel(self.server, source, self._shown)
         self.mouse = mouse.Mouse()
         self._generation, self._stages, self._hand = None, [], None
-        self._pulling, self._numbers_due = False, 0.0
+        self._grips, self._held, self._pulling = {}, [], False
+        self._pulled, self._lag, self._numbers_due = 0.0, PERIOD, 0.0
         self.frame = None
 
     @property
@@ -117,7 +119,7 @@ class Page:
             self._source.wait(due - now)
 
     def turn(self):
-        """Handle what is due: requests, frames, the mouse."""
+        """Handle requests, frames and the mouse."""
         while not self.panel.requests.empty():
             self._do(*self.panel.requests.get())
         text = self.panel.edited() if self._source.edits else None
@@ -129,17 +131,20 @@ class Page:
         for message in self._source.messages:
             self.panel.say(message)
         self._source.messages.clear()
+        if frames and self.frame is not None and not any(frame.restarted for frame in frames):
+            self._lag = frames[-1].time - self.frame.time
         for frame in frames:
             self.frame = frame
             self.panel.take(frame)
             self._stages[0].trace(frame)
+        self.panel.wait(self._source.preparing)
         if self.frame is not None:
-            self._push()
+            self._push(bool(frames))
             if frames:
                 self._show()
             self._numbers()
-            # else viser gathers messages for a sixtieth of a second of its own
-            self.server.flush()
+        # else viser gathers messages for a sixtieth of a second of its own
+        self.server.flush()
 
     def _begin(self):
         """Show the scene that the source has begun."""
@@ -152,7 +157,7 @@ class Page:
         stage.shown = self._shown
         self._shown['follow'] = follows(scene)
         self._hand = hand.Hand(stage.mechanics) if scene else None
-        self.mouse.pull = None
+        self._grips = {}
         if self._source.pushes:
             self.mouse.listen(stage.bodies)
         beside = self._source.beside
@@ -163,9 +168,7 @@ class Page:
     def _show(self):
         stage = self._stages[0]
         stage.follows = self._shown['follow']
-        pull = self.mouse.pull if self._pulling else None
-        stage.show(self.frame, None if pull is None else
-                   (stage.to_world(pull.grabbed), stage.to_world(pull.cursor)))
+        stage.show(self.frame, self._held)
         for other in self._stages[1:]:
             other.follows = False
             other.show(self._beside())
@@ -174,7 +177,7 @@ class Page:
     def _beside(self):
         """Return the Frame of the second recording, or None."""
         beside = self._source.beside
-        return None if beside is None else beside.at(self.frame.time, self.frame.time)
+        return None if beside is None else beside.beside_of(self.frame)
 
     def _numbers(self):
         now = time.monotonic()
@@ -186,28 +189,51 @@ class Page:
         arrows = stage.mechanics.of(frame) if stage.mechanics else None
         self.panel.draw(frame, arrows, self._source.expected, self._beside())
 
-    def _push(self):
-        """Apply the commands of the mouse to the body."""
+    def _push(self, fresh):
+        """Apply the commands of the mouse to the body; `fresh` says whether a frame has come."""
         if not self._source.pushes:
             return
         stage, vector = self._stages[0], self.frame.vector
         strength = 10.0 ** self.panel.strength.value
-        pull = self.mouse.pull
-        if pull is not None:
-            pace = hand.PULL * np.sqrt(strength) / self._source.speed
-            row = self._hand.pull(vector, stage.to_world(pull.grabbed),
-                                  stage.to_world(pull.cursor), pace)
-            if row is not None:
-                self._pulling = True
-                self._source.command(row)
-        elif self._pulling:
-            self._pulling = False
-            self._source.command(hand.release())
+        pulls = dict(self.mouse.pulls)
+        now = time.monotonic()
+        # what has not moved is pulled as before, and what is paused gets no commands for nothing
+        if pulls and (fresh or not self._pulling or now - self._pulled > PULLED_EVERY):
+            self._pulled = now
+            self._pull(pulls, strength)
+        elif self._pulling and not pulls:
+            self._let_go()
         while self.mouse.clicks:
             origin, direction = self.mouse.clicks.pop(0)
             point = mouse.hit(stage.drawing, vector, stage.to_world(origin), direction)
             if point is not None:
                 self._strike(vector, point, direction, strength)
+
+    def _pull(self, pulls, strength):
+        """Hold the wrench of the springs of all browsers that drag the body."""
+        stage, vector, source = self._stages[0], self.frame.vector, self._source
+        lag = max(self._lag, PERIOD * source.speed, source.tick)
+        pace = hand.pace_of(strength, source.speed, lag)
+        known, self._grips, self._held, rows = self._grips, {}, [], []
+        for key, (begun, cursor) in pulls.items():
+            was, grip = known.get(key, (None, None))
+            if was is not begun:
+                grip = stage.to_body(vector, stage.to_world(begun))
+            self._grips[key] = begun, grip
+            point, wanted = self._hand.held_point(vector, grip, lag), stage.to_world(cursor)
+            row = self._hand.pull(vector, point, wanted, pace)
+            if row is not None:
+                rows.append(row)
+                self._held.append((point, wanted))
+        if rows:
+            self._pulling = True
+            source.command(hand.together(rows))
+        elif self._pulling:
+            self._let_go()
+
+    def _let_go(self):
+        self._pulling, self._held = False, []
+        self._source.command(hand.release())
 
     def _strike(self, vector, point, direction, strength):
         """Strike a point: at strength 1 its speed changes by half a page length a second."""
@@ -227,6 +253,8 @@ class Page:
         elif name == 'run':
             pauses = {'pause': True, 'play': False}
             source.tell('pause' if value in pauses else value, pauses.get(value))
+            if value != 'pause':
+                self.panel.say('')    # the motion goes on, or says again why it does not
         elif name == 'speed':
             source.set_speed(value)
         elif name == 'seek':

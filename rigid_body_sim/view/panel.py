@@ -87,6 +87,7 @@ class Panel:
         gui = server.gui
         self._title = gui.add_html('')
         self._add_run(gui)
+        self._waiting = gui.add_html('')
         self._values = gui.add_html('')
         self._problem = gui.add_html('')
         if source.pushes:
@@ -163,7 +164,7 @@ class Panel:
         and `beside` is the Player of a second recording or None.
         """
         name = html.escape(scene.name.replace('_', ' '))
-        method = html.escape(self._source.method or 'being prepared ...')
+        method = html.escape(self._source.method or 'not yet moving')
         grey = '' if beside is None else (
             f'<div>In grey: <b>{html.escape(beside.name)}</b>, {html.escape(beside.method)}; '
             f'in colours: {html.escape(self._source.name)}</div>')
@@ -221,6 +222,13 @@ class Panel:
         (_, text), self._edit = self._edit, None
         return text()
 
+    def wait(self, text):
+        """Show what the page waits for, or nothing."""
+        content = text and (f'<div style="margin:0.3em 1em;font-size:0.9em">'
+                            f'{html.escape(text)} ...</div>')
+        if self._waiting.content != content:
+            self._waiting.content = content
+
     def say(self, problem):
         """Show an error line."""
         # the text keeps the colour of the page, which is legible on light and on dark ground
@@ -253,7 +261,7 @@ class Panel:
             rows += [('to the grey one', f'{angle:.3g} rad'), ('', f'{distance:.3g} m')]
         self._values.content = _table(rows)
         if self.curves:
-            self.curves.draw()
+            self.curves.draw(self._source.speed)
         if self._source.plays:
             self._timeline.value = min(frame.time, self._source.end)
         lines = [f'{at:.6g} s: {html.escape(text)}' for at, text in reversed(self._events)]

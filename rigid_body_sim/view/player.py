@@ -12,8 +12,8 @@ from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.state import STATE_SIZE
-from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics
+from rigid_body_sim.scene.state import STATE_SIZE, TIME
+from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics, state_between
 
 MOST_STATES = 1_000_000
 """Most states that are kept; of a longer recording every n-th is kept."""
@@ -21,7 +21,7 @@ MOST_BETWEEN = 40
 MOST_MARKS = 60
 """With more marks only those of commands and resets are kept."""
 PARTED = 4.0
-"""Ratio of a difference to that beside it from which on something happened between its states."""
+"""If a difference is this many times the one beside it, something happened between its states."""
 NANOSECONDS = 1e9
 
 
@@ -46,6 +46,7 @@ class Player:
     """
 
     pushes, edits, plays, paces = False, False, True, True
+    preparing = ''
 
     def __init__(self, path):
         self._times, self._vectors, self._energies, source = states_of(path)
@@ -91,6 +92,17 @@ class Player:
                      Wrench(), float(self._energies[place]), math.nan, math.nan, events,
                      not going_on, self._net(place))
 
+    def beside_of(self, frame):
+        """Return the Frame at the time of another recording's Frame; the rates may differ."""
+        when = float(frame.vector[TIME])
+        found = self.at(when, when)
+        place = max(int(np.searchsorted(self._times, when, side='right')) - 1, 0)
+        if place + 1 >= len(self._times) or when == self._times[place]:
+            return found
+        before, after = self._vectors[place], self._vectors[place + 1]
+        share = (when - before[TIME]) / (after[TIME] - before[TIME])
+        return found._replace(vector=state_between(before, after, share))
+
     def _net(self, place):
         """Return net force and torque at a state, from states that no strike parts."""
         if self._mechanics is None:
@@ -126,9 +138,9 @@ class Player:
 
 
 def _steady(value, *others):
-    """Return a difference, or the least of those beside it where something parts its states.
+    """Return a difference, or the least of those beside it if a strike or impact parts its states.
 
-    What a strike or an impact makes of a difference is larger by far.
+    That makes a difference larger by far than those beside it.
     """
     least = min(others, key=np.linalg.norm)
     return least if np.linalg.norm(value) > PARTED * np.linalg.norm(least) else value

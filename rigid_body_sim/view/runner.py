@@ -3,8 +3,9 @@
 
 The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
 Frame)``, ``('scene', About)``, ``('refused', text)``, ``('failed', text)`` and, if the very first
-scene cannot run, ``('impossible', BadInput)`` back. So a method that takes long never holds up the
-page, and the page never holds up the simulation.
+scene cannot run, ``('impossible', error)`` back. While a scene is prepared, ``('preparing',
+text)`` tells what is being done; ``('prepared', None)`` ends it, with or without a new scene. So a
+method that takes long never holds up the page, and the page never holds up the simulation.
 """
 
 import contextlib
@@ -30,6 +31,8 @@ LONGEST_WORK = 0.05
 """Time that the computation of one frame may take, s of the clock: then the motion lags."""
 LAST_TIME = 1e9
 """Simulated time that ends the motion, in seconds times the rate over 1000: ticks stay exact."""
+WAYS_ON = 'press reset, or let go of the body and press play'
+"""What a person may do about a motion that cannot go on."""
 
 
 class About(NamedTuple):
@@ -56,7 +59,7 @@ class Runner:
         self._pipe, self._settings, self._output = pipe, settings, output
         self._simulation = self._recording = None
         self._events = []
-        self._speed, self._paused, self._steps = 1.0, False, 0
+        self._speed, self._paused, self._halted, self._steps = 1.0, False, False, 0
         self._cost, self._last = 0.0, 0.0
         self._told = {'scene': self._begin, 'command': self._command, 'speed': self._set_speed,
                       'pause': self._pause, 'step': self._step, 'reset': self._reset}
@@ -66,7 +69,8 @@ class Runner:
 
         ``scene``: a YAML text begins. ``command``: rows of commands act at the present tick.
         ``speed``: simulated seconds per second. ``pause``: a bool. ``step``: the motion goes on by
-        one frame while paused. ``reset``: the state goes back to the initial one.
+        one frame while paused. ``reset``: the state goes back to the initial one. A motion that
+        cannot go on halts until ``pause`` is false, a reset, or another scene.
         """
         self._told[name](value)
 
@@ -87,10 +91,19 @@ class Runner:
 
     def _begin(self, text):
         try:
+            self._prepare(text)
+        finally:
+            self._pipe.send(('prepared', None))
+
+    def _prepare(self, text):
+        """Begin a scene, or say why it cannot begin."""
+        try:
+            self._pipe.send(('preparing', 'choosing a method'))
             simulation = Simulation(parse_scene(text), **self._settings)
+            self._pipe.send(('preparing', 'compiling what a push needs'))
             self._rehearse(simulation.scene)
             self._record(simulation)
-        except BadInput as error:
+        except (BadInput, NotConverged) as error:
             # with nothing to go on with, the page's process ends with this error
             self._pipe.send(('refused', str(error)) if self._simulation else ('impossible', error))
             return
@@ -170,9 +183,10 @@ class Runner:
     def _restarted(self):
         self._time = 0.0
         self._cost = 0.0
+        self._halted = False
         self._expected = expectation(self._simulation.scene, self._simulation.state)
         self._send(self._simulation.vector.copy()[np.newaxis], restarted=True)
-        # what the preparation took is no time of the motion
+        # time spent on the preparation does not count as time of the motion
         self._last = time.monotonic()
 
     def _command(self, rows):
@@ -189,7 +203,7 @@ class Runner:
         self._speed = float(speed)
 
     def _pause(self, paused):
-        self._paused = bool(paused)
+        self._paused, self._halted = bool(paused), False
 
     def _step(self, _):
         self._steps += 1
@@ -205,7 +219,8 @@ class Runner:
         if self._simulation is None:
             return
         steps, self._steps = self._steps, 0
-        forward = steps * PERIOD * self._speed if self._paused else seconds * self._speed
+        still = self._paused or self._halted
+        forward = steps * PERIOD * self._speed if still else seconds * self._speed
         if forward <= 0.0:
             return
         if self._cost > 0.0:
@@ -214,8 +229,8 @@ class Runner:
         try:
             self._move(min(self._time + forward, LAST_TIME * 1000.0 / self._simulation.rate))
         except (BadInput, NotConverged) as error:
-            self._pipe.send(('failed', str(error)))
-            self._paused = True
+            self._pipe.send(('failed', f'{error}. The motion halts there: {WAYS_ON}'))
+            self._halted = True
             return
         took = (time.perf_counter() - began) / forward
         self._cost = 0.8 * self._cost + 0.2 * took

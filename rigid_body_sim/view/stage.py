@@ -171,12 +171,12 @@ class Stage:
             f'{folder}/trace_{key}', np.zeros((1, 2, 3)), TRACES[key], thickness=2.0,
             thickness_units='screen', visible=False)
 
-    def show(self, frame, held=None):
-        """Draw a Frame; `held` is (grabbed point, cursor) of a mouse that pulls, world, m."""
+    def show(self, frame, held=()):
+        """Draw a Frame; `held` has (held point, cursor) of each mouse that pulls, world, m."""
         vector, unit = frame.vector, self.unit
         turn = Rotation.from_quat(vector[ORIENTATION])
         self._about = (vector[POSITION] + turn.apply(self._middle)) / unit
-        self._follow(held is not None)
+        self._follow(bool(held))
         with self._server.atomic():
             if not np.array_equal(self._root.position, self._offset):
                 self._root.position = self._offset
@@ -236,10 +236,10 @@ class Stage:
 
     def _draw_spring(self, held):
         handle = self._arrows['spring']
-        if held is not None:
-            handle.points = (np.array(held) / self.unit - self._about)[np.newaxis].astype('f4')
-        if handle.visible != (held is not None):
-            handle.visible = held is not None
+        if held:
+            handle.points = (np.array(held) / self.unit - self._about).astype('f4')
+        if handle.visible != bool(held):
+            handle.visible = bool(held)
 
     def trace(self, frame):
         """Take the states of a Frame's trail into the traces."""
@@ -278,6 +278,10 @@ class Stage:
     def to_world(self, point):
         """Return a point of the page in the world, m."""
         return (np.asarray(point, float) - self._offset) * self.unit
+
+    def to_body(self, vector, point):
+        """Return a point of the world (m) in the axes of the body with a state (14,)."""
+        return Rotation.from_quat(vector[ORIENTATION]).inv().apply(point - vector[POSITION])
 
     def remove(self):
         """Remove everything from the page."""

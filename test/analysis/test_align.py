@@ -44,7 +44,7 @@ def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
 
 
 def test_columns_that_not_all_messages_have_are_left_out():
-    """As where a frame got another name, of another length."""
+    """A frame that gets another name, of another length, does this."""
     from rigid_body_sim.analysis import align
     waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2))},
                       {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2))},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Damaged recordings whose checksum does not tell: at worst analysis and resimulation say so."""
+"""Damage that no checksum shows: analysis and resimulation run, or refuse in one line."""
 
 import random
 
@@ -38,7 +38,7 @@ def analysed(path):
 
 
 def tried(function, path):
-    """Return whether a function had no objection; if it had, then in one line."""
+    """Return whether a function ran; if it refused, it did so in one line."""
     objection = None
     try:
         function(path)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from analysis import made
 
-from rigid_body_sim.analysis import page
+from rigid_body_sim.analysis import page, panels
 from rigid_body_sim.analysis.analyze import main
 from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.source import sources
@@ -46,6 +46,22 @@ def carried(text, name):
     return gzip.decompress(base64.b64decode(packed)).decode()
 
 
+def test_a_curve_that_stays_where_it_is_is_shown_at_its_own_size():
+    """An energy of 0.023 J was once drawn as a line at zero on an axis from -1 to 1."""
+    times = np.arange(5.0)
+
+    def shown(*values, **more):
+        lines = tuple(panels.Line('', times, np.array(one)) for one in values)
+        return page._range(panels.Panel('energy', 'energy', lines, **more))
+    still = np.full(5, 0.02)
+    assert shown(still) == pytest.approx([0.016, 0.024])
+    assert shown(-still * [1.0, 1.0, 1.0, 1.0, 1.0 + 1e-9]) == pytest.approx([-0.024, -0.016])
+    assert shown(np.append(still[:4], np.nan)) == pytest.approx([0.016, 0.024])
+    for several in ([still, 2.0 * still], [np.zeros(5)], [times], [np.full(5, np.nan)]):
+        assert shown(*several) is None
+    assert shown(still, log=True) is None and shown(still, band=1e-16) is None
+
+
 def test_the_page_is_complete_in_itself_and_small(written):
     text = written.read_text(encoding='utf-8')
     assert len(carried(text, 'plotly')) > 10**6 and len(text) < 3 * 10**6
@@ -71,6 +87,8 @@ def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
         'commands': 0}
     said = page._verdict(found, None)
     assert 'verdict bad' in said and 'Not kept' in said and '2 lost' in said
+    for commands, words in ((1, ' 1 tick with commands.'), (3, ' 3 ticks with commands.')):
+        assert words in page._verdict(found | {'commands': commands}, None)
 
 
 def test_no_button_of_a_figure_uploads_it(written):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run, run again from the recording alone: the same bits, or the first other one."""
+"""A recorded run, run again from the recording alone: the same bits, or the first that differs."""
 
 import json
 import pathlib

@@ -13,7 +13,7 @@ from data import choice_cases
 
 from rigid_body_sim.analysis import resimulate
 from rigid_body_sim.choice import choose as choose_module
-from rigid_body_sim.choice import measured, trial
+from rigid_body_sim.choice import measured, settling
 from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.cli import simulate
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -32,9 +32,9 @@ def scene_of(name):
 
 
 def test_where_no_measured_method_is_left_the_choice_gives_up():
-    """Only measured methods are tried: the last of them left an empty table, and a traceback."""
+    """Only measured methods are tried: what was left after the last once gave a traceback."""
     with pytest.raises(NotConverged, match='no method follows'):
-        trial.settle(scene_of(next(iter(choice_cases.CASES))), ['rk4'], 1e-6, 1.0)
+        settling.settle(scene_of(next(iter(choice_cases.CASES))), ['rk4'], 1e-6, 1.0)
 
 
 # the other cases need kernels that no other test compiles: bench/choice.py has them all
@@ -53,7 +53,7 @@ def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
 def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
     # choices of the table without trial runs: compiling those of all kinds takes minutes
     monkeypatch.setattr(
-        trial, 'settle', lambda *asked: trial.Settled(*measured.pick(*asked), asked[-1]))
+        settling, 'settle', lambda *asked: settling.Settled(*measured.pick(*asked), asked[-1]))
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)
     assert [choice.expected_error for choice in choices] == sorted(
@@ -98,7 +98,7 @@ def test_closed_forms_cost_no_choice():
 
 def test_a_recorded_choice_is_taken_whatever_the_table_says(monkeypatch):
     now = choose(scene_of('slow_top'), accuracy=1e-6)
-    monkeypatch.setattr(trial, 'settle', lambda *_: pytest.fail('it looked into the table'))
+    monkeypatch.setattr(settling, 'settle', lambda *_: pytest.fail('it looked into the table'))
     then = choose(scene_of('slow_top'), accuracy=1e-6, settled=now.settled)
     assert (then.method, then.tolerance) == (now.method, now.tolerance)
 
@@ -118,7 +118,7 @@ def test_a_resimulation_makes_the_recorded_choice(tmp_path, capsys, monkeypatch)
     method = json.loads(capsys.readouterr().out)['method']
     assert method['horizon'] == 0.2
     assert 0.0 < method['expected_error'] <= 1e-6
-    monkeypatch.setattr(trial, 'settle', lambda *_: trial.Settled('rk4', None, 1.0, 0.0))
+    monkeypatch.setattr(settling, 'settle', lambda *_: settling.Settled('rk4', None, 1.0, 0.0))
     assert resimulate.main([str(tmp_path / 'run')]) == 0
     assert 'identical' in capsys.readouterr().out
 

@@ -101,28 +101,40 @@ def test_constants_that_kernels_import_are_in_the_key_of_the_cache():
 
 
 @needs_numba
-def test_importing_writes_nothing_and_the_first_kernel_does(copy_of_package):
-    cache = {
-        'XDG_CACHE_HOME': str(copy_of_package / 'cache'), 'TMPDIR': str(copy_of_package / 'cache')}
-    run('import rigid_body_sim.simulation.simulation, rigid_body_sim.study.check_scenes',
-        copy_of_package, **cache)
-    assert not (copy_of_package / 'cache').exists()
-    (copy_of_package / 'cache').mkdir()
-    run(TURN, copy_of_package, **cache)
-    assert list((copy_of_package / 'cache').rglob('*.nbc'))
+def test_importing_hashes_writes_and_deletes_nothing_and_the_first_kernel_does(copy_of_package):
+    cache = copy_of_package / 'cache'
+    settings = {'XDG_CACHE_HOME': str(cache), 'TMPDIR': str(cache)}
+    old = cache / 'rigid_body_sim' / 'old'
+    old.mkdir(parents=True)
+    os.utime(old, (0.0, 0.0))    # unused for more than a month
+    hashed = run(
+        'import rigid_body_sim.simulation.simulation, rigid_body_sim.study.check_scenes\n'
+        'from rigid_body_sim.compilation.environment import sources_key\n'
+        'print(sources_key.cache_info().currsize)', copy_of_package, **settings)
+    assert hashed == '0\n'
+    assert list(cache.rglob('*')) == [old.parent, old]
+    run(TURN, copy_of_package, **settings)
+    assert list(cache.rglob('*.nbc'))
+    assert not old.exists()
 
 
 @needs_numba
-def test_an_edit_to_the_shell_recompiles_nothing(copy_of_package):
+def test_an_edit_to_the_shell_the_study_or_a_document_recompiles_nothing(copy_of_package):
+    """All that is no source of kernels is edited at once: the cache keeps its name."""
     key = 'from rigid_body_sim.compilation.environment import sources_key\nprint(sources_key())'
-    before = run(key, copy_of_package)
-    for place in (
-            'cli/simulate.py', 'study/check_scenes.py', 'node/qos.py', 'simulation/simulation.py'):
-        path = copy_of_package / 'rigid_body_sim' / place
-        path.write_text(path.read_text() + '# edited\n')
+    before, package = run(key, copy_of_package), copy_of_package / 'rigid_body_sim'
+    kernels = {path.relative_to(PACKAGE) for path in environment.kernel_sources()}
+    others = {path for path in package.rglob('*')
+              if path.is_file() and path.relative_to(package) not in kernels}
+    assert {package / 'cli/simulate.py', package / 'study/check_scenes.py',
+            package / 'node/qos.py', package / 'simulation/simulation.py'} <= others
+    (copy_of_package / 'docs').mkdir()
+    for path in (*others, copy_of_package / 'docs' / 'architecture.md'):
+        with path.open('ab') as file:
+            file.write(b'# edited\n')
     assert run(key, copy_of_package) == before
-    path = copy_of_package / 'rigid_body_sim' / 'motions' / 'loops.py'
-    path.write_text(path.read_text() + '# edited\n')
+    with (package / 'motions' / 'loops.py').open('ab') as file:
+        file.write(b'# edited\n')
     assert run(key, copy_of_package) != before
 
 

@@ -89,7 +89,7 @@ class Allowed:
 
 
 NONLINEAR = 0.05
-"""rad. What ulps move by more does not depend linearly on them: no sample of ulps bounds it."""
+"""rad. A larger change does not depend linearly on ulps: no sample of them bounds it."""
 SIZES = FEW * 2.0 ** -np.arange(0.0, 25.0, 4.0)
 """Shifts in ulps of the whole vector, down to the ulp of a component that is 2^-24 of it."""
 LOOKS = 25
@@ -101,13 +101,14 @@ def anchored_anew(simulation, vector, first, last):
 
     The error is the angle (rad) at `last` (s) between the motion from 0 s and the same motion
     anchored anew at `first` (s). The bound shifts each component of the anchor's q, omega and v by
-    ulps of many sizes and looks how far that moves the body, anywhere between the anchor and the
+    ulps of many sizes and takes how far that moves the body, anywhere between the anchor and the
     end: near a separatrix or an unstable axis ulps grow by e^(lambda T). A body that comes back to
-    its unstable place is 1e-12 or 1e-9 rad off it, as ulps decide, and leaves at quite different
-    times. At the end it may have come back again, and ends look alike that nothing relates: a few
-    shifts, seen at the end alone, bound nothing. So, where a shift moves the body by more than
-    `NONLINEAR` on the way, the bound is half a turn. To the bound comes the floor of a closed
-    form, 4 ulp of the angle turned in all: also where nearly all of it lies before the anchor.
+    its unstable place misses it by 1e-12 or 1e-9 rad, as ulps decide, and leaves at quite
+    different times. At the end it may have come back again, so that unrelated motions look alike
+    there: a few shifts, compared at the end alone, bound nothing. So, where a shift moves the body
+    by more than `NONLINEAR` on the way, the bound is half a turn. The floor of a closed form is
+    added to the bound: 4 ulp of the whole angle turned, even if nearly all of it lies before the
+    anchor.
     """
     motion, wrench = simulation.choice.solver, simulation.wrench
     times = np.linspace(last, first, LOOKS, endpoint=False)

@@ -4,7 +4,7 @@
 ``python fuzzed_scenes.py FIRST END`` prints a line for each seed: refused, gave up, or runs and
 the method. Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to
 a hundredth of their work. Every scene is given SECONDS of the processor, after which an alarm
-interrupts it: a run that goes on then hears no interrupt and has no bound.
+interrupts it: a run that goes on ignores interrupts and has no bound.
 """
 
 import json
@@ -27,8 +27,8 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 EXTREMES = (0.0, 1e-70, 1e-30, 1e-9, 1e-3, 1.0, 1e3, 1e6, 1e15, 1e40, 1e74)
 OUTSIDE = 1e-310, 1e-160, 1e160, 1e308    # most keys refuse them
-SHARE = 0.1      # of the numbers that are extremes
-FAR = 0.003      # of the numbers that are outside
+SHARE = 0.1      # share of the numbers that are extremes
+FAR = 0.003      # share of the numbers that are outside
 SECONDS = 30
 
 
@@ -280,7 +280,7 @@ def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
     work.FIRST_LOOK, work.MOST, work.PATIENCE, contact.EVENT = 16, 50.0, 1e4, 4
-    switched.DEAR = scipy_methods.COST = 1
+    switched.DEAR = scipy_methods.COST = work.SLOWER = 1
     trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 20, 5, 0.5, 20
     forecast.SIGNS, forecast.MOVED, forecast.LOOKS = forecast.SIGNS[:1], forecast.MOVED[:1], 3
     signal.signal(signal.SIGVTALRM, alarm)

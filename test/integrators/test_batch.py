@@ -26,6 +26,7 @@ pytestmark = pytest.mark.skipif(
 REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data'
                         / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
+OMEGA = series.SERIES + series.DIRECTIONS    # its first row
 
 
 def starts_of(scene, factors):
@@ -213,9 +214,9 @@ def test_a_step_is_the_same_in_plain_python():
         q = draw.normal(size=4)
         q /= np.linalg.norm(q)
         table[series.QUATERNION:series.SERIES, lane] = q
-        table[series.SERIES:series.OMEGA, lane] = (
+        table[series.SERIES:OMEGA, lane] = (
             *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0))
-        table[series.OMEGA:series.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
+        table[OMEGA:series.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
     table[series.END] = 1e3
 
     @compiled
@@ -234,7 +235,7 @@ def test_a_step_is_the_same_in_plain_python():
         assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
     # the quaternion turns with the directions
     for q, e in zip(written[end][series.QUATERNION:series.SERIES].T,
-                    written[end][series.SERIES:series.OMEGA].T, strict=True):
+                    written[end][series.SERIES:OMEGA].T, strict=True):
         # 3.5
         back = *-q[:3], q[3]
         axes = np.append(rotate(*back, 1.0, 0.0, 0.0), rotate(*back, 0.0, 1.0, 0.0))

@@ -12,6 +12,7 @@ import pickle
 import mpmath
 import numpy as np
 import pytest
+from numba_only import LONG_IN_PYTHON
 from scipy.optimize import brentq
 
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -446,6 +447,7 @@ def test_patch_that_lets_go_slips_and_spins_along_one_direction():
     assert balanced(sim)
 
 
+@LONG_IN_PYTHON
 def test_patch_that_holds_lets_go_and_holds_again_with_every_event_in_the_ledger():
     parts = (EGG, 'sliding_friction: {mu: 0.15}, spinning_friction: {radius: 0.01}',
              '{angular_velocity: [8, 5, 0], rolling: true}')
@@ -535,6 +537,7 @@ def test_painleve_bound_is_told_and_the_paradox_ends_the_run_in_one_line():
 # -- shipped scenes ----------------------------------------------------------------------------
 
 
+@LONG_IN_PYTHON
 @pytest.mark.parametrize('name', ['rolling_disk', 'euler_disk', 'rattleback', 'tippe_top',
                                   'rising_egg', 'routh_sphere', 'chaplygin_sphere',
                                   'tossed_coin'])
@@ -599,6 +602,62 @@ def test_a_disk_that_falls_on_its_face_rests_or_the_run_ends(constraint, mu, vel
         assert [event.name for event in sim.events][-1] == 'rest'
         assert not sim.state.vector[11:].any()
         return
-    with pytest.raises(NotConverged, match='lies flat and goes on sliding on its face') as error:
+    with pytest.raises(NotConverged, match='lies flat and goes on sliding') as error:
         sim.advance(100)
     assert len(str(error.value).splitlines()) == 1
+
+
+# -- every body under every friction ----------------------------------------------------------
+
+TORUS = '{mass: 1.0, shape: {torus: {radius: 0.1, tube: 0.02}}}'
+DISK = '{mass: 0.4387, shape: {disk: {radius: 0.0375}}}'
+LONG = '{mass: 1.0, shape: {ellipsoid: {semi_axes: [0.03, 0.03, 0.1]}}}'
+THIN = '{mass: 1.0, shape: {ellipsoid: {semi_axes: [0.1, 0.1, 0.001]}}}'
+WHIRL = '{euler_zyz: [0.0, 0.3, 0.0], angular_velocity: [-3.0, 0.5, 1.0]}'
+FALL = '{euler_zyz: [0.0, 0.3, 0.2]}'
+ROLL = '{euler_zyz: [0.0, 1.2, 0.2], angular_velocity: [0.3, 0.1, 8.0]}'
+VISCOUS, PATCH = 'rolling_friction: {viscous: 1.0e-3}', 'spinning_friction: {radius: 0.001}'
+OVERDAMPED = 'rolling_friction: {viscous: 0.3}'
+
+
+@pytest.mark.parametrize(('body', 'effects', 'initial'), [
+    (TORUS, [], FALL), (TORUS, [PATCH, VISCOUS], FALL), (DISK, [OVERDAMPED], FALL)])
+def test_a_ring_that_falls_flat_and_slides_on_ends_the_run_in_one_line(body, effects, initial):
+    """Its friction may be so stiff there that steps were taken without end."""
+    effects = ', '.join(['sliding_friction: {mu: 0.4}', *effects])
+    sim = simulation(body, effects, initial, accuracy=1e-9)
+    with pytest.raises(NotConverged, match='lies flat and goes on sliding') as error:
+        sim.advance(200)
+    assert len(str(error.value).splitlines()) == 1
+
+
+@LONG_IN_PYTHON
+@pytest.mark.parametrize(('body', 'effects', 'initial', 'time', 'last'), [
+    (DISK, [VISCOUS], WHIRL, 1.2, 'rest'), (DISK, [PATCH], WHIRL, 3.1, 'sliding began'),
+    (LONG, [PATCH, VISCOUS], ROLL, 2.5, 'rolling began'),
+    (LONG, [], ROLL, 2.5, 'rolling began'), (THIN, [VISCOUS], WHIRL, 2.5, 'rolling began')])
+def test_energy_never_grows_under_friction(body, effects, initial, time, last):
+    """Steps without end, and 1e79 rad/s, were the answers where a slip had just begun or died."""
+    effects = ', '.join(['sliding_friction: {mu: 0.4}', *effects])
+    sim = simulation(body, effects, initial, accuracy=1e-9, rate=20.0 / time)
+    energies = []
+    for _ in range(20):
+        sim.advance(1)
+        ledger = sim.ledger()
+        energies.append(ledger['kinetic'] + ledger['potential'])
+        assert abs(ledger['energy_residual']) < 1e-9
+    assert (np.diff(energies) <= 1e-9 * energies[0]).all()
+    assert sim.events[-1].name == last
+
+
+@pytest.mark.parametrize('body', [TORUS, DISK])
+def test_a_ring_that_falls_without_sliding_rests_flat(body):
+    """It lies on its rim, whatever the radius of its tube, and the plane carries its weight."""
+    sim = simulation(body, f'sliding_friction: {{mu: .inf}}, {VISCOUS}', FALL, accuracy=1e-9)
+    rest = sim.at_event('rest', within=1.0)
+    x, y, _ = rotate_back(*rest.orientation, 0.0, 0.0, 1.0)
+    assert math.hypot(x, y) <= 1.001e-6 and not rest.angular_velocity.any()
+    sim.advance(1000)
+    assert abs(sim.ledger()['energy_residual']) < 1e-9
+    force = sim.reactions([sim.time]).force[0]
+    assert force == pytest.approx([0.0, 0.0, sim.scene.body.mass * G], abs=1e-12)

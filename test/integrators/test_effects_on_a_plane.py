@@ -107,7 +107,7 @@ def rolling_ball(effects, velocity=0.0):
     return Simulation(scene, 'dop8', 1e-13, rate=10.0, horizon=2.0)
 
 
-MASS = 1.0 + 0.001 / 0.05**2    # of a ball that rolls, with what turns: 1.4 kg
+MASS = 1.0 + 0.001 / 0.05**2    # effective mass of a ball that rolls: 1.4 kg
 
 
 def test_a_rolling_ball_on_a_spring_swings():

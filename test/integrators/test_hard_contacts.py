@@ -13,6 +13,7 @@ import os
 import mpmath as mp
 import numpy as np
 import pytest
+from numba_only import LONG_IN_PYTHON
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate_back
@@ -267,6 +268,7 @@ def test_a_nearly_round_ellipsoid_departs_from_the_sphere_in_proportion():
 # -- a million seconds -------------------------------------------------------------------------
 
 
+@LONG_IN_PYTHON
 def test_a_ball_rolls_for_a_million_seconds():
     """It turns at a constant rate.
 

@@ -14,7 +14,7 @@ from rigid_body_sim.integrators.marching.taylor_series import ORDER
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.scene.scene import parse_scene
 
-Q = np.array([0.1, -0.5, 0.7, 0.5])      # of norm 1 to the last bit
+Q = np.array([0.1, -0.5, 0.7, 0.5])      # its norm is 1 to the last bit
 OMEGA = [1.0, -2.0, 0.5]
 
 

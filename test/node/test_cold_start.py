@@ -11,6 +11,8 @@ import pathlib
 
 import pytest
 
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
+
 DRIVER = pathlib.Path(__file__).with_name('cold_starts.py')
 CASES = [
     ['scene:=tennis_racket', 'record:=false'],
@@ -44,6 +46,7 @@ def cold_starts(domain, folder, cases, timeout, **environment):
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{')]
 
 
+@pytest.mark.skipif(not HAVE_NUMBA, reason='nothing is compiled: numba is not installed')
 def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
         ros_domain, tmp_path, compiled_kernels):
     found = cold_starts(ros_domain, tmp_path, CASES, 280)
@@ -57,6 +60,7 @@ def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
 
 @pytest.mark.skipif(
     not os.environ.get('RIGID_BODY_SIM_SOAK'), reason='takes ten minutes: make soak')
+@pytest.mark.skipif(not HAVE_NUMBA, reason='nothing is compiled: numba is not installed')
 @pytest.mark.parametrize('case', CASES, ids=lambda case: ' '.join(case)[:60])
 def test_cold_start_with_an_empty_cache(ros_domain, tmp_path, case):
     [found] = cold_starts(

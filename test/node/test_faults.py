@@ -4,6 +4,7 @@
 import os
 import pathlib
 import signal
+import types
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
@@ -12,6 +13,8 @@ from node.test_shutdown import messages_in, recording_of
 from notices import without_notices
 from std_msgs.msg import Float64
 
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.node import engine
 from rigid_body_sim.recording.reader import Recording
 
 READER = """
@@ -65,11 +68,26 @@ def test_subscriber_that_stops_reading_holds_nothing_up(run_node):
         assert reader.stdout.readline() == '200\n'
 
 
+def test_a_motion_that_ends_before_the_last_ledger_is_one_line(capsys):
+    """Lifting a disk off its plane between two ticks once ended the node with a traceback."""
+    def end():
+        raise NotConverged('at t = 1.5 s ideal rolling needs a plane that pulls')
+    quiet = types.SimpleNamespace(close=lambda *_: None, on_change=lambda *_: None, status=None)
+    stands_for = types.SimpleNamespace(
+        _settings=quiet, _status_line=quiet, _source=quiet, journal=quiet, _report=lambda: None,
+        _node=types.SimpleNamespace(get_name=lambda: 'sim_node'),
+        ticker=types.SimpleNamespace(is_alive=lambda: False, failure=None),
+        session=types.SimpleNamespace(take_balance=end, next_tick=1500))
+    assert engine.Engine.close(stands_for) == 1
+    assert capsys.readouterr().err == (
+        'sim_node: tick 1500: NotConverged: at t = 1.5 s ideal rolling needs a plane that pulls\n')
+
+
 def test_callback_that_fails_ends_it_with_a_whole_recording(
         ros_domain, tmp_path, compiled_kernels):
     node = ros_domain.run('-c', FAILING, '--ros-args', '-p', 'rate:=200', '-p',
                           f'recording.directory:={tmp_path / "recordings"}', timeout=90)
-    assert (node.returncode, node.stderr) == (
+    assert (node.returncode, without_notices(node.stderr)) == (
         1, 'sim_node: a callback failed: RuntimeError: on purpose\n')
     [folder] = (tmp_path / 'recordings').iterdir()
     assert messages_in(folder)['/energy'] > 10

@@ -6,7 +6,7 @@ import types
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from rigid_body_sim.choice.trial import Settled
+from rigid_body_sim.choice.settling import Settled
 from rigid_body_sim.node.diagnostics import Diagnostics
 from rigid_body_sim.node.engine import Engine
 from rigid_body_sim.simulation.simulation import Simulation

@@ -33,7 +33,7 @@ def resize(slave, columns):
 
 
 def asked(slave, controlling):
-    """Return whether a process draws whose stderr is a terminal, perhaps its controlling one."""
+    """Return whether a process draws if its stderr is a terminal, perhaps its controlling one."""
     def control():
         os.setsid()
         if controlling:

@@ -15,7 +15,7 @@ from rigid_body_sim.compilation import fused
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.numerics import double_double, exponential, functions, phase
 
-COUNT = 1300       # of each kind, for the digests: about a hundred thousand in all
+COUNT = 1300       # arguments of each kind for the digests: about a hundred thousand in all
 SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.5, 2.0, math.inf, -math.inf, math.nan, 5e-324, -5e-324,
            2.0 ** -1022, 1.7976931348623157e308, 1e15, 1e22, math.pi / 2, math.pi / 4, 1e-8]
 

@@ -18,7 +18,7 @@ from rigid_body_sim.numerics import functions, make_functions
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
-COUNT = 250_000 if SOAK else 60         # of each kind of arguments; there are 4 to 8 kinds
+COUNT = 250_000 if SOAK else 60         # arguments of each of 4 to 8 kinds
 SEED = int(os.environ.get('RIGID_BODY_SIM_SEED', '1'))
 
 # name: (exact function, digits for mpmath, largest error in ulp); measured: the largest error of

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings damaged in many ways, for readers that must stand it."""
+"""Recordings damaged in many ways, for readers that have to cope with them."""
 
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
@@ -8,7 +8,7 @@ from mcap.writer import CompressionType, Writer
 def damaged_copy(content, rng):
     """Return a damaged copy of a file.
 
-    Bytes are others, lengths lie, pieces are missing, twice there or zero.
+    Bytes are changed, lengths are wrong, pieces are missing, doubled or zero.
     """
     damaged = bytearray(content)
     at, size = rng.randrange(len(damaged)), rng.choice((1, 8, 100, 5000))

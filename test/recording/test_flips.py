@@ -24,7 +24,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.mcap.records import HEAD
 from rigid_body_sim.recording.recover import recover
 
-FLIPS = 60 if SOAK else 3       # of each recording, whole and without its tail
+FLIPS = 60 if SOAK else 3       # flips in each recording, whole and without its tail
 ERRORS = (McapError, zstandard.ZstdError, EOFError, ValueError, LookupError, RuntimeError,
           MemoryError, OverflowError, struct.error)
 

@@ -42,7 +42,7 @@ from rigid_body_sim.recording.topics import Topic, journal_message
 from rigid_body_sim.recording.writer import Writer
 
 STATUS = 'diagnostic_msgs/msg/DiagnosticStatus'
-DAMAGED = 5000 if SOAK else 60      # of each kind
+DAMAGED = 5000 if SOAK else 60      # damaged files of each kind
 
 
 def test_columns_are_the_numbers_that_were_written(recording):

@@ -145,6 +145,7 @@ def test_full_state_is_asked_for_in_every_file(tmp_path):
         seen += files() > before
         patience = time.monotonic() + 5.0
         while len(asked) < seen and time.monotonic() < patience:
+            recorder.status()       # reads what the recorder reports, as a tick does now and then
             look()
     recorder.close()
     assert files() >= 3

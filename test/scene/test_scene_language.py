@@ -339,7 +339,7 @@ def scene_of(effect, constraint='free', parameters=''):
     ('gravity_gradient: {mu: 1, orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 0]}}', '',
      'gravity_gradient.orbit: stands beside mu or position'),
     ('gravity_gradient: {orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 1]}}', '',
-     'orbit.toward: got [1, 0, 1]; a direction square to normal'),
+     'orbit.toward: got [1, 0, 1]; a direction perpendicular to normal'),
     ('gravity: {g: [1, 2]}', '', 'gravity.g: got [1, 2]; needs at least 3 entries'),
     ('drag: {linear: [[1, 1, 0], [0, 1, 0], [0, 0, 1]]}', '', 'linear: got [[1, 1, 0], [0, 1, 0]'),
     ('drag: {quadratic: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]}', '', 'which drives some motions'),

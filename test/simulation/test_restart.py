@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 
-from rigid_body_sim.choice import choose, trial
+from rigid_body_sim.choice import choose, settling
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.scene import changed_scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import State
@@ -98,7 +98,7 @@ def test_a_closed_form_that_rests_on_its_start_is_looked_for_again(moved):
 def test_a_method_and_its_tolerance_stay_without_a_trial(monkeypatch):
     simulation = Simulation(parse_scene(ASYMMETRIC), accuracy=1e-6, horizon=5.0)
     settled = simulation.choice.settled
-    monkeypatch.setattr(trial, 'settle', None)    # nothing is tried from here on
+    monkeypatch.setattr(settling, 'settle', None)    # nothing is tried from here on
     start = simulation.states([1.5])[0]
     simulation.restart(start)
     begun = start.vector.copy()
@@ -150,7 +150,7 @@ def test_a_bad_start_is_refused_in_one_line_and_changes_nothing(start, words):
 def test_the_same_scene_is_not_chosen_for_twice(monkeypatch):
     scene = parse_scene(ASYMMETRIC)
     first = Simulation(scene, accuracy=1e-6, horizon=2.0)
-    monkeypatch.setattr(trial, 'settle', None)
+    monkeypatch.setattr(settling, 'settle', None)
     assert Simulation(scene, accuracy=1e-6, horizon=2.0).choice is first.choice
     monkeypatch.undo()
     assert Simulation(scene, accuracy=1e-9, horizon=2.0).choice is not first.choice

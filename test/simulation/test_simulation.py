@@ -204,7 +204,7 @@ def test_torque_about_a_rod_is_refused():
 
 
 def test_a_rod_is_pushed_at_its_centre_without_a_torque():
-    """No torque is none along the rod either."""
+    """A torque of zero has no part along the rod either."""
     simulation = Simulation(load_scene(
         'tennis_racket',
         ['body={mass: 2.0, shape: {rod: {length: 1.0}}}', 'initial.angular_velocity=[1, 0, 0]']))

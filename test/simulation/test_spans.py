@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events of a span: each is reported once, by the call that reaches it, even if found early."""
 
-from rigid_body_sim.simulation.spans import Span
+from rigid_body_sim.simulation.spans import Span, events_between
 
 
 class Solver:
-    """It has events at whole seconds, and finds those of half a second more than it is asked."""
+    """It has events at whole seconds, and remembers what it was asked."""
 
     def __init__(self):
         self.asked = []
@@ -40,3 +40,10 @@ def test_what_was_found_early_is_kept_for_the_look_that_reaches_it():
     assert times(one.events(6.0, 9.0, 0.1)) == [7.0, 8.0, 9.0]
     assert len(solver.asked) == 1
     assert times(one.events(9.0, 9.0, 0.1)) == []
+
+
+def test_events_of_a_motion_come_from_the_span_that_holds_then():
+    first, second = span()[0], Span(4.5, Solver(), None, (), None, None)
+    found = list(events_between([first, second], 2.0, 6.0, 0.1))
+    assert times(found) == [3.0, 4.0, 5.0, 6.0]
+    assert first.solver.asked == [(2.0, 4.5, 0.1)] and second.solver.asked == [(4.5, 6.0, 0.1)]

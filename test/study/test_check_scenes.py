@@ -8,6 +8,7 @@ import kept
 import numpy as np
 import pytest
 from notices import without_notices
+from numba_only import LONG_IN_PYTHON
 
 from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.study import check_scenes
@@ -40,7 +41,8 @@ def test_every_scene_that_ships_is_checked():
     assert set(SYSTEMS) == set(scene_names())
 
 
-@pytest.mark.parametrize('name', QUICK)
+@pytest.mark.parametrize('name', [
+    pytest.param(name, marks=[LONG_IN_PYTHON] * (name == 'sleeping_top')) for name in QUICK])
 def test_scene_is_confirmed_by_both_ways(name, capsys):
     rows = table('--scene', name, capsys=capsys)
     assert len(rows) >= 4
@@ -91,7 +93,7 @@ def test_a_wrong_formula_is_not_confirmed(
     ('tennis_racket', ['body.inertia=[2, 1, 2.5]', 'initial.angular_velocity=[-3, 0.01, 0.02]']),
     ('steady_precession', ['initial.tilt=1.0', 'initial.spin=80']),
     ('heavy_top', ['initial.spin=10']), ('fast_top', ['initial.tilt=1.0']),
-    ('sleeping_top', ['initial.angular_velocity=[1e-6, 0, 60]']),
+    pytest.param('sleeping_top', ['initial.angular_velocity=[1e-6, 0, 60]'], marks=LONG_IN_PYTHON),
 ])
 def test_other_values_are_confirmed_too(scene, assignments, capsys):
     table(

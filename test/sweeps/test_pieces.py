@@ -37,8 +37,13 @@ def test_a_piece_takes_a_second_a_fair_share_or_a_block_whatever_is_least():
     assert sizes[:4] == [first, 50 * engine.SECONDS, 200 * engine.SECONDS, 1000]
     slow = [stop - first for first, stop, _ in pieces(plan(100_000, quick=False), [None])]
     assert slow[0] == min(engine.FIRST_PIECE, 1000)
-    shared = pieces(plan(160, block=10 ** 6), [1e6] * 20, workers=4)
-    assert {stop - first for first, stop, _ in shared} == {2 * 160 // (engine.PIECES * 4)}
+    shared = pieces(plan(160, block=10 ** 6, quick=False), [1e6] * 20, workers=4)
+    assert {stop - first for first, stop, _ in shared} == {160 // (engine.PIECES * 4)}
+    least = engine.ENOUGH_QUICK
+    for workers, size, count in ((1, 3 * least, 3), (2, 4 * least, 4), (2, least, 2)):
+        found = pieces(plan(size, block=10 ** 6), [1e9] * 20, workers)
+        assert len(found) == count
+        assert {stop - first for first, stop, _ in found} == {size // count}
     rare = pieces(plan(5, block=10 ** 6), [0.2] * 20)
     assert {stop - first for first, stop, _ in rare} == {1}
 

@@ -10,9 +10,15 @@ import pytest
 
 START = 120.0
 """A process that imports numba, viser and rclpy on a loaded machine. Seconds."""
+BROWSERS = 'chromium', 'chromium-browser', 'google-chrome'
 FLAGS = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic',
          '--no-first-run', '--disable-background-networking', '--disable-component-update',
          '--disable-sync']
+SLOWLY = """
+window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 100);
+window.cancelAnimationFrame = clearTimeout;
+"""
+"""Ten pictures a second: software that draws sixty of them leaves no time for the mouse."""
 WIDTH, HEIGHT = 800, 400
 """A small window: it may be drawn by software. The panel is docked on its right half."""
 
@@ -22,14 +28,24 @@ def chromium():
     """Return a browser (playwright), or skip."""
     pytest.importorskip('viser', reason='viser is not installed')
     pytest.importorskip('playwright.sync_api', reason='playwright is not installed')
-    path = next(filter(None, map(shutil.which, ('chromium', 'chromium-browser',
-                                                'google-chrome'))), None)
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
         pytest.skip('no chromium on this machine')
     from playwright.sync_api import sync_playwright
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
         yield browser
+        browser.close()
+
+
+@pytest.fixture
+def other_chromium(chromium):
+    """Return a browser that a test may kill, and the number of its process."""
+    browser = chromium.browser_type.launch(
+        executable_path=next(filter(None, map(shutil.which, BROWSERS))), args=FLAGS)
+    known = browser.new_browser_cdp_session().send('SystemInfo.getProcessInfo')['processInfo']
+    yield browser, next(one['id'] for one in known if one['type'] == 'browser')
+    with contextlib.suppress(Exception):
         browser.close()
 
 
@@ -41,6 +57,7 @@ class Tab:
         self.page = browser.new_page(viewport={'width': WIDTH, 'height': HEIGHT})
         self.page.on('request', lambda request: self.requests.append(request.url))
         self.page.on('websocket', lambda socket: self.requests.append(socket.url))
+        self.page.add_init_script(SLOWLY)
         self.page.goto(address)
 
     def see(self, text):
@@ -49,14 +66,22 @@ class Tab:
 
     def drag(self, begin, end, hold=1.0):
         """Drag from one point to another (pixels), hold the button for a time (s), let go."""
+        self.grab(begin, end)
+        time.sleep(hold)
+        self.page.mouse.up()
+
+    def cell(self, text):
+        """Return what finds the cells of the panel's table of values that have just this text."""
+        return self.page.get_by_role('cell', name=text, exact=True)
+
+    def grab(self, begin, end):
+        """Drag from one point to another (pixels), and keep the button down."""
         self.page.mouse.move(*begin)
         time.sleep(0.3)
         self.page.mouse.down()
-        for k in range(1, 6):
-            self.page.mouse.move(*(a + (b - a) * k / 5 for a, b in zip(begin, end)))
+        for k in range(1, 4):
+            self.page.mouse.move(*(a + (b - a) * k / 3 for a, b in zip(begin, end)))
             time.sleep(0.1)
-        time.sleep(hold)
-        self.page.mouse.up()
 
     @property
     def outside(self):
@@ -70,9 +95,10 @@ class Tab:
 def open_tab(chromium):
     """Return a function that opens an address in a Tab, closed at the end of the test."""
     with contextlib.ExitStack() as stack:
-        def opened(address):
-            tab = Tab(chromium, address)
-            stack.callback(tab.page.close)
+        def opened(address, browser=chromium):
+            tab = Tab(browser, address)
+            if browser is chromium:    # another one is closed by whoever opened it
+                stack.callback(tab.page.close)
             return tab
         yield opened
 

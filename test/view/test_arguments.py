@@ -20,20 +20,25 @@ PATIENCE = 200.0
     (r'203\.0\.113\.7', 0, '--host'), ('999.1.1.1', 0, '--host'), ('a' * 300, 0, '--host'),
     ('127.0.0.1', LAST_PORT + 1, '--port'), ('127.0.0.1', -1, '--port')])
 def test_an_address_that_cannot_be_listened_on_is_one_line(host, port, said):
-    """The server tried one port after the other for ever."""
+    """The server once tried one port after the other for ever."""
     with pytest.raises(BadInput, match=f'^{said}: .*{port if said == "--port" else host}'):
         serve(Access(host.replace('\\', '')), port)
 
 
+def poll_until(live, deadline):
+    """Poll a Live until a time of the clock."""
+    while time.monotonic() < deadline:
+        live.wait(1.0)
+        live.poll()
+
+
 def test_settings_that_cannot_run_the_first_scene_end_the_page():
-    """The page stayed open, and empty."""
+    """The page once stayed open, and empty."""
     live = Live(load_scene('rattleback').text, {'rate': 1000.0, 'integrator': 'exact'})
     deadline = time.monotonic() + PATIENCE
     try:
-        while not live.wait(1.0):
-            assert time.monotonic() < deadline
         with pytest.raises(BadInput, match="'exact' cannot run the scene rattleback"):
-            live.poll()
+            poll_until(live, deadline)
     finally:
         live.close()
 

@@ -89,7 +89,7 @@ def frames_of(scene):
     for _ in range(2):
         runner._advance(TURN)
     assert [name for name, _ in pipe if name in ('refused', 'failed')] == []
-    assert pipe[0][0] == 'scene'
+    assert [name for name, _ in pipe][:3] == ['preparing', 'preparing', 'scene']
     return [value for name, value in pipe if name == 'frame']
 
 

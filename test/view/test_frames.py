@@ -11,7 +11,7 @@ from rigid_body_sim.analysis.drift import FLOOR
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.view.curves import POINTS, Curves
+from rigid_body_sim.view.curves import POINTS, WINDOW, Curves
 from rigid_body_sim.view.frames import (
     MOST_BETWEEN,
     TURN_BETWEEN,
@@ -93,7 +93,7 @@ class Gui:
     """What is asked of viser for a chart."""
 
     def add_uplot(self, data, *series, **settings):
-        self.chart = types.SimpleNamespace(data=data)
+        self.chart = types.SimpleNamespace(data=data, scales=settings['scales'])
         return self.chart
 
 
@@ -108,21 +108,24 @@ def test_curves_hold_the_last_residuals_in_units_of_their_scale():
     for one in (frame(1.0, 2e-16, -3e-16), frame(2.0, np.nan), frame(2.0, 1e-16, 0.0),
                 frame(2.0, 9e-16), frame(1.5, 9e-16), frame(3.0, 4e-16, 5e-16)):
         curves.take(one)
-    curves.draw()
+    curves.draw(1.0)
     times, energy, momentum, upper, lower = gui.chart.data
-    assert times.tolist() == [1.0, 2.0, 3.0]
+    assert times.tolist() == [-2.0, -1.0, 0.0]
     assert energy == pytest.approx([2.0, 1.0, 4.0])
     assert momentum == pytest.approx([-3.0, 0.0, 5.0])
     assert upper == pytest.approx([FLOOR / 1e-16] * 3)
     assert (lower == -upper).all()
     curves.take(frame(0.5, 7e-16, 0.0, restarted=True))
-    curves.draw()
-    assert gui.chart.data[0].tolist() == [0.5]
+    curves.draw(1.0)
+    assert gui.chart.data[0].tolist() == [0.0]
+    assert gui.chart.scales['x']['range'] == (-WINDOW, 0.0)
+    curves.draw(100.0)
+    assert gui.chart.scales['x']['range'] == (-100.0 * WINDOW, 0.0)
     for k in range(2 * POINTS):
         curves.take(frame(1.0 + k))
-    curves.draw()
+    curves.draw(1.0)
     assert len(gui.chart.data[0]) == POINTS
-    assert gui.chart.data[0][-1] == 2.0 * POINTS
+    assert gui.chart.data[0][0] == 1.0 - POINTS
 
 
 @pytest.mark.parametrize('spin', [3.0, 119.0, 240.0, -400.0])

@@ -128,7 +128,7 @@ def test_the_world_moves_against_a_body_that_is_followed_and_a_pull_halts_it():
     before = root.position.copy()
     point = np.array([0.1, 0.2, 0.3])
     pulled = frame(simulation, [0.5, 0.7])
-    stage.show(pulled, held=(point, point + 0.1))
+    stage.show(pulled, held=[(point, point + 0.1)])
     assert root.position == pytest.approx(before)
     spring = server.added['/world/reference/spring']
     assert spring.visible

@@ -52,16 +52,52 @@ def test_the_nearer_of_two_surfaces_is_met():
         assert found == pytest.approx([4.5, 0.2, 0.1])
 
 
-def test_a_drag_lasts_until_it_ends_and_clicks_wait_in_their_order():
-    mouse = Mouse()
+def drag(mouse, phase, cursor=(0, 0, 0), client=0):
+    """Report an event of a drag, as viser does."""
+    asyncio.run(mouse._drag(types.SimpleNamespace(
+        phase=phase, start_position=(1, 2, 3), end_position=cursor, client_id=client)))
 
-    def event(**values):
-        return types.SimpleNamespace(**values)
-    asyncio.run(mouse._drag(event(phase='update', start_position=(1, 2, 3),
-                                  end_position=(4, 5, 6))))
-    assert (mouse.pull.grabbed.tolist(), mouse.pull.cursor.tolist()) == ([1, 2, 3], [4, 5, 6])
-    asyncio.run(mouse._drag(event(phase='end')))
-    assert mouse.pull is None
+
+def cursors(mouse):
+    """Return where the mice are that drag, by their browsers."""
+    return {key: pull.cursor.tolist() for key, pull in mouse.pulls.items()}
+
+
+def test_a_drag_lasts_until_it_ends():
+    mouse = Mouse()
+    drag(mouse, 'start', (4, 5, 6))
+    [pull] = mouse.pulls.values()
+    drag(mouse, 'update', (7, 8, 9))
+    assert mouse.pulls[0].begun is pull.begun
+    assert (pull.begun.tolist(), cursors(mouse)) == ([1, 2, 3], {0: [7, 8, 9]})
+    drag(mouse, 'end')
+    assert mouse.pulls == {}
+
+
+def test_two_browsers_drag_at_once_and_neither_ends_the_other():
+    mouse = Mouse()
+    drag(mouse, 'start', (1, 0, 0), client=3)
+    drag(mouse, 'start', (2, 0, 0), client=7)
+    drag(mouse, 'update', (3, 0, 0), client=3)
+    assert cursors(mouse) == {3: [3, 0, 0], 7: [2, 0, 0]}
+    drag(mouse, 'end', client=3)
+    assert cursors(mouse) == {7: [2, 0, 0]}
+
+
+def test_a_drag_of_a_body_that_is_gone_does_not_pull_the_next_one():
+    mouse = Mouse()
+    drag(mouse, 'start')
+    mouse.listen([])
+    drag(mouse, 'update', (5, 5, 5))
+    assert mouse.pulls == {}
+    drag(mouse, 'end')
+    drag(mouse, 'start', (6, 6, 6))
+    assert cursors(mouse) == {0: [6, 6, 6]}
+
+
+def test_clicks_wait_in_their_order():
+    mouse = Mouse()
     for k in range(2):
-        asyncio.run(mouse._click(event(ray_origin=(k, 0, 0), ray_direction=(0, k, 0))))
+        asyncio.run(mouse._click(types.SimpleNamespace(ray_origin=(k, 0, 0),
+                                                       ray_direction=(0, k, 0))))
     assert [(origin[0], along[1]) for origin, along in mouse.clicks] == [(0, 0), (1, 1)]

@@ -8,8 +8,9 @@ from analysis import made
 pytest.importorskip('viser')
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.view import command
+from rigid_body_sim.view import command, panel
 from rigid_body_sim.view.page import Page
+from rigid_body_sim.view.player import Player
 
 RATE, TICKS = 100.0, 40
 STRUCK = {20: [('cmd_impulse', (0.0, 0.0, 0.5), (0.5, 0.0, 0.0), 'world')]}
@@ -46,6 +47,17 @@ def test_the_second_one_is_grey_beside_the_first_and_the_panel_says_how_far_they
         assert 'In grey: <b>struck</b>' in page.panel._title.content
     finally:
         page.close()
+
+
+def test_the_same_motion_at_another_rate_is_nowhere_apart(paths, tmp_path):
+    """The slower one was once held from state to state, and said to be a tenth of a radian off."""
+    made.record(tmp_path / 'slow', 'tennis_racket', 15, rate=37.0)
+    for one, other in ((paths[0], tmp_path / 'slow'), (tmp_path / 'slow', paths[0])):
+        shown, beside = Player(one), Player(other)
+        for when in (0.0, 0.123, 0.2501, 0.39):
+            frame = shown.at(when, when)
+            angle, distance = panel._apart(frame.vector, beside.beside_of(frame).vector)
+            assert angle < 1e-3 and distance == 0.0
 
 
 def test_more_than_two_and_a_scene_beside_a_recording_are_refused(paths):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from analysis import made
 
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view import frames, player
@@ -68,9 +69,12 @@ def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(pat
     assert one.at(-1.0, -2.0).vector[0] == 0.0
 
 
-@pytest.mark.parametrize('scene', ['billiard_follow', 'heavy_top', 'kater_pendulum', 'rattleback'])
+@pytest.mark.parametrize('scene', [
+    'billiard_follow', 'heavy_top', 'kater_pendulum',
+    pytest.param('rattleback', marks=pytest.mark.skipif(
+        not HAVE_NUMBA, reason='its choice takes minutes in plain Python'))])
 def test_force_and_torque_of_a_recording_are_those_of_its_motion(tmp_path, scene):
-    """The topics have no velocity: a ball that rolls seemed to slip, at full friction."""
+    """The topics have no velocity: a ball that rolls once seemed to slip, at full friction."""
     made.record(tmp_path / 'run', scene, 400, rate=4000.0)
     played = Player(tmp_path / 'run')
     mechanics = frames.Mechanics(played.scene)

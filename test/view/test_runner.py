@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.simulation.command_rows import IMPULSE, WORLD, ZERO
+from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, WORLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view import runner
 from rigid_body_sim.view.runner import Runner
@@ -45,20 +45,21 @@ def running():
 
 def test_a_scene_begins_with_its_description_and_a_frame(running):
     _, pipe = running
-    (name, about), *others = pipe.sent
-    assert (name, about.method, about.text) == ('scene', 'exact', SCENE.text)
+    names = [name for name, _ in pipe.sent]
+    assert names[:4] == ['preparing', 'preparing', 'scene', 'frame'] and names[-1] == 'prepared'
+    about = pipe.sent[2][1]
+    assert (about.method, about.text) == ('exact', SCENE.text)
     [frame] = pipe.frames()
     assert frame.restarted
     assert (frame.time, len(frame.trail)) == (0.0, 1)
     assert (frame.energy_residual, frame.momentum_residual) == (0.0, 0.0)
-    assert others[0][0] == 'frame'
 
 
 def test_a_scene_that_is_wrong_is_refused_and_the_one_before_goes_on(running):
     one, pipe = running
     pipe.frames()
     one.told('scene', SCENE.text.replace('mass:', 'mess:'))
-    assert [name for name, _ in pipe.sent] == ['refused']
+    assert [name for name, _ in pipe.sent] == ['preparing', 'refused', 'prepared']
     pipe.frames()
     one._advance(0.1)
     assert pipe.frames()[0].time == pytest.approx(0.1)
@@ -86,7 +87,7 @@ def test_it_keeps_the_pace_of_the_clock_and_its_trail_is_dense(running):
 
 @pytest.mark.parametrize('request_', ['scene', 'reset'])
 def test_what_a_preparation_takes_is_no_time_of_the_motion(running, monkeypatch, request_):
-    """A motion leapt by the seconds in which its kernels were compiled."""
+    """A motion once leapt by the seconds in which its kernels were compiled."""
     one, pipe = running
     clock = [100.0]
     monkeypatch.setattr(runner.time, 'monotonic', lambda: clock[0])
@@ -173,3 +174,66 @@ def test_what_happens_is_told_once():
     simulation.advance(1000)
     assert told == [(event.time, event.name) for event in simulation.events]
     assert len(told) > 1
+
+
+def advance_until(one, pipe, condition):
+    """Advance a Runner in frames of 0.05 s until a condition holds; return the messages."""
+    seen = []
+    for _ in range(40):
+        one._cost = 0.0
+        one._advance(0.05)
+        seen += pipe.sent
+        pipe.sent.clear()
+        if condition(seen):
+            return seen
+    raise AssertionError(seen)
+
+
+def has(name):
+    """Return a condition: a message of that name is among those seen."""
+    return lambda seen: any(message[0] == name for message in seen)
+
+
+@pytest.fixture(scope='module')
+def disk():
+    """Return the text of a disk that must roll."""
+    return load_scene('rolling_disk').text
+
+
+@pytest.mark.parametrize(('way', 'begins'), [
+    ([('command', LET_GO), ('pause', False)], False), ([('reset', None)], True),
+    ([('scene', SCENE.text)], True), ([('command', LET_GO), ('step', None)], False)])
+def test_a_body_pulled_where_it_cannot_go_halts_and_each_way_on_leads_on(disk, way, begins):
+    """A reset, and another scene, stood still after it."""
+    pipe = Pipe()
+    one = Runner(pipe, {**SETTINGS, 'integrator': 'dop8', 'accuracy': 1e-6}, None)
+    one.told('scene', disk)
+    one.told('command', np.array([(HOLD, WORLD, *ZERO, 0.0, 20.0, 0.0)]))
+    seen = advance_until(one, pipe, has('failed'))
+    [text] = [value for name, value in seen if name == 'failed']
+    assert 'ideal rolling needs a plane that pulls' in text and text.endswith(runner.WAYS_ON)
+    last = [value for name, value in seen if name == 'frame'][-1].time
+    one._advance(0.5)
+    assert pipe.sent == []
+    one.told('pause', False)    # still pulled: it says so again
+    advance_until(one, pipe, has('failed'))
+    for name, value in way:
+        one.told(name, value)
+    seen = [*pipe.sent, *advance_until(one, pipe, has('frame'))]
+    frames = [value for name, value in seen if name == 'frame']
+    assert not has('failed')(seen)
+    assert frames[0].restarted == begins
+    assert begins or frames[-1].time > last
+
+
+def test_a_scene_that_cannot_take_its_first_step_is_refused_and_the_one_before_goes_on(running):
+    """The process ended, and with it the page."""
+    one, pipe = running
+    pipe.frames()
+    one.told('scene', load_scene('rolling_disk', ['initial.angular_velocity=[-30, 3, 3]']).text)
+    [text] = [value for name, value in pipe.sent if name == 'refused']
+    assert 'needs a plane that pulls' in text
+    pipe.frames()
+    one._cost = 0.0
+    one._advance(0.1)
+    assert pipe.frames()[0].time == pytest.approx(0.1)

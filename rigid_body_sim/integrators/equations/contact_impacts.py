@@ -55,7 +55,7 @@ def velocity_of_lowest(p, y):
 def collide(p, y, restitution, out):
     """Change the unknowns of a flight by an impact.
 
-    An impact that would make energy is taken without restitution: Newton's law with friction can.
+    An impact that would make energy, as Newton's law with friction can, has no restitution.
 
     Parameters
     ----------

@@ -64,8 +64,8 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
     turning,
 )
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FILMY, FLAT, FLATTER
-from rigid_body_sim.mechanics.contact.touch import couples
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
+from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -75,7 +75,7 @@ from rigid_body_sim.scene.surfaces import TORUS
 # power of work and heat, and the part of the couple from within the body
 applied = UNBOUND
 
-ROUNDING = 2.0 ** -50    # of a normal velocity, beside the speeds
+ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
 SLOW = 1e-13             # share of the speeds below which a body does not roll
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
 SHORT = 1e-6             # time of a difference, over that in which the body moves by its size
@@ -86,7 +86,7 @@ RATES = ROW.part('rates').size
 
 
 class Contact(NamedTuple):
-    """What a phase says of the contact.
+    """The contact as a phase has it.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Contact(NamedTuple):
     slid, spun : float
         Heat of the slip and of the spin of a patch, W.
     pace : float
-        Of the slip, m/s.
+        Speed of the slip, m/s.
     """
 
     f: Vector
@@ -124,14 +124,14 @@ class Contact(NamedTuple):
 
 
 class Applied(NamedTuple):
-    """What acts beside the contact.
+    """What acts besides the contact.
 
     Attributes
     ----------
     force : Vector
         Axes of the plane, N.
     couple, inner : Vector
-        About the centre of mass, body axes, N m; what of it acts against parts inside the body.
+        About the centre of mass, body axes, N m, and its part against parts inside the body.
     work, heat : float
         Powers, W.
     """
@@ -305,21 +305,18 @@ def _creeping(p, c, now, at, push, v, speed, film):
         d = dx, dy, 0.0
     slid, spun = _shared(c, c.mu * N * slow, d[0], d[1])
     slip = slow * d[0], slow * d[1], 0.0
+    grip = c.creep - slow if slow >= 0.0 else slow    # it becomes a slip, or it dies again
     return Contact((-c.mu * N * d[0], -c.mu * N * d[1], N), push, (growth, 0.0, 0.0), slip,
-                   plus(v, slip), N, c.creep - slow, A * c.mass, speed, film, slid, spun, 1.0)
+                   plus(v, slip), N, grip, A * c.mass, speed, film, slid, spun, 1.0)
 
 
 @compiled_inline
 def _motion(c, at, speed):
     """Return how far a body in contact is from lying flat, or from standing still (watched)."""
-    gamma = at.axes[2]
-    if c.kind == TORUS and c.size[1] == 0.0:
-        return math.sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]) - (
-            FILMY if c.film > 0.0 else FLAT if c.rolling + c.rolling_viscous > 0.0
-            else FLATTER)
-    if c.rolling > 0.0 and c.mode == ROLLING:
-        return speed - SLOW * c.swift
-    return 1.0
+    flat = above_flat(c, at.axes[2])
+    if c.rolling > 0.0 and c.mode == ROLLING and not (c.kind == TORUS and c.size[1] == 0.0):
+        return min(flat, speed - SLOW * c.swift)
+    return flat
 
 
 @compiled_inline
@@ -408,14 +405,14 @@ def stays(p, y):
 
 @compiled
 def slides_on(p, y):
-    """Return whether a body that has come down on its face, a disk, goes on sliding there.
+    """Return whether a body that has come to lie flat, a disk or a torus, goes on sliding there.
 
     Friction stops one that does not within SLID of its radius, where the plane holds it at all.
     """
     c, now = load_contact(p), load_unknowns(y)
-    if c.kind != TORUS or c.size[1] != 0.0:
-        return False
     at = posture(c, now.q, now.omega)
+    if c.kind != TORUS or inclination(at.axes[2]) > LOW:
+        return False
     held = scaled(-1.0, _applied(p, c, now, at, ZERO, ZERO, 0.0).force)
     v, radius = _centre(c, now, at), c.size[0]
     speed = hypot(v[0], v[1]) + abs(dot(at.axes[2], now.omega)) * radius

@@ -4,12 +4,11 @@
 Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 """
 
-import math
-
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.integrators.equations.contact_views import LEDGER, ROLLING, UNKNOWNS
 from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
+from rigid_body_sim.mechanics.contact.touch import inclination
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.surfaces import TORUS
@@ -30,17 +29,15 @@ def spins(p, y):
 
 @compiled
 def jams(p, y):
-    """Return whether a disk lies so low that its friction of rolling leaves no motion."""
+    """Return whether a ring lies so low that rolling friction leaves it no motion."""
     c, now = load_contact(p), load_unknowns(y)
-    gamma = matrix(*now.q)[2]
-    edge = c.kind == TORUS and c.size[1] == 0.0
-    return (edge and c.rolling + c.rolling_viscous + c.film > 0.0
-            and math.sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]) < LOW)
+    return (c.kind == TORUS and c.rolling + c.rolling_viscous + c.film > 0.0
+            and inclination(matrix(*now.q)[2]) < LOW)
 
 
 @compiled
 def halt(p, y):
-    """Take what is left of the motion, and of the height of a disk, from a body that rests."""
+    """Stop a body that rests, and lower a disk to the plane."""
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
     v = apply(at.axes, cross(at.r, now.omega))

@@ -47,7 +47,7 @@ class Unknowns(NamedTuple):
     u : Vector
         Slip, of a flight the velocity of the centre of mass, m/s. Of a creep its size, 0, 0.
     place : Pair
-        Of the centre of mass along the plane, since the start of the course, m.
+        Displacement of the centre of mass along the plane since the start of the course, m.
     gap : float
         m.
     time : float
@@ -73,7 +73,7 @@ class Watched(NamedTuple):
         N, of a flight the gap.
     grip : float
         What friction could hold less what it holds, N; of a creep how much slower it is than a
-        slip, m/s.
+        slip, m/s, or its speed where that is negative.
     firmness : float
         m A (mechanics/contact/laws.py): where it is not positive, no force meets the laws.
     jump : float
@@ -97,15 +97,15 @@ class Row(NamedTuple):
     rates : Unknowns
     watched : Watched
     force, couple : Vector
-        Of the contact on the body, N and N m.
+        Those of the contact on the body, N and N m.
     slip : Pair
         u along the plane, m/s.
     velocity : Vector
-        Of the centre of mass, m/s.
+        Velocity of the centre of mass, m/s.
     lever : Vector
         From the centre of mass to the lowest point, m.
     pace : float
-        Of the slip, with the spin of a patch of contact, m/s; in other phases 1.
+        Speed of the slip, with the spin of a patch of contact, m/s; in other phases 1.
     """
 
     rates: Unknowns

@@ -39,7 +39,11 @@ class Equations:
     Attributes
     ----------
     kind : module
-        turning, flying, field, hinged or hinged_field: which unknowns there are.
+        turning, flying, field, carried, hinged or hinged_field: which unknowns there are.
+    on_hinge : bool
+        Whether the unknowns are an angle and its rate.
+    drifts : bool
+        Whether place and velocity of the reference point are unknowns.
     kernels : module
         `kind` bound to what acts: ``rate(p, y)``, ``settled(y, c)``, ``start(p, vector, point,
         at)``, ``write(p, time, y, out)``.
@@ -57,13 +61,20 @@ class Equations:
     modes : list of int
         Where among the parameters the sides of the switches are, one for each switch.
     grip : float
-        Torque with which dry friction holds a body on a hinge at rest, N m.
+        Largest torque with which dry friction holds a body on a hinge at rest, N m.
     gripping : list of int
         The switches of that friction, places in `modes`.
     in_field : bool
-        Whether anything depends on time or place.
+        Whether anything depends on time or place; then the time is the last unknown.
+    timed : bool
+        Whether anything depends on time.
     makes_heat : bool
-        Whether anything depends on velocities: what is booked as heat, and what says so.
+        Whether anything depends on velocities: what books heat, and what declares it.
+
+    Raises
+    ------
+    BadInput
+        An effect gives a force where a bearing holds the body.
     """
 
     def __init__(self, scene, wrench=None):
@@ -79,17 +90,20 @@ class Equations:
             sorted({time for actor in self._actors for time in actor.breakpoints})
         )
         acting = self._acting(-np.inf)
-        path, on_hinge = self.frame.path, self._axis is not None
+        if not self.frame.pushed and any(one.gives == 'force' for one in acting):
+            raise self._lost_force()
+        path, self.on_hinge = self.frame.path, self._axis is not None
         in_field = path is not None or any(one.in_field for one in acting)
         if path is not None:
             self.kind = carried
-        elif on_hinge:
+        elif self.on_hinge:
             self.kind = hinged_field if in_field else hinged
             self._moment = moment_on_hinge(scene)
         else:
             self.kind = (field if in_field else
                          flying if any(one.gives == 'force' for one in acting) else turning)
-        fixed = hinged.PARAMETERS.size if on_hinge else euler.FIXED
+        self.drifts = self.kind in (flying, field)
+        fixed = hinged.PARAMETERS.size if self.on_hinge else euler.FIXED
         self.groups = self.kind.GROUPS
         if self.kind is turning and any(one.gives == 'turning' for one in acting):
             self.groups = turning.APART
@@ -100,6 +114,7 @@ class Equations:
         count = fixed + sum(len(one.values) for one in acting)
         self.parameter_count = count + (len(path.values) if path is not None else 0)
         self.in_field = in_field
+        self.timed = path is not None or any(one.timed for one in acting)
         self.modes, self.gripping, self.grip = [], [], 0.0
         at = fixed
         for one in acting:
@@ -110,12 +125,12 @@ class Equations:
             at += len(one.values)
         self.makes_heat = any(one.books == 'heat' or one.of_motion for one in acting)
         state = STATE + FIELD if in_field else STATE
-        if on_hinge:
+        if self.on_hinge:
             sources = {'torque': torque_source(calls, state)}
         else:
             sources = {'omega_rate': _omega_rate(calls, state),
                        'axes_rate': _axes_rate(calls, state)}
-        if self.kind in (flying, field):
+        if self.drifts:
             sources['force'] = force_source(calls, state)
         if path is not None:
             sources['path'] = path_source(path, count)
@@ -123,6 +138,13 @@ class Equations:
         self.write = f'{self.kernels.__name__}:write'
         self._fixed, self._held = self._constants(), {}
         self.fixed_count = len(self._fixed)
+
+    def _lost_force(self):
+        """Return the BadInput of an effect whose force a bearing would take unseen."""
+        name = next(actor.name for actor in self._actors if any(
+            one.gives == 'force' for one in actor.acting(self.frame, -np.inf)))
+        return BadInput(f'effects.{name}', 'gives a force, and a bearing holds the body',
+                        'the torque of the force about the bearing is what acts')
 
     def switching_source(self):
         """Return the source of ``switching(p, q, omega, v, t, place)``: the switches, a tuple."""
@@ -144,7 +166,7 @@ class Equations:
 
     def _constants(self):
         """Return the fixed parameters, without those that a start decides."""
-        frame, hinge = self.frame, self.kind in (hinged, hinged_field)
+        frame, hinge = self.frame, self.on_hinge
         moments = np.zeros(3) if hinge else np.array(frame.moments)
         inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
         if hinge:

@@ -104,7 +104,7 @@ load_state, store_state = STATE.load, STATE.store
 def taken(p, tx, ty, tz):
     """Return the part of a torque that turns the body.
 
-    There is none about an axis of zero moment, as that of a thin rod.
+    There is none about an axis of zero moment, such as that of a thin rod.
     """
     ix, iy, iz = load_inverse(p)
     return tx if ix > 0.0 else 0.0, ty if iy > 0.0 else 0.0, tz if iz > 0.0 else 0.0

@@ -9,7 +9,7 @@ parts of an expression (scene/expressions/source.py).
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.equations import hinged, hinged_field
+from rigid_body_sim.integrators.equations import hinged
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.equations.plan import Plan
 from rigid_body_sim.integrators.equations.series import refusal
@@ -27,7 +27,7 @@ class Expanded(Equations):
     Attributes
     ----------
     rates : list of Nodes
-        Of the unknowns (:class:`Trees`).
+        Rates of the unknowns (:class:`Trees`).
     named : dict of str to float
         The numbers at the beginning. A start on a hinge or a pivot adds those of its own.
     based : int
@@ -49,7 +49,7 @@ class Expanded(Equations):
         super().__init__(scene)
         if self.modes:
             raise refusal(scene)
-        self._trees = Trees(self.kind, self.frame, self._actors, self.breakpoints, self._fixed)
+        self._trees = Trees(self, self._actors, self._fixed)
         self.rates = self._trees.rates
         plan = Plan(self.rates)
         if plan.products > MOST:
@@ -105,7 +105,7 @@ class Expanded(Equations):
         """Return the lines that name what a start determines."""
         place, first = (', '.join(f'the__{name}' for name in names) for names in (STARTED, FIRST))
         begin = [f'    {place} = load_start(p).place']
-        if self.kind not in (hinged, hinged_field):
+        if not self.on_hinge:
             return begin
         nx, ny, nz = (lines.value(f'hinge{k}', part)
                       for k, part in enumerate(self.frame.hinge.axis))

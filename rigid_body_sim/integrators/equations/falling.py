@@ -42,7 +42,7 @@ class FallingParameters(NamedTuple):
 FALLING = layout(FallingParameters)
 load_fall = FALLING.part('fall').load
 TERMS = tuple(1.0 / math.factorial(k) for k in range(19, 1, -1))
-# of z, up to which phi2 is its Taylor series: 18 terms, and no difference of nearly equal numbers
+# phi2 is its Taylor series of 18 terms up to this z: no difference of nearly equal numbers
 SMALL = 1.0
 
 

@@ -6,7 +6,7 @@ Unknowns are those of flying.py, and the time:
     t' = 1
 
 The clock runs as an unknown, so every method that evaluates rates knows the time of its stages.
-Of a pivoted body the point of reference stays: x' = v = 0.
+The reference point of a pivoted body stays: x' = v = 0.
 """
 
 from rigid_body_sim.compilation.jit import compiled

@@ -14,15 +14,18 @@ rate = UNBOUND
 @compiled
 def drift(p, y, c, h):
     """Return (y, c) after the body has turned freely for a time h."""
-    phi, lost = add_double(y[0], c[0], h * y[1])
-    return (phi, y[1]), (lost, c[1])
+    (phi, speed), (lost, speed_lost) = y, c
+    phi, lost = add_double(phi, lost, h * speed)
+    return (phi, speed), (lost, speed_lost)
 
 
 @compiled
 def kick(p, y, c, h):
     """Return (y, c) after the torque has acted alone for a time h."""
-    speed, lost = add_double(y[1], c[1], h * rate(p, y)[1])
-    return (y[0], speed), (c[0], lost)
+    (phi, speed), (phi_lost, lost) = y, c
+    _, growth = rate(p, y)
+    speed, lost = add_double(speed, lost, h * growth)
+    return (phi, speed), (phi_lost, lost)
 
 
 @compiled
@@ -31,5 +34,8 @@ def kick_with_heat(p, y, c, h):
 
     By the explicit midpoint rule.
     """
-    speed, lost = add_double(y[1], c[1], h * rate(p, (y[0], y[1] + 0.5 * h * rate(p, y)[1]))[1])
-    return (y[0], speed), (c[0], lost)
+    (phi, speed), (phi_lost, lost) = y, c
+    _, growth = rate(p, y)
+    _, growth = rate(p, (phi, speed + 0.5 * h * growth))
+    speed, lost = add_double(speed, lost, h * growth)
+    return (phi, speed), (phi_lost, lost)

@@ -32,11 +32,11 @@ from rigid_body_sim.numerics.double_double import (
 )
 
 W1, W2, W3, D1, D2, D3, D4 = range(7)    # rows of the series: of omega h, and of Delta
-REACH = 0.25                   # of M
+REACH = 0.25                   # largest M of a span
 TERMS = 32
-ROUNDING = 2.0 ** -60          # of the largest term: smaller ones do not count
-MOST_SPANS = 4096              # of one drift, a thousand radians: kicks so rare mean nothing
-LEAST = 1e-250                 # of I omega^2: below it the 32 digits of products are lost
+ROUNDING = 2.0 ** -60          # share of the largest term: smaller ones do not count
+MOST_SPANS = 4096    # most spans of a drift, a thousand radians: kicks so rare mean nothing
+LEAST = 1e-250                 # least I omega^2: below it the 32 digits of products are lost
 
 
 @compiled_allocating

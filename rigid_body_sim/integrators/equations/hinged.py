@@ -22,17 +22,18 @@ from rigid_body_sim.integrators.equations.euler import (
     read_state,
     write_state,
 )
-from rigid_body_sim.numerics.functions import cos, sin
+from rigid_body_sim.numerics.functions import sin_cos
 from rigid_body_sim.numerics.rotations import multiply
 from rigid_body_sim.numerics.vectors import dot, scaled
 from rigid_body_sim.scene.state import STATE
 
 torque = UNBOUND
 
-UNKNOWNS = 2    # phi, phi'
+PHI, SPEED = 0, 1    # places of the unknowns phi and phi'
+UNKNOWNS = 2
 TURN = 2.0 * math.pi
 TWO_TURNS, REST = 4.0 * math.pi, 4.898587196589413e-16    # 4 pi as a sum of two doubles
-GROUPS = ((0, 1, True), (1, 2, False))
+GROUPS = ((PHI, SPEED, True), (SPEED, UNKNOWNS, False))
 
 
 class HingedParameters(NamedTuple):
@@ -54,13 +55,13 @@ def start(p, vector, point, at):
     """Set the parameters that a start decides, and fill `point` from `at` on with its unknowns."""
     q, _, _, _ = read_state(p, vector)
     store_attitude(p, q)
-    point[at], point[at + 1] = 0.0, dot(load_axis(p), load_omega(vector))
+    point[at + PHI], point[at + SPEED] = 0.0, dot(load_axis(p), load_omega(vector))
 
 
 @compiled
 def attitude(p, phi):
     """Return q at an angle."""
-    s, c = sin(0.5 * phi), cos(0.5 * phi)
+    s, c = sin_cos(0.5 * phi)
     return multiply(*load_attitude(p), *scaled(s, load_axis(p)), c)
 
 
@@ -92,5 +93,6 @@ def settled(y, c):
 @compiled
 def write(p, time, y, out):
     """Fill `out`, the state vector."""
-    write_state(p, time, attitude(p, y[0]), scaled(y[1], load_axis(p)), load_start(p).place,
+    phi, speed = y[:2]
+    write_state(p, time, attitude(p, phi), scaled(speed, load_axis(p)), load_start(p).place,
                 (0.0, 0.0, 0.0), out)

@@ -4,7 +4,7 @@
     omega' = -I^-1 K omega + ...,    v' = -(c/M) v + ...
 
 K is symmetric, so with I^(-1/2) K I^(-1/2) = Q diag(lambda) Q^T the coordinates Q^T I^(1/2) omega
-relax at the rates lambda, each by itself.
+relax independently at the rates lambda.
 """
 
 import math
@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.integrators.equations import hinged
+from rigid_body_sim.integrators.equations.euler import DRIFT, OMEGA
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
@@ -28,7 +30,7 @@ class Relaxation(NamedTuple):
     first : int
         The first of the unknowns.
     into, back : array (n, n)
-        To the coordinates that relax by themselves, and from them.
+        To the coordinates that relax independently, and from them.
     rates : list of n floats
         lambda, 1/s.
     """
@@ -54,8 +56,7 @@ def stiff_relaxations(scene, unknowns):
 def relaxations(scene, unknowns):
     """Return the Relaxations of a scene for equations of so many unknowns."""
     frame, axis = scene.frame, scene.constraint.axis
-    pulls = [effect.series(frame, -math.inf) for effect in scene.effects
-             if effect.series is not None]
+    pulls = [effect.damping(frame) for effect in scene.effects if effect.damping is not None]
     matrices = [pull.drag for pull in pulls if pull.drag is not None]
     matrix = [[math.fsum(one[i][j] for one in matrices) for j in range(3)] for i in range(3)]
     slowing = math.fsum(pull.slowing for pull in pulls)
@@ -63,14 +64,14 @@ def relaxations(scene, unknowns):
     if matrices and axis is not None:
         along = math.fsum(axis[i] * matrix[i][j] * axis[j] for i in range(3) for j in range(3))
         rate = -along / moment_about_hinge(scene.body, scene.constraint)
-        found.append(Relaxation(1, np.eye(1), np.eye(1), [rate]))
+        found.append(Relaxation(hinged.SPEED, np.eye(1), np.eye(1), [rate]))
     elif matrices:
         roots = [math.sqrt(moment) for moment in frame.moments]
         over = [1.0 / root if root > 0.0 else 0.0 for root in roots]
         rates, vectors = eigenvectors([[-matrix[i][j] * over[i] * over[j] for j in range(3)]
                                        for i in range(3)])
         into, back = np.array(vectors) * roots, (np.array(vectors) * over).T
-        found.append(Relaxation(4, into, back, [max(rate, 0.0) for rate in rates]))
-    if slowing and unknowns > 10:
-        found.append(Relaxation(10, np.eye(3), np.eye(3), [slowing / frame.mass] * 3))
+        found.append(Relaxation(OMEGA, into, back, [max(rate, 0.0) for rate in rates]))
+    if slowing and unknowns > DRIFT:
+        found.append(Relaxation(DRIFT, np.eye(3), np.eye(3), [slowing / frame.mass] * 3))
     return found

@@ -83,7 +83,8 @@ class Series(Equations):
         if not all(actor.series is not None for actor in self._actors):
             raise refusal(scene)
         pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
-        self.kind = turning
+        # a body on a hinge turns about the third axis of its frame here, by the same equations
+        self.kind, self.on_hinge = turning, False
         forced = any(pull.force is not None for pull in pulls)
         self.pushed = forced and not self.frame.moves
         self.falls = self.frame.moves and (forced or any(pull.slowing for pull in pulls))

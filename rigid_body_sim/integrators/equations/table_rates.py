@@ -19,16 +19,14 @@ turns with the body at a rate below |omega|, with a lag of u |omega|/G at most: 
 with c = (1 + 1/k) mu N/M. All but SLIDING have t for their independent variable.
 """
 
-
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
+from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, rotate
 from rigid_body_sim.numerics.vectors import plus
-
-RADIUS, RATIO, MASS, FRICTION, GRAVITY = range(5)    # as sliding_sphere.parameters
 
 
 class Pushed(NamedTuple):
@@ -36,14 +34,13 @@ class Pushed(NamedTuple):
 
     Attributes
     ----------
-    sphere : tuple of 5 floats
-        Those of sliding_sphere.py.
+    sphere : sliding_sphere.Parameters
     mode : float
     world_force, world_couple, body_force, body_couple : Vector
         What holds in world axes and in body axes, N and N m.
     """
 
-    sphere: tuple[float, float, float, float, float]
+    sphere: sliding_sphere.Parameters
     mode: float
     world_force: Vector
     world_couple: Vector
@@ -51,18 +48,27 @@ class Pushed(NamedTuple):
     body_couple: Vector
 
 
+class Unknowns(NamedTuple):
+    """The unknowns; behind them stands the ledger."""
+
+    q: Quaternion
+    u: Pair
+    p: Pair
+    spin: float      # omega_z, rad/s
+    place: Pair      # since the start, m
+    time: float      # since the start, s
+
+
 PUSHED = layout(Pushed)
 PARAMETERS = PUSHED.size
-MODE, WORLD_FORCE, WORLD_COUPLE, BODY_FORCE, BODY_COUPLE = (
-    PUSHED.part(name).first for name in ('mode', 'world_force', 'world_couple', 'body_force',
-                                         'body_couple'))
+MODE = PUSHED.part('mode').first
+RADIUS, RATIO, MASS, FRICTION, GRAVITY = (
+    PUSHED.part('sphere').part(name).first for name in sliding_sphere.Parameters._fields)
 load_pushed = PUSHED.load
 SLIDING, ROLLING, GLIDING, CREEPING = range(4)
 
-# unknowns: attitude, slip u, p, omega_z, place since the start, time since the start; then the
-# ledger
-Q, U, P, SPIN, PLACE, TIME = 0, 4, 6, 8, 9, 11
-UNKNOWNS = 12
+Q, U, P, SPIN, PLACE, TIME = (layout(Unknowns).part(name).first for name in Unknowns._fields)
+UNKNOWNS = layout(Unknowns).size
 GROUPS = (
     (Q, U, True),
     (U, SPIN, False),

@@ -7,14 +7,7 @@ scene/effects/protocol.py). The unknowns are those of the templates (equations.p
 
 import numpy as np
 
-from rigid_body_sim.integrators.equations import (
-    carried,
-    euler,
-    field,
-    flying,
-    hinged,
-    hinged_field,
-)
+from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import DRIFT, OMEGA, PLACE
 from rigid_body_sim.integrators.equations.plan import rewritten, unknown
 from rigid_body_sim.numerics.rotations import matrix, rotate
@@ -38,31 +31,29 @@ class Trees:
 
     Parameters
     ----------
-    kind : module
-        Which unknowns there are (:class:`equations.Equations`).
-    frame : Frame
+    equations : equations.Equations
+        They say which unknowns there are.
     actors : list of Effect
         What acts.
-    breakpoints : tuple of floats
     fixed : array
         Euler's numbers, as the templates have them.
 
     Attributes
     ----------
     rates : list of Nodes
-        Of the unknowns, made of these (`unknown`), of parameters and of own names.
+        Rates of the unknowns, made of these (`unknown`), of parameters and of own names.
     parameters : dict of str to float
-        Of the formulas.
+        Parameters of the formulas.
     """
 
-    def __init__(self, kind, frame, actors, breakpoints, fixed):
-        self._kind, self._frame, self._actors, self._fixed = kind, frame, actors, fixed
-        self._on_hinge = kind in (hinged, hinged_field)
-        self._times = (-np.inf, *breakpoints)
+    def __init__(self, equations, actors, fixed):
+        self._equations, self._frame = equations, equations.frame
+        self._actors, self._fixed = actors, fixed
+        self._times = (-np.inf, *equations.breakpoints)
         self._static, self.parameters = {}, {}
         self._of_frame = self._frame_definitions()
-        rates = self._on_axis() if self._on_hinge else self._free()
-        if kind in (carried, field, hinged_field):
+        rates = self._on_axis() if equations.on_hinge else self._free()
+        if equations.in_field:
             rates.append(tree.ONE)
         self.rates = rewritten(rates, self._definitions(), self.parameters)
 
@@ -142,7 +133,7 @@ class Trees:
         rates = [*_turning([unknown(k) for k in range(OMEGA)], omega), *(
             tree.plus(tree.times(share[k], tree.times(omega[k - 2], omega[k - 1])),
                       tree.times(inverse[k], torque[k])) for k in range(3))]
-        if self._kind in (flying, field):
+        if self._equations.drifts:
             drift = tuple(unknown(DRIFT + k) for k in range(3))
             pushed = (tree.ZERO,) * 3
             if self._frame.moves:
@@ -168,7 +159,7 @@ class Trees:
     def _frame_definitions(self):
         """Return what the names of kernels of effects are (Acting): those of the frame."""
         frame, place, drift = self._frame, map(own, STARTED), (tree.ZERO,) * 3
-        if self._on_hinge:
+        if self._equations.on_hinge:
             n = self._constants_of('axis', frame.hinge.axis)
             half = tree.times(tree.number(0.5), unknown(0))
             sine, cosine = tree.node('sin', half), tree.node('cos', half)
@@ -185,7 +176,7 @@ class Trees:
             self.parameters |= dict(frame.path.parameters)
             place = map(tree.plus, place, frame.path.trees)
             drift = path.velocities(frame.path.trees)
-        clock = unknown(self._kind.UNKNOWNS - 1)
+        clock = unknown(self._equations.kind.UNKNOWNS - 1)
         return _named((source.ATTITUDE, attitude), (source.RATES, omega), (source.PLACE, place),
                       (source.VELOCITY, drift), (source.TIME, (clock,)))
 
@@ -209,7 +200,7 @@ class Trees:
             (source.WORLD_RATES, vectors.to_world(rates)),
             (source.PLACE, vectors.difference(place, vectors.to_world(point))),
             (source.VELOCITY, vectors.difference(drift, carried_along)))
-        if self._on_hinge:
+        if self._equations.on_hinge:
             found |= {'angle': tree.plus(unknown(0), own(TURNED)), 'rate': unknown(1)}
         return found
 

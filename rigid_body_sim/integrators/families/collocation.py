@@ -16,7 +16,7 @@ from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
 from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
 from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
-from rigid_body_sim.integrators.marching.points import VALUES
+from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
 from rigid_body_sim.mechanics.bounds import swing_rate
 
 TAKES_WRENCH = True
@@ -26,7 +26,8 @@ ROOTS = False
 FLOOR = 2.0 ** -50          # share of the unknowns that is rounding
 RELAXED_FLOOR = 2.0 ** -39  # the same where slopes of the stages take the place of rates
 RELAXED_SETTLED = 2.0 ** -46
-TERMS = 2 * STAGES + 1      # of a curve: P_0 ... P_16
+CLOCK = 2.0 ** -50          # share of the time that is rounding
+TERMS = 2 * STAGES + 1      # polynomials of a curve: P_0 ... P_16
 
 
 class Equations(general.Equations):
@@ -55,6 +56,7 @@ def march(method, equations, adapts):
         gauss_march, rate=f'{kernels}:rate', settled=f'{kernels}:settled',
         relax=_relax(equations.relaxations, _places(size)),
         FLOOR=f'FLOOR = {RELAXED_FLOOR if equations.relaxations else FLOOR!r}\n',
+        CLOCK=f'CLOCK = {CLOCK if equations.timed else 0.0!r}\n',
         SETTLED=f'SETTLED = {RELAXED_SETTLED if equations.relaxations else 0.0!r}\n',
         **_of_unknowns(size, equations.groups, equations.parameter_count))
 
@@ -113,9 +115,8 @@ def begin(stepped, march):
         part[relaxing.INTO:relaxing.INTO + n * n] = one.into.ravel()
         part[relaxing.BACK:relaxing.BACK + n * n] = one.back.ravel()
         part[relaxing.DECAY:relaxing.DECAY + n] = one.rates
-    if stepped.accuracy is not None:
-        control[march.TOLERANCE] = stepped.accuracy / stepped.horizon
-    control[march.FIXED] = stepped.step or 0.0
+    tolerance = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
+    CONTROL.store(control, Control(tolerance, stepped.step or 0.0, 0.0))
     swing = swing_rate(stepped.scene)
     control[march.SWING] = swing * swing
     return control, np.zeros(march.KEPT + STAGES * march.SIZE)

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Family of the symmetric compositions of flows: split2, split4, split6, split8.
 
-The motion without torques (drift) and what acts at a fixed attitude (kick) are solved alone,
-exactly, in turn: flows_turning.py, flows_flying.py, flows_hinged.py. A method is a module with
-DRIFTS, one more KICKS, and
+The motion without torques (drift) and what acts at a fixed attitude (kick) are solved in turn,
+each alone and exactly: flows_turning.py, flows_flying.py, flows_hinged.py. A method is a module
+with DRIFTS, one more KICKS, and
 
     step(h) = kick(KICKS[0] h), drift(DRIFTS[0] h), kick(KICKS[1] h), ..., drift(DRIFTS[-1] h),
     kick(KICKS[-1] h)
 
 Energy of a conservative scene oscillates and its truncation error has no trend (symplectic,
-symmetric); a forward step of the reversed motion undoes a step. Nor has its rounding: flows give
-increments that err by a rounding of themselves, sums carry what they lose, and drifts hold the
-kinetic energy with 32 digits (free_turn.py). After a million steps of split4 the energy of an
-asymmetric heavy top is within 2e-15 of its scale, most of it truncation and reading; with plain
-sums it has lost 3e-13 (bench/energy.py).
+symmetric); a forward step of the reversed motion undoes a step. Its rounding error has no trend
+either: flows give increments that err by their own rounding, sums carry what they lose, and drifts
+hold the kinetic energy with 32 digits (free_turn.py). After a million steps of split4 the energy
+of an asymmetric heavy top is within 2e-15 of its scale, most of it truncation and reading; with
+plain sums it has lost 3e-13 (bench/energy.py).
 
 Caveats: drag and internal dissipation need kicks that depend on omega; they are solved to order 2
-only, and cannot run backward, as the negative steps of the higher compositions ask: split2 alone
+only, and cannot run backward, as the negative steps of the higher compositions would: only split2
 runs such scenes. A drift costs about as much as two steps of dop8: compositions are for their
 long-time behaviour, not for speed. They take fixed steps only, so they need `step`.
 """

@@ -9,7 +9,7 @@ explicitly):
     on a hinge:  phi'1 = phi' + h phi''(phi, phi'),    phi1 = phi + h phi'1
 
 exp is the rotation by the vector h omega1 (frame axes); q1 is made unit again. Sums are plain,
-nothing is compensated. Under internal dissipation the axes turn with omega1 + c m1 x omega1, as
+not compensated. Under internal dissipation the axes turn with omega1 + c m1 x omega1, as
 the equations have it.
 """
 
@@ -27,22 +27,22 @@ KINKS = True
 ROOTS = True
 
 TURN = """
-    w1, w2, w3 = y[4] + h * k0[4], y[5] + h * k0[5], y[6] + h * k0[6]
-    ux, uy, uz = axes_rate(p, y[0], y[1], y[2], y[3], w1, w2, w3, {velocity})
-    turn = from_rotation_vector(h * ux, h * uy, h * uz)
-    q1, q2, q3, q4 = normalised(*multiply(y[0], y[1], y[2], y[3], *turn))
+    omega = plus(y[OMEGA:PLACE], scaled(h, k0[OMEGA:PLACE]))
+    turn = scaled(h, axes_rate(p, *y[:OMEGA], *omega, {velocity}))
+    q = normalised(*multiply(*y[:OMEGA], *from_rotation_vector(*turn)))
 """
 ON_HINGE = """
-    speed = y[1] + h * k0[1]
-    return (y[0] + h * speed, speed), c
+    (phi, speed), (_, growth) = y, k0
+    speed = speed + h * growth
+    return (phi + h * speed, speed), c
 """
 TURNING = TURN.format(velocity='0.0, 0.0, 0.0') + """
-    return (q1, q2, q3, q4, w1, w2, w3), c
+    return (*q, *omega), c
 """
 FLYING = """
-    v1, v2, v3 = y[10] + h * k0[10], y[11] + h * k0[11], y[12] + h * k0[12]
-""" + TURN.format(velocity='v1, v2, v3') + """
-    return (q1, q2, q3, q4, w1, w2, w3, y[7] + h * v1, y[8] + h * v2, y[9] + h * v3, v1, v2, v3), c
+    velocity = plus(y[DRIFT:CLOCK], scaled(h, k0[DRIFT:CLOCK]))
+""" + TURN.format(velocity='*velocity') + """
+    return (*q, *omega, *plus(y[PLACE:DRIFT], scaled(h, velocity)), *velocity), c
 """
 
 
@@ -54,6 +54,8 @@ def step_source(method, equations):
         if equations.kind is hinged
         else (
             f'from {equations.kernels.__name__} import axes_rate\n'
+            'from rigid_body_sim.integrators.equations.euler import CLOCK, DRIFT, OMEGA, PLACE\n'
+            'from rigid_body_sim.numerics.vectors import plus, scaled\n'
             'from rigid_body_sim.numerics.rotations import '
             'from_rotation_vector, multiply, normalised\n'
         )

@@ -19,6 +19,7 @@ from rigid_body_sim.integrators.marching import (
     taylor_series,
     unroll,
 )
+from rigid_body_sim.integrators.marching.points import CONTROL, Control
 
 TAKES_WRENCH = False
 LANES = True
@@ -34,7 +35,7 @@ def equations_of(scene, wrench):
     Raises
     ------
     BadInput
-        An effect or a constraint that they cannot have.
+        For an effect or a constraint that they cannot express.
     """
     return Expanded(scene) if series.has_formulas(scene) else series.Series(scene)
 
@@ -121,10 +122,10 @@ def _added(size):
 def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
     control = np.zeros(march.WORK + march.PLACES * (taylor_series.ORDER + 1))
-    control[march.TOLERANCE] = (
+    tolerance = (
         SAFETY * stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     )
-    control[march.FIXED] = stepped.step or 0.0
+    CONTROL.store(control, Control(tolerance, stepped.step or 0.0, 0.0))
     return control, np.zeros(march.VALUES + 2 * march.SIZE)
 
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march with a Runge-Kutta method that chooses its own steps.
 
-A point of the march holds [time, next step, squared scales (3), unknowns, what their sums lost]. A
-step is accepted when its estimated error per second is below the tolerance, so that errors add up
-in proportion to time and not to the number of steps.
+A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost;
+`control` holds, behind its Control, the rounding of the rates of the first relative group per
+second and from WEIGHTS on the weights of the method (unroll.py). A step is accepted when its
+estimated error per second is below the tolerance, so that errors add up in proportion to time and
+not to the number of steps.
 """
 
 import math
@@ -11,10 +13,12 @@ import math
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import (
+    CONTROL,
     LEAST_ERROR,
     SCALES,
     STEP,
     TIME,
+    TOLERANCE,
     VALUES,
     onward,
 )
@@ -31,7 +35,8 @@ put_scales = UNBOUND
 SIZE = UNBOUND
 ORDER = UNBOUND
 
-WEIGHTS = 2                # their place in `control`
+ROUNDING = CONTROL.size    # places in `control`
+WEIGHTS = ROUNDING + 1
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
 TRIALS = 60                # refusals of one step after which it is given up
@@ -42,7 +47,7 @@ def begin(p, control, point):
     """Choose the first step from a point whose time and unknowns are set."""
     y = load(point, VALUES)
     speed = fastest(y, rate(p, y))
-    point[STEP] = power(control[0], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+    point[STEP] = power(control[TOLERANCE], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
 
 @compiled
@@ -53,16 +58,13 @@ def march(p, control, point, following, target, end, limit):
 
     Parameters
     ----------
-    control : array
-        [tolerance per second, rounding of the rates of the first relative group per second,
-        weights of the method (unroll.py)].
     point, following : array
         The step from `point` ends at `following`, which is not known yet if its time is not later.
         Both are changed.
     end : float
         The last point stands there exactly.
     """
-    tolerance, rounding, weights = control[0], control[1], control[WEIGHTS:]
+    tolerance, rounding, weights = control[TOLERANCE], control[ROUNDING], control[WEIGHTS:]
     moved = onward(point, following, target)
     if moved < 0:
         return 0, True
@@ -76,8 +78,8 @@ def march(p, control, point, following, target, end, limit):
         for _ in range(TRIALS):
             t1 = end if t + 1.1 * h >= end else t + h
             y1, c1, scales1, error = trial(p, weights, y, c, k0, t1 - t, scales)
-            # near a balance large terms nearly cancel, and leave their rounding in every stage: to
-            # ask for less would make steps shorter for ever
+            # near a balance large terms nearly cancel and leave their rounding in every stage; a
+            # smaller tolerance would make steps shorter for ever
             noise = rounding / math.sqrt(scales1[0]) if scales1[0] > 0.0 else 0.0
             allowed = max(max(tolerance, noise) * (t1 - t), LEAST_ERROR)
             good = error <= allowed and t1 > t

@@ -3,8 +3,8 @@
 
 batch_series.py has a step in the vector unit, batch_march.py the march.
 
-The states are those of the method to the accuracy asked, not to the bit: order and steps are
-others.
+The states agree with those of the method to the accuracy asked, not to the bit, since order and
+steps differ.
 """
 
 import math
@@ -21,7 +21,7 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import from_matrix
 from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
 
-ROUNDS = 64    # of steps in the first call of the march
+ROUNDS = 64    # rounds of steps in the first call of the march
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
 
 
@@ -52,22 +52,21 @@ def rows_for(p):
 
     p holds the parameters of equations/series.py.
     """
-    inverse, force, couple = (
-        p[at : at + 3].tolist() for at in (euler.INVERSE, series.FORCE, series.COUPLE)
-    )
-    rows, u, table = (
-        directions(force, couple),
-        p[series.PULL : series.PULL + 6],
-        np.zeros((batch_series.ROWS, LANES)),
-    )
+    def numbers(layout, name):
+        return p[layout.part(name).places].tolist()
+
+    inverse = numbers(euler.EQUATION, 'inverse')
+    force, couple = numbers(series.SERIES, 'force'), numbers(series.SERIES, 'couple')
+    rows, table = directions(force, couple), np.zeros((batch_series.ROWS, LANES))
     along, aside, _ = apply(rows, couple)
-    pull = hypot3(*force) * np.array(((0.0, u[0], u[1]), (u[3], 0.0, u[2]), (u[4], u[5], 0.0)))
+    u1, u2, u3, u4, u5, u6 = numbers(series.SERIES, 'pull')
+    pull = hypot3(*force) * np.array(((0.0, u1, u2), (u4, 0.0, u3), (u5, u6, 0.0)))
     for at, values in (
-        (batch_series.EULER, p[euler.EULER : euler.EULER + 3]),
-        (batch_series.CONSTANT, p[series.CONSTANT : series.CONSTANT + 3]),
+        (batch_series.EULER, numbers(euler.EQUATION, 'euler')),
+        (batch_series.CONSTANT, numbers(series.SERIES, 'constant')),
         (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
         (batch_series.V, scaled(aside, inverse)),
-        (batch_series.DRAG, p[series.DRAG : series.DRAG + 9]),
+        (batch_series.DRAG, numbers(series.SERIES, 'drag')),
         (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0)),
     ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))

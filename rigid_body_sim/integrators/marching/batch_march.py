@@ -5,6 +5,7 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import read_state
 from rigid_body_sim.integrators.equations.falling import write
@@ -12,18 +13,26 @@ from rigid_body_sim.integrators.marching.batch_series import (
     END,
     FOLLOWING,
     FOUND,
-    OMEGA,
     POINT_SIZE,
-    QUATERNION,
-    SERIES,
     SINCE,
     SOUND,
     TIME,
+    Attitude,
+    Point,
+    Unknowns,
     between,
 )
 from rigid_body_sim.numerics.rotations import multiply, rotate_back
+from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 advance = UNBOUND
+
+# a lane is a column of W: its numbers stand LANES places apart
+COLUMN = layout(Point, LANES)
+load_q, load_omega = COLUMN.part('q').load, COLUMN.part('y').part('omega').load
+store_point, load_found = COLUMN.store, layout(Attitude, LANES).load
+NONE = 0.0, 0.0, 0.0
+NONE_LOST = Unknowns(NONE, NONE, NONE)
 
 NOBODY, ANYBODY = -1, -2    # no number of a body: none has failed; the march has paused
 # in `seats`: which body sits in a lane, and the place of its next time; which body is next, how
@@ -71,7 +80,7 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
     for _ in range(rounds):
         if free:
             for lane in range(lanes):
-                while following < len(states) and states[following, 0] > target:
+                while following < len(states) and states[following, STATE_TIME] > target:
                     following += 1
                 if seats[BODY + lane] == NOBODY and following < len(states):
                     _seat(W, p[lane], turn, lane, states[following], target)
@@ -101,7 +110,8 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
                 body = seats[BODY + lane]
                 if body != NOBODY and W[LANES * TIME + lane] >= target:
                     if end < math.inf:
-                        _write(W, p[lane], turn, lane, QUATERNION, OMEGA, end, states[body])
+                        _write(p[lane], turn, load_q(W, lane), load_omega(W, lane), end,
+                               states[body])
                     seats[BODY + lane], busy = NOBODY, busy - 1
     seats[WAITING], seats[BUSY], seats[FREE] = following, busy, 1 if free else 0
     return ANYBODY, 0.0
@@ -110,30 +120,19 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
 @compiled
 def _seat(W, p, turn, lane, state, target):
     """Put a body into a lane."""
-    for place in range(POINT_SIZE):
-        W[LANES * place + lane] = 0.0
-    q, w, _, _ = read_state(p, state)
-    q = multiply(-turn[0], -turn[1], -turn[2], turn[3], q[0], q[1], q[2], q[3])
-    y = (
-        *rotate_back(q[0], q[1], q[2], q[3], 1.0, 0.0, 0.0),
-        *rotate_back(q[0], q[1], q[2], q[3], 0.0, 1.0, 0.0),
-        *w,
-    )
-    W[LANES * TIME + lane], W[LANES * END + lane] = state[0], target
-    for k in range(4):
-        W[LANES * (QUATERNION + k) + lane] = q[k]
-    for k in range(9):
-        W[LANES * (SERIES + k) + lane] = y[k]
+    q, omega, _, _ = read_state(p, state)
+    x, y, z, w = turn
+    q = multiply(-x, -y, -z, w, *q)
+    e1, e2 = rotate_back(*q, 1.0, 0.0, 0.0), rotate_back(*q, 0.0, 1.0, 0.0)
+    store_point(
+        W, Point(state[STATE_TIME], 0.0, 0.0, NONE_LOST, q, Unknowns(e1, e2, omega)), lane)
+    W[LANES * END + lane] = target
 
 
 @compiled
-def _write(W, p, turn, lane, quaternion, omega, time, out):
-    """Write the state at a time; its quaternion and omega stand in the rows from two places on."""
-    a, b = LANES * quaternion + lane, LANES * omega + lane
-    q = multiply(
-        turn[0], turn[1], turn[2], turn[3], W[a], W[a + LANES], W[a + 2 * LANES], W[a + 3 * LANES]
-    )
-    write(p, time, (*q, W[b], W[b + LANES], W[b + 2 * LANES]), out)
+def _write(p, turn, q, omega, time, out):
+    """Write the state at a time from quaternion and omega of a lane."""
+    write(p, time, (*multiply(*turn, *q), *omega), out)
 
 
 @compiled
@@ -154,14 +153,7 @@ def _give(W, p, turn, seats, times, order, last, out):
                 if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
                     k = order[seats[NEXT + lane]]
                     if times[k] <= W[LANES * (FOLLOWING + TIME) + lane]:
-                        _write(
-                            W,
-                            p[lane],
-                            turn,
-                            lane,
-                            FOUND,
-                            FOUND + 4,
-                            times[k],
-                            out[seats[BODY + lane], k],
-                        )
+                        found = load_found(W, LANES * FOUND + lane)
+                        _write(p[lane], turn, found.q, found.omega, times[k],
+                               out[seats[BODY + lane], k])
                         seats[NEXT + lane] += 1

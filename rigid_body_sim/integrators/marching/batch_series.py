@@ -19,32 +19,72 @@ to the result of integrating omega alone.
 """
 
 from functools import partial
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
+from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, NOTHING, UNMOVED
 
 ORDER = 18
-UNKNOWNS = 9        # e1, e2, omega
-ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
 LOW = 8             # orders of omega that decide a sign
 
-# Layout, in rows of eight numbers. A point: time, step that led here, squared scale of omega, what
-# the sums of the unknowns lost, quaternion, unknowns; behind it the coefficients of higher orders,
-# the point that follows, where the march ends, squared norm of the unknowns there; the time since
-# the point that `between` takes, the quaternion and omega that it gives; the numbers of the
-# equations
-TIME, STEP, SCALE, LOST = 0, 1, 2, 3
-QUATERNION = LOST + UNKNOWNS
-SERIES = QUATERNION + 4
-OMEGA = SERIES + 6
-POINT_SIZE = SERIES + UNKNOWNS
+
+class Unknowns(NamedTuple):
+    """The unknowns of a body, or the coefficients of an order."""
+
+    e1: Vector
+    e2: Vector
+    omega: Vector
+
+
+class Point(NamedTuple):
+    """A point of the march of a lane."""
+
+    time: float      # s
+    step: float      # that led here, s
+    scale: float     # squared, of omega, (rad/s)^2
+    lost: Unknowns   # by the sums
+    q: Quaternion
+    y: Unknowns
+
+
+class Attitude(NamedTuple):
+    """What `between` finds."""
+
+    q: Quaternion
+    omega: Vector
+
+
+class Numbers(NamedTuple):
+    """The numbers of the equations (see above)."""
+
+    euler: Vector
+    constant: Vector
+    u: Matrix
+    v: Vector
+    drag: Matrix
+
+
+UNKNOWN, POINT, NUMBERS = layout(Unknowns), layout(Point), layout(Numbers)
+UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
+DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
+ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
+
+# Places, in rows of eight numbers: a point; behind it the coefficients of higher orders, the point
+# that follows, where the march ends, squared norm of the unknowns there; the time since the point
+# that `between` takes, the Attitude that it finds; the numbers of the equations, and 1/k for
+# k = 1 ... ORDER
+TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
 FOLLOWING = SERIES + UNKNOWNS * (ORDER + 1)
 END = FOLLOWING + POINT_SIZE
 SOUND, SINCE, FOUND = END + 1, END + 2, END + 3
-EULER = FOUND + 7                       # then constant (3), U (9), V (3), D (9)
-CONSTANT, U, V, DRAG = EULER + 3, EULER + 6, EULER + 15, EULER + 18
-INVERSES = DRAG + 9                     # 1/k for k = 1 ... ORDER
+EULER, CONSTANT, U, V, DRAG = (FOUND + layout(Attitude).size + NUMBERS.part(name).first
+                               for name in Numbers._fields)
+INVERSES = EULER + NUMBERS.size
 ROWS = INVERSES + ORDER
+# the sums of `_products`: of each component of e x omega two, by sign, then those of omega'
+GYROSCOPIC = 2 * DIRECTIONS
+SUMS = GYROSCOPIC + 3
 
 
 def _products(o, sums, e, w, others, hinged):
@@ -65,7 +105,8 @@ def _products(o, sums, e, w, others, hinged):
             made[at] = o.gather(e[j], others[(i + 2) % 3], made[at])
             made[at + 1] = o.gather(e[k], others[(i + 1) % 3], made[at + 1])
     for i in range(3):
-        made[12 + i] = o.gather(w[(i + 1) % 3], others[(i + 2) % 3], made[12 + i])
+        at = GYROSCOPIC + i
+        made[at] = o.gather(w[(i + 1) % 3], others[(i + 2) % 3], made[at])
     return made
 
 
@@ -86,24 +127,32 @@ def _series(o, W, dragged, hinged):
             for k in range(count)
         ]
 
+    def e_of(order):
+        return rows(order, 0, DIRECTIONS)
+
+    def omega_of(order):
+        return rows(order, DIRECTIONS, 3)
+
     def next_order(k, sums, constant):
-        e, w = rows(k, 0, 6), rows(k, 6, 3) if dragged else ()
-        changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(6)]
+        e, w = e_of(k), omega_of(k) if dragged else ()
+        e1, e2 = e[:3], e[3:]
+        changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(DIRECTIONS)]
         for i in turns:
             # terms that are known first come first
             rate = (
-                o.gather(row(V + i), e[3 + i], row(CONSTANT + i))
+                o.gather(row(V + i), e2[i], row(CONSTANT + i))
                 if constant
-                else o.times(row(V + i), e[3 + i])
+                else o.times(row(V + i), e2[i])
             )
             for j in range(3):
-                rate = o.gather(row(U + 3 * i + j), e[j], rate)
+                rate = o.gather(row(U + 3 * i + j), e1[j], rate)
             for j in turns if dragged else ():
                 rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
-            changes.append(rate if hinged else o.gather(row(EULER + i), sums[12 + i], rate))
+            own = sums[GYROSCOPIC + i]
+            changes.append(rate if hinged else o.gather(row(EULER + i), own, rate))
         share = o.load(W, o.place(LANES * INVERSES, LANES, k))
         if hinged:
-            changes = [changes[i] for i in (0, 1, 3, 4, 6)]
+            changes = [*(changes[i] for i in ON_HINGE[:-1]), changes[-1]]
         for i, change in zip(moving, changes, strict=True):
             o.put(
                 o.times(share, change),
@@ -111,18 +160,18 @@ def _series(o, W, dragged, hinged):
                 o.place(LANES * (SERIES + UNKNOWNS + i), LANES * UNKNOWNS, k),
             )
 
-    none = [o.none()] * 15
-    first, first_rates = rows(0, 0, 6), rows(0, 6, 3)
+    none = [o.none()] * SUMS
+    first, first_rates = e_of(0), omega_of(0)
     next_order(0, _products(o, none, first, first_rates, first_rates, hinged), True)
 
     def order(k, _):
         def pair(i, sums):
             rest = o.place(k, -1, i)
-            return _products(o, sums, rows(i, 0, 6), rows(i, 6, 3), rows(rest, 6, 3), hinged)
+            return _products(o, sums, e_of(i), omega_of(i), omega_of(rest), hinged)
         sums = o.repeat(1, k, none, pair)
-        newest = rows(k, 6, 3)
-        sums = _products(o, sums, rows(0, 0, 6), rows(0, 6, 3), newest, hinged)
-        next_order(k, _products(o, sums, rows(k, 0, 6), newest, rows(0, 6, 3), hinged), False)
+        newest = omega_of(k)
+        sums = _products(o, sums, e_of(0), omega_of(0), newest, hinged)
+        next_order(k, _products(o, sums, e_of(k), newest, omega_of(0), hinged), False)
         return []
     o.repeat(1, ORDER, [], order)
 
@@ -136,7 +185,7 @@ def _longest(o, W, row, tolerance2, scale):
         e, w = o.none(), o.none()
         for k in range(UNKNOWNS):
             value = row(SERIES + UNKNOWNS * order + k)
-            if k < 6:
+            if k < DIRECTIONS:
                 e = o.gather(value, value, e)
             else:
                 w = o.gather(value, value, w)
@@ -249,7 +298,7 @@ def _moved(o, coefficient, h, moving=range(UNKNOWNS)):
             change = o.gather(change, h, coefficient(k, i))
         changes.append(o.times(change, h))
     angle = []
-    for i in range(6, UNKNOWNS):
+    for i in range(DIRECTIONS, UNKNOWNS):
         turn = o.times(coefficient(LOW, i), o.everywhere(o.number(1.0 / (LOW + 1))))
         for k in range(LOW - 1, -1, -1):
             turn = o.gather(
@@ -279,7 +328,7 @@ def _advance(o, W, tolerance2, dragged=False, hinged=False):
         o.put(value, W, LANES * place)
     _series(o, W, dragged, hinged)
     w, pull, scale = o.none(), o.none(), row(SCALE)
-    for i in range(6, UNKNOWNS):
+    for i in range(DIRECTIONS, UNKNOWNS):
         w, pull = (
             o.gather(coefficient(0, i), coefficient(0, i), w),
             o.gather(coefficient(1, i), coefficient(1, i), pull),
@@ -299,7 +348,7 @@ def _advance(o, W, tolerance2, dragged=False, hinged=False):
         o.plus(b, o.minus(o.plus(after, o.minus(a)))) for a, b, after in zip(y, d, y1, strict=True)
     ]
     # e1 and e2 are brought back to length 1 and to a right angle
-    half, e = o.everywhere(o.number(-0.5)), y1[:6]
+    half, e = o.everywhere(o.number(-0.5)), y1[:DIRECTIONS]
 
     def product(a, b, start):
         return o.gather(a[0], b[0], o.gather(a[1], b[1], o.gather(a[2], b[2], start)))
@@ -312,11 +361,11 @@ def _advance(o, W, tolerance2, dragged=False, hinged=False):
             product(e[:3], e[3:], o.none()),
         )
     )
-    for i in range(6):
+    for i in range(DIRECTIONS):
         back = o.gather(n1 if i < 3 else n2, e[i], o.gather(s, e[i - 3], lost[i]))
         y1[i] = o.plus(e[i], back)
         lost[i] = o.plus(back, o.minus(o.plus(y1[i], o.minus(e[i]))))
-    q = _attitude(o, y1[:6], _turned(o, [row(QUATERNION + i) for i in range(4)], angle))
+    q = _attitude(o, y1[:DIRECTIONS], _turned(o, [row(QUATERNION + i) for i in range(4)], angle))
     sound = o.none()
     for value in y1:
         sound = o.gather(value, value, sound)
@@ -338,8 +387,8 @@ def _between(o, W):
     row, coefficient = partial(_row, o, W), partial(_coefficient, o, W)
     changes, angle = _moved(o, coefficient, row(SINCE))
     y = [o.plus(coefficient(0, i), change) for i, change in enumerate(changes)]
-    q = _attitude(o, y[:6], _turned(o, [row(QUATERNION + i) for i in range(4)], angle))
-    for i, value in enumerate((*q, *y[6:])):
+    q = _attitude(o, y[:DIRECTIONS], _turned(o, [row(QUATERNION + i) for i in range(4)], angle))
+    for i, value in enumerate((*q, *y[DIRECTIONS:])):
         o.put(value, W, LANES * (FOUND + i))
     return []
 

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
+from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.equations import contact_rates, equations
 from rigid_body_sim.integrators.equations.contact_impacts import (
@@ -19,7 +20,7 @@ from rigid_body_sim.integrators.equations.contact_impacts import (
     velocity_of_lowest,
 )
 from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
-from rigid_body_sim.integrators.equations.contact_states import read, write
+from rigid_body_sim.integrators.equations.contact_states import read
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
@@ -41,14 +42,14 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
-ROUNDING = 2.0 ** -47    # of gap, slip and normal velocity, beside the lengths and the speeds
+ROUNDING = 2.0 ** -47    # of gap, slip and normal velocity, relative to lengths and speeds
 CHATTER = 1e-13          # an impact rebounds no more below that share of the speeds
-HOLDS = 1e-12            # of the grip: so much beyond it is rounding
+HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
-CANCELS = 2.0 ** -51     # of the weight, which the plane balances to that share
+CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
-AT_ONCE = 4000, 1e-6     # phases in that share of the time of a length: more is a fault
+MOST_PHASES, AT_ONCE = 4000, 1e-6    # phases in that share of the time of a length: a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
                                           'rolling', 'restitution'))
@@ -58,17 +59,20 @@ OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
 VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
 NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
     'normal', 'grip', 'firmness', 'motion'))
-SLIP = slice(U.start, U.start + 2)    # of the unknown u, along the plane
+SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
-SLIDES = ('at t = {} s the disk lies flat and goes on sliding on its face, which is not solved: a '
-          'body touches the plane at one point; more friction or a level plane lets it rest')
+SLIDES = ('at t = {} s the body lies flat and goes on sliding on its face or rim, which is not '
+          'solved: it may touch the plane at one point; more friction or a level plane lets it '
+          'rest')
 HELD = (': dry rolling friction holds a body there that still slides or spins, which is not '
         'solved; viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
+ROWS = 4096              # states of one call of a kernel
+FIRST = np.array([0])    # the only row
 
 
 class OnPlane:
@@ -103,7 +107,8 @@ class OnPlane:
         step = specialise(contact_step, rate=rate).__name__
         self.kernels = specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
                                   first_zero=f'{step}:first_zero')
-        self._fixed = contact_parameters(scene)
+        self._fixed, self._held = contact_parameters(scene), {}
+        self.heaviness = max(weight(scene), 1e-3)
 
     def _acting(self, time):
         return [one for actor in [*self._actors, self._wrench]
@@ -111,8 +116,11 @@ class OnPlane:
 
     def parameters(self, time):
         """Return the parameters that hold just after a time (s), an array of the caller's own."""
-        values = [value for one in self._acting(time) for value in one.values]
-        return np.array([*self._fixed, *values])
+        k = bisect.bisect_right(self.breakpoints, time)
+        if k not in self._held:
+            values = [value for one in self._acting(time) for value in one.values]
+            self._held[k] = np.array([*self._fixed, *values])
+        return self._held[k].copy()
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: this one."""
@@ -136,14 +144,16 @@ class PlaneCourse:
         self._begin = float(self._start[STATE_TIME])
         self._tolerance = stepped.accuracy / stepped.horizon
         self._work = np.zeros((contact_step.WORK_ROWS, ROW.size))
-        self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most)
-        self._phases, self._events, self._over, self._why = [], [], None, ''
+        self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
+                           comes_to_rest=True)
+        self._phases, self._begins = [], []
+        self._events, self._over, self._why = [], None, ''
         y = np.empty(SIZE)
         x, yy, height = read(bound.parameters(self._begin), self._start, y)
         self._place = x, yy
         p = self._parameters(self._begin)
         self._length = length = _length(p, bound.rates, y, self._work[0])
-        self._heaviness = max(weight(bound.scene), 1e-3)
+        self._heaviness = bound.heaviness
         speed = self._speed(y)
         self._creep = min(LARGEST_CREEP, CREEPS * power(stepped.accuracy, 1.0 / 3.0))
         slack = ROUNDING * (length + abs(height) + p[INCLINED] * hypot(x, yy))
@@ -181,14 +191,15 @@ class PlaneCourse:
         p[UNTIL] = later[0] - self._begin if later else math.inf
         p[MODE], p[SWIFT] = mode, self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
-        short = AT_ONCE[1] * self._length / p[SWIFT]
-        if len(self._phases) >= AT_ONCE[0] and (
-                float(y[TIME]) - self._phases[-AT_ONCE[0]].begin <= short):
+        short = AT_ONCE * self._length / p[SWIFT]
+        if len(self._phases) >= MOST_PHASES and (
+                float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
             raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
                                'follow each other without end')
         # no step is asked to resolve the rounding of forces that cancel
         tolerance = max(self._tolerance, CANCELS * self._heaviness / p[SWIFT])
         self._phases.append(_Phase(self._bound, p, y, tolerance, self._work, self._length))
+        self._begins.append(self._phases[-1].begin)
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
@@ -248,10 +259,14 @@ class PlaneCourse:
 
     def _stop(self, p, y, time):
         """Let a body rest that lies flat or is held by friction, else let it roll on."""
-        if not self._bound.rates.stays(p, y):
+        if self._bound.rates.stays(p, y):
+            self._rest(p, y, time)
+        else:
             pause(p, y)
             self._open(int(p[MODE]), p, y)
-            return
+
+    def _rest(self, p, y, time):
+        """Let a body rest, or end the course of one that lies flat and slides on."""
         if self._bound.rates.slides_on(p, y):
             self._end(y, SLIDES)
             return
@@ -279,11 +294,15 @@ class PlaneCourse:
             self._land(p, y, impact.slip)
 
     def _follow(self, phase):
-        """Begin the phase that follows one that has ended."""
+        """Begin the phase that follows one that has ended.
+
+        More than forty lines: each way in which a phase ends has its own sequel.
+        """
         p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
         time = self._begin + float(y[TIME])
         if why == contact_march.FAILED and jams(p, y):
-            why = contact_march.STOPPED
+            self._rest(p, y, time)
+            return
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
         if why == contact_march.FAILED:
@@ -296,6 +315,8 @@ class PlaneCourse:
         if why == contact_march.TOUCHED:
             self._impact(p, y)
             return
+        if why == contact_march.FASTER and y[SLIP][0] < 0.5 * p[CREEP]:
+            why = contact_march.STUCK    # the slip that began has died again
         if why in BEGAN:
             self._events.append((time, BEGAN[why], {}))
         if why == contact_march.LOST_CONTACT:
@@ -341,8 +362,8 @@ class PlaneCourse:
         """
         elapsed = time - self._begin
         self.reach(elapsed)
-        place = bisect.bisect_right([phase.begin for phase in self._phases], elapsed) - 1
-        self._phases[place].write(elapsed, time, self._place, out)
+        phase = self._phases[bisect.bisect_right(self._begins, elapsed) - 1]
+        phase.write(self._place, self._begin, np.array([time]), FIRST, out[np.newaxis])
 
     def exchanged(self, time):
         """Return the ledger's entries from the start to a time, and the HEATS behind them."""
@@ -352,8 +373,18 @@ class PlaneCourse:
 
     def states(self, times, out):
         """Fill the rows of `out` as `state` does, for times not before the start."""
-        for row in np.argsort(times, kind='stable').tolist():
-            self.state(float(times[row]), out[row])
+        times = np.ascontiguousarray(times)
+        order = np.argsort(times, kind='stable')
+        elapsed, done = times[order] - self._begin, 0
+        self.reach(float(elapsed[-1]))
+        while done < len(order):
+            look()
+            k = bisect.bisect_right(self._begins, elapsed[done])
+            end = min(len(order), done + ROWS)
+            if k < len(self._begins):
+                end = min(end, int(np.searchsorted(elapsed, self._begins[k])))
+            self._phases[k - 1].write(self._place, self._begin, times, order[done:end], out)
+            done = end
 
     def events(self, after, until):
         """Return the (time, name, values) after one time (s) and up to another."""
@@ -415,6 +446,9 @@ class _Phase:
             return (meta[contact_march.STATUS] != contact_march.RUNNING
                     or self.front[TIME] > elapsed)
 
+        if arrived():
+            return self.front[TIME] <= elapsed
+
         def follow(limit):
             end = int(meta[contact_march.STEPS]) + limit
             if end > len(self._sizes):
@@ -426,27 +460,21 @@ class _Phase:
                                           self.front, meta, elapsed)
             return arrived()
 
-        if not arrived():
-            before, steps = work.done, int(meta[contact_march.STEPS])
-            try:
-                work.go(follow, lambda: float(self.front[TIME]), elapsed)
-            except TooMuchWork as error:
-                raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
-            # `go` leaves out the last slice, whose size depends on the clock
-            made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
-            work.count(made, float(self.front[TIME]), elapsed)
+        before, steps = work.done, int(meta[contact_march.STEPS])
+        try:
+            work.go(follow, lambda: float(self.front[TIME]), elapsed)
+        except TooMuchWork as error:
+            raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
+        # `go` leaves out the last slice, whose size depends on the clock
+        made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
+        work.count(made, float(self.front[TIME]), elapsed)
         return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
 
-    def write(self, elapsed, time, place, out):
-        """Fill `out` with the state at a time that the march has passed."""
-        y = self.front[:SIZE]
-        if self._meta[contact_march.STEPS]:
-            y = self._y
-            self._bound.kernels.at(self.p, self._work, self._store, self._sizes, self._meta,
-                                   self._cursor, elapsed, y)
-        row = self._work[0]
-        self._bound.rates.rate(self.p, y, row)
-        write(self.p, y, row, time, place, out)
+    def write(self, start, begin, times, order, out):
+        """Fill rows of `out` with states at times that the march has passed (contact_march.py)."""
+        self._bound.kernels.states(self.p, self._work, self._store, self._sizes, self.front,
+                                   self._meta, self._cursor, self._y, start, begin, times, order,
+                                   out)
 
 
 def _died(p, y):

@@ -15,19 +15,23 @@ bracketed and refined to round-off. Each look is a step of the method, of full o
 import math
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.contact_states import write
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
     ROW,
     SLIDING,
     UNKNOWNS,
+    Watched,
 )
 from rigid_body_sim.integrators.marching import contact_step
 from rigid_body_sim.integrators.methods import dop8
-from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
 from rigid_body_sim.numerics.functions import hypot, power
 from rigid_body_sim.numerics.vectors import dot
+from rigid_body_sim.scene.surfaces import TORUS
 
 rate = UNBOUND           # contact_rates.py
 step_from = UNBOUND      # contact_step.py
@@ -37,28 +41,37 @@ error_of, STAGES = contact_step.error_of, contact_step.STAGES
 END, FRESH, TRIED = contact_step.END, contact_step.FRESH, contact_step.TRIED
 SIZE, ROW_SIZE, TIME = UNKNOWNS.size, ROW.size, UNKNOWNS.part('time').first
 PACE, WATCHED = ROW.part('pace').first, ROW.part('watched').first
-WATCHES, STOPS = ROW.part('watched').size, ROW.part('watched').size - 1
+WATCHES = ROW.part('watched').size
+# which of the watched numbers falls below zero
+NORMAL, GRIP, FIRMNESS, JUMPS, STOPS = (
+    layout(Watched).part(name).first for name in Watched._fields)
+NOTHING = -1    # none does
 load_omega, load_u = UNKNOWNS.part('omega').load, UNKNOWNS.part('u').load
-MODE, SWIFT = CONTACT.part('mode').first, CONTACT.part('swift').first
+MODE, SWIFT, KIND = (CONTACT.part(name).first for name in ('mode', 'swift', 'kind'))
 
 LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
 KEPT = 4096                  # points of a phase; beyond, every other one is dropped
 (COUNT, STRIDE, STORED, STATUS, TOLERANCE, RATE, SPEED, LENGTH, PLANNED, STEPS,
- PLACED) = range(11)
+ PLACED, CROWDED) = range(12)
 """Numbers of a phase: points passed, steps from one kept point to the next, points kept, why it
-ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, and the number
-of the point at which the cursor stands."""
-META = 11
+ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, the number of
+the point at which the cursor stands, and how many of the last steps were all too short."""
+META = 12
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
  STOPPED) = range(10)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
-the body comes down; no step is small enough; a creep has become a slip; a disk lies flat or a body
+the body comes down; no step is small enough; a creep has become a slip; a ring lies flat or a body
 no longer rolls."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
-FLOOR = 2e-17                # of an error: none is asked to be smaller
+FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely
 DEAD = 2.0 ** -56            # slip below that share of the speeds is none
+DYING = 2.0 ** -50           # slip below that share dies soon; an error of that size is allowed
+STRETCH = 64.0               # a step in which a slip grows more than so many times is none
+TOO_SHORT = 1e-5             # share of the time in which a ring that is almost flat falls
+CROWD = 25000                # so many steps in a row that short: friction leaves no motion
+STALLED = 2000               # and so many in a row of a slip that dies: it is dead
 
 
 @compiled
@@ -75,7 +88,7 @@ def begin(p, row, front, meta, y):
         fastest += hypot(slip[0], slip[1]) / pace
     meta[PLANNED] = power(meta[TOLERANCE], 1.0 / dop8.ORDER) / fastest
     meta[COUNT], meta[STRIDE], meta[STORED], meta[STATUS] = 0.0, 1.0, 0.0, RUNNING
-    meta[STEPS], meta[PLACED] = 0.0, -1.0
+    meta[STEPS], meta[PLACED], meta[CROWDED] = 0.0, -1.0, 0.0
 
 
 @compiled
@@ -90,11 +103,12 @@ def march(p, w, phase, sizes, front, meta, target):
     while (meta[STATUS] == RUNNING and y[TIME] <= target and meta[STEPS] < len(sizes)
            and (meta[STORED] < len(phase) or len(phase) == KEPT)):
         h = meta[PLANNED]
-        good, planned = False, h
+        good, planned, took = False, h, h
         for _ in range(TRIALS):
             bad = step_from(p, w, y, lost, h)
             error = error_of(w, h, (meta[RATE], meta[SPEED], meta[LENGTH])) + bad
-            allowed = meta[TOLERANCE] * (w[FRESH, TIME] - y[TIME]) + FLOOR
+            took = w[FRESH, TIME] - y[TIME]
+            allowed = meta[TOLERANCE] * min(took, STRETCH * h * w[0, PACE]) + FLOOR
             good = error <= allowed
             planned = h * _factor(error, allowed)
             if good:
@@ -104,7 +118,7 @@ def march(p, w, phase, sizes, front, meta, target):
             meta[STATUS] = FAILED
             break
         rate(p, w[FRESH], w[END])
-        ends, part = 0, h
+        ends, part = NOTHING, h
         for k in range(WATCHES):
             if _falls(w, k):
                 at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
@@ -112,8 +126,8 @@ def march(p, w, phase, sizes, front, meta, target):
                 step_from(p, w, y, lost, h)
                 rate(p, w[FRESH], w[END])
                 if 0.0 < at <= part:
-                    part, ends = at, k + 1
-        if ends:
+                    part, ends = at, k
+        if ends != NOTHING:
             step_from(p, w, y, lost, part)
         _keep(phase, front, meta)
         sizes[int(meta[STEPS])] = part
@@ -124,10 +138,19 @@ def march(p, w, phase, sizes, front, meta, target):
             y[n], lost[n] = w[FRESH, n], w[TRIED, n]
         meta[PLANNED] = planned
         meta[COUNT] += 1.0
-        if ends:
+        stalls = mode == SLIDING and w[END, PACE] <= DYING * p[SWIFT]
+        low = w[END, WATCHED + STOPS]
+        if stalls or (p[KIND] == TORUS and low < LOW and (
+                took * meta[RATE] < TOO_SHORT * math.sqrt(max(low, 0.0)))):
+            meta[CROWDED] += 1.0
+        else:
+            meta[CROWDED] = 0.0
+        if ends != NOTHING:
             meta[STATUS] = _named(mode, ends)
         elif died:
             meta[STATUS] = STUCK
+        elif meta[CROWDED] > (STALLED if stalls else CROWD):
+            meta[STATUS] = STUCK if stalls else FAILED
         omega = load_omega(y)
         meta[RATE] = max(meta[RATE], math.sqrt(dot(omega, omega)))
         if meta[STATUS] == RUNNING:
@@ -181,15 +204,41 @@ def _keep(phase, front, meta):
 
 @compiled
 def _named(mode, k):
-    """Return why a phase ends whose watched number k - 1 fell below zero."""
-    if k == 1:
+    """Return why a phase ends whose watched number k fell below zero."""
+    if k == NORMAL:
         return TOUCHED if mode == FLIGHT else LOST_CONTACT
-    if k == 2:
+    if k == GRIP:
         return FASTER if mode == CREEPING else LET_GO
-    return PARADOX if k == 3 else JUMP if k == 4 else STOPPED
+    return PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED
 
 
 @compiled
+def states(p, w, phase, sizes, front, meta, cursor, y, start, begin, times, order, out):
+    """Fill rows of `out` with the states at times that the march has passed.
+
+    The array `y` is used up. More than eight arguments: compiled code is handed arrays and
+    scalars.
+
+    Parameters
+    ----------
+    start, begin : tuple of 2 floats, float
+        Where the centre of mass was at the start of the course, axes of the plane, m; its time, s.
+    times : array
+        s.
+    order : array of int
+        The rows of `times` and `out`, in the order of the times.
+    """
+    for row in order:
+        if meta[STEPS] > 0.0:
+            at(p, w, phase, sizes, meta, cursor, times[row] - begin, y)
+        else:
+            for n in range(SIZE):
+                y[n] = front[n]
+        rate(p, y, w[0])
+        write(p, y, w[0], times[row], start, out[row])
+
+
+@compiled_inline
 def at(p, w, phase, sizes, meta, cursor, time, y):
     """Fill y with the unknowns at a time that the march has passed.
 

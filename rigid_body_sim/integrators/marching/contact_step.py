@@ -4,8 +4,8 @@
 It is bound to the rates of equations/contact_rates.py, and uses the coefficients of a Runge-Kutta
 method that estimates its error (dop8). Loops over tables keep the compilation short.
 
-The work space is an array of rows of rates: one a stage, and END, FRESH, TRIED. A step leaves the
-new unknowns in row FRESH and what their sums have lost in row TRIED.
+The work space is an array of rows of rates: one per stage, and END, FRESH, TRIED. A step leaves
+the new unknowns in row FRESH and what their sums have lost in row TRIED.
 """
 
 import math
@@ -39,7 +39,7 @@ OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
                               for name in ('omega', 'u', 'place', 'gap', 'time'))
 load_q, store_q = UNKNOWNS.part('q').load, UNKNOWNS.part('q').store
 ROUNDING = 2.0 ** -49
-PARTS = 16                   # of a step that is looked through
+PARTS = 16                   # parts of a step that is looked through
 SEARCHES = 24                # golden sections for a dip
 GOLDEN = 0.6180339887498949
 BISECTIONS = 120
@@ -139,7 +139,7 @@ def error_of(w, h, scales):
         moved += weight * weight * d * d
     fifth, third, moved = h * h * fifth, h * h * third, h * h * moved
     if not fifth > ROUNDING * ROUNDING * moved:
-        return 0.0 if fifth >= 0.0 else math.inf
+        return 0.0 if fifth >= 0.0 and moved < math.inf else math.inf
     return fifth / math.sqrt(fifth + 0.01 * third)
 
 

@@ -1,26 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march by the Taylor series of a scene's own equations (recurrences.py).
 
-A point of the march holds [time, step planned from here or number of the point, squared scales
-(3), unknowns, what their sums lost]. `control` is that of taylor_march.py, and so is the choice of
-the steps.
+A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost.
+`control` is that of taylor_march.py, and so is the choice of the steps.
 """
 
 import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES, onward
-from rigid_body_sim.integrators.marching.taylor_march import (
+from rigid_body_sim.integrators.marching.points import (
     FIXED,
-    FOR,
-    NEARLY,
     ORIGIN,
+    SCALES,
+    STEP,
+    TIME,
     TOLERANCE,
-    UNMOVED,
-    WORK,
-    chosen,
+    VALUES,
+    onward,
 )
+from rigid_body_sim.integrators.marching.taylor_march import FOR, NEARLY, UNMOVED, WORK, chosen
 from rigid_body_sim.integrators.marching.taylor_series import ORDER
 
 expand = UNBOUND
@@ -37,9 +36,9 @@ SIZE = UNBOUND
 BASED = UNBOUND
 PLACES = UNBOUND
 
-CHANGE = 0.9               # of a base within a step, relative to it
-LEAST = 2.0 ** -25         # of the step that is planned, and
-TICKS = 2.0 ** -50         # of the time: the step over the zero of a base
+CHANGE = 0.9               # largest change of a base within a step, relative to the base
+LEAST = 2.0 ** -25         # the step over the zero of a base, as a share of the planned step
+TICKS = 2.0 ** -50         # and, if that is longer, of the time
 LOW = 2                    # order of the series of that step
 
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march with steps of one size.
 
-A point of the march holds [time, steps so far, unused (3), unknowns, what their sums lost]. The
-k-th point stands at origin + k h, formed anew each time; the last one stands at the end.
+A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost;
+`control` is a Control. The k-th point stands at origin + k h, formed anew each time; the last one
+stands at the end.
 """
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import FIXED, ORIGIN, STEP, TIME, VALUES
 
 rate = UNBOUND
 settled = UNBOUND
@@ -17,13 +18,13 @@ put = UNBOUND
 SIZE = UNBOUND
 
 COUNT = STEP    # in the place of the planned step: the number of the point
-NEARLY = 1e-9    # of a step: an end that close to a point is that point
+NEARLY = 1e-9    # share of a step: an end that close to a point is that point
 
 
 @compiled
 def begin(p, control, point):
     """Take the time of a point as the origin of all times."""
-    control[1] = point[TIME]
+    control[ORIGIN] = point[TIME]
 
 
 @compiled
@@ -34,14 +35,12 @@ def march(p, control, point, following, target, end, limit):
 
     Parameters
     ----------
-    control : array
-        [h, origin].
     point : array
         Changed; `following` is not needed.
     end : float
         The last point stands there exactly.
     """
-    h, origin = control[0], control[1]
+    h, origin = control[FIXED], control[ORIGIN]
     t, count = point[TIME], point[COUNT]
     y, c = load(point, VALUES), load(point, VALUES + SIZE)
     moved = 0

@@ -5,8 +5,8 @@ A point holds, behind its Head (points.py), the unknowns and what their sums los
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds [tolerance per second, fixed step or 0, origin, square of the rate that potentials
-can give (rad/s)] and from WORK on a workspace S:
+`control` holds, behind its Control, in SWING the square of the rate that potentials can give
+(rad/s), and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
     RATES       their rates
@@ -25,10 +25,14 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
 from rigid_body_sim.integrators.marching.points import (
+    CONTROL,
+    FIXED,
     LEAST_ERROR,
+    ORIGIN,
     SCALES,
     STEP,
     TIME,
+    TOLERANCE,
     VALUES,
     Standing,
     onward,
@@ -56,6 +60,7 @@ end_of_curve = UNBOUND
 SIZE = UNBOUND    # count of the unknowns
 # the same as NOISE as a share of the unknowns, where the increments are small
 FLOOR = UNBOUND
+CLOCK = UNBOUND      # rounding of the time, as a share of it, where anything depends on it; else 0
 SETTLED = UNBOUND    # a change that is enough whatever was asked, as a share of the unknowns
 # places in a point
 LAST = UNBOUND
@@ -72,28 +77,29 @@ FOR_POINT = UNBOUND
 TAIL = UNBOUND
 CURVE = UNBOUND
 
-TOLERANCE, FIXED, ORIGIN, SWING, WORK = 0, 1, 2, 3, 4      # in control
+SWING = CONTROL.size      # places in `control`
+WORK = SWING + 1
 
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
 GROWTH, SHRINK, SAFETY = 1.5, 0.3, 0.9
 # a step stays unless it changes by more: another predictor costs half a sweep
 WORTH = 1.05
 TRIALS = 60              # largest number of attempts at a step
-MOST_SWEEPS = 45         # of one attempt: slower convergence asks for a smaller step
+MOST_SWEEPS = 45         # most sweeps of an attempt: slower convergence asks for a smaller step
 COMFORTABLE = 13         # beyond so many sweeps longer steps cost more than they save
 FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, where nothing moves
-FIRST_SWEEPS = 4         # of a step without one before it
+FIRST_SWEEPS = 4         # sweeps of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
-CANCELLED = 2.0 ** -51   # share of terms that cancel, which a step is not asked to resolve
+CANCELLED = 2.0 ** -51   # share of cancelling terms that a step need not resolve
 # The rates of y' = i nu y with x = nu h have Legendre coefficients
 #     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
 # c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by
 # (8!)^2/(16! 17!) x^17: that is UNSEEN x^9 times the 7th.
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
-# of x, half the angle of a step: beyond it substitution takes too many sweeps
+# largest x, half the angle of a step: beyond it substitution takes too many sweeps
 LONGEST = 3.5
-ENOUGH = 0.03            # of what is allowed: after a change so small one sweep less would do
+ENOUGH = 0.03            # share of the allowed change: after one so small a sweep less would do
 
 
 @compiled
@@ -228,19 +234,21 @@ def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
 
 
 @compiled
-def _judged(S, h, mean, pull, scales):
+def _judged(S, h, mean, pull, scales, time):
     """Return the estimated error of a step, and its length in radians of its largest motion.
 
-    (0, 0) where the coefficients are but rounding. Each group of unknowns errs by its own fastest
+    (0, 0) where the coefficients are only rounding. Each group of unknowns errs by its own fastest
     motion: the torque of the weight turns in body axes twice as fast as q does, so omega may err
-    most where its changes are small.
+    most where its changes are small. What acts with time is as rough as its rounding makes the
+    fastest motion that the step resolves.
     """
     c7 = by_group(combined(S, TAILS[0]), scales)
     c6 = by_group(combined(S, TAILS[1]), scales)
     c5 = by_group(combined(S, TAILS[2]), scales)
     c4 = by_group(combined(S, TAILS[3]), scales)
     size = measure(mean, mean, 0.0, scales) + pull * pull / (h * h)
-    noise = max(NOISE * NOISE * size, FLOOR * FLOOR / (h * h))
+    rough = max(NOISE, CLOCK * time * LONGEST / h)
+    noise = max(rough * rough * size, FLOOR * FLOOR / (h * h))
     error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(c7)):
         s7, s6, s5, s4 = s7 + c7[k], s6 + c6[k], s5 + c5[k], s4 + c4[k]
@@ -258,7 +266,7 @@ def _judged(S, h, mean, pull, scales):
 def _fastest_square(c7, c6, c5, c4, noise):
     """Return the squared length of a step in radians, from squared coefficients.
 
-    It takes both pairs of them, lest an even or an odd motion hide one.
+    It takes both pairs of them, because an even or an odd motion would hide one.
     """
     return math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise),
                          FALL_64 * FALL_64 * c6 / (c4 + noise)))
@@ -327,7 +335,7 @@ def _step(p, control, here, end):
             break
         error, x, converged = 0.0, 0.0, good
         if converged:
-            error, x = _judged(S, h, mean, pull, scales)
+            error, x = _judged(S, h, mean, pull, scales, abs(t1))
             good = error <= allowed and x <= LONGEST and t1 > here.time
         factor = _factor(error, x, allowed, used, converged, good)
         next_step = h if good and t1 < end and 1.0 <= factor < WORTH else h * factor

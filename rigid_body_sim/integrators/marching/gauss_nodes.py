@@ -53,7 +53,7 @@ def _in_legendre(polynomial):
             r + coefficient * p
             for r, p in zip(result, power + [Decimal(0)] * len(result), strict=False)
         ]
-        # of x times that: x P_k = ((k + 1) P_(k+1) + k P_(k-1))/(2 k + 1)
+        # multiplied by x: x P_k = ((k + 1) P_(k+1) + k P_(k-1))/(2 k + 1)
         higher = [Decimal(0)] * (len(power) + 1)
         for k, p in enumerate(power):
             higher[k + 1] += p * (k + 1) / (2 * k + 1)

@@ -2,7 +2,8 @@
 """Points of a march: its present place, and the step to the next point.
 
 A point is an array that begins with a Head; behind it stand the unknowns, and what their sums have
-lost (as many numbers again). The templates of this folder add what their method keeps.
+lost (as many numbers again). What a march is told stands in its `control`, an array that begins
+with a Control. The templates of this folder add to both what their method keeps.
 """
 
 from typing import NamedTuple
@@ -29,8 +30,26 @@ class Head(NamedTuple):
     scales: Vector
 
 
+class Control(NamedTuple):
+    """The beginning of the control of every march.
+
+    Attributes
+    ----------
+    tolerance : float
+        Error allowed per second; 0 where steps are fixed.
+    fixed : float
+        The fixed step, s; 0 where the march chooses its steps.
+    origin : float
+        The time that fixed steps are counted from, s: that of the first point.
+    """
+
+    tolerance: float
+    fixed: float
+    origin: float
+
+
 LOST, REACHED, PAUSED = 0, 1, 2
-"""How a march ended: no step is good; the time asked is within the step; its steps are used up."""
+"""How a march ended: no step is good; the time asked for is within the step; no steps are left."""
 
 LEAST_ERROR = 2.0 ** -62
 """Least error asked of a step, as a share of the unknowns, however short it is."""
@@ -38,6 +57,8 @@ LEAST_ERROR = 2.0 ** -62
 HEAD = layout(Head)
 TIME, STEP, SCALES = (HEAD.part(name).first for name in Head._fields)
 VALUES = HEAD.size
+CONTROL = layout(Control)
+TOLERANCE, FIXED, ORIGIN = (CONTROL.part(name).first for name in Control._fields)
 
 
 class Standing(NamedTuple):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: the substitution of gauss_march.py for unknowns that stiff drag relaxes.
 
-In coordinates that relax by themselves (equations/relaxation.py) the rates k of the eight stages
+In coordinates that relax independently (equations/relaxation.py) the rates k of the eight stages
 are to meet k = N - lambda (y + h A k). Plain substitution converges for h lambda of a few units;
 here the linear part is solved, so that it converges as if there were none:
 
@@ -14,14 +14,19 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.gauss_nodes import SLOPES, STAGES, A
 
-BLOCKS = UNBOUND    # of each Relaxation: its first unknown, how many they are, its place in S
+BLOCKS = UNBOUND    # for each Relaxation: first unknown, number of them, place in S
 RATES = UNBOUND
 
+MOST = 3    # unknowns of a Relaxation
 # places in the part of S of a Relaxation
-INTO, BACK, DECAY, FOR_STEP, INVERSE = 0, 9, 18, 21, 22
-KEPT = INVERSE + 3 * STAGES * STAGES
-LEFT = KEPT + 3 * STAGES
-SYSTEM = LEFT + 3 * STAGES
+INTO = 0
+BACK = INTO + MOST * MOST
+DECAY = BACK + MOST * MOST
+FOR_STEP = DECAY + MOST
+INVERSE = FOR_STEP + 1
+KEPT = INVERSE + MOST * STAGES * STAGES
+LEFT = KEPT + MOST * STAGES
+SYSTEM = LEFT + MOST * STAGES
 PART = SYSTEM + 2 * STAGES * STAGES
 
 

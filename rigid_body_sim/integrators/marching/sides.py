@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Template: the switches of what acts, at a state: their signs say on which side of each kink."""
+"""Template: the switches of what acts at a state; their signs tell the side of each kink."""
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
@@ -14,7 +14,8 @@ COUNT = UNBOUND
 def sides(p, vector, out):
     """Fill `out`, shape (COUNT,), with the switches at a state vector; a start in p is changed."""
     q, _, place, drift = read_state(p, vector)
-    omega = rotate_back(*load_equation(p).axes, *load_state(vector).angular_velocity)
-    found = switching(p, *q, *omega, *drift, vector[0], *place)
+    state = load_state(vector)
+    omega = rotate_back(*load_equation(p).axes, *state.angular_velocity)
+    found = switching(p, *q, *omega, *drift, state.time, *place)
     for k in range(COUNT):
         out[k] = found[k]

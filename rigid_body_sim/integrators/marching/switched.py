@@ -7,8 +7,8 @@ several times in each step of the march; where one has changed its sign, the tim
 located to round-off on the march itself, and a new march starts there. So no step crosses a kink,
 and a method keeps its order.
 
-A body on a hinge with dry friction rests where its rate passes zero under a torque that the
-friction bears, until the torque outgrows it.
+A body on a hinge with dry friction comes to rest when its rate passes zero under a torque that the
+friction balances, and stays until the torque outgrows it.
 """
 
 import bisect
@@ -22,11 +22,18 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.euler import INVERSE
 from rigid_body_sim.integrators.marching import sides
 from rigid_body_sim.integrators.marching.course import Course
-from rigid_body_sim.integrators.marching.points import STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import (
+    FIXED,
+    ORIGIN,
+    SCALES,
+    STEP,
+    TIME,
+    VALUES,
+)
 from rigid_body_sim.integrators.marching.work import Work
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, VELOCITY
 
-LOOKS = 4                    # of one step
+LOOKS = 4                    # looks in one step
 DEAR = 100                   # steps that cost as much as the looks of one
 STALLS = 4                   # marches that end where they begin: then a body slides along a kink
 SHORTEST, LONGEST = 2.0 ** -20, 2.0 ** -4    # s, between two looks at a body at rest
@@ -60,8 +67,8 @@ class Stretch(NamedTuple):
     rests : bool
         Whether dry friction holds the body.
     head : array or None
-        Step and scales of the march before, so that unknowns that are small now are not measured
-        against themselves.
+        Step and scales of the march before, so that the errors of unknowns that are small now are
+        not measured against their own size.
     """
 
     begin: float
@@ -91,7 +98,7 @@ class Within(Course):
         control, point, following = self._bound.parts_of(self._pieces[0])
         if following[TIME] > point[TIME]:
             return float(following[TIME])
-        return float(control[1] + (point[STEP] + 1.0) * control[0])    # marching/fixed.py
+        return float(control[ORIGIN] + (point[STEP] + 1.0) * control[FIXED])    # marching/fixed.py
 
     def head(self, time):
         """Return planned step and scales of the step that holds a time (s), an array."""
@@ -204,7 +211,8 @@ class Switched:
         """Return the torque along a hinge that friction is to bear, N m."""
         equations = self._bound.equations
         p, y = equations.start(vector)
-        return float(equations.kernels.rate(p, y)[1] / p[INVERSE])
+        _, growth, *_ = equations.kernels.rate(p, y)
+        return float(growth / p[INVERSE])
 
     def _enter(self, vector, head):
         """Begin a stretch at a state (14 doubles, which stay as they are)."""
@@ -272,7 +280,7 @@ class Switched:
     def _cross(self, course, stretch, low, high):
         """Enter the stretch behind the first kink between two times."""
         out = np.empty(STATE_SIZE)
-        while True:    # by halves: as many as a double has bits
+        while True:    # bisection takes as many turns as a double has bits
             middle = low + 0.5 * (high - low)
             if not low < middle < high:
                 break
@@ -292,10 +300,11 @@ class Switched:
     def _head(self, stretch, course, time):
         head = stretch.head if stretch.rests else course.head(time)
         if head is None:
-            head = np.array([FIRST, 0.0, 0.0, 0.0])
+            head = np.array([FIRST] + [0.0] * (VALUES - SCALES))
         # of a body that was at rest: what time adds up to has the rounding of the clock, and
         # an omega of that size turns the body by less than its accuracy
-        head[1] = max(head[1], self._slowest * self._slowest)
+        scale = SCALES - STEP    # of omega
+        head[scale] = max(head[scale], self._slowest * self._slowest)
         return head
 
     def _end_at_rest(self, stretch):

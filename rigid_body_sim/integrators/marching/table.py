@@ -9,6 +9,7 @@ own independent variable.
 
 import bisect
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -48,7 +49,7 @@ KEPT = 2048              # most points of a phase; then every other one is dropp
 # order of CREEP^2
 CREEP = 1e-4
 DEAD = 2.0 ** -56        # share of the speeds: a smaller slip counts as none
-FLOOR = 1e-17            # of an error: none is asked to be smaller
+FLOOR = 1e-17            # smallest error that is asked for
 
 
 class OnTable:
@@ -66,13 +67,9 @@ class OnTable:
         self.parameters = np.zeros(table_rates.PARAMETERS)
         self.parameters[:sliding_sphere.PARAMETER_SIZE] = sliding_sphere.parameters(scene)
         if wrench:
-            in_body = wrench.frame == 'body'
-            self.parameters[table_rates.BODY_FORCE if in_body else table_rates.WORLD_FORCE :][
-                :3
-            ] = wrench.force
-            self.parameters[table_rates.BODY_COUPLE if in_body else table_rates.WORLD_COUPLE :][
-                :3
-            ] = wrench.torque
+            axes = 'body' if wrench.frame == 'body' else 'world'
+            for name, value in (('force', wrench.force), ('couple', wrench.torque)):
+                table_rates.PUSHED.part(f'{axes}_{name}').store(self.parameters, value)
         self.turns_with_body = bool(wrench) and wrench.frame == 'body'
         extra = ENTRIES_SIZE
         self.kernels = specialise(
@@ -176,11 +173,32 @@ class TableCourse:
         out[VELOCITY] = vx, vy, 0.0
 
 
+class Point(NamedTuple):
+    """A point of a phase.
+
+    Attributes
+    ----------
+    y : tuple of floats
+        The unknowns, and the ledger.
+    lost : tuple of floats
+        What their sums have lost.
+    scales : tuple of floats
+        Squared.
+    planned, last : float
+        The next step and the step that led here, s or its like.
+    """
+
+    y: tuple
+    lost: tuple
+    scales: tuple
+    planned: float
+    last: float
+
+
 class _Phase:
     """Sliding, rolling or gliding from one change to the next.
 
-    A point is (unknowns with the ledger, what their sums lost, squared scales, (next step, the
-    step that led here)); the points depend on the start of the phase only.
+    The points depend on the start of the phase only.
 
     Attributes
     ----------
@@ -208,7 +226,7 @@ class _Phase:
         h = power(tolerance, 1.0 / bound.order) / (swift if swift > 0.0 else 1.0)
         if self.mode == CREEPING:
             h = CREEP / max(1.0, hypot3(*omega))
-        self._front = (y, (0.0,) * len(y), (0.0,) * 4, (h, 0.0))
+        self._front = Point(y, (0.0,) * len(y), (0.0,) * 4, h, 0.0)
         self._keep()
 
     def reach(self, elapsed):
@@ -216,7 +234,7 @@ class _Phase:
 
         Return whether it ends not later than that.
         """
-        while self.last is None and self._front[0][CLOCK] <= elapsed:
+        while self.last is None and self._front.y[CLOCK] <= elapsed:
             following = self._next(self._front)
             self.last = self._end(self._front, following)
             self._front = following
@@ -227,19 +245,19 @@ class _Phase:
     def at(self, elapsed):
         """Return the unknowns and ledger entries at a time that the march has passed."""
         point = self._kept[
-            max(0, bisect.bisect_right(self._kept, elapsed, key=lambda point: point[0][CLOCK]) - 1)
+            max(0, bisect.bisect_right(self._kept, elapsed, key=lambda point: point.y[CLOCK]) - 1)
         ]
         following = self._next(point)
-        while following[0][CLOCK] <= elapsed:
+        while following.y[CLOCK] <= elapsed:
             point, following = following, self._next(following)
-        if point[0][CLOCK] == elapsed:
-            return point[0]
+        if point.y[CLOCK] == elapsed:
+            return point.y
         if self.mode != SLIDING:
-            return self._part(point, elapsed - point[0][CLOCK])
+            return self._part(point, elapsed - point.y[CLOCK])
         # time is an unknown: Newton's method for the part of the step that ends at it, within what
         # is known to hold it
-        low, high = 0.0, following[3][1]
-        part = high * (elapsed - point[0][CLOCK]) / (following[0][CLOCK] - point[0][CLOCK])
+        low, high = 0.0, following.last
+        part = high * (elapsed - point.y[CLOCK]) / (following.y[CLOCK] - point.y[CLOCK])
         for _ in range(TRIALS):
             y = self._part(point, part)
             late = y[CLOCK] - elapsed
@@ -262,13 +280,13 @@ class _Phase:
                 self._kept, self._stride = self._kept[::2], 2 * self._stride
 
     def _part(self, point, h):
-        y, lost, _, _ = point
+        y, lost = point.y, point.lost
         kernels = self._bound.kernels
         return kernels.step(self._p, y, lost, kernels.rate(self._p, y), h)[0]
 
     def _next(self, point):
         """Return the point after one accepted step."""
-        y, lost, scales, (h, _) = point
+        y, lost, scales, h, _ = point
         kernels, p = self._bound.kernels, self._p
         first = kernels.rate(p, y)
         for _ in range(TRIALS):
@@ -283,7 +301,8 @@ class _Phase:
                 factor = min(GROWTH, max(SHRINK, factor))
             if error <= allowed:
                 q, lost_q = unit(*after[Q:U], *lost_after[Q:U])
-                return (*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after, (h * factor, h)
+                return Point((*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after,
+                             h * factor, h)
             h *= factor
         raise NotConverged(
             f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start '
@@ -292,7 +311,7 @@ class _Phase:
 
     def _end(self, point, following):
         """Return the unknowns where the phase ends if it does so within a step, else None."""
-        before, after = point[0], following[0]
+        before, after = point.y, following.y
         if self.mode == SLIDING:
             vx, vy, *omega = table_rates.motion(self._p, after)
             slip, c = hypot(*after[U:P]), table_rates.drive(self._p, after)[2]
@@ -305,7 +324,7 @@ class _Phase:
             return after if any(after[U:P]) else None
         if self.mode == GLIDING or not self._bound.turns_with_body or self._grips(after):
             return None
-        low, high = 0.0, following[3][1]
+        low, high = 0.0, following.last
         for _ in range(TRIALS):
             middle = 0.5 * (low + high)
             if self._grips(self._part(point, middle)):

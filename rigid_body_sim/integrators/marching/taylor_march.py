@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march by Taylor series (taylor.py).
 
-A point of the march holds [time, step planned from here or number of the point, squared scale of
-omega, 0, 0, unknowns, what their sums lost]. `control` holds [tolerance per second, fixed step or
-0, origin, time of the point whose series stand behind] and from WORK on the coefficients, order by
+A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost; of
+the scales there is one, the squared scale of omega. `control` holds, behind its Control, in FOR
+the time of the point whose series stand behind, and from WORK on their coefficients, order by
 order.
 
 A step h should make the larger of its last two terms, c, what the tolerance allows in that time: c
@@ -14,29 +14,42 @@ at the point itself that the plan is not nearly right, the step is chosen anew.
 
 import math
 
-from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.jit import compiled, inlined
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.euler import lost_norm
-from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES, onward
-from rigid_body_sim.integrators.marching.taylor_series import ORDER, along
-from rigid_body_sim.integrators.marching.taylor_series import UNKNOWNS as SIZE
+from rigid_body_sim.integrators.equations.euler import OMEGA, lost_norm
+from rigid_body_sim.integrators.marching.points import (
+    CONTROL,
+    FIXED,
+    ORIGIN,
+    SCALES,
+    STEP,
+    TIME,
+    TOLERANCE,
+    VALUES,
+    onward,
+)
+from rigid_body_sim.integrators.marching.taylor_series import ORDER, TURNING, Turning, along
 from rigid_body_sim.numerics.functions import power
 from rigid_body_sim.numerics.rotations import rotate_back  # noqa: F401 (for the bound source)
+from rigid_body_sim.numerics.vectors import dot, minus, plus
 
 expand = UNBOUND
 
+SIZE = TURNING.size
 SCALE = SCALES    # there is one, that of omega
-TOLERANCE, FIXED, ORIGIN, FOR, WORK = 0, 1, 2, 3, 4
-PLACES = 8               # of an order's coefficients
-NEARLY = 1e-9            # of a fixed step: an end that close to a point is that point
-GROWTH = 4.0             # of a step, at most
+load, store, load_omega = TURNING.load, TURNING.store, TURNING.part('omega').load
+FOR = CONTROL.size    # places in `control`
+WORK = FOR + 1
+PLACES = 8               # places for the coefficients of an order
+NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
+GROWTH = 4.0             # largest factor by which a step grows
 UNMOVED = 1e-3           # s, the first step where nothing moves
 NOTHING = 1e-300         # (rad/s)^2, of a body that neither turns nor is turned
 # a plan is taken if the square of the last terms is what is allowed but for this factor
 NEAR = 16.0
 ROOT = 0.5 / (ORDER - 2)
-PART = 0.6 * ROOT        # of what a point says about the step, the next plan follows part
-# of the approximation (Pade's) to x^PART near 1
+PART = 0.6 * ROOT        # exponent: the next plan follows the step that a point asks for in part
+# coefficients of Pade's approximation to x^PART near 1
 UPPER, MIDDLE, LOWER = (
     (1.0 + PART) * (2.0 + PART),
     2.0 * (4.0 - PART * PART),
@@ -49,51 +62,57 @@ def begin(p, control, point):
     """Note the origin of a point whose time and unknowns are set, and the scale."""
     control[ORIGIN], control[FOR] = point[TIME], math.nan
     point[STEP] = 0.0
-    point[SCALE] = (
-        point[VALUES + 4] * point[VALUES + 4]
-        + point[VALUES + 5] * point[VALUES + 5]
-        + point[VALUES + 6] * point[VALUES + 6]
-    )
+    omega = load_omega(point, VALUES)
+    point[SCALE] = dot(omega, omega)
 
 
-@compiled
-def load(array, at):
-    """Return the unknowns, or what their sums lost."""
-    return (
-        array[at],
-        array[at + 1],
-        array[at + 2],
-        array[at + 3],
-        array[at + 4],
-        array[at + 5],
-        array[at + 6],
-    )
+@inlined
+def _turning(flat):
+    """Return a tuple of seven floats as what it is."""
+    return Turning(flat[:OMEGA], flat[OMEGA:])
 
 
-@compiled
-def put(values, array, at):
-    """Write what `load` reads."""
-    array[at], array[at + 1], array[at + 2], array[at + 3] = (
-        values[0],
-        values[1],
-        values[2],
-        values[3],
-    )
-    array[at + 4], array[at + 5], array[at + 6] = values[4], values[5], values[6]
+@inlined
+def _sum(y, d):
+    """Return y + d."""
+    (qx, qy, qz, qw), (dx, dy, dz, dw) = y.q, d.q
+    return Turning((qx + dx, qy + dy, qz + dz, qw + dw), plus(y.omega, d.omega))
+
+
+@inlined
+def _lost(y, d, y1):
+    """Return d - (y1 - y), what y1 = y + d has lost of d."""
+    (dx, dy, dz, dw), (qx, qy, qz, qw), (sx, sy, sz, sw) = d.q, y.q, y1.q
+    return Turning((dx - (sx - qx), dy - (sy - qy), dz - (sz - qz), dw - (sw - qw)),
+                   minus(d.omega, minus(y1.omega, y.omega)))
+
+
+@inlined
+def _completed(d, y, c):
+    """Return the change d of y in a step, with what the sums before had lost, c.
+
+    q is also stretched by what it lacked at the beginning of the step, which is known before its
+    end is.
+    """
+    (dx, dy, dz, dw), (qx, qy, qz, qw), (cx, cy, cz, cw) = d.q, y.q, c.q
+    lacks = lost_norm(qx, qy, qz, qw) - (qx * cx + qy * cy + qz * cz + qw * cw)
+    return Turning((dx + (cx + lacks * (qx + dx)), dy + (cy + lacks * (qy + dy)),
+                    dz + (cz + lacks * (qz + dz)), dw + (cw + lacks * (qw + dw))),
+                   plus(d.omega, c.omega))
+
+
+@inlined
+def _is_finite(y):
+    """Return whether unknowns are; of q, which has the norm 1, one component tells."""
+    x = y.q[0]
+    return x * x + dot(y.omega, y.omega) < math.inf
 
 
 @compiled
 def _square(S, order, weight):
-    """Return the squared norm of the coefficients of an order.
-
-    Those of omega count by a weight.
-    """
-    a = PLACES * order
-    return (
-        (S[a] * S[a] + S[a + 1] * S[a + 1])
-        + (S[a + 2] * S[a + 2] + S[a + 3] * S[a + 3])
-        + weight * (S[a + 4] * S[a + 4] + S[a + 5] * S[a + 5] + S[a + 6] * S[a + 6])
-    )
+    """Return the squared norm of the coefficients of an order; those of omega have a weight."""
+    (x, y, z, w), omega = load(S, PLACES * order)
+    return (x * x + y * y) + (z * z + w * w) + weight * dot(omega, omega)
 
 
 @compiled
@@ -159,14 +178,10 @@ def march(p, control, point, following, target, end, limit):
     y, c = load(point, VALUES), load(point, VALUES + SIZE)
     good = True
     while t < end:
-        expand(p, S, y)
+        expand(p, S, (*y.q, *y.omega))
         # a body that hardly turns yet is measured by the rate that omega' gives it
-        pull = math.sqrt(
-            S[PLACES + 4] * S[PLACES + 4]
-            + S[PLACES + 5] * S[PLACES + 5]
-            + S[PLACES + 6] * S[PLACES + 6]
-        )
-        scale1 = max(scale, y[4] * y[4] + y[5] * y[5] + y[6] * y[6], pull)
+        omega_rate = load_omega(S, PLACES)
+        scale1 = max(scale, dot(y.omega, y.omega), math.sqrt(dot(omega_rate, omega_rate)))
         if fixed > 0.0:
             step = last + 1.0
             t1, h = control[ORIGIN] + step * fixed, fixed
@@ -176,75 +191,33 @@ def march(p, control, point, following, target, end, limit):
             h, step = _step(S, tolerance, last, scale1)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
-        d = along(S, (h,))
-        # q is stretched by what it lacked at the beginning of the step, which is known before its
-        # end is
-        lost = lost_norm(y[0], y[1], y[2], y[3]) - (
-            y[0] * c[0] + y[1] * c[1] + y[2] * c[2] + y[3] * c[3]
-        )
-        d = (
-            d[0] + (c[0] + lost * (y[0] + d[0])),
-            d[1] + (c[1] + lost * (y[1] + d[1])),
-            d[2] + (c[2] + lost * (y[2] + d[2])),
-            d[3] + (c[3] + lost * (y[3] + d[3])),
-            d[4] + c[4],
-            d[5] + c[5],
-            d[6] + c[6],
-        )
-        y1 = (
-            y[0] + d[0],
-            y[1] + d[1],
-            y[2] + d[2],
-            y[3] + d[3],
-            y[4] + d[4],
-            y[5] + d[5],
-            y[6] + d[6],
-        )
-        c1 = (
-            d[0] - (y1[0] - y[0]),
-            d[1] - (y1[1] - y[1]),
-            d[2] - (y1[2] - y[2]),
-            d[3] - (y1[3] - y[3]),
-            d[4] - (y1[4] - y[4]),
-            d[5] - (y1[5] - y[5]),
-            d[6] - (y1[6] - y[6]),
-        )
-        good = t1 > t and y1[0] * y1[0] + y1[4] * y1[4] + y1[5] * y1[5] + y1[6] * y1[6] < math.inf
+        d = _completed(_turning(along(S, (h,))), y, c)
+        y1 = _sum(y, d)
+        c1 = _lost(y, d, y1)
+        good = t1 > t and _is_finite(y1)
         if not good or target < t1 or moved == limit:
             following[TIME] = t1 if good else t    # t: none follows
             following[STEP], following[SCALE] = step, scale1
-            put(y1, following, VALUES)
-            put(c1, following, VALUES + SIZE)
+            store(following, y1, VALUES)
+            store(following, c1, VALUES + SIZE)
             control[FOR] = t
             break
         t, last, y, c, scale = t1, step, y1, c1, scale1
         moved += 1
     point[TIME], point[STEP], point[SCALE] = t, last, scale
-    put(y, point, VALUES)
-    put(c, point, VALUES + SIZE)
+    store(point, y, VALUES)
+    store(point, c, VALUES + SIZE)
     return moved, good
 
 
 @compiled
 def between(p, control, point, following, dt):
-    """Return the unknowns a time dt after a point, within the step from it.
-
-    By the series at the point.
-    """
+    """Return the unknowns a time dt after a point, within the step from it, by its series."""
     y = load(point, VALUES)
-    if not dt > 0.0:
-        return y
-    S = control[WORK:]
-    if control[FOR] != point[TIME]:
-        expand(p, S, y)
-        control[FOR] = point[TIME]
-    d = along(S, (dt,))
-    return (
-        y[0] + d[0],
-        y[1] + d[1],
-        y[2] + d[2],
-        y[3] + d[3],
-        y[4] + d[4],
-        y[5] + d[5],
-        y[6] + d[6],
-    )
+    if dt > 0.0:
+        S = control[WORK:]
+        if control[FOR] != point[TIME]:
+            expand(p, S, (*y.q, *y.omega))
+            control[FOR] = point[TIME]
+        y = _sum(y, _turning(along(S, (dt,))))
+    return (*y.q, *y.omega)

@@ -16,13 +16,28 @@ As soon as the coefficients k are known, what they give with those of order 0 ..
 sums of the orders k ... k + 7, eight lanes at once: up to order 16 no pair is left out.
 """
 
+from typing import NamedTuple
+
 from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
+from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
 
 ORDER = 2 * LANES
-# of sums side by side: the latency of one sum after the other would cost more than to join them
+# number of sums side by side: waiting for one long sum would cost more than joining these
 CHAINS = 3
-# q, omega; the coefficients of an order stand in LANES places, the last one is not used
-UNKNOWNS = 7
+
+
+class Turning(NamedTuple):
+    """The unknowns; also how they change, what their sums lost, or the coefficients of an order.
+
+    The coefficients of an order stand in LANES places; the last one is not used.
+    """
+
+    q: Quaternion    # frame -> world
+    omega: Vector    # frame components, rad/s
+
+
+TURNING = layout(Turning)
+OMEGA, UNKNOWNS = TURNING.part('omega').first, TURNING.size
 
 
 class Series:
@@ -124,8 +139,8 @@ def expansion(pushed, coupled, dragged, hinged):
     def recurrence(o, S, y, euler, constant, push, couple, drag):
         turns = (2,) if hinged else (0, 1, 2)
         q, w = (
-            [Series(o, value) for value in y[:4]],
-            [Series(o, y[4 + i]) if i in turns else None for i in range(3)],
+            [Series(o, value) for value in y[:OMEGA]],
+            [Series(o, y[OMEGA + i]) if i in turns else None for i in range(3)],
         )
         f, u = ([Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
         c, inverse = (

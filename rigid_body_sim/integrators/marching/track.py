@@ -16,6 +16,7 @@ import math
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, TIME
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.state import STATE
 
 start = UNBOUND
@@ -33,6 +34,7 @@ COUNTS = UNBOUND
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept
+# numba compiles a function once more where a constant is handed to it, but not for int(constant)
 AT_ONCE = 8                         # steps of a call from Python that asks for a state
 IN_ONE_CALL = 1024                  # steps of a call that asks for a final state
 MOST_TURNS = 1e15                   # rad, of a final state: then somebody else says what is wrong
@@ -47,16 +49,16 @@ def _copy(source, target):
 
 
 @compiled
-def _copy_point(source, at, target, to):
+def _copy_point(source, target):
     for k in range(FOLLOWING - POINT):
-        target[to + k] = source[at + k]
+        target[k] = source[k]
 
 
 @compiled
 def first_piece(prototype, vector, piece):
     """Fill a piece at its start, a state vector."""
     _copy(prototype, piece)
-    piece[POINT + TIME] = vector[0]
+    piece[POINT + TIME] = load_state(vector).time
     start(piece[:CONTROL], vector, piece, POINT + VALUES)
     opened(piece)
 
@@ -65,8 +67,8 @@ def first_piece(prototype, vector, piece):
 def opened(piece):
     """Complete a piece whose parameters, control, and first time and unknowns are set."""
     begin(piece[:CONTROL], piece[CONTROL:POINT], piece[POINT:FOLLOWING])
-    _copy_point(piece, POINT, piece, FOLLOWING)
-    _copy_point(piece, POINT, piece, COUNTS + STORE)
+    _copy_point(piece[POINT:], piece[FOLLOWING:])
+    _copy_point(piece[POINT:], piece[COUNTS + STORE:])
     piece[COUNTS + STORED], piece[COUNTS + STRIDE], piece[COUNTS + COUNT] = 1.0, SPACING, 0.0
 
 
@@ -91,7 +93,7 @@ def follow(piece, target, end, limit):
                 low = middle
             else:
                 high = middle - 1
-        _copy_point(store, length * low, point, 0)
+        _copy_point(store[length * low:], point)
         following[TIME] = point[TIME]
         counts[COUNT] = low * counts[STRIDE]
     while True:
@@ -108,10 +110,10 @@ def follow(piece, target, end, limit):
         if counts[COUNT] == counts[STORED] * counts[STRIDE]:
             if counts[STORED] == CHECKPOINTS:
                 for k in range(CHECKPOINTS // 2):
-                    _copy_point(store, 2 * length * k, store, length * k)
+                    _copy_point(store[2 * length * k:], store[length * k:])
                 counts[STORED], counts[STRIDE] = CHECKPOINTS // 2, 2.0 * counts[STRIDE]
             if counts[COUNT] == counts[STORED] * counts[STRIDE]:
-                _copy_point(point, 0, store, length * int(counts[STORED]))
+                _copy_point(point, store[length * int(counts[STORED]):])
                 counts[STORED] += 1.0
         if limit == 0:
             return PAUSED
@@ -142,7 +144,7 @@ def state(piece, time, end, out):
     """Fill out with the state at a time if the march reaches it; return what `follow` returns."""
     status = REACHED
     if not piece[POINT + TIME] <= time < piece[FOLLOWING + TIME]:
-        status = follow(piece, time, end, AT_ONCE)
+        status = follow(piece, time, end, int(AT_ONCE))
     if status == REACHED:
         _within(piece, time, out)
     return status
@@ -167,13 +169,13 @@ def final(room, vector, time, out):
         A prototype, with the time from which on what acts is constant in place of that of its
         point, and a piece, which is filled anew.
     """
-    wx, wy, wz = load_state(vector).angular_velocity
-    turns = (time - vector[0]) * math.sqrt(wx * wx + wy * wy + wz * wz)
-    if not (time >= vector[0] >= room[POINT + TIME] and turns < MOST_TURNS):
+    start_time, omega = load_state(vector).time, load_state(vector).angular_velocity
+    turns = (time - start_time) * math.sqrt(dot(omega, omega))
+    if not (time >= start_time >= room[POINT + TIME] and turns < MOST_TURNS):
         return LOST
     piece = room[FOLLOWING:]
     first_piece(room[:FOLLOWING], vector, piece)
-    status = follow(piece, time, math.inf, IN_ONE_CALL)
+    status = follow(piece, time, math.inf, int(IN_ONE_CALL))
     if status == REACHED:
         _within(piece, time, out)
     return status
@@ -194,7 +196,7 @@ def states(piece, times, order, end, out):
     for i in range(len(order)):
         k = order[i]
         within = point[TIME] <= times[k] < following[TIME]
-        if not within and follow(piece, times[k], end, AT_ONCE) != REACHED:
+        if not within and follow(piece, times[k], end, int(AT_ONCE)) != REACHED:
             return i
         _fill(p, control, point, following, times[k], out[k])
     return len(order)

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bound on the work of a march: it gives up if the way ahead would take too many steps.
+"""A bound on the work of a march, which gives up if the time left would take too many steps.
 
 A march goes in slices, so that an interrupt is handled between two of them
 (compilation/threads.py). Whether it gives up depends on its steps alone, not on the clock. Steps
 that Python makes, and events between two phases of a march, count as the steps of a compiled march
-that they cost.
+that they cost. So do the steps of a march that is not compiled, where it is judged what lies
+ahead. A run under a bound of its own, as a trial, gives up after the same steps with numba and
+without; it looks ahead early, since it is one of many. Early looks let a march go on whose steps
+grow: it may begin with what is stiff.
 """
 
 import math
 
+from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.errors import NotConverged
 
@@ -16,6 +20,10 @@ SLICE = 32              # steps of the first slice
 FIRST_LOOK = 1 << 17    # steps before the first look at what lies ahead; then at each doubling
 MOST = 3e8              # steps between two times that are asked for: minutes
 PATIENCE = 1e15         # steps done times steps ahead: beyond, and beyond MOST, a march gives up
+SLOWER = 1 if HAVE_NUMBA else 100    # steps that one costs which is not compiled
+EARLY = 1 << 9          # steps before the first look of a run under a bound of its own
+HOPELESS = 100.0        # times its bound: where as many steps lie ahead, it gives up
+GROWING = 2.0           # steps that are so many times longer than those up to the look before
 
 
 class TooMuchWork(NotConverged):
@@ -28,17 +36,25 @@ class Work:
     Parameters
     ----------
     name : str
-        Of the method and the scene, for the message.
+        Name of the method and the scene, for the message.
     most : int or None
-        Steps after which the march gives up whatever lies ahead; None is no such bound.
+        Steps after which the march gives up in any case; None for no such bound.
+    comes_to_rest : bool
+        Whether the steps done tell nothing of those ahead, since the body may come to rest: then
+        only MOST and PATIENCE bound what lies ahead.
     dear : int
-        Compiled steps that one step costs, where it is judged what lies ahead.
+        Compiled steps that one step costs, for judging the steps that lie ahead; at least SLOWER,
+        but for runs under a bound of their own and bodies that may come to rest.
     """
 
-    def __init__(self, name, most, dear=1):
-        self._name, self._most, self._dear, self.done = name, most, dear, 0
-        self._look, self._target = max(1, FIRST_LOOK // dear), None
+    def __init__(self, name, most, dear=1, comes_to_rest=False):
+        self._name, self._most, self.done = name, most, 0
+        self._dear = max(dear, SLOWER) if most is None and not comes_to_rest else dear
+        self._sure, first = FIRST_LOOK // dear, max(1, FIRST_LOOK // self._dear)
+        self._early = most is not None and not comes_to_rest
+        self._look, self._target = min(first, EARLY) if self._early else first, None
         self._begin = self._seen = (0, math.nan)
+        self._pace = 0.0    # s a step, up to the look before
 
     def go(self, follow, now, target):
         """Call follow(limit), which returns whether it has arrived, until it has.
@@ -58,7 +74,8 @@ class Work:
         """
         if target != self._target:
             self._target = target
-            self._begin = self._seen = (self.done, now())
+            self._begin, self._pace = (self.done, now()), 0.0
+            self._seen = self._begin
 
         def arrived(limit):
             if follow(limit):
@@ -100,7 +117,11 @@ class Work:
         done, before = self._seen
         pace = (time - before) / (self.done - done)
         ahead = (target - time) / pace if pace > 0.0 else math.inf
-        if self._dear * ahead > max(MOST, PATIENCE / (self._dear * self.done)):
+        bound = max(MOST, PATIENCE / (self._dear * self.done))
+        if self._early:
+            bound = min(bound, self._dear * HOPELESS * self._most)
+        grows, self._pace = pace > GROWING * self._pace, pace
+        if self._dear * ahead > bound and not (grows and self.done < self._sure):
             raise self._given_up(time, target)
         self._look, self._seen = max(2 * self._look, self.done + 1), (self.done, time)
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One page a method: what it is, its order, its source, its coefficients."""
+"""One page per method: what it is, its order, its source, its coefficients."""

@@ -11,8 +11,8 @@ a step of dop8, and a step of two radians takes about a dozen of them.
 
 Symmetric; a converged step is symplectic and keeps quadratic invariants, so errors of conservative
 scenes grow in proportion to the time. Caveat: substitution converges for steps of a few radians at
-most, whatever the accuracy asked: this is no method for stiff scenes, but for those whose linear
-drag alone is stiff: its part of the equations of the stages is solved (marching/relaxing.py).
+most, whatever the accuracy: the method is not for stiff scenes, except those in which only the
+linear drag is stiff, whose part of the stage equations is solved (marching/relaxing.py).
 """
 
 from rigid_body_sim.integrators.families import collocation as FAMILY  # noqa: F401, N812

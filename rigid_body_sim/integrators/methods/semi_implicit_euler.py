@@ -3,9 +3,9 @@
 
 engine_step.py defines the step.
 
-Order 1, fixed steps only: it needs `step`. Its users call it so because the new velocity moves the
-position; the gyroscopic term is explicit, so the method is not symplectic for a body that turns,
-and its energy grows.
+Order 1, fixed steps only: it needs `step`. The name says that the new velocity moves the position;
+the gyroscopic term is explicit, so the method is not symplectic for a body that turns, and its
+energy grows.
 """
 
 from rigid_body_sim.integrators.families import engine_step as FAMILY  # noqa: F401, N812

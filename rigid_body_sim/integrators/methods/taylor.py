@@ -15,7 +15,7 @@ Ensembles have a mode of their own: eight bodies at once (batch.py).
 
 Caveat: no internal dissipation, nothing with kinks. Energy and momentum are kept to the
 accuracy of the method; the norm of the quaternion is restored after each step. The ledger's sums,
-and what holds while a wrench is held, are made by dop8.
+and spans under a held wrench, are made by dop8.
 """
 
 from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: F401, N812

@@ -17,7 +17,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     patch_system,
     sticking,
 )
-from rigid_body_sim.mechanics.contact.touch import lever, response, spinning
+from rigid_body_sim.mechanics.contact.touch import above_flat, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -177,7 +177,7 @@ def leaving(system, mu):
 
 @compiled
 def holds_still(c, at, F, T):
-    """Return whether a body that has almost stopped is at rest: a flat disk, or dry friction.
+    """Return whether a body that has almost stopped is at rest: a flat ring, or dry friction.
 
     Dry rolling friction holds the couple -(S h) x n of a force |h| <= C N, Coulomb's friction the
     force that balances the others. A spin about the normal is not held.
@@ -188,7 +188,7 @@ def holds_still(c, at, F, T):
         What acts on the resting body: force (axes of the plane), couple (body axes).
     """
     e1, e2, gamma = at.axes
-    if c.kind == TORUS and c.size[1] == 0.0:
+    if c.kind == TORUS and (c.size[1] == 0.0 or above_flat(c, gamma) <= 0.0):
         return True
     held = scaled(-1.0, F)
     if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, layout
 
-FLAT = 1e-6              # rad: a disk that is inclined by less lies flat, where friction stops it
+FLAT = 1e-6              # rad: a ring that is inclined by less lies flat, where friction stops it
 FILMY = 1e-4             # rad: and where a film of air does
 FLATTER = 1e-10          # rad: and where neither does
-LOW = 1e-3               # rad: below it dry friction jams a disk that no step can follow
+LOW = 1e-3               # rad: below it friction of rolling jams a ring that no step can follow
 
 
 class ContactParameters(NamedTuple):
@@ -25,7 +25,7 @@ class ContactParameters(NamedTuple):
     middle : Vector
         Centre of mass -> middle of the surface, body axes, m.
     kind, size : float, Vector
-        Of the surface (surfaces.py).
+        Those of the surface (surfaces.py).
     inertia, inverse : Matrix
         I about the centre of mass, and its inverse, body axes.
     inclined : float
@@ -33,7 +33,7 @@ class ContactParameters(NamedTuple):
     plane : Quaternion
         Turns components along the axes of the plane into those of the world.
     mu, restitution : float
-        mu is infinite where the body rolls, come what may.
+        mu is infinite if the body always rolls.
     rolling, rolling_viscous, film : float
         Coefficient C of dry rolling friction, c of viscous rolling friction (N s/m), pi eta R/4
         of a film of air (N s/m).

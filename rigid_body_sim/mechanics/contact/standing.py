@@ -17,8 +17,8 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FILMY, FLAT, FLATTER, LOW
-from rigid_body_sim.mechanics.contact.touch import couples, lever
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
+from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination, lever
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
@@ -79,8 +79,8 @@ class Standing:
         pressed = rotate_back(*c.plane, *force)[2] < 0.0
         stands = Posture(None, omega, axes, r, cross(omega, r), moved)
         if pressed and not any(omega) and not any(velocity) and (
-                self._lies(gamma) if self._is_disk else c.rolling > 0.0
-                and holds_still(c, stands, rotate_back(*c.plane, *force), couple)):
+                self._lies(gamma) or (c.rolling > 0.0 and not self._is_disk and holds_still(
+                    c, stands, rotate_back(*c.plane, *force), couple))):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         viscous, wrung, _, _ = couples(c, gamma, moved)
@@ -96,14 +96,14 @@ class Standing:
         return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
 
     def _lies(self, gamma):
-        """Return whether the body, a disk, is so low that it counts as flat once nothing moves.
+        """Return whether the body is a ring that counts as flat once nothing moves.
 
-        It then rests on its face, or is jammed by dry friction: no force at one point holds it.
+        It then lies on a circle, or is jammed by dry friction: no force at one point holds it.
         """
         c = self._c
-        lowest = (LOW if c.rolling > 0.0 else FILMY if c.film > 0.0
-                  else FLAT if c.rolling_viscous > 0.0 else FLATTER)
-        return hypot(gamma[0], gamma[1]) < lowest * (1.0 + 1e-6)
+        if c.rolling > 0.0:
+            return c.kind == TORUS and inclination(gamma) < LOW * (1.0 + 1e-6)
+        return above_flat(c, gamma) < 1e-6 * inclination(gamma)
 
     def _patch_force(self, patch, u, spin, speed):
         """Return force (axes of the plane) and couple about the normal of a patch of contact."""

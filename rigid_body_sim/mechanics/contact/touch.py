@@ -10,14 +10,37 @@ couple -R |h| omega_t/|omega_t| that is usually called rolling friction.
 import math
 
 from rigid_body_sim.compilation.jit import inlined
+from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
-from rigid_body_sim.scene.surfaces import lowest, shifted
+from rigid_body_sim.scene.surfaces import TORUS, lowest, shifted
 
 
 @inlined
 def lever(c, gamma):
     """Return r, from the centre of mass to the lowest point, body axes."""
     return plus(c.middle, lowest(c.kind, c.size, gamma))
+
+
+@inlined
+def inclination(gamma):
+    """Return the angle between the axis of a ring, a torus or a disk, and the normal, rad.
+
+    It is the sine of the angle, for small ones are asked for.
+    """
+    return math.sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1])
+
+
+@inlined
+def above_flat(c, gamma):
+    """Return by how much a ring is inclined more than one that counts as flat, rad.
+
+    A ring is a torus or a disk: it comes to lie on a circle, all of which touches the plane. For
+    other surfaces it is 1.
+    """
+    if c.kind != TORUS:
+        return 1.0
+    return inclination(gamma) - (
+        FILMY if c.film > 0.0 else FLAT if c.rolling + c.rolling_viscous > 0.0 else FLATTER)
 
 
 @inlined

@@ -16,6 +16,7 @@ doubles, as are the products of the e. The period follows from agm(1, k') = pi/(
 chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
 """
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -46,7 +47,7 @@ from rigid_body_sim.numerics.vectors import plus as plus_vectors
 from rigid_body_sim.numerics.vectors import scaled as stretched
 from rigid_body_sim.scene.state import STATE
 
-LEAST_RATIO = 1e-130            # of a needle's moments
+LEAST_RATIO = 1e-130            # smallest ratio of a needle's moments
 UNIT_VECTORS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
 
@@ -63,7 +64,7 @@ class Axes(NamedTuple):
     e2_e3: float
     e3_by_e2: Pair
     root_e1_by_e2: float
-    squares: tuple[Pair, Pair, Pair]        # of the moments
+    squares: tuple[Pair, Pair, Pair]        # squares of the moments
     toward_1: float                         # I1 |I3 - I2|
     toward_3: float                         # I3 |I2 - I1|
 
@@ -106,6 +107,7 @@ load_to_body, store_to_body = ATTITUDE.part('to_body').load, ATTITUDE.part('to_b
 store_rounding, store_tumbles = ATTITUDE.part('rounding').store, ATTITUDE.part('tumbles').store
 
 load_state = STATE.load
+KEPT = 64    # inertias whose numbers are kept for scenes that differ in other things
 
 
 def rotation_parameters(inertia):
@@ -116,6 +118,12 @@ def rotation_parameters(inertia):
     BadInput
         A moment that is not zero but so small beside the others that its square would underflow.
     """
+    return _numbers(inertia, np.array((*inertia.moments, *inertia.axes)).tobytes()).copy()
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _numbers(inertia, bits):
+    """Return what `rotation_parameters` does, the array that is kept; `bits` tell -0 from 0."""
     small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
     if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
         raise BadInput(

@@ -61,7 +61,7 @@ class Parameters(NamedTuple):
 class Flight(NamedTuple):
     """How the centre of mass moves, and where it is in the body."""
 
-    position: Vector     # of the centre of mass at the start, m
+    position: Vector     # place of the centre of mass at the start, m
     velocity: Vector     # m/s
     g: float             # m/s^2
     arm: Vector          # from the body's origin to the centre of mass, body axes, m

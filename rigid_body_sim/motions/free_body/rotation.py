@@ -72,8 +72,8 @@ class HyperbolicSeries(NamedTuple):
     power: float      # q'^4.5
     period: float     # pi K/K'
     drift: float      # s a K/(pi K'): half angle (turns) a turn of v, apart from the series
-    cosines: Four     # of 1, 3, 5 and 7 times a K/(2 K')
-    sines: Four       # of the same, times s
+    cosines: Four     # cosines of 1, 3, 5 and 7 times a K/(2 K')
+    sines: Four       # sines of the same, times s
 
 
 class Rotation(NamedTuple):

@@ -42,7 +42,7 @@ class Units(NamedTuple):
 
     a: float
     b: float
-    swing: float    # of a or b, the one that is near 0, and of omega_c
+    swing: float    # unit of a or b, the one that is near 0, and of omega_c
     rate: float     # rad/s
 
 

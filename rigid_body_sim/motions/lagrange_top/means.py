@@ -28,8 +28,8 @@ class MeanRates(NamedTuple):
 
     mean: float       # pi/(2 K); 1 without nutation, 0 on the separatrix
     nutation: Pair    # turns/s
-    a: Pair           # of arg(a), rad/s; on the separatrix that at the highest position
-    b: Pair           # of arg(b), rad/s
+    a: Pair           # rate of arg(a), rad/s; on the separatrix the one at the top
+    b: Pair           # rate of arg(b), rad/s
 
 
 @compiled_inline

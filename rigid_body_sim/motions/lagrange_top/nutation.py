@@ -22,7 +22,7 @@ class Beginning(NamedTuple):
     """Where the nutation begins, and the whole numbers of turns; see the functions below."""
 
     start: float      # phase of nutation, turns; a turn is a period
-    winding: float    # of omega_c about 0: circular in a period, hyperbolic 0 or 1 in half of one
+    winding: float    # turns of omega_c about 0: in a period, or (hyperbolic) in half of one
     side: float       # 1.0 or -1.0: phase factor of omega_c is i side conj(e_a) e_b
     parity: float     # 1.0 if `start` counts from the highest position
     stretch: float    # hyperbolic form: y of a turn of nutation; circular form: 0
@@ -35,8 +35,8 @@ class Course(NamedTuple):
 
     form: float            # CIRCULAR or HYPERBOLIC
     begin: Beginning
-    rate: Pair             # of nutation, turns/s
-    rate_a: Pair           # of the phases of a and b, turns/s
+    rate: Pair             # rate of the nutation, turns/s
+    rate_a: Pair           # rates of the phases of a and b, turns/s
     rate_b: Pair
     start_a: float         # phases of a and b at the start, turns
     start_b: float

@@ -55,8 +55,8 @@ class Powers(NamedTuple):
 class CircularTerms(NamedTuple):
     """Coefficients of one function of the circular form."""
 
-    re: Four      # of 1, cos 2v, cos 4v, cos 6v
-    im: Vector    # of sin 2v, sin 4v, sin 6v
+    re: Four      # coefficients of 1, cos 2v, cos 4v, cos 6v
+    im: Vector    # coefficients of sin 2v, sin 4v, sin 6v
 
 
 class HyperbolicTerms(NamedTuple):

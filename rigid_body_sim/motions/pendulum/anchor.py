@@ -79,7 +79,7 @@ class Swing(NamedTuple):
     """How s, c and w follow from what goes like cn, sn and dn."""
 
     swings: float        # 1.0 if it swings, 0.0 if it turns over or turns steadily
-    unit: float          # of w, rad/s
+    unit: float          # unit of w, rad/s
 
 
 class Circle(NamedTuple):
@@ -116,18 +116,27 @@ class Axle(NamedTuple):
 
     axis: list[Fraction]       # n
     arm: list[Fraction]        # r, m
-    distance: Fraction         # of the centre of mass from the axis, m; 0 to rounding of the scene
+    distance: Fraction         # centre of mass to axis, m; 0 to rounding of the scene
     momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
     moment: Fraction           # about n, kg m^2
 
 
 def axle(scene):
     """Return the Axle of a scene whose constraint holds an axis."""
-    body = scene.body
-    axis, point = tuple(scene.constraint.axis), tuple(scene.constraint.point(body))
-    n, r, d, swung = _swung(axis, tuple(body.center_of_mass), point)
-    inertia, mass = body.about_center, Fraction(body.mass)
-    spun = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis)
+    return _axle(*_held(scene))
+
+
+def _held(scene):
+    """Return what an Axle depends on: axis, centre of mass, point, mass and inertia."""
+    body, constraint = scene.body, scene.constraint
+    return (tuple(constraint.axis), tuple(body.center_of_mass), tuple(constraint.point(body)),
+            body.mass, body.about_center)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _axle(axis, center, point, mass, inertia):
+    n, r, d, swung = _swung(axis, center, point)
+    spun, mass = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis), Fraction(mass)
     momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
     return Axle(n, r, d, momentum, _dot(n, momentum))
 
@@ -169,14 +178,18 @@ def parameters(scene):
 
     They come from the exact rationals that the doubles of the scene are.
     """
-    body, weight, held = scene.body, scene.weight, axle(scene)
-    point = tuple(scene.constraint.point(body))
-    directions = _directions(tuple(scene.constraint.axis), tuple(body.center_of_mass), point)
-    force = Fraction(body.mass) * Fraction(weight)
+    held = _held(scene)
+    return _numbers(np.array(held[2]).tobytes(), scene.weight, *held).copy()
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _numbers(bits, weight, axis, center, point, mass, inertia):
+    """Return what `parameters` does, the array that is kept; `bits` tell -0 from 0 in `point`."""
+    held, force = _axle(axis, center, point, mass, inertia), Fraction(mass) * Fraction(weight)
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        *directions, _pair_of_ratio(force * held.distance, held.moment), held.axis, point,
-        body.mass, weight, held.arm, held.momentum, force / held.moment))
+        *_directions(axis, center, point), _pair_of_ratio(force * held.distance, held.moment),
+        held.axis, point, mass, weight, held.arm, held.momentum, force / held.moment))
     return numbers
 
 

@@ -95,7 +95,7 @@ def pack(position, compression, compressed, records, channels, times, offsets, s
     records : bytes
         Message records end to end.
     channels, times, offsets : arrays
-        One element a message: its channel number, log time (ns) and offset in `records`.
+        One element per message: its channel number, log time (ns) and offset in `records`.
     sure : bool
         Whether to write a checksum over the records.
     """

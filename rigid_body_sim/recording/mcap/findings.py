@@ -28,7 +28,7 @@ class Findings:
     contents : Contents
         All that is whole or could be rescued; its indexes are those of the whole parts only.
     places : list of ChunkPlace
-        Of the chunks that are whole.
+        Places of the chunks that are whole.
     parts : list of Whole, Unindexed, Broken, Loose, Replaced
         What a mended file consists of.
     told : Told or None

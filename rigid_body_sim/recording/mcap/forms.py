@@ -138,7 +138,7 @@ def record_end(source, offset, channels=None):
     elif opcode in _PARSED:
         good = (length <= LONGEST_PARSED and consumed(
             _PARSED[opcode], source.read(offset + HEAD.size, length)) == length)
-    else:               # of the future, or private
+    else:               # a record of the future, or a private one
         good = chunk_end(source, offset) == 0
     return end if good else 0
 

@@ -20,11 +20,11 @@ class FoundChunk:
     Attributes
     ----------
     offset, end : int
-        Of its record in the file.
+        Where its record begins and ends in the file.
     heads : structured array
-        One element a message, see :data:`rigid_body_sim.recording.mcap.walk.HEADS`.
+        One element per message, see :data:`rigid_body_sim.recording.mcap.walk.HEADS`.
     offsets : array
-        One element a message.
+        One element per message.
     others : list
         See :func:`rigid_body_sim.recording.mcap.walk.walk`.
     counts : dict

@@ -135,7 +135,7 @@ class FileReader:
         offsets, _ = walk(data)
         message_heads = heads(data, offsets)
         times = message_heads['log_time']
-        chosen = np.zeros(2**16, bool)      # by channel number: faster than isin
+        chosen = np.zeros(2**16, bool)      # one entry for each channel number: faster than isin
         chosen[list(channels)] = True
         wanted = chosen[message_heads['channel']] & (times >= start) & (times <= end)
         if not wanted.all():

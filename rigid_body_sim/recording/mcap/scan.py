@@ -173,7 +173,7 @@ class Scan(DamagedRecords):
         return end
 
     def _index(self, offset, end):
-        if self._last is None:          # of a damaged chunk, whose index is made anew
+        if self._last is None:          # the chunk is damaged, and its index is made anew
             self._drop()
         else:
             self._last.takes_index(offset, self._bytes.read(offset + HEAD.size,

@@ -4,7 +4,7 @@
 The records of the summary are read by `mcap.stream_reader`. Why not
 `mcap.reader.SeekingReader.get_summary`: it does not check the summary's checksum nor any length,
 so a damaged tail makes it read whatever follows, or allocate what a record claims; and it keeps an
-object of 0.8 kB a chunk.
+object of 0.8 kB per chunk.
 """
 
 import io

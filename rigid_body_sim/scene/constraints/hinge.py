@@ -25,7 +25,7 @@ class Hinge(Constraint):
 
     `axis` is a direction in body axes. `through` is a point of the axis in body axes (m, default
     the origin). Instead of it, `distance` hangs the body that far from its centre of mass along
-    body axis z, measured square to the axis. The reference point is `through`. `zero` is the
+    body axis z, measured across the axis. The reference point is `through`. `zero` is the
     orientation at the angle 0, the one that `initial` gives beside `angle`.
     """
 
@@ -39,8 +39,8 @@ class Hinge(Constraint):
         axis=described(VECTOR, 'a direction, body axes'),
         through=described(VECTOR, "m, a point of the axis from the body's origin, body axes",
                           [0, 0, 0]),
-        distance=described(NUMBER, 'm, from the centre of mass along body z, square to the axis; '
-                                   'in place of through')),
+        distance=described(NUMBER, 'm, from the centre of mass along body z, measured across '
+                                   'the axis; in place of through')),
         'the body turns about an axis that is fixed in it and in the world')
     INITIAL: ClassVar[dict] = {**initial.ORIENTATION, 'angle': NUMBER, 'rate': NUMBER,
                                **initial.PLACE}
@@ -104,8 +104,8 @@ def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) 
         raise BadInput(f'{where}.distance', 'stands beside through', 'give one of them')
     if distance == 0.0:
         raise BadInput(f'{where}.distance', f'got {settings["distance"]!r}',
-                       'hung at its centre of mass a body does not swing: a distance above 0, '
-                       'or below 0 on the other side, in m')
+                       'hung at its centre of mass a body does not swing: give a distance in m, '
+                       'above 0, or below 0 for the other side')
     length = hypot3(*upward)
     if not length > 1e-8:
         raise BadInput(f'{where}.distance', f'got an axis {list(axis)} along z',

@@ -62,7 +62,7 @@ class DisplacedPivot(Constraint):
     """``constraint: {pivot: {at: [x, y, z]}}``: the point `at` (body axes, m) is held.
 
     `initial.position` is where it is in the world. The motions in closed form hold the body's
-    origin, so such a body is followed step by step: put the origin there where one is wanted.
+    origin, so such a body is followed step by step: put the origin there to use a closed form.
     """
 
     at: Vector = (0.0, 0.0, 0.0)
@@ -105,7 +105,7 @@ class MovingPivot(Constraint):
 
     The point `at` (body axes, m; default: the body's origin) is at `initial.position` +
     `motion(t)` in the world; the components of `motion` are expressions of the time t (s), in m,
-    without kinks. The bearing takes what force that needs, and the ledger books its work.
+    without kinks. The bearing exerts the force that this takes, and the ledger books its work.
     """
 
     trees: tuple[tree.Node, ...]

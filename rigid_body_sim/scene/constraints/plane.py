@@ -17,7 +17,7 @@ from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 from rigid_body_sim.scene.state import State
 
-SINKS = 1e-9    # share of the size: a body that starts this much too deep is put on the plane
+SINKS = 1e-9    # a body that starts no more than this, relative to its size, too deep is lifted
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ class Plane(Constraint):
                 raise BadInput(where, 'settings for a ball that has no surface',
                                'give body.surface: {sphere: {radius: ...}} as well')
             raise BadInput(where, 'the body has no smooth surface',
-                           'give body.surface (sphere, ellipsoid, torus or disk): edges, '
-                           'polyhedra and composites without a surface stay out')
+                           'give body.surface (sphere, ellipsoid, torus or disk): bodies with '
+                           'edges, polyhedra and composites without a surface are not supported')
         if not min(body.about_center.moments) > 1e-9 * max(body.about_center.moments):
             raise BadInput(where, f'moments {list(body.about_center.moments)} about the centre of '
                            'mass', 'three positive moments, none below 1e-9 of the largest')

@@ -39,7 +39,7 @@ class Table(Constraint):
             raise BadInput(where, 'a table needs a sphere',
                            'give body.shape solid_sphere or spherical_shell, '
                            'or body.radius with equal moments, or a smooth body.surface (sphere, '
-                           'ellipsoid, torus, disk): edges and polyhedra stay out')
+                           'ellipsoid, torus, disk): edges and polyhedra are not supported')
         if any(body.center_of_mass):
             raise BadInput(where,
                            f'the centre of mass {list(body.center_of_mass)} is off the middle',

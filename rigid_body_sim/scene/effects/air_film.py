@@ -27,7 +27,7 @@ class AirFilm(Effect):
     SCHEMA: ClassVar[dict] = described(mapping_of(
         ['viscosity'],
         viscosity=described(POSITIVE, 'Pa s')),
-        "Moffatt's viscous layer under a disk that leans by a: a force -c u/sin a, u as "
+        "Moffatt's viscous layer under a disk at the inclination a: a force -c u/sin a, u as "
         'in rolling_friction; booked as heat')
     mechanisms: ClassVar = (Mechanism.PLANE,)
 

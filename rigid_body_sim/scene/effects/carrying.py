@@ -2,7 +2,7 @@
 """Carrying: the effect of a moving pivot's acceleration on a body, seen from the pivot.
 
 In axes that move with the pivot, whose acceleration is a, the force -M a acts at the centre of
-mass. A scene does not list this effect: a pivot with a `motion` brings it along.
+mass. A scene does not list this effect: a pivot with a `motion` implies it.
 """
 
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ class Carrying(Effect):
         return cls(forces, constraint.parameters, body.center_of_mass)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return the torque; none of a pivot at the centre of mass, and none in a fixed frame."""
+        """Return the torque; there is none about the centre of mass, and none in a fixed frame."""
         if frame.path is None:
             return ()
         found = tuple(one for one in actions.force(self.trees, 'world', self.parameters,

@@ -91,6 +91,10 @@ class Drag(Effect):
         return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
                     slowing=self.linear if frame.moves else 0.0)
 
+    def damping(self, frame: Frame) -> Pull:
+        """Return the same; a moving pivot changes nothing of it."""
+        return self.series(frame, 0.0) if frame.path is None else self._shaped.damping(frame)
+
 
 Matrix = tuple[tuple[float, ...], ...]
 
@@ -116,11 +120,15 @@ def _matrix(value, where: str) -> Matrix:
     return tuple(tuple(0.5 * (rows[i] + rows[:, i])) for i in range(3))
 
 
-def _flat(matrix: Matrix, frame: Frame) -> tuple[float, ...]:
-    """Return a matrix given in body axes by its nine components in the frame."""
+def _rows(matrix: Matrix, frame: Frame) -> Matrix:
+    """Return the rows of a matrix given in body axes by its components in the frame."""
     columns = [frame.from_body(row) for row in matrix]
-    rows = [frame.from_body(column) for column in transposed(tuple(columns))]
-    return tuple(part for row in rows for part in row)
+    return tuple(frame.from_body(column) for column in transposed(tuple(columns)))
+
+
+def _flat(matrix: Matrix, frame: Frame) -> tuple[float, ...]:
+    """Return the nine components in the frame of a matrix given in body axes."""
+    return tuple(part for row in _rows(matrix, frame) for part in row)
 
 
 @dataclass(frozen=True)
@@ -192,6 +200,21 @@ class ShapedDrag(Effect):
             return Pull(formulas=(Formulas(torque, vectors.to_world(force), of_frame=True),))
         torque = vectors.total(torque, vectors.cross(arm, force))
         return Pull(formulas=(Formulas(torque, of_frame=True),))
+
+    def damping(self, frame: Frame) -> Pull:
+        """Return the part in proportion to velocity; of a flight that against it alone."""
+        angular, linear = _rows(self.angular, frame), _rows(self.linear, frame)
+        columns = []
+        for omega in np.eye(3).tolist():
+            against = apply(angular, omega)
+            if not frame.moves:
+                force = apply(linear, cross(omega, frame.arm))
+                against = plus(against, cross(frame.arm, force))
+            columns.append(against)
+        matrix = -0.5 * (np.array(columns) + np.array(columns).T)
+        first, second, third = matrix.tolist()
+        return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
+                    slowing=linear[0][0] if frame.moves and _is_number(self.linear) else 0.0)
 
 
 def _is_number(matrix: Matrix) -> bool:
@@ -277,8 +300,8 @@ def couple(k, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 def moment(c, rx, ry, rz, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
     """Return r x (-c omega x r), N m.
 
-    The products in turn round less than r^2 omega - (r . omega) r, of which a slim body would
-    take the small difference along its axis.
+    Two cross products round less than r^2 omega - (r . omega) r, whose component along the axis
+    of a slim body is a small difference.
     """
     ux, uy, uz = wy * rz - wz * ry, wz * rx - wx * rz, wx * ry - wy * rx
     return -c * (ry * uz - rz * uy), -c * (rz * ux - rx * uz), -c * (rx * uy - ry * ux)

@@ -18,8 +18,8 @@ from rigid_body_sim.scene.schema import POSITIVE, described, mapping_of
 class DryFriction(Effect):
     """``dry_friction: {torque: T}``: T in N m, at a hinge.
 
-    The torque -T sign(rate) about the axis while the body turns. Where the rate passes zero, the
-    body rests if all other torques about the axis are together at most T, and as long as they are.
+    The torque is -T sign(rate) about the axis while the body turns. When the rate reaches zero,
+    the body stays at rest for as long as all other torques about the axis add up to at most T.
     """
 
     torque: float
@@ -27,7 +27,7 @@ class DryFriction(Effect):
     SCHEMA: ClassVar[dict] = described(mapping_of(
         ['torque'],
         torque=described(POSITIVE, 'N m')),
-        'the torque -torque sign(rate) about the hinge; at rest it bears up to that; '
+        'the torque -torque sign(rate) about the hinge; at rest it balances up to this torque; '
         'booked as heat')
     mechanisms: ClassVar = (Mechanism.AXIS,)
 

@@ -87,7 +87,7 @@ class PotentialEnergy(Effect):
         energy=described(
             EXPRESSION,
             'U in J, an expression of x y z, qx qy qz qw, or the angle of a hinge')),
-        "F = -dU/d(x, y, z) at the body's origin, and the torque -dU by a turn about it; "
+        "F = -dU/d(x, y, z) at the body's origin, and the torque -dU/d(turn about it); "
         'booked as potential')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True

@@ -37,7 +37,7 @@ class Force(Effect):
             VECTOR,
             "m, from the body's origin, body axes; the centre of mass if left out"),
         frame=described({'enum': ['body', 'world']}, 'axes of the components', 'body'),
-        books=described({'enum': ['work', 'heat']}, 'where the ledger has its power', 'work')),
+        books=described({'enum': ['work', 'heat']}, 'where the ledger books its power', 'work')),
         'F = value at a point of the body')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True

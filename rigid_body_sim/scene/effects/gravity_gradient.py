@@ -24,7 +24,7 @@ from rigid_body_sim.scene.expressions.source import TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import POSITIVE, VECTOR, described, mapping_of
 
-SQUARE = 1e-9    # of a right angle, rad: what rounding may spoil
+SQUARE = 1e-9    # rad: a deviation from a right angle that counts as rounding
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class GravityGradient(Effect):
         normal, toward = unit
         if abs(dot(normal, toward)) > SQUARE:
             raise BadInput(f'{where}.toward', f'got {orbit["toward"]}',
-                           'a direction square to normal')
+                           'a direction perpendicular to normal')
         share = 1.5 * rate * rate
         return cls(None, 2.0 * share, toward,
                    share * (max(body.about_center.moments) - min(body.about_center.moments)),

@@ -33,8 +33,8 @@ class InternalDissipation(Effect):
     """``internal_dissipation: {coefficient: c}``; c in 1/(kg m^2/s), positive.
 
     Near the axis of the largest moment a wobble about axis i dies out at the rate
-    c L^2 (1/I_i - 1/I_max), 1/s. At a pivot m and I are those about it: the rest of what acts
-    changes L, the dissipation does not.
+    c L^2 (1/I_i - 1/I_max), 1/s. At a pivot m and I are about the pivot: other effects may
+    change L there, the dissipation does not.
     """
 
     coefficient: float

@@ -23,7 +23,7 @@ class Magnetic(Effect):
 
     U = -m . B, from which the torque m x B and, in a field that depends on place, the force on the
     body's origin follow. The components of the field are numbers or expressions of x, y, z and t.
-    The ledger books the power as potential, in a field that depends on the time as work.
+    The ledger books the power as potential, or as work if the field depends on time.
     """
 
     energy: tree.Node
@@ -36,7 +36,7 @@ class Magnetic(Effect):
         moment=described(VECTOR, 'm in A m^2, body axes'),
         field=described(EXPRESSIONS, 'B in T, world axes: numbers or expressions of x y z t')),
         'U = -m . B: the torque m x B, and the force of a field that is not uniform; '
-        'booked as potential, in a field of the time as work')
+        'booked as potential, or as work if the field depends on time')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 

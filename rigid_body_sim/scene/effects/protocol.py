@@ -52,10 +52,10 @@ class Acting:
     timed : bool
         True if it depends on time by itself, not only by where the body is.
     of_motion : bool
-        True if it depends on velocities and does not book heat, which says so by itself.
+        True if it depends on velocities; one that books heat need not say so.
     inner : bool
-        True of a torque against a part inside the body, whose momentum the view `momentum` has:
-        the ledger's angular impulse is without it.
+        True for a torque against a part inside the body, whose momentum the view `momentum` has:
+        the ledger's angular impulse does not include it.
     switching : str
         ``'package.module:function'``, of what has kinks, else empty. The compiled function has the
         signature of `kernel` and returns its switches, a tuple of floats: a kink is where one of
@@ -180,7 +180,7 @@ class Bounds(NamedTuple):
     energy : float
         Half the range of its potential over all attitudes, J.
     torque : float
-        Of a drive that may go on for ever, about the reference point, N m.
+        The largest torque of a drive that may go on for ever, about the reference point, N m.
     """
 
     energy: float
@@ -216,7 +216,7 @@ class Contact(NamedTuple):
 
 
 class Effect(Protocol):
-    """An action on a body beside its constraint.
+    """An action on a body, apart from its constraint.
 
     The right-hand side and the potential must fit together: the ledger's energy residual of a
     scene says whether they do.
@@ -288,6 +288,16 @@ class Effect(Protocol):
     def series(self) -> Callable[[Frame, float], Pull] | None:
         """``series(frame, time)``: the same as `acting`, as a Pull. The method taylor needs it."""
         return None
+
+    @property
+    def damping(self) -> Callable[[Frame], Pull] | None:
+        """``damping(frame)``: its drag in proportion to velocity, which may be stiff.
+
+        Of the Pull, `drag` and `slowing` count. By default they are those of `series`; an effect
+        whose series has formulas instead tells them here.
+        """
+        series = self.series
+        return None if series is None else lambda frame: series(frame, 0.0)
 
     @property
     def potential(self) -> Callable[[Frame], Potential] | None:

@@ -29,8 +29,8 @@ class RollingFriction(Effect):
     SCHEMA: ClassVar[dict] = described(mapping_of(
         dry=described(COEFFICIENT, 'C, a share of the normal force N', 0),
         viscous=described(COEFFICIENT, 'c in N s/m', 0)),
-        "a force against the velocity u of the point of contact over the body's surface: "
-        'C N and c u; booked as heat')
+        "the force C N + c u against the velocity u of the point of contact over the body's "
+        'surface; booked as heat')
     mechanisms: ClassVar = (Mechanism.PLANE,)
 
     @classmethod

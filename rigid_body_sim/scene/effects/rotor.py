@@ -37,11 +37,11 @@ from rigid_body_sim.scene.schema import NUMBER, POSITIVE, VECTOR, described, map
 class Rotor(Effect):
     """``rotor: {axis: [x, y, z], momentum: h}``, or ``{axis, inertia: J, rate: r, torque: T}``.
 
-    The first keeps h (kg m^2/s), its momentum as seen from the body: its motor keeps the speed,
-    and the inertia of the body is with the rotor as if that were locked. The second turns freely
+    The first keeps h (kg m^2/s), its momentum as seen from the body: a motor keeps the speed,
+    and the inertia of the body includes the rotor as if it were locked. The second turns freely
     on its axle, or under the constant torque T (N m) of its motor: J is its moment about the axis
     (kg m^2), r its rate at time 0 as seen from space (rad/s), h = J r + T t; the inertia of the
-    body is without J. The axis is a direction in body axes. A scene may list several.
+    body does not include J. The axis is a direction in body axes. A scene may list several.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Rotor(Effect):
     momentum_at_start : float
         h at time 0, kg m^2/s.
     torque : float
-        Of the motor on the rotor, N m; the body takes the opposite one.
+        Torque of the motor on the rotor, N m; the opposite one acts on the body.
     """
 
     axis: Vector
@@ -61,7 +61,7 @@ class Rotor(Effect):
         ['axis'],
         axis=described(VECTOR, 'a direction, body axes'),
         momentum=described(NUMBER, 'kg m^2/s, as seen from the body'),
-        inertia=described(POSITIVE, 'kg m^2, not in that of the body'),
+        inertia=described(POSITIVE, 'kg m^2, not included in the inertia of the body'),
         rate=described(NUMBER, 'rad/s at time 0, as seen from space'),
         torque=described(NUMBER, 'N m, of the motor on the rotor', 0)),
         "Gamma = -omega x h a - h' a, with a along axis; h = momentum, or h = inertia "

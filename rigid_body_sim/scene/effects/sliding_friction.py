@@ -35,8 +35,8 @@ class SlidingFriction(Effect):
         ['mu'],
         mu=described(
             {'type': 'number', 'minimum': 0},
-            'coefficient; with a surface .inf rolls, come what may'),
-        g=described(POSITIVE, 'm/s^2 that presses a ball without a surface on the table')),
+            'coefficient; .inf: a body with a surface always rolls'),
+        g=described(POSITIVE, 'm/s^2, the gravity on a ball without a surface')),
         'Coulomb: a body that slips has the force mu N against the velocity of its lowest '
         'point; booked as heat')
     mechanisms: ClassVar = (Mechanism.TABLE, Mechanism.PLANE)

@@ -47,8 +47,8 @@ class Strike(Effect):
         distance=described(NUMBER, 'm, from a hinge toward the centre of mass, in place of point'),
         time=described({'type': 'number', 'minimum': 0}, 's', 0),
         frame=described({'enum': ['world', 'body']}, 'axes of impulse', 'world')),
-        'the impulse J at a point and a time; the bearing or the table gives what J does '
-        'not')
+        'the impulse J at a point and a time; a bearing or a table adds the impulse of its '
+        'reaction')
     mechanisms: ClassVar = tuple(Mechanism)
     repeatable: ClassVar[bool] = True
 

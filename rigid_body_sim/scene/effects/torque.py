@@ -36,7 +36,7 @@ class Torque(Effect):
     name: ClassVar[str] = 'torque'
     SCHEMA: ClassVar[dict] = described(mapping_of(
         value=described(EXPRESSIONS, 'N m, numbers or expressions'),
-        books=described({'enum': ['work', 'heat']}, 'where the ledger has its power', 'work'),
+        books=described({'enum': ['work', 'heat']}, 'where the ledger books its power', 'work'),
         values=described(
             {'type': 'array', 'items': VECTOR, 'minItems': 1},
             'N m, one vector for each of times'),
@@ -44,8 +44,8 @@ class Torque(Effect):
             {'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 1},
             's, rising'),
         frame=described({'enum': ['body', 'world']}, 'axes of the components', 'body')),
-        'the couple Gamma = value; with times and values, values[i] from times[i] on and '
-        'none before')
+        'the couple Gamma = value; with times and values, values[i] from times[i] to the next '
+        'time, and none before the first')
     mechanisms: ClassVar = (Mechanism.FREE, Mechanism.POINT, Mechanism.AXIS, Mechanism.PLANE)
     repeatable: ClassVar[bool] = True
 

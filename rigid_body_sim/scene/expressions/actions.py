@@ -49,7 +49,7 @@ def _acting(lines, trees, frame, result, gives, books):
 
 
 def _rooted(trees):
-    """Return whether trees have a root or a broken power of what moves."""
+    """Return whether trees take a root or a fractional power of something that changes."""
     moving = set()
     for one in tree.parts(*trees):
         if one.args[0] in moving and (

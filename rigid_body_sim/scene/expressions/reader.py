@@ -5,7 +5,9 @@ Python's own parser reads the text, and only what is listed here is accepted.
 """
 
 import ast
+import keyword
 import math
+import re
 import warnings
 
 from rigid_body_sim.errors import BadInput
@@ -44,15 +46,31 @@ def read(text, names, where):
         return tree.number(text)
     if len(text) > LONGEST:
         raise BadInput(where, f'an expression of {len(text)} characters', f'at most {LONGEST}')
+    spelled, meant = _without_keywords(text, names)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', SyntaxWarning)
-            parsed = ast.parse(text.replace('^', '**').strip(), mode='eval').body
+            parsed = ast.parse(spelled.replace('^', '**').strip(), mode='eval').body
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         problem = getattr(error, 'msg', None) or 'too deep'
         raise BadInput(where, f'got {_brief(text)}: {problem}',
                        'an expression like -k*wx + 0.1*sin(w0*t)') from None
-    return _Reader(names, where, text).tree(parsed, 0)
+    return _Reader(names, where, text, meant).tree(parsed, 0)
+
+
+def _without_keywords(text, names):
+    """Return a text in which no name is a keyword of Python, and what the new names stand for.
+
+    A parameter may be called lambda, as a wavelength is.
+    """
+    meant = {}
+    for name in filter(keyword.iskeyword, names):
+        other = f'{name}_'
+        while other in text:
+            other += '_'
+        meant[other] = name
+        text = re.sub(rf'(?<![\w.]){name}(?!\w)', other, text)
+    return text, meant
 
 
 def _brief(text):
@@ -61,10 +79,10 @@ def _brief(text):
 
 
 class _Reader:
-    """Walks a parsed text; `where` and the text are for error lines."""
+    """Walks a parsed text; `where` and the text are for error lines, `meant` for its names."""
 
-    def __init__(self, names, where, text):
-        self._names, self._where, self._text = names, where, text
+    def __init__(self, names, where, text, meant):
+        self._names, self._where, self._text, self._meant = names, where, text, meant
 
     def _refuse(self, problem, remedy):
         raise BadInput(self._where, f'got {_brief(self._text)}: {problem}', remedy)
@@ -78,7 +96,8 @@ class _Reader:
                 self._refuse(f'{parsed.value!r} is no number', 'numbers like 2 or 1e-3')
             case ast.Constant(value=int() | float() as value):
                 return self._number(value)
-            case ast.Name(id=name):
+            case ast.Name(id=written):
+                name = self._meant.get(written, written)
                 if name not in self._names:
                     self._refuse(f'{name} is not known here',
                                  f'the names are {", ".join(sorted(self._names))}')

@@ -23,7 +23,7 @@ PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
 OR_ZERO = '/ or 0'
-"""The operation of a quotient that is 0 where its divisor is: none of expressions."""
+"""The operation of a quotient that is 0 where its divisor is 0; expressions cannot ask for it."""
 CALLS = {'/': 'divided', 'log': 'logarithm', 'tan': 'tangent', 'tanh': 'hyperbolic_tangent',
          'sin': 'sin', 'cos': 'cos', 'exp': 'exp', OR_ZERO: 'divided_or_zero'}
 KINKED = {'abs', 'sign', 'min', 'max', 'less'}

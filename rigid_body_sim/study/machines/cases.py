@@ -123,7 +123,7 @@ def states(name, method):
 def chosen(name):
     """Return the choice of `auto`: method, tolerance, expected error."""
     scene = scene_of(name)
-    # without numba the trials of a body on a plane take ten seconds a scene at 1e-12 rad
+    # without numba the trials of a body on a plane take ten seconds per scene at 1e-12 rad
     asked = ACCURACIES if scene.body.surface is None else ACCURACIES_ON_A_PLANE
     found = (choose(scene, accuracy=one, horizon=HORIZON) for one in asked)
     return {f'{one.accuracy:g} rad': [one.method, [one.tolerance, one.expected_error]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The work-precision figure: error against CPU time per simulated second, one line a method.
+"""The work-precision figure: error against CPU time per simulated second, one line per method.
 
 It is readable in print and by the colour-blind. Lines that are the cheapest of ours, or of the
 peers, at some accuracy are thick; fixed steps of a method that also controls its error are dotted.

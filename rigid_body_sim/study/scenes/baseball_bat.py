@@ -11,7 +11,7 @@ from rigid_body_sim.study.scenes.instruments import axes
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import baseball_bat as theory
 
-SHARES = (0.5, 1.0, 1.3)            # of l': where it is hit besides the scene's own place
+SHARES = (0.5, 1.0, 1.3)            # places of other blows, over l'
 
 
 def check(run):

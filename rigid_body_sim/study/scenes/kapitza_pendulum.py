@@ -9,7 +9,7 @@ from rigid_body_sim.study.scenes import instruments
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.theory import kapitza as theory
 
-SMALL = 1e-7    # of a tilt, rad: its square is lost in the tolerance
+SMALL = 1e-7    # a tilt, rad, whose square is lost in the tolerance
 SLIGHTLY = 0.002
 
 

@@ -66,7 +66,7 @@ def test_a_distance_from_a_hinge_is_measured_straight_towards_the_centre_of_mass
 
 def test_a_point_is_measured_from_the_origin_and_acts_about_the_centre_of_mass():
     """The body stands a quarter turn about z: body x is world y, body y is world -x."""
-    lever = (0.3, 0.5, 0.5)    # of point - centre of mass = (0.5, -0.3, 0.5)
+    lever = (0.3, 0.5, 0.5)    # world axes; point - centre of mass = (0.5, -0.3, 0.5)
     force, torque = struck(FREE.format(frame='world'))
     assert force == [1.0, 2.0, 3.0]
     assert torque == pytest.approx(np.cross(lever, force).tolist(), abs=1e-15)

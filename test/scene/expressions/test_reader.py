@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions are read by a whitelist: arithmetic is understood, all else gets one line."""
 
+import keyword
 import os
 import random
 import time
@@ -43,6 +44,24 @@ def test_what_is_no_expression_gets_one_line(text, problem):
     assert problem in line
     assert line.isprintable()
     assert len(line) < 300
+
+
+@pytest.mark.parametrize('name', [*keyword.kwlist, *keyword.softkwlist])
+def test_a_name_may_be_a_keyword_of_python(name):
+    """A wavelength is called lambda; a name with an underscore behind it is another one."""
+    text = f'2*{name} - x*sin({name})+{name}_*{name}__'
+    if name == '_':
+        return
+    names = NAMES | {name, f'{name}_', f'{name}__'}
+    assert str(read(text, names, 'here')) == (
+        f'(((2.0 * {name}) - (x * sin({name}))) + ({name}_ * {name}__))')
+    for text in (f'{name}*k', f'{name}: 1', f'k {name} x', f'x.{name}'):
+        with pytest.raises(BadInput):
+            read(text, NAMES, 'here')
+    for text in (f'k {name} x', f'{name}: 1', f'x.{name}', f'{name} {name}', f'"{name}"'):
+        with pytest.raises(BadInput) as refusal:
+            read(text, names, 'here')
+        assert str(refusal.value).isprintable()
 
 
 SEEDS = ['-k*x^2 + 0.1*sin(3*t)', 'exp(-x)/(1 + k^2)', 'min(x, max(k, abs(t)))',

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `auto` settles on: a method and its tolerance, found good by trials on the scene."""
+
+import functools
+import math
+
+from rigid_body_sim.choice import forecast, measured
+from rigid_body_sim.choice.trial import HELPS, Trial
+from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+
+PATIENCE = 1, 16    # factors on the steps of trials; the second if no method passes with the first
+
+
+class Settled:
+    """What `auto` chose.
+
+    Parameters
+    ----------
+    method : str
+    tolerance : float
+        rad.
+    expected_error, met_until : float, optional
+        Those of the forecast, where they are known.
+    find : callable, optional
+        Returns the Forecast where they are not; it is called when somebody asks.
+    prototype : Stepped, optional
+        The method at some accuracy, on the scene and the horizon of the choice.
+
+    Attributes
+    ----------
+    method : str
+    tolerance : float
+        rad.
+    """
+
+    def __init__(self, method, tolerance, expected_error=None, met_until=None, find=None,
+                 prototype=None):
+        self.method, self.tolerance, self.prototype = method, tolerance, prototype
+        self._find = find or functools.partial(forecast.Forecast, expected_error, met_until)
+
+    @functools.cached_property
+    def forecast(self):
+        """The Forecast of the choice."""
+        found, self._find = self._find(), None    # what it kept is no longer needed
+        return found
+
+    @property
+    def expected_error(self):
+        """Largest error of the attitude within the horizon, rad."""
+        return self.forecast.error
+
+    @property
+    def met_until(self):
+        """Time until which the accuracy asked is met, s."""
+        return self.forecast.met_until
+
+    def __eq__(self, other):
+        return self is other or (
+            isinstance(other, Settled)
+            and (self.method, self.tolerance) == (other.method, other.tolerance)
+            and self.forecast == other.forecast)
+
+    def __hash__(self):
+        return hash((self.method, self.tolerance))
+
+    def __reduce__(self):
+        return Settled, (self.method, self.tolerance, *self.forecast)
+
+    def __deepcopy__(self, memo):
+        return self
+
+
+def settle(scene, able, accuracy, horizon):
+    """Return the Settled choice that meets an accuracy on this scene.
+
+    The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of
+    a long horizon, and errors are taken to grow in proportion to time.
+
+    A method that takes many more steps than the motion asks for does not suit the scene, and the
+    next one is tried. If none suits, all of them are tried again with more patience, since what
+    acts may be faster than the body, and from the coarsest tolerance on, since rounding of what
+    acts may be more than a fine one allows. If the table has no method that meets the accuracy,
+    its most accurate one is taken. If a trial shows that a method errs by more than the accuracy
+    and by more than rounding, the next one is tried too, and the most accurate one is taken.
+
+    Raises
+    ------
+    NotConverged
+        No method follows the scene.
+    """
+    kind = TrialOnPlane if scene.constraint.mechanism is Mechanism.PLANE else Trial
+    # a method that was not measured on such scenes is for those who name it
+    measured_ones = [name for name in able if measured.on_such(scene, name)]
+    failed = 'none'
+    for patience in PATIENCE:
+        left, least, best = measured_ones.copy(), math.inf, None
+        while left:
+            method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
+            trial = kind(scene, accuracy, horizon, method, promised, patience,
+                         len(measured_ones) > 1)
+            left.remove(method)
+            try:
+                found = trial.take(tolerance)
+                excess = trial.excess(found, least) if left or best else 0.0
+            except TooMuchWork as error:
+                failed = error
+                continue
+            if best is None or excess < HELPS * least:
+                least = excess
+                best = Settled(method, found, find=functools.partial(trial.forecast, found),
+                               prototype=trial.prototype)
+            if not excess > 0.0:
+                break
+        if best:
+            return best
+    raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
+
+
+def of_named(scene, prototype, accuracy, horizon):
+    """Return the Forecast of a method that was named; it holds None where nothing is known.
+
+    Parameters
+    ----------
+    scene : Scene
+    prototype : Stepped
+        The method at the tolerance that it runs with.
+    accuracy : float
+        Asked for, rad.
+    horizon : float
+        s.
+    """
+    try:
+        trial = Trial(scene, accuracy, horizon, prototype.name, None, PATIENCE[0], False)
+        return trial.forecast(prototype.accuracy)
+    except TooMuchWork:
+        return forecast.Forecast(None, None)
