@@ -57,8 +57,9 @@ def _rehearse(simulation, messages):
     session.begin()
     _run(session)
     if trial.scene.accepts_commands:
-        # twice, so that the second ones meet a body that is already commanded
-        for rows in (COMMANDS, COMMANDS, LET_GO):
+        # the second ones meet a body that is already commanded; a wrench is held in either frame,
+        # for the last of them holds
+        for rows in (COMMANDS, COMMANDS[::-1], LET_GO):
             queue.put(rows)
             _run(session)
     session.request(Session.reset)

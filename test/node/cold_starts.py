@@ -122,16 +122,20 @@ def run(arguments):
     spin(lambda: all(publisher.get_subscription_count() for publisher in publishers))
     ticks()
     node.engine.diagnostics.publish()
+    received = node.engine.commands
+
+    def send(publisher, frame='world', torque=0.0):
+        message, before = WrenchStamped(), received.received
+        message.header.frame_id, message.wrench.torque.z = frame, torque
+        publisher.publish(message)
+        spin(lambda: received.received > before)
     for frame in ('body', 'world'):
         for publisher in publishers:
-            message = WrenchStamped()
-            message.header.frame_id, message.wrench.torque.z = frame, 1e-6
-            publisher.publish(message)
-    received = node.engine.commands
-    spin(lambda: received.received >= 4)
+            send(publisher, frame, 1e-6)
+            # of commands that meet one tick the last wrench alone would be held
+            spin(lambda until=session.next_tick + 2: session.next_tick >= until)
     ticks()
-    publishers[1].publish(WrenchStamped())
-    spin(lambda: received.received >= 5)
+    send(publishers[1])
     ticks()
     session.request(Session.reset)
     ticks()

@@ -28,6 +28,9 @@ CASES = [
     ['scene:=driven_body', 'record:=false',
      'scene_overrides:=["torque={times: [0.0, 0.11], '
      'values: [[0.0, 0.0, 0.1], [0.0, 0.1, 0.0]]}"]'],
+    # a coin meets the plane after 0.13 s: the rehearsal does not reach it
+    ['scene:=tossed_coin', 'record:=false',
+     'scene_overrides:=[initial.position.2=0.09, initial.velocity.2=-0.5]'],
     ['scene:=thin_rod', 'rate:=100', 'record:=false'],
 ]
 COMPILED_IN = 0.05
@@ -47,7 +50,7 @@ def cold_starts(domain, folder, cases, timeout, **environment):
 
 
 @pytest.mark.skipif(not HAVE_NUMBA, reason='nothing is compiled: numba is not installed')
-def test_ten_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
+def test_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
         ros_domain, tmp_path, compiled_kernels):
     found = cold_starts(ros_domain, tmp_path, CASES, 280)
     assert len(found) == len(CASES)

@@ -38,7 +38,8 @@ class Impact(NamedTuple):
 
 
 IMPACT = layout(Impact)
-load_contact, load_unknowns, store_impact = CONTACT.load, UNKNOWNS.load, IMPACT.store
+load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
+load_impact, store_impact = IMPACT.load, IMPACT.store
 store_omega, store_u = UNKNOWNS.part('omega').store, UNKNOWNS.part('u').store
 store_impulse, STRUCK = LEDGER.part('impulse').store, LEDGER.part('struck').first
 

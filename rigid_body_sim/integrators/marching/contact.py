@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.equations import contact_rates, equations
 from rigid_body_sim.integrators.equations.contact_impacts import (
     IMPACT,
     collide,
+    load_impact,
     velocity_of_lowest,
 )
 from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
@@ -279,13 +280,13 @@ class PlaneCourse:
         out = np.empty(IMPACT.size)
         trial = y.copy()
         collide(p, trial, p[RESTITUTION], out)
-        rebounds = IMPACT.load(out).after > CHATTER * self._speed(y)
+        rebounds = load_impact(out).after > CHATTER * self._speed(y)
         if not rebounds:
             trial = y.copy()
             collide(p, trial, 0.0, out)
         y[:] = trial
         y[GAP] = 0.0
-        impact = IMPACT.load(out.tolist())
+        impact = load_impact(out.tolist())
         self._events.append((self._begin + float(y[TIME]), 'impact', {
             'normal_velocity': impact.before, 'impulse': impact.impulse}))
         if rebounds:

@@ -69,7 +69,7 @@ class OnTable:
         if wrench:
             axes = 'body' if wrench.frame == 'body' else 'world'
             for name, value in (('force', wrench.force), ('couple', wrench.torque)):
-                table_rates.PUSHED.part(f'{axes}_{name}').store(self.parameters, value)
+                self.parameters[table_rates.PUSHED.part(f'{axes}_{name}').places] = value
         self.turns_with_body = bool(wrench) and wrench.frame == 'body'
         extra = ENTRIES_SIZE
         self.kernels = specialise(
