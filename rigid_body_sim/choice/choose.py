@@ -8,6 +8,7 @@ was measured to meet the accuracy (measured.py), after trial runs on the scene i
 
 import functools
 import logging
+import math
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -19,7 +20,7 @@ from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
 from rigid_body_sim.integrators.protocols import Solver
-from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.integrators.solver import FINEST, Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.nearly import nearly_absorbing
@@ -29,7 +30,6 @@ from rigid_body_sim.numerics.vectors import apply
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene
 
-FINEST_ACCURACY = 1e-15
 STIFF = 10.0    # multiple of the rotation rate above which dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
 KEPT = 64       # choices
@@ -162,9 +162,16 @@ class Choice:
         """Return the solver that stands in where the prototype cannot go on."""
         method = METHODS.get(self.method)
         if method is None or not method.FAMILY.TAKES_WRENCH:    # None: `exact`
-            method = STEADY if measured.is_stiff(self.scene) else GENERAL
+            return _general(self.scene, self.tolerance, self.step, wrench, self.horizon,
+                            self.accuracy)
         return Stepped(self.scene, method.NAME, self.tolerance, self.step, wrench, self.horizon,
                        wanted=self.accuracy)
+
+
+def _general(scene, tolerance, step=None, wrench=None, horizon=HORIZON, wanted=math.inf):
+    """Return the Stepped that goes on where a closed form does not hold."""
+    method = STEADY if measured.is_stiff(scene) else GENERAL
+    return Stepped(scene, method.NAME, tolerance, step, wrench, horizon, wanted=wanted)
 
 
 def _stiff(scene):
@@ -241,7 +248,8 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
                       or found.error <= max(accuracy, found.floor)):
             prototype = Exact(scene, found.motion, found.scene)
             # the forecast of a closed form decides nothing, so it is made on demand
-            find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon)
+            find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon,
+                                     functools.partial(_general, scene, horizon=horizon))
             return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
                           settled or settling.Settled('exact', accuracy, find=find))
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
@@ -297,9 +305,9 @@ def _closed_form(scene, horizon):
 
 def _check(integrator, accuracy, step, horizon):
     """Raise BadInput unless each setting by itself is one that a scene could have."""
-    if not FINEST_ACCURACY <= accuracy <= 1.0:
+    if not FINEST <= accuracy <= 1.0:
         raise BadInput('accuracy', f'got {accuracy!r}',
-                       f'from {FINEST_ACCURACY} (doubles carry no more) to 1')
+                       f'from {FINEST} (doubles carry no more) to 1')
     if step is not None and not 0.0 < step < float('inf'):
         raise BadInput('step', f'got {step!r}', 'a positive number of seconds')
     if integrator not in ('auto', 'exact') and integrator not in METHODS:

@@ -17,6 +17,7 @@ import numpy as np
 from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.solver import FINEST
 from rigid_body_sim.mechanics import impulse
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, MOMENTUM
@@ -34,6 +35,7 @@ SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
 MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
+FINER = 1e-2             # factor of the accuracy of the run that a run is compared with
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 
@@ -292,13 +294,42 @@ def forecast(errors, times, accuracy, horizon):
     return Forecast(error, float(times[k]) * accuracy / float(errors[k]))
 
 
-def of_exact(scene, prototype, own, accuracy, horizon):
+class _Continued:
+    """A closed form, and the method that goes on from states from which it does not hold."""
+
+    def __init__(self, exact, general):
+        self._exact, self._general = exact, general
+
+    def start(self, vector):
+        """Return a solver from a state vector."""
+        return (self._exact if self._exact.takes(vector) else self._general).start(vector)
+
+
+def of_exact(scene, prototype, own, accuracy, horizon, general):
     """Return the Forecast of a motion in closed form.
 
     Its error is magnified rounding, plus `own` (rad, at the horizon) if it is the closed form of a
-    scene that is nearly this one.
+    scene that is nearly this one, plus that of the general method after a strike that ends the
+    closed form.
+
+    Parameters
+    ----------
+    prototype : Exact
+    own, accuracy : float
+        rad.
+    horizon : float
+        s.
+    general : function
+        ``general(accuracy)`` returns the Stepped that goes on where the closed form does not hold.
     """
-    times = looks(horizon)
-    states = run(scene, prototype, scene.initial.vector, times)
-    errors = lost(scene, prototype, times, states)
+    times, start, errors = looks(horizon), scene.initial.vector, 0.0
+    if prototype.motion.takes is not None and strikes(scene):
+        finer = run(scene, _Continued(prototype, general(max(FINEST, FINER * accuracy))), start,
+                    times)
+        prototype = _Continued(prototype, general(accuracy))
+        states = run(scene, prototype, start, times)
+        errors = apart(states, finer)
+    else:
+        states = run(scene, prototype, start, times)
+    errors = errors + lost(scene, prototype, times, states)
     return forecast(errors + own * (times / horizon), times, accuracy, horizon)

@@ -6,6 +6,7 @@ prints JSON: case -> state (14 numbers) and ledger at its time.
 """
 
 import json
+import os
 
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -196,11 +197,14 @@ def run(name, method='dop8'):
 
 
 BY_TWO = ('four at once', 'body axes', 'reaction wheels on a tip', 'all of drag',
-          'everything on a hinge', 'on a moving pivot', 'heat at a pivot', 'mixed, free',
+          'everything on a hinge', 'heat at a pivot', 'mixed, free',
           'mixed, on a moving pivot')
-BY_SERIES = ('gyrostat on a tip', 'top in a world that is turned', 'body axes',
-             'pivoted, body axes', 'potential of place and attitude', 'uneven field',
-             'everything on a hinge', 'mixed, free', 'attitude under control', 'torsion spring')
+BY_SERIES = ('top in a world that is turned', 'body axes', 'pivoted, body axes',
+             'potential of place and attitude', 'mixed, free', 'attitude under control',
+             'torsion spring')
+if os.environ.get('RIGID_BODY_SIM_SOAK'):    # seven seconds of plain Python
+    BY_TWO += 'on a moving pivot',
+    BY_SERIES += 'gyrostat on a tip', 'uneven field', 'everything on a hinge'
 
 if __name__ == '__main__':
     print(json.dumps({name: run(name) for name in CASES}
