@@ -62,7 +62,7 @@ soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py \
 	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py test/test_docs.py \
-	    test/numerics/test_functions.py test/scene/test_scene_language.py test/choice/test_random_scenes.py
+	    test/numerics/test_functions.py test/scene/test_scene_language.py test/choice/test_random_scenes.py test/view/test_hand.py
 	.venv/bin/python bench/choice_random.py --count 300
 	@$(MAKE) --no-print-directory mutants
 

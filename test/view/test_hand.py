@@ -2,6 +2,7 @@
 """The hand: springs and strikes as commands, worked out by hand for bodies where that is easy."""
 
 import math
+import os
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from rigid_body_sim.view.frames import Mechanics
 from rigid_body_sim.view.hand import PULL, Hand, pace_of, together
 from rigid_body_sim.view.mouse import hit
 
+SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 SLIM = """
 scene: slim
 body: {{mass: 1.0, inertia: [1.0, 1.0, {:g}]}}
@@ -124,7 +126,9 @@ RARE = {'major_axis_relaxation': {}, 'kapitza_pendulum': {'integrator': 'dop8', 
 
 
 @pytest.mark.parametrize('name', [
-    pytest.param(name, marks=[pytest.mark.without_numba] * (name in RARE))
+    pytest.param(name, marks=[pytest.mark.without_numba] * (name in RARE)
+                 + [pytest.mark.skipif(not SOAK, reason='takes ten seconds: make soak')]
+                 * (name == 'kapitza_pendulum'))
     for name in scene_names()])
 def test_a_pull_at_sixty_frames_a_second_is_taken_and_stays_bounded_in_every_scene(name):
     simulation = Simulation(name, rate=600.0, **RARE.get(name, {}))
