@@ -34,6 +34,8 @@ SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -
          (1, -1, -1, 1, 1, -1, -1))
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
 MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
+FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
+FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
 FINER = 1e-2             # factor of the accuracy of the run that a run is compared with
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
@@ -213,7 +215,8 @@ def conditioning(scene, prototype, times, states, enough=math.inf):
     enough : float, optional
         rad. It is given where the only question is whether the change reaches it. The start is
         then moved by half an ulp alone, and no more often than it takes to see that. A change that
-        is no longer proportional to its cause counts as having reached it.
+        is no longer proportional to its cause counts as having reached it. One that a far larger
+        move leaves as it is comes of other steps, whose errors it shows, and counts as none.
     """
     start, found = scene.initial.vector, np.full(len(times), math.inf)
     least = min(enough, LINEAR) if enough < math.inf else math.inf
@@ -221,8 +224,13 @@ def conditioning(scene, prototype, times, states, enough=math.inf):
         squares = np.zeros(len(times))
         for signs in SIGNS:
             moved = run(scene, prototype, _moved(scene, start, signs, many), times)
-            squares += np.square(apart(moved, states))
+            change = apart(moved, states)
+            squares += np.square(change)
             if squares.max() >= len(SIGNS) * least * least:
+                moved = run(scene, prototype, _moved(scene, start, signs, FAR), times)
+                far = float(apart(moved, states).max())
+                if far < min(LINEAR, FARTHER * float(change.max())):
+                    return np.zeros(len(times))
                 return np.maximum(enough, np.sqrt(squares))
         change = np.sqrt(squares / len(SIGNS))
         small = np.maximum.accumulate(change) <= LINEAR
