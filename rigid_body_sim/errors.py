@@ -46,6 +46,13 @@ def optional(package):
         raise BadInput(name, 'is not installed', f'pip install {name}') from None
 
 
+def refuse_without(part, names, where, remedy):
+    """Raise BadInput with those names of a contract that a part does not have."""
+    absent = [name for name in names if name not in dir(part)]
+    if absent:
+        raise BadInput(where, f'lacks {", ".join(absent)}', remedy)
+
+
 def printable(text):
     """Return a text with its unprintable characters escaped, so no terminal obeys them."""
     return ''.join(one if one.isprintable() else one.encode('unicode_escape').decode()

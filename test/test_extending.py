@@ -10,6 +10,7 @@ import math
 import pathlib
 import re
 import sys
+import types
 from typing import ClassVar
 
 import numpy as np
@@ -20,10 +21,12 @@ from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.drawing import setting
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.families import collocation, composition
 from rigid_body_sim.integrators.protocols import Method
+from rigid_body_sim.integrators.registry import Methods
 from rigid_body_sim.messages import robot_description
 from rigid_body_sim.messages.state_topics import Frames
-from rigid_body_sim.motions import MOTIONS
+from rigid_body_sim.motions import MOTIONS, absorbing_motion
 from rigid_body_sim.motions.protocol import Motion
 from rigid_body_sim.numerics.rotations import angle_between, rotate
 from rigid_body_sim.scene import initial
@@ -312,6 +315,47 @@ def test_the_method_has_its_order(package):
         errors.append(angle_between(*state.orientation, *truth.orientation))
     slope = math.log2(errors[0] / errors[1])
     assert of('ralston3').ORDER - 0.2 < slope < of('ralston3').ORDER + 0.5
+
+
+@pytest.mark.parametrize(('changes', 'line'), [
+    ({'TAKES': ('accuracy', 'step')},
+     "method mine: lacks E5, E3; its family needs them for 'accuracy'"),
+    ({'B': None}, "method mine: lacks B; its family needs them for 'step'"),
+    ({'STIFF': None, 'SOURCE': None}, 'method mine: lacks SOURCE, STIFF; every method'),
+    ({'FAMILY': collocation}, ''),
+    ({'FAMILY': composition}, "mine: lacks DRIFTS, KICKS; its family needs them for 'step'"),
+    ({'FAMILY': composition, 'TAKES': ('accuracy',)},
+     r"method mine: TAKES: got \('accuracy',\); some of step, what its family"),
+    ({'FAMILY': object()}, 'method mine: FAMILY: lacks ASKS, TABLE, TAKES_WRENCH, LANES'),
+    ({'TAKES': ()}, r'method mine: TAKES: got \(\); some of accuracy, step'),
+    ({'TABLE': True, 'TAKES': ('accuracy',), 'FAMILY': collocation},
+     'method mine: TABLE: got True; False, or a Runge-Kutta method'),
+    ({'TABLE': True}, 'method mine: TABLE: got True; False, or a Runge-Kutta method'),
+    ({'NAME': 'yours'}, "method mine: its page calls itself 'yours'; the same name"),
+])
+def test_a_method_that_lacks_something_is_refused_in_one_line(package, changes, line):
+    page = types.ModuleType('mine')
+    page.__dict__.update(vars(of('ralston3')) | {'NAME': 'mine'} | changes)
+    for name in [name for name, value in changes.items() if value is None]:
+        delattr(page, name)
+    table = Methods()
+    if line:
+        with pytest.raises(BadInput, match=line):
+            table['mine'] = page
+    else:
+        table['mine'] = page
+    assert ('mine' in table) == (not line)
+
+
+def test_a_motion_that_lacks_something_is_refused_in_one_line(package, monkeypatch):
+    text = (package / 'slowing_sphere.py').read_text()
+    broken = text.replace('next_event = takes = None', 'next_event = None')
+    assert broken != text
+    (package / 'half_a_motion.py').write_text(broken)
+    importlib.invalidate_caches()
+    monkeypatch.setattr('rigid_body_sim.motions.MOTIONS', ('more_bodies.half_a_motion',))
+    with pytest.raises(BadInput, match=r'motion more_bodies.half_a_motion: lacks takes; declare'):
+        absorbing_motion(parse_scene(SPHERE))
 
 
 @pytest.mark.without_numba

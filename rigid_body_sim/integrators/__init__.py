@@ -20,10 +20,12 @@ from rigid_body_sim.integrators.methods import (
     split8,
     taylor,
 )
+from rigid_body_sim.integrators.registry import Methods
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
-METHODS = {method.NAME: method for method in (
-    dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda, radau)}
+METHODS = Methods({method.NAME: method for method in (
+    dop8, gauss16, taylor, split2, split4, split6, split8, rk4, semi_implicit_euler, lsoda,
+    radau)})
 STEADY = gauss16
 """The method that replaces them where drag is stiff."""
 GENERAL = dop8

@@ -2,8 +2,8 @@
 """The contracts of this folder: what a method, a method family and a solver offer.
 
 docs/extending.md shows how to add a method. A method is a module of methods/ with one line in the
-table of ``integrators/__init__.py``; a family is a module of families/. Both are checked against
-these Protocols by the tests, so a module that lacks a declaration fails there and not in a run.
+table of ``integrators/__init__.py``; a family is a module of families/. The table (registry.py)
+refuses a method that lacks a declaration, so none fails in a run.
 """
 
 from typing import Any, Protocol, runtime_checkable
@@ -147,8 +147,15 @@ class Family(Protocol):
         Whether its marches stop at the kinks of what acts (marching/switched.py).
     ROOTS : bool
         Whether its steps see that a root of what moves comes near zero (`rooted` of an Acting).
+    ASKS : dict of str to tuple of str
+        What may control its methods (Method.TAKES), and the names that a page then has beside
+        those of Method.
+    TABLE : bool
+        Whether its methods may declare TABLE.
     """
 
+    ASKS: dict[str, tuple[str, ...]]
+    TABLE: bool
     TAKES_WRENCH: bool
     LANES: bool
     KINKS: bool

@@ -8,7 +8,10 @@ It may import ``mechanics`` and what lies below.
 
 import functools
 import importlib
+import inspect
 
+from rigid_body_sim.errors import refuse_without
+from rigid_body_sim.motions.protocol import Motion
 from rigid_body_sim.scene.scene import kept
 
 MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
@@ -33,4 +36,9 @@ def absorbing_motion(scene):
 
 @functools.cache
 def _module(name):
-    return importlib.import_module(name)
+    """Return a module of the table; raise BadInput for one that lacks what a Motion declares."""
+    found = importlib.import_module(name)
+    views = [view for view in vars(Motion) if not view.startswith('_')]
+    refuse_without(found, [*inspect.get_annotations(Motion), *views], f'motion {name}',
+                   'declare what it has none of as None')
+    return found

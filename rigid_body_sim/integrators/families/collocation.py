@@ -19,6 +19,8 @@ from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
 from rigid_body_sim.mechanics.bounds import swing_rate
 
+ASKS = {'accuracy': (), 'step': ()}
+TABLE = False
 TAKES_WRENCH = True
 LANES = False
 KINKS = True

@@ -52,6 +52,7 @@ STIFF = ()
 TABLE = False
 TAKES = ('step',)
 
+ASKS = {'step': ('DRIFTS', 'KICKS')}
 TAKES_WRENCH = True
 LANES = False
 KINKS = True

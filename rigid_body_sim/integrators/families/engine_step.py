@@ -21,6 +21,8 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     march,
 )
 
+ASKS = {'step': ()}
+TABLE = False
 TAKES_WRENCH = True
 LANES = False
 KINKS = True

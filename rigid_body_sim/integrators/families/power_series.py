@@ -21,6 +21,8 @@ from rigid_body_sim.integrators.marching import (
 )
 from rigid_body_sim.integrators.marching.points import CONTROL, Control
 
+ASKS = {'accuracy': (), 'step': ()}
+TABLE = False
 TAKES_WRENCH = False
 LANES = True
 KINKS = False

@@ -10,6 +10,8 @@ from rigid_body_sim.integrators.families.one_step import begin, equations_of, ma
 from rigid_body_sim.integrators.marching import table, unroll
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
+ASKS = {'accuracy': ('A', 'B', 'E5', 'E3'), 'step': ('A', 'B')}
+TABLE = True
 TAKES_WRENCH = True
 LANES = False
 KINKS = True

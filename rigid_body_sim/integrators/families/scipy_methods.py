@@ -20,6 +20,8 @@ from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.scene.state import TIME
 
+ASKS = {'accuracy': ('SOLVER',)}
+TABLE = False
 TAKES_WRENCH = True
 LANES = False
 KINKS = False
