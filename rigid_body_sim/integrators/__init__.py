@@ -39,9 +39,11 @@ def runnable(scene):
     They find the view that they need in every effect, allow the heat that the effects make, know
     the time and place of their stages if an effect depends on them, and stop at kinks if an effect
     has some. No method sees an effect that is only an impulse. On the table only methods that
-    declare TABLE run.
+    declare TABLE run, and on a plane the general method alone, of which its step is made.
     """
-    if scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE):
+    if scene.constraint.mechanism is Mechanism.PLANE:
+        return [GENERAL.NAME]
+    if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects
                if effect.acting is not None or effect.as_impulse is None]

@@ -88,10 +88,9 @@ class Stepped:
         self.accuracy, self.step, self.horizon, self.most = accuracy, step, horizon, most
         self.wanted = wanted
         on_table = scene.constraint.mechanism in (Mechanism.TABLE, Mechanism.PLANE)
-        if on_table and not self.method.TABLE:
-            able = ', '.join(runnable(scene))
-            raise BadInput('integrator', f'{self.method.NAME!r} cannot run a ball on the table '
-                           'under a wrench', f'those that can: {able}')
+        if on_table and method not in (able := runnable(scene)):
+            raise BadInput('integrator', f'{method!r} cannot run a body on the table',
+                           f'those that can: {", ".join(able)}')
         self._bound = self.method.FAMILY.bind(self.method, self)
         self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)

@@ -4,6 +4,7 @@
 import json
 import math
 import pathlib
+import types
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from integrators.order_conditions import largest_defect
 from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS, protocols, runnable
-from rigid_body_sim.integrators.methods import rk4
+from rigid_body_sim.integrators.methods import dop8, rk4
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
@@ -82,6 +83,18 @@ def test_what_takes_a_step_needs_one(name):
     scene = scene_of('asymmetric_heavy_top')
     with pytest.raises(BadInput, match='step'):
         Stepped(scene, name, accuracy=1e-9)
+
+
+def test_a_convex_body_is_followed_by_the_general_method_alone(monkeypatch):
+    """Its step is written for dop8's coefficients: another method would run under a false name."""
+    other = types.ModuleType('other')
+    other.__dict__.update(vars(dop8) | {'NAME': 'other'})
+    monkeypatch.setitem(METHODS, 'other', other)
+    ball, top = load_scene('billiard_center'), load_scene('tippe_top')
+    assert runnable(ball) == ['dop8', 'other']
+    assert runnable(top) == ['dop8']
+    with pytest.raises(BadInput, match=r"'other' cannot run a body on the table; .* can: dop8"):
+        Stepped(top, 'other', accuracy=1e-9)
 
 
 @pytest.mark.parametrize('name', ['lsoda', 'radau'])
