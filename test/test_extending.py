@@ -269,6 +269,49 @@ initial: {{euler_zyz: [0, 2.6, 0], rate: 1.0}}
     assert predicted_lines(mine) == predicted_lines(known) != ()
 
 
+AXLE = """scene: mine
+body: {mass: 1.0, inertia: [0.03, 0.05, 0.04], center_of_mass: [0, 0.01, 0.1]}
+constraint: {axle: {at: [0, 0, -0.2]}}
+effects: []
+initial: {euler_zyz: [0.3, 2.6, 0], rate: 1.0, position: [1.0, 2.0, 3.0]}
+"""
+
+
+@pytest.mark.parametrize(('mechanism', 'changes', 'line'), [
+    (Mechanism.AXIS, {}, ''),
+    (Mechanism.POINT, {}, ''),
+    (Mechanism.AXIS, {'position': (1.0, 2.0, 3.0)}, 'held point at .* m; the place'),
+    (Mechanism.POINT, {'position': (1.0, 2.0, 3.0)}, 'held point at .* m; the place'),
+    (Mechanism.AXIS, {'velocity': (0.0, 0.0, 0.0)}, 'held point at .* m/s; a velocity'),
+    (Mechanism.POINT, {'velocity': (0.0, 0.0, 0.0)}, 'held point at .* m/s; a velocity'),
+    (Mechanism.POINT, {'angular_velocity': (1.0, 1.0, 0.0)}, 'held point at .* m/s; a velocity'),
+    (Mechanism.AXIS, {'angular_velocity': (0.1, 1.0, 0.0)},
+     r'the angular velocity \[0.1, 1.0, 0.0\]; one along its axis \[0.0, 1.0, 0.0\]'),
+    (Mechanism.AXIS, {'orientation': (0.0, 0.0, 0.0, 2.0)}, 'a quaternion of norm 1'),
+    (Mechanism.AXIS, {'axis': None}, 'has the axis None; a unit vector'),
+    (Mechanism.AXIS, {'axis': (0.0, 2.0, 0.0)}, r'has the axis \(0.0, 2.0, 0.0\); a unit vector'),
+    (Mechanism.TABLE, {'velocity': (1.0, 0.0, 0.1)}, 'the vertical velocity 0.1 m/s; a body that'),
+])
+def test_a_start_that_a_constraint_of_ones_own_forbids_is_refused(
+        monkeypatch, mechanism, changes, line):
+    class Wrong(Axle):
+        def initial(self, start, body, where):
+            state = super().initial(start, body, where)
+            for name, value in changes.items():
+                if name != 'axis':
+                    getattr(state, name)[:] = value
+            return state
+
+    Wrong.mechanism = mechanism
+    Wrong.axis = changes.get('axis', Axle.axis)
+    monkeypatch.setitem(CONSTRAINTS, 'axle', Wrong)
+    if line:
+        with pytest.raises(BadInput, match=f'line 5: initial: the constraint axle .*{line}'):
+            parse_scene(AXLE)
+    else:
+        assert parse_scene(AXLE).constraint.mechanism is mechanism
+
+
 @pytest.mark.parametrize('name', ['uniform_field', 'momentum', 'grip', 'notes', 'from_scene'])
 def test_a_setting_with_the_name_of_a_view_is_refused(name):
     with pytest.raises(TypeError, match=f'Wind.{name} is a setting with the name of a view'):

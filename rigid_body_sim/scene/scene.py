@@ -20,6 +20,7 @@ from rigid_body_sim.errors import BadInput, nearest, printable
 from rigid_body_sim.scene import bodies, shapes, yaml_text
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
+from rigid_body_sim.scene.constraints.allowed import refuse_forbidden
 from rigid_body_sim.scene.constraints.protocol import Constraint
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
 from rigid_body_sim.scene.effects.carrying import Carrying
@@ -296,6 +297,7 @@ def _scene(mapping, where):
         effects = *effects, Carrying.of(constraint, body)
     _refuse_beside_turning(effects, body, constraint, f'{where}: effects')
     initial = constraint.initial(start, body, f'{where}: initial')
+    refuse_forbidden(initial, constraint, start, body, f'{where}: initial')
     about = printable(' '.join(mapping.get('about', '').split()))
     return Scene(mapping['scene'], about, body, constraint, effects, initial,
                  mapping.get('commands', 'accept') == 'accept', mapping)
