@@ -112,17 +112,21 @@ def test_places_in_flat_arrays_have_names():
     assert wrong == []
 
 
-def words():
-    """Return the words of effects, constraints and methods."""
-    found = set(METHODS)
+@functools.cache
+def parts():
+    """Return the classes of effects and constraints."""
+    found = set()
     for room in (effects, constraints):
         for module in pkgutil.iter_modules(room.__path__):
             made = importlib.import_module(f'{room.__name__}.{module.name}')
-            found |= {one.kind for one in vars(made).values()
-                      if isinstance(one, type) and isinstance(getattr(one, 'kind', None), str)}
-            found |= {one.name for one in vars(made).values()
-                      if isinstance(one, type) and isinstance(getattr(one, 'name', None), str)}
+            found |= {one for one in vars(made).values() if isinstance(one, type)
+                      and isinstance(getattr(one, 'kind', getattr(one, 'name', None)), str)}
     return found
+
+
+def words():
+    """Return the words of effects, constraints and methods."""
+    return {*METHODS, *(getattr(one, 'kind', getattr(one, 'name', None)) for one in parts())}
 
 
 def test_nothing_is_asked_by_the_name_of_a_part():
@@ -156,12 +160,34 @@ def test_nothing_is_asked_by_the_name_of_a_part():
     assert wrong == []
 
 
+def calls(tree, function):
+    """Yield the calls of a builtin function."""
+    for part in ast.walk(tree):
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Name) and (
+                part.func.id == function):
+            yield part
+
+
+def test_nothing_is_asked_by_the_class_of_a_part():
+    """Outside study/, as for names: a constraint and an effect are asked for what they declare."""
+    classes, wrong = {one.__name__ for one in parts()}, []
+    assert {'Gravity', 'Pivot', 'Hinge'} <= classes
+    for path, _, tree in sources():
+        if path.startswith('study/'):
+            continue
+        for call in (*calls(tree, 'isinstance'), *calls(tree, 'issubclass')):
+            asked = {one.id for one in ast.walk(call.args[1]) if isinstance(one, ast.Name)}
+            wrong += [f'{path}:{call.lineno} {ast.unparse(call)}' for _ in asked & classes]
+    assert wrong == []
+
+
+FOREIGN = ('compilation/', 'numerics/double_double.py', 'sweeps/engine.py')
+"""Where hasattr is asked of Python, numba, a class of tuples and an executor: never of a part."""
+
+
 def test_nothing_is_found_by_looking_for_an_attribute():
-    wrong = [f'{path}:{part.lineno} {ast.unparse(part)}' for path, _, tree in sources()
-             if path.startswith(('scene/', *KERNELS, 'choice/', 'simulation/'))
-             for part in ast.walk(tree)
-             if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)
-             and part.func.id == 'hasattr']
+    wrong = [f'{path}:{call.lineno} {ast.unparse(call)}' for path, _, tree in sources()
+             if not path.startswith(FOREIGN) for call in calls(tree, 'hasattr')]
     assert wrong == []
 
 

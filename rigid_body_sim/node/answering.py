@@ -21,8 +21,7 @@ class Answering:
     def answer_all(self):
         """Make the services that rclpy created itself answer too."""
         for service in self.services:
-            if not hasattr(service.callback, 'answers'):
-                service.callback = self._answered(service.callback, service.service_name)
+            service.callback = self._answered(service.callback, service.service_name)
 
     def _answered(self, callback, name):
         @functools.wraps(callback)
@@ -34,5 +33,4 @@ class Answering:
                 self.get_logger().warning(
                     f'{name}: the request does not fit: {type(error).__name__}: {why}')
                 return response
-        answer.answers = True
         return answer

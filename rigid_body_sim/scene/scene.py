@@ -294,7 +294,7 @@ def _scene(mapping, where):
     effects = tuple(_effects(mapping['effects'], body, constraint, parameters,
                              f'{where}: effects'))
     if constraint.path is not None:
-        effects = *effects, Carrying.of(constraint, body)
+        effects = *effects, Carrying.of(constraint.path, body)
     _refuse_beside_turning(effects, body, constraint, f'{where}: effects')
     initial = constraint.initial(start, body, f'{where}: initial')
     refuse_forbidden(initial, constraint, start, body, f'{where}: initial')

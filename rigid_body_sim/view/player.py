@@ -151,7 +151,8 @@ def states_of(path):
 
     `path` may also be an open Recording. Of more than MOST_STATES states every n-th is kept.
     """
-    opened = contextlib.nullcontext(path) if hasattr(path, 'topics') else Recording(path)
+    is_open = isinstance(path, Recording)
+    opened = contextlib.nullcontext(path) if is_open else Recording(path)
     with opened as recording:
         source = sources(recording)[0]
         for topic in ('pose', 'angular_velocity'):

@@ -54,7 +54,7 @@ from rigid_body_sim.numerics.pairs import quotient
 from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies, principal_axes
-from rigid_body_sim.scene.constraints import Pivot
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
@@ -99,11 +99,13 @@ NOWHERE = (0.0, 0.0, 0.0)
 
 
 def absorbs(scene):
-    """Return whether the scene is a symmetric body on a pivot under its weight alone.
+    """Return whether the scene is a symmetric body under its weight alone, held at its origin.
 
     Symmetric means exactly so (:func:`symmetry_axis`).
     """
-    return (isinstance(scene.constraint, Pivot) and scene.weight is not None
+    held = scene.constraint
+    return (held.mechanism is Mechanism.POINT and held.path is None
+            and not any(held.point(scene.body)) and scene.weight is not None
             and symmetry_axis(scene.body) is not None)
 
 

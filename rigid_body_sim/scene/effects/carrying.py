@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints.pivot import MovingPivot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, path, tree
@@ -37,11 +36,11 @@ class Carrying(Effect):
     mechanisms: ClassVar = (Mechanism.POINT,)
 
     @classmethod
-    def of(cls, constraint: MovingPivot, body: Body) -> Self:
-        """Return the effect of a moving pivot."""
+    def of(cls, moving: path.Path, body: Body) -> Self:
+        """Return the effect of a path along which the held point of a body moves."""
         mass = tree.number(-body.mass)
-        forces = tuple(tree.times(mass, one) for one in path.accelerations(constraint.trees))
-        return cls(forces, constraint.parameters, body.center_of_mass)
+        forces = tuple(tree.times(mass, one) for one in path.accelerations(moving.trees))
+        return cls(forces, moving.parameters, body.center_of_mass)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque; there is none about the centre of mass, and none in a fixed frame."""
