@@ -18,8 +18,8 @@ UNKNOWN = '_y'
 
 
 def unknown(place):
-    """Return the node of an unknown."""
-    return tree.node('name', f'{UNKNOWN}{place}')
+    """Return the term of an unknown."""
+    return tree.term('name', f'{UNKNOWN}{place}')
 
 
 def rewritten(trees, definitions, parameters):
@@ -52,24 +52,24 @@ RULES = {'+': tree.plus, '-': tree.minus, '*': tree.times, '/': tree.over,
 
 
 def _remade(op, args):
-    """Return the node of an operation on trees that are rewritten already."""
+    """Return the term of an operation on trees that are rewritten already."""
     if op in RULES:
         return RULES[op](*args)
     if op == 'tan':
-        return tree.over(tree.node('sin', *args), tree.node('cos', *args))
+        return tree.over(tree.term('sin', *args), tree.term('cos', *args))
     if op != '^':
-        return tree.node(op, *args)
+        return tree.term(op, *args)
     base, exponent = args
     if exponent is tree.ZERO:
         return tree.ONE
     if _changes(exponent):
-        return tree.node('exp', tree.times(exponent, tree.node('log', base)))
+        return tree.term('exp', tree.times(exponent, tree.term('log', base)))
     if exponent.op == 'number' and abs(exponent.args[0]) in range(1, LARGEST + 1):
         whole = _whole_power(base, int(abs(exponent.args[0])))
         return whole if exponent.args[0] > 0.0 else tree.over(tree.ONE, whole)
     if exponent.op == 'number' and exponent.args[0] == 0.5:
-        return tree.node('sqrt', base)
-    return tree.node('^', base, exponent)
+        return tree.term('sqrt', base)
+    return tree.term('^', base, exponent)
 
 
 def _whole(exponent, parameters):
@@ -110,7 +110,7 @@ class Plan:
         (op, operands ...), as recurrences.py reads them.
     rates : tuple
         The operand of each tree; None of a tree that is 0.
-    firsts, fixed : list of Nodes
+    firsts, fixed : list of Terms
         The first coefficient of each step; what steps take beside series.
     bases : tuple
         The operands of roots and powers, whose series hold as long as these stay positive.
@@ -151,9 +151,9 @@ class Plan:
         self.firsts.append(one)
 
     def _append(self, one):
-        """Append the step of a node that changes."""
+        """Append the step of a term that changes."""
         op, operands = one.op, [self._operand(arg) for arg in one.args if one.op != 'name']
-        inverse = tree.node('/', tree.ONE, one.args[-1]) if op == '/' else None
+        inverse = tree.term('/', tree.ONE, one.args[-1]) if op == '/' else None
         match op:
             case 'name':
                 self._put(one, 'unknown', int(one.args[0].removeprefix(UNKNOWN)))
@@ -165,16 +165,16 @@ class Plan:
                 self._put(one, '/', *operands, self._number(inverse))
             case 'sin' | 'cos':
                 for which in ('sin', 'cos'):
-                    pair = tree.node(which, *one.args)
+                    pair = tree.term(which, *one.args)
                     self._changing.add(pair)
                     self._put(pair, which, *operands)
             case 'log':
-                self._put(one, op, *operands, self._number(tree.node('/', tree.ONE, *one.args)))
+                self._put(one, op, *operands, self._number(tree.term('/', tree.ONE, *one.args)))
             case 'sqrt':
                 self._put(one, op, *operands,
-                          self._number(tree.node(OR_ZERO, tree.number(0.5), one)))
+                          self._number(tree.term(OR_ZERO, tree.number(0.5), one)))
             case '^':
                 self._put(one, op, *operands,
-                          self._number(tree.node(OR_ZERO, tree.ONE, one.args[0])))
+                          self._number(tree.term(OR_ZERO, tree.ONE, one.args[0])))
             case _:
                 self._put(one, op, *operands)

@@ -22,8 +22,8 @@ hinge the attitude where phi is 0, and its angle less phi."""
 
 
 def own(name):
-    """Return the node of a name that no parameter of a scene can have."""
-    return tree.node('name', f'_{name}')
+    """Return the term of a name that no parameter of a scene can have."""
+    return tree.term('name', f'_{name}')
 
 
 class Trees:
@@ -40,7 +40,7 @@ class Trees:
 
     Attributes
     ----------
-    rates : list of Nodes
+    rates : list of Terms
         Rates of the unknowns, made of these (`unknown`), of parameters and of own names.
     parameters : dict of str to float
         Parameters of the formulas.
@@ -74,17 +74,17 @@ class Trees:
         return [actor.series(self._frame, time) for actor in self._actors]
 
     def _vector(self, name, count=3):
-        """Return the nodes of numbers that may change with time; those that stay 0 are ZERO."""
+        """Return the terms of numbers that may change with time; those that stay 0 are ZERO."""
         tables = [self.numbers(time) for time in self._times]
         names = [f'_{name}{k}' for k in range(count)]
-        return tuple(tree.node('name', one) if any(table[one] for table in tables) else tree.ZERO
+        return tuple(tree.term('name', one) if any(table[one] for table in tables) else tree.ZERO
                      for one in names)
 
     def _constants_of(self, name, values):
-        """Return the nodes of numbers that never change."""
+        """Return the terms of numbers that never change."""
         names = [f'_{name}{k}' for k in range(len(values))]
         self._static |= dict(zip(names, map(float, values), strict=True))
-        return tuple(tree.node('name', one) if value else tree.ZERO
+        return tuple(tree.term('name', one) if value else tree.ZERO
                      for one, value in zip(names, values, strict=True))
 
     def _acting(self, omega):
@@ -162,7 +162,7 @@ class Trees:
         if self._equations.on_hinge:
             n = self._constants_of('axis', frame.hinge.axis)
             half = tree.times(tree.number(0.5), unknown(0))
-            sine, cosine = tree.node('sin', half), tree.node('cos', half)
+            sine, cosine = tree.term('sin', half), tree.term('cos', half)
             turn = (*(tree.times(part, sine) for part in n), cosine)
             attitude = _product([own(name) for name in FIRST], turn)
             omega = tuple(tree.times(part, unknown(1)) for part in n)
@@ -211,7 +211,7 @@ def _named(*groups):
 
 
 def _rows(nine):
-    """Return nine nodes as the rows of a matrix."""
+    """Return nine terms as the rows of a matrix."""
     three = iter(nine)
     return tuple(zip(three, three, three, strict=True))
 

@@ -108,7 +108,7 @@ class MovingPivot(Constraint):
     without kinks. The bearing exerts the force that this takes, and the ledger books its work.
     """
 
-    trees: tuple[tree.Node, ...]
+    trees: tuple[tree.Term, ...]
     parameters: tuple[tuple[str, float], ...]
     at: Vector = (0.0, 0.0, 0.0)
     kind: ClassVar[str] = 'moving_pivot'

@@ -21,14 +21,14 @@ class Carrying(Effect):
 
     Attributes
     ----------
-    trees : tuple of 3 Nodes
+    trees : tuple of 3 Terms
         -M a, world axes, N.
     parameters : tuple of (str, float)
     center : tuple of 3 floats
         The centre of mass, body axes, m.
     """
 
-    trees: tuple[tree.Node, ...]
+    trees: tuple[tree.Term, ...]
     parameters: tuple[tuple[str, float], ...]
     center: tuple[float, float, float]
     name: ClassVar[str] = 'carrying'

@@ -234,7 +234,7 @@ def _resisted(linear, square, v, frame=None):
         return tuple(map(tree.negative, vectors.apply(rows, v)))
     by_square = times_v(square)
     if by_square is not formulas.NONE:
-        by_square = vectors.scaled(tree.node('sqrt', vectors.dot(v, v)), by_square)
+        by_square = vectors.scaled(tree.term('sqrt', vectors.dot(v, v)), by_square)
     return vectors.total(times_v(linear), by_square)
 
 

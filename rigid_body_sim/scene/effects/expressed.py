@@ -15,12 +15,12 @@ from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import described, mapping_of
 
 
-def trees_of(value: list[Expression], where: str) -> tuple[tree.Node, ...]:
+def trees_of(value: list[Expression], where: str) -> tuple[tree.Term, ...]:
     """Return the trees of three expressions."""
     return tuple(one.tree(f'{where}.{place}') for place, one in enumerate(value))
 
 
-def refuse_beside_hinge(trees: tuple[tree.Node, ...], constraint: Constraint,
+def refuse_beside_hinge(trees: tuple[tree.Term, ...], constraint: Constraint,
                         where: str) -> None:
     """Refuse the angle of a hinge and its rate where there is no hinge."""
     known = tree.names(*trees) & {*HINGE}
@@ -36,7 +36,7 @@ class ExpressedTorque(Effect):
 
     Attributes
     ----------
-    trees : tuple of 3 Nodes
+    trees : tuple of 3 Terms
     frame : str
         Axes of the components: ``body`` or ``world``.
     books : str
@@ -44,7 +44,7 @@ class ExpressedTorque(Effect):
     parameters : tuple of (str, float)
     """
 
-    trees: tuple[tree.Node, ...]
+    trees: tuple[tree.Term, ...]
     frame: str
     books: str
     parameters: tuple[tuple[str, float], ...]
@@ -79,7 +79,7 @@ class PotentialEnergy(Effect):
     a turn about it takes. A scene may list several.
     """
 
-    energy: tree.Node
+    energy: tree.Term
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'potential'
     SCHEMA: ClassVar[dict] = described(mapping_of(

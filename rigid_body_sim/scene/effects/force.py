@@ -24,7 +24,7 @@ class Force(Effect):
     scene may list several.
     """
 
-    trees: tuple[tree.Node, ...]
+    trees: tuple[tree.Term, ...]
     at: tuple[float, float, float]
     frame: str
     books: str

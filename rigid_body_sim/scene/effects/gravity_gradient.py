@@ -44,7 +44,7 @@ class GravityGradient(Effect):
     `toward` (square to it), and mu/r^3 = rate^2. What the orbit does is booked as work.
     """
 
-    energy: tree.Node | None    # None on an orbit
+    energy: tree.Term | None    # None on an orbit
     share: float
     toward: tuple[float, ...]
     most: float
@@ -141,9 +141,9 @@ class GravityGradient(Effect):
         """Return the torque."""
         n = vectors.constant(self.toward)
         if self.energy is None:
-            turned = tree.times(tree.number(self.rate), tree.node('name', *TIME))
-            n = vectors.total(vectors.scaled(tree.node('cos', turned), n), vectors.scaled(
-                tree.node('sin', turned), vectors.constant(self.ahead)))
+            turned = tree.times(tree.number(self.rate), tree.term('name', *TIME))
+            n = vectors.total(vectors.scaled(tree.term('cos', turned), n), vectors.scaled(
+                tree.term('sin', turned), vectors.constant(self.ahead)))
         n1, n2, n3 = vectors.to_body(n)
         torque = map(tree.times, vectors.constant(self._differences(frame)),
                      (tree.times(n2, n3), tree.times(n3, n1), tree.times(n1, n2)))

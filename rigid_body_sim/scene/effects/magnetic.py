@@ -26,8 +26,8 @@ class Magnetic(Effect):
     The ledger books the power as potential, or as work if the field depends on time.
     """
 
-    energy: tree.Node
-    turn: tuple[tree.Node, ...]
+    energy: tree.Term
+    turn: tuple[tree.Term, ...]
     most: float
     parameters: tuple[tuple[str, float], ...]
     name: ClassVar[str] = 'magnetic'

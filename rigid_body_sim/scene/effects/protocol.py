@@ -16,7 +16,7 @@ import numpy as np
 
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.expressions.tree import ZERO, Node
+from rigid_body_sim.scene.expressions.tree import ZERO, Term
 from rigid_body_sim.scene.frame import Frame
 
 Vector = tuple[float, float, float]
@@ -93,9 +93,9 @@ class Formulas:
 
     Attributes
     ----------
-    torque : tuple of 3 Nodes
+    torque : tuple of 3 Terms
         About the reference point, body components (those of the frame if `of_frame`), N m.
-    force : tuple of 3 Nodes
+    force : tuple of 3 Terms
         At the centre of mass, world components, N. Only where ``frame.moves``; else zeros, and
         the torque has its moment.
     parameters : tuple of (str, float)
@@ -104,8 +104,8 @@ class Formulas:
         frame, its angular velocity (frame components), place and velocity of the reference point.
     """
 
-    torque: tuple[Node, Node, Node]
-    force: tuple[Node, Node, Node] = (ZERO, ZERO, ZERO)
+    torque: tuple[Term, Term, Term]
+    force: tuple[Term, Term, Term] = (ZERO, ZERO, ZERO)
     parameters: tuple[tuple[str, float], ...] = ()
     of_frame: bool = False
 

@@ -108,7 +108,7 @@ class Rotor(Effect):
         axis = frame.from_body(self.axis)
         if self.torque:
             h = tree.plus(tree.number(self.momentum_at_start),
-                          tree.times(tree.number(self.torque), tree.node('name', *TIME)))
+                          tree.times(tree.number(self.torque), tree.term('name', *TIME)))
             turning = vectors.cross(vectors.constant(axis), vectors.named(RATES))
             torque = vectors.total(vectors.scaled(h, turning),
                                    vectors.constant(scaled(-self.torque, axis)))

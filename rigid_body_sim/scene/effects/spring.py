@@ -32,9 +32,9 @@ class Spring(Effect):
     and c in N m s: U = k (angle - phi)^2/2, and the torque -c rate about the axis.
     """
 
-    energy: tree.Node
-    pull: tuple[tree.Node, ...]
-    damper: tuple[tree.Node, ...]
+    energy: tree.Term
+    pull: tuple[tree.Term, ...]
+    damper: tuple[tree.Term, ...]
     at: tuple[float, float, float] | None    # None of a torsion spring
     name: ClassVar[str] = 'spring'
     SCHEMA: ClassVar[dict] = described(mapping_of(
@@ -77,8 +77,8 @@ class Spring(Effect):
         square, pull = vectors.dot(d, d), tree.number(-k)
         if l:
             pull = tree.times(pull, tree.minus(
-                tree.number(1.0), tree.over(tree.number(l), tree.node('sqrt', square))))
-            stretch = tree.minus(tree.node('sqrt', square), tree.number(l))
+                tree.number(1.0), tree.over(tree.number(l), tree.term('sqrt', square))))
+            stretch = tree.minus(tree.term('sqrt', square), tree.number(l))
             square = tree.times(stretch, stretch)
             along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
             v = tuple(tree.times(along, part) for part in d)
@@ -115,7 +115,7 @@ class Spring(Effect):
 
 def _torsion(k, c, angle, axis):
     """Return the energy of a torsion spring, and the torque of its damping."""
-    turned = tree.minus(tree.node('name', 'angle'), tree.number(angle))
+    turned = tree.minus(tree.term('name', 'angle'), tree.number(angle))
     energy = tree.times(tree.number(0.5 * k), tree.times(turned, turned))
-    rate = tree.node('name', 'rate')
+    rate = tree.term('name', 'rate')
     return energy, tuple(tree.times(tree.number(-c * part), rate) for part in axis) if c else ()

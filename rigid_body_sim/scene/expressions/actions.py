@@ -70,7 +70,7 @@ def torque(trees, axes, parameters, frame, books):
 
     Parameters
     ----------
-    trees : tuple of 3 Nodes
+    trees : tuple of 3 Terms
         Components, N m.
     axes : str
         ``body`` or ``world``: of the components.
@@ -128,7 +128,7 @@ def _to_world(lines, components, axes, frame):
 
 def gradient(energy, frame, turn=None):
     """Return force and torque about the body's origin, three trees each, as `pulls` has them."""
-    x, y, z, w = (tree.node('name', name) for name in ATTITUDE)
+    x, y, z, w = (tree.term('name', name) for name in ATTITUDE)
     place = [tree.negative(one) for one in tree.derivatives(energy, PLACE)]
     by_q = tree.derivatives(energy, ATTITUDE)
     columns = ((w, z, tree.negative(y), tree.negative(x)),
@@ -156,11 +156,11 @@ def pulls(energy, parameters, frame, turn=None, books='potential'):
 
     Parameters
     ----------
-    energy : Node
+    energy : Term
         U in J, of place and attitude.
     parameters : tuple of (str, float)
     frame : Frame
-    turn : tuple of 3 Nodes, optional
+    turn : tuple of 3 Terms, optional
         Gamma, body axes, for an effect that knows it without terms that cancel: what these leave
         over spins a slim body about its axis.
     books : str

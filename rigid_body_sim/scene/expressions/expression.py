@@ -33,7 +33,7 @@ class Expression:
     text: str | float
     parameters: tuple[tuple[str, float], ...]
 
-    def tree(self, where: str, names: Sequence[str] = STATE_NAMES) -> tree.Node:
+    def tree(self, where: str, names: Sequence[str] = STATE_NAMES) -> tree.Term:
         """Return its tree, which may use these names of the state.
 
         Raises

@@ -9,7 +9,7 @@ from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import KINKED, TIME, Kernel, Lines, kernel, prelude
 
 
-def kinks(trees: tuple[tree.Node, ...]) -> list[str]:
+def kinks(trees: tuple[tree.Term, ...]) -> list[str]:
     """Return the functions with kinks that stand in trees, sorted."""
     return sorted({one.op for one in tree.parts(*trees)} & {*KINKED, 'where'})
 
@@ -23,27 +23,27 @@ class Path(Kernel):
 
     Attributes
     ----------
-    trees : tuple of 3 Nodes
+    trees : tuple of 3 Terms
         Place as a function of the time (s), m, world axes.
     parameters : tuple of (str, float)
     """
 
-    trees: tuple[tree.Node, ...]
+    trees: tuple[tree.Term, ...]
     parameters: tuple[tuple[str, float], ...]
 
 
-def velocities(trees: tuple[tree.Node, ...]) -> tuple[tree.Node, ...]:
+def velocities(trees: tuple[tree.Term, ...]) -> tuple[tree.Term, ...]:
     """Return the derivatives of trees by time."""
     return tuple(tree.derivatives(one, TIME)[0] for one in trees)
 
 
-def accelerations(trees: tuple[tree.Node, ...]) -> tuple[tree.Node, ...]:
+def accelerations(trees: tuple[tree.Term, ...]) -> tuple[tree.Term, ...]:
     """Return the second derivatives of trees by time."""
     return velocities(velocities(trees))
 
 
 @functools.lru_cache(maxsize=256)
-def path(trees: tuple[tree.Node, ...], parameters: tuple[tuple[str, float], ...]) -> Path:
+def path(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float], ...]) -> Path:
     """Return the Path of a place as a function of the time; arguments as its attributes."""
     lines = Lines(dict(parameters))
     found = lines.of(*trees, *velocities(trees), *accelerations(trees))

@@ -101,7 +101,7 @@ class _Reader:
                 if name not in self._names:
                     self._refuse(f'{name} is not known here',
                                  f'the names are {", ".join(sorted(self._names))}')
-                return tree.node('name', name)
+                return tree.term('name', name)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return tree.negative(self.tree(operand, depth + 1))
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
@@ -117,10 +117,10 @@ class _Reader:
                 found = [self.tree(one, depth + 1) for one in args]
                 if name == 'where' and found[0].op != 'less':
                     self._refuse('where without a comparison', 'where(x < y, this, that)')
-                return tree.node(name, *found)
+                return tree.term(name, *found)
             case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _ORDERS:
                 a, b = self.tree(left, depth + 1), self.tree(right, depth + 1)
-                return tree.node('less', *((a, b) if _ORDERS[type(op)] else (b, a)))
+                return tree.term('less', *((a, b) if _ORDERS[type(op)] else (b, a)))
             case ast.Call(func=ast.Name(id=name)):
                 self._refuse(f'{name} is no function here',
                              f'the functions are {", ".join(tree.FUNCTIONS)}')

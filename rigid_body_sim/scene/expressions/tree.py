@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions of scene files as trees, and their derivatives.
 
-A node is kept once, so that equal parts of an expression are the same object and are computed
+A term is kept once, so that equal parts of an expression are the same object and are computed
 once. The order of operations is that of the text: the bits of a scene do not depend on the version
-of a computer algebra system and its order of terms.
+of a computer algebra system and the order in which it adds.
 """
 
 import functools
@@ -15,8 +15,8 @@ FUNCTIONS = {'sqrt': 1, 'sin': 1, 'cos': 1, 'tan': 1, 'exp': 1, 'log': 1, 'tanh'
 
 
 @dataclass(frozen=True, eq=False)
-class Node:
-    """A number, a name, or an operation on other nodes.
+class Term:
+    """A number, a name, or an operation on other terms.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Node:
         second, else 0), or a key of FUNCTIONS; ``where`` takes a ``less`` and what holds where it
         is 1 and where it is 0.
     args : tuple
-        A float, a text, or nodes.
+        A float, a text, or terms.
     """
 
     op: str
@@ -40,14 +40,14 @@ class Node:
 
 
 @functools.lru_cache(maxsize=100_000)
-def node(op, *args):
-    """Return the node of an operation: the same object for the same operation."""
-    return Node(op, args)
+def term(op, *args):
+    """Return the term of an operation: the same object for the same operation."""
+    return Term(op, args)
 
 
 def number(value):
-    """Return the node of a number."""
-    return node('number', float(value))
+    """Return the term of a number."""
+    return term('number', float(value))
 
 
 ZERO, ONE, TWO = number(0.0), number(1.0), number(2.0)
@@ -59,36 +59,36 @@ def _is(one, value):
 
 def plus(a, b):
     """Return a + b; a zero adds nothing."""
-    return b if _is(a, 0.0) else a if _is(b, 0.0) else node('+', a, b)
+    return b if _is(a, 0.0) else a if _is(b, 0.0) else term('+', a, b)
 
 
 def minus(a, b):
     """Return a - b; a zero takes nothing away."""
-    return a if _is(b, 0.0) else negative(b) if _is(a, 0.0) else node('-', a, b)
+    return a if _is(b, 0.0) else negative(b) if _is(a, 0.0) else term('-', a, b)
 
 
 def times(a, b):
     """Return a b; zero and one are not multiplied out."""
     if _is(a, 0.0) or _is(b, 0.0):
         return ZERO
-    return b if _is(a, 1.0) else a if _is(b, 1.0) else node('*', a, b)
+    return b if _is(a, 1.0) else a if _is(b, 1.0) else term('*', a, b)
 
 
 def over(a, b):
     """Return a/b."""
-    return ZERO if _is(a, 0.0) else a if _is(b, 1.0) else node('/', a, b)
+    return ZERO if _is(a, 0.0) else a if _is(b, 1.0) else term('/', a, b)
 
 
 def negative(a):
     """Return -a."""
     if a.op == 'number':
         return number(-a.args[0])
-    return a.args[0] if a.op == 'negative' else node('negative', a)
+    return a.args[0] if a.op == 'negative' else term('negative', a)
 
 
 def power(a, b):
     """Return a to the power b."""
-    return ONE if _is(b, 0.0) else a if _is(b, 1.0) else node('^', a, b)
+    return ONE if _is(b, 0.0) else a if _is(b, 1.0) else term('^', a, b)
 
 
 def names(*trees):
@@ -97,7 +97,7 @@ def names(*trees):
 
 
 def parts(*trees):
-    """Return each node of trees once, in an order in which what it is made of comes before it."""
+    """Return each term of trees once, in an order in which what it is made of comes before it."""
     found, stack = {}, [(one, False) for one in reversed(trees)]
     while stack:
         one, done = stack.pop()
@@ -116,12 +116,12 @@ def derivatives(tree, variables):
 
     Parameters
     ----------
-    tree : Node
+    tree : Term
     variables : sequence of str
 
     Returns
     -------
-    list of Node
+    list of Term
     """
     found = []
     for variable in variables:
@@ -161,13 +161,13 @@ def _derivative(one, variable, rates):
             return negative(du)
         case '^':
             slope = times(times(v, power(u, minus_one(v))), du)
-            return slope if dv is ZERO else plus(slope, times(times(one, node('log', u)), dv))
+            return slope if dv is ZERO else plus(slope, times(times(one, term('log', u)), dv))
         case 'sqrt':
             return over(du, times(TWO, one))
         case 'sin':
-            return times(node('cos', u), du)
+            return times(term('cos', u), du)
         case 'cos':
-            return negative(times(node('sin', u), du))
+            return negative(times(term('sin', u), du))
         case 'tan':
             return times(plus(ONE, times(one, one)), du)
         case 'exp':
@@ -177,9 +177,9 @@ def _derivative(one, variable, rates):
         case 'tanh':
             return times(minus(ONE, times(one, one)), du)
         case 'abs':
-            return times(node('sign', u), du)
+            return times(term('sign', u), du)
         case 'min' | 'max':
-            return choice(node('less', *((u, v) if op == 'min' else (v, u))), du, dv)
+            return choice(term('less', *((u, v) if op == 'min' else (v, u))), du, dv)
         case 'less' | 'sign':    # steps: their jumps have no slope
             return ZERO
     raise AssertionError(op)
@@ -187,7 +187,7 @@ def _derivative(one, variable, rates):
 
 def choice(less, a, b):
     """Return a where a comparison holds, else b."""
-    return a if a is b else node('where', less, a, b)
+    return a if a is b else term('where', less, a, b)
 
 
 def minus_one(v):

@@ -2,7 +2,7 @@
 """Vectors whose components are trees: for effects that write their energy as a formula."""
 
 from rigid_body_sim.scene.expressions.source import ATTITUDE
-from rigid_body_sim.scene.expressions.tree import TWO, minus, node, number, plus, times
+from rigid_body_sim.scene.expressions.tree import TWO, minus, number, plus, term, times
 
 
 def constant(vector):
@@ -12,7 +12,7 @@ def constant(vector):
 
 def named(names):
     """Return the vector of three names."""
-    return tuple(node('name', name) for name in names)
+    return tuple(term('name', name) for name in names)
 
 
 def total(a, b):
@@ -50,7 +50,7 @@ def cross(a, b):
 
 def _turned(v, sign):
     """Return v + 2 w (u x v) + 2 u x (u x v) with q = (u, w), or with -u."""
-    *u, w = (node('name', name) for name in ATTITUDE)
+    *u, w = (term('name', name) for name in ATTITUDE)
     across = cross(u, v)
     once = tuple(times(times(TWO, w), part) for part in across)
     twice = tuple(times(TWO, part) for part in cross(u, across))
