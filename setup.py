@@ -16,7 +16,7 @@ NAME = 'rigid_body_sim'
 ROOT = pathlib.Path(__file__).resolve().parent
 manifest = xml.etree.ElementTree.parse(ROOT / 'package.xml').getroot()
 # the file is run alone: a build environment does not have the packages that rigid_body_sim imports
-COMMANDS = runpy.run_path(str(ROOT / NAME / 'cli' / 'subcommands.py'))['COMMANDS']
+SUBCOMMANDS = runpy.run_path(str(ROOT / NAME / 'cli' / 'subcommands.py'))['SUBCOMMANDS']
 
 PLOTS = ['matplotlib>=3.6', 'plotly>=5.0']
 TABLES = ['pandas>=2.1', 'pyarrow>=14.0', 'xarray>=2023.6']
@@ -36,12 +36,12 @@ def executables():
     """Return the console scripts.
 
     colcon and the makers of Debian packages call ``setup.py install`` or ``setup.py develop``;
-    they put an executable of each command into lib/rigid_body_sim, where ``ros2 run`` looks
+    they put an executable of each subcommand into lib/rigid_body_sim, where ``ros2 run`` looks
     (setup.cfg). A wheel has the one command ``rigid_body_sim``: names as common as ``run`` and
     ``export`` have no place in the bin folder of an environment.
     """
     if {'install', 'develop'} & set(sys.argv):
-        return [f'{name} = {NAME}.__main__:{name}' for name in COMMANDS]
+        return [f'{name} = {NAME}.__main__:{name}' for name in SUBCOMMANDS]
     return [f'{NAME} = {NAME}.__main__:main']
 
 

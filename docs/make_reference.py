@@ -12,7 +12,7 @@ generated. test/test_docs.py fails if a page is not as this makes it.
 import pathlib
 import re
 
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 from rigid_body_sim.messages import state_topics
 from rigid_body_sim.scene.constraints import DisplacedPivot, Hinge, MovingPivot, Plane
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -43,7 +43,7 @@ def topics():
 def commands():
     """Return the subcommands."""
     return '\n'.join(['| name | does |', '|---|---|',
-                      *(f'| `{name}` | {about} |' for name, (_, about) in COMMANDS.items())])
+                      *(f'| `{name}` | {about} |' for name, (_, about) in SUBCOMMANDS.items())])
 
 
 WHERE = {Mechanism.FREE: 'free', Mechanism.POINT: 'pivot', Mechanism.AXIS: 'hinge',

@@ -5,7 +5,7 @@ import importlib
 import os
 import sys
 
-from rigid_body_sim.cli.subcommands import COMMANDS, MISSING
+from rigid_body_sim.cli.subcommands import MISSING, SUBCOMMANDS
 from rigid_body_sim.command_line import BAD_INPUT, GOOD, interruptible
 from rigid_body_sim.errors import nearest
 
@@ -13,23 +13,23 @@ PROGRAM = 'rigid_body_sim'
 
 
 def main(arguments=None):
-    """Run the command that the first argument names; return its exit status."""
+    """Run the subcommand that the first argument names; return its exit status."""
     return interruptible(_main, sys.argv[1:] if arguments is None else arguments)
 
 
 def __getattr__(name):
-    """Return the function of a command, by its name: what ``ros2 run rigid_body_sim NAME`` calls.
+    """Return the function of a subcommand: what ``ros2 run rigid_body_sim NAME`` calls.
 
     Its modules are imported when it is called.
     """
-    if name not in COMMANDS:
+    if name not in SUBCOMMANDS:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     return lambda: main([name, *sys.argv[1:]])
 
 
 def _main(arguments):
     if not arguments or arguments[0] in ('-h', '--help'):
-        _show_commands()
+        _show_subcommands()
         return GOOD
     if arguments[0] == '--version':
         from rigid_body_sim.recording.about import version
@@ -39,12 +39,12 @@ def _main(arguments):
         from rigid_body_sim.cli import completion
         return completion.main(arguments[1:])
     name = arguments[0]
-    if name not in COMMANDS:
-        near = nearest(name, COMMANDS)
-        hint = f'did you mean {near}?' if near else f'the commands are {", ".join(COMMANDS)}'
-        print(f'{PROGRAM}: no command {name!r}; {hint}', file=sys.stderr)
+    if name not in SUBCOMMANDS:
+        near = nearest(name, SUBCOMMANDS)
+        hint = f'did you mean {near}?' if near else f'the subcommands are {", ".join(SUBCOMMANDS)}'
+        print(f'{PROGRAM}: no subcommand {name!r}; {hint}', file=sys.stderr)
         return BAD_INPUT
-    module, _, function = COMMANDS[name][0].partition(':')
+    module, _, function = SUBCOMMANDS[name][0].partition(':')
     sys.argv = [name, *arguments[1:]]
     try:
         return getattr(importlib.import_module(module), function)()
@@ -57,10 +57,10 @@ def _main(arguments):
         return BAD_INPUT
 
 
-def _show_commands():
+def _show_subcommands():
     program = PROGRAM if os.path.basename(sys.argv[0]) == PROGRAM else f'python -m {PROGRAM}'
     print(f'usage: {program} NAME [options]      ({program} NAME --help says more)\n')
-    for name, (_, about) in COMMANDS.items():
+    for name, (_, about) in SUBCOMMANDS.items():
         print(f'  {name:20} {about}')
     print('\n  --version            show the version'
           '\n  --completion SHELL   print the completion script for bash or zsh')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The common parts of all commands.
+"""The common parts of all subcommands.
 
 These are the parser, the exit statuses, JSON with 17 digits, Ctrl-C, and the line about slow
 steps. Importing this module is fast.
@@ -18,7 +18,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 
 GOOD, CHECK_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 PATIENCE, LOOK = 4.0, 0.5
-"""Time after which a command says that it compiles, and time between its checks, s."""
+"""Time after which a subcommand says that it compiles, and time between its checks, s."""
 COMPILER = 'numba.core.compiler'
 """The module whose functions run while a kernel is compiled, not while it comes from the cache."""
 
@@ -30,15 +30,15 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser(name, about, example):
-    """Return an argument parser for a command, whose help ends with an example."""
+    """Return an argument parser for a subcommand, whose help ends with an example."""
     return _Parser(prog=name, description=about, epilog=f'example:\n  {example}',
                    formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
 
 
 def run(function, arguments, kernels='this scene'):
-    """Run a command's function on its parsed arguments; return the exit status.
+    """Run a subcommand's function on its parsed arguments; return the exit status.
 
-    `kernels` says whose kernels the command may have to compile.
+    `kernels` says whose kernels the subcommand may have to compile.
     """
     try:
         with patience(kernels):
@@ -61,7 +61,7 @@ def run(function, arguments, kernels='this scene'):
 def interruptible(function, *arguments):
     """Call a function; Ctrl-C ends the process with one line, whenever it comes.
 
-    It may come during an import, before a command could handle it, or in libraries that turn it
+    It may come during an import, before a subcommand could handle it, or in libraries that turn it
     into another error or print it. The function may still handle SIGINT in its own way.
     """
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
@@ -71,7 +71,7 @@ def interruptible(function, *arguments):
 
     def hear(number, _):
         if heard and sys.exc_info()[0] is not None:
-            return    # the command is ending already, and may finish what it has to
+            return    # the subcommand is ending already, and may finish what it has to
         if not heard:
             # messages of threads and destructors from here on are about the interrupt
             sys.unraisablehook = threading.excepthook = lambda _: None
@@ -115,7 +115,7 @@ def _leave(status):
 def deaf_children():
     """Start child processes here that ignore Ctrl-C.
 
-    The terminal sends it to all processes of a command; the parent alone answers, and ends its
+    The terminal sends it to all processes of a subcommand; the parent alone answers, and ends its
     children. An ignored signal stays ignored in a child, forked or not; a signal mask does not,
     since multiprocessing changes it. Only a main thread can do this.
     """

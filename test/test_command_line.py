@@ -25,7 +25,7 @@ def interrupt():
 
 {code}
 
-shell.COMMANDS['strange'] = ('strange:main', '')
+shell.SUBCOMMANDS['strange'] = ('strange:main', '')
 sys.modules['strange'] = types.SimpleNamespace(main=main)
 sys.exit(shell.{entry})
 """

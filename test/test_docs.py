@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 from rigid_body_sim.integrators.marching import contact
 from rigid_body_sim.mechanics import events
 from rigid_body_sim.motions import sliding_sphere
@@ -144,7 +144,7 @@ def test_the_gallery_shows_every_page_and_pictures_are_small():
 @pytest.mark.parametrize('path', [*tables.pages(), DOCS / 'scenes.md'], ids=lambda path: path.stem)
 def test_commands_of_the_page_exist_and_their_overrides_hold(path):
     for line in re.findall(r'^python -m rigid_body_sim (.*)$', path.read_text(), re.MULTILINE):
-        assert line.split()[0] in COMMANDS
+        assert line.split()[0] in SUBCOMMANDS
         scene = re.search(r'--scene (\w+)(?= |$)', line)
         overrides = re.findall(r'--set (?:"([^"]+)"|(\S+))', line)
         if scene and scene[1] in scene_names():

@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -38,15 +38,16 @@ def run(prefix, domain, folder, name, *arguments):
 
 
 def test_every_command_is_installed_and_shows_its_help(prefix, ros_domain, tmp_path):
-    assert {path.name for path in (prefix / 'lib' / 'rigid_body_sim').iterdir()} == set(COMMANDS)
-    for name in COMMANDS:
+    installed = {path.name for path in (prefix / 'lib' / 'rigid_body_sim').iterdir()}
+    assert installed == set(SUBCOMMANDS)
+    for name in SUBCOMMANDS:
         result = run(prefix, ros_domain, tmp_path, name, '--help')
         assert (result.returncode, result.stderr) == (0, ''), name
         assert 'example' in result.stdout, name
 
 
 def test_executables_run_in_the_environment_that_built_them(prefix):
-    for name in COMMANDS:
+    for name in SUBCOMMANDS:
         assert (prefix / 'lib' / 'rigid_body_sim'
                 / name).read_text().splitlines()[0] == f'#!{sys.executable}'
 

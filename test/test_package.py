@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from rigid_body_sim import __main__ as shell
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / 'rigid_body_sim'
@@ -91,10 +91,10 @@ def test_every_folder_is_a_package_that_gets_installed():
 
 def test_the_table_of_commands_needs_no_package():
     code = ('import sys; sys.path.insert(0, sys.argv[1]); from rigid_body_sim.cli.subcommands '
-            'import COMMANDS; print(*COMMANDS)')
+            'import SUBCOMMANDS; print(*SUBCOMMANDS)')
     listed = subprocess.run([sys.executable, '-I', '-S', '-c', code, ROOT], capture_output=True,
                             text=True, timeout=30, check=True).stdout
-    assert listed.split() == list(COMMANDS)
+    assert listed.split() == list(SUBCOMMANDS)
 
 
 def scripts_of(tmp_path, command):
@@ -113,8 +113,8 @@ def scripts_of(tmp_path, command):
 def test_colcon_makes_an_executable_of_every_command(tmp_path, command):
     _, scripts = scripts_of(tmp_path, command)
     # by way of the shell command, which hears Ctrl-C before anything slow is imported
-    assert scripts == {name: f'rigid_body_sim.__main__:{name}' for name in COMMANDS}
-    assert all(callable(getattr(shell, name)) for name in COMMANDS)
+    assert scripts == {name: f'rigid_body_sim.__main__:{name}' for name in SUBCOMMANDS}
+    assert all(callable(getattr(shell, name)) for name in SUBCOMMANDS)
 
 
 def test_a_wheel_has_one_command_and_the_version_of_package_xml(tmp_path):
@@ -125,7 +125,7 @@ def test_a_wheel_has_one_command_and_the_version_of_package_xml(tmp_path):
 
 
 def test_every_command_has_a_function_and_a_line_of_help():
-    for name, (target, about) in COMMANDS.items():
+    for name, (target, about) in SUBCOMMANDS.items():
         module, _, function = target.partition(':')
         assert callable(getattr(importlib.import_module(module), function)), name
         assert about and '\n' not in about, name

@@ -10,7 +10,7 @@ import signal
 
 import pytest
 
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
 
@@ -30,7 +30,7 @@ def commands(page):
 
 def run(name, *arguments):
     """Run a subcommand in this process; it must end well."""
-    module, _, function = COMMANDS[name][0].partition(':')
+    module, _, function = SUBCOMMANDS[name][0].partition(':')
     try:
         status = getattr(importlib.import_module(module), function)(list(arguments))
     except SystemExit as ended:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `analyze`: recordings to reports; each is read once, however long it is."""
+"""The subcommand `analyze`: recordings to reports; each is read once, however long it is."""
 
 import json
 import pathlib
@@ -133,7 +133,7 @@ def show(found, written):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'analyze',
         'Recordings to reports: drift, flips, lateness, drops, figures.',

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `resimulate`: run a recording's scene and commands again and compare, bit for bit.
+"""The subcommand `resimulate`: run a recording's scene and commands again, compare bit for bit.
 
 With another method or accuracy it shows what that would have changed in this run.
 """
@@ -158,7 +158,7 @@ def lines(found, changed):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'resimulate',
         "Run a recording's scene and commands again and compare every state, bit for bit.",

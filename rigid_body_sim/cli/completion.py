@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The completion script of the shell command: names of commands, options, scenes.
+"""The completion script of the shell command: names of subcommands, options, scenes.
 
 The script holds all words, so completion starts no Python. The options are those that the help
-of each command shows; a command whose packages are absent completes without them.
+of each subcommand shows; a subcommand whose packages are absent completes without them.
 """
 
 import contextlib
@@ -11,7 +11,7 @@ import io
 import re
 
 from rigid_body_sim import command_line
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import scene_names
 
@@ -23,7 +23,7 @@ SCRIPT = """\
 _rigid_body_sim() {{
     local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words=
     if [ "$COMP_CWORD" -eq 1 ]; then
-        words='{commands} --help --version --completion'
+        words='{subcommands} --help --version --completion'
     elif [ "${{word#-}}" != "$word" ]; then
         case "${{COMP_WORDS[1]}}" in
 {options}
@@ -40,15 +40,15 @@ complete -o default -F _rigid_body_sim rigid_body_sim
 def script(shell):
     """Return the completion script for a shell."""
     options = '\n'.join(f"            {name}) words='{' '.join(options_of(name))}' ;;"
-                        for name in COMMANDS)
-    text = SCRIPT.format(commands=' '.join(COMMANDS), scenes=' '.join(scene_names()),
+                        for name in SUBCOMMANDS)
+    text = SCRIPT.format(subcommands=' '.join(SUBCOMMANDS), scenes=' '.join(scene_names()),
                          options=options)
     return text if shell == 'bash' else f'autoload -U +X bashcompinit && bashcompinit\n{text}'
 
 
 def options_of(name):
-    """Return the options that the help of a command shows."""
-    module, _, function = COMMANDS[name][0].partition(':')
+    """Return the options that the help of a subcommand shows."""
+    module, _, function = SUBCOMMANDS[name][0].partition(':')
     shown = io.StringIO()
     with contextlib.suppress(ImportError, SystemExit), contextlib.redirect_stdout(shown):
         getattr(importlib.import_module(module), function)(['--help'])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `run` (of `make run`): run the node for a while, then report on its recording.
+"""The subcommand `run` (of `make run`): run the node for a while, then report on its recording.
 
 The node is a process of its own, so nothing here disturbs its ticks; modules that take long to
 import are imported when it has ended.
@@ -20,7 +20,7 @@ FOLDER = 'recordings'
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'run', 'Run the node on a scene in real time, record it, and report on the recording.',
         'python -m rigid_body_sim run --scene tennis_racket --rate 1000 --duration 20')

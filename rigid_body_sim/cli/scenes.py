@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `scenes`: list the scenes, their effects, and the methods that can run them."""
+"""The subcommand `scenes`: list the scenes, their effects, and the methods that can run them."""
 
 import sys
 
@@ -17,7 +17,7 @@ def describe(scene):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser('scenes', 'List the scenes that ship, or describe one.',
                                  'python -m rigid_body_sim scenes tennis_racket')
     parser.add_argument('scene', nargs='*', help='names or .yaml files; default: all that ship')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `simulate`: run a scene to a recording as fast as it goes, without ROS.
+"""The subcommand `simulate`: run a scene to a recording as fast as it goes, without ROS.
 
 The recording is the one that the node would write.
 """
@@ -83,7 +83,7 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'simulate',
         'Run a scene to a recording as fast as it goes; without --output, to its last state only.',

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of commands, which `ros2 run`, the shell command and `python -m` share.
+"""The table of subcommands, which `ros2 run`, the shell command and `python -m` share.
 
 setup.py runs this file alone, so it imports nothing. Each function takes the list of arguments
 (default: those of the process) and returns the exit status: 0 good, 1 a check failed, 2 bad input.
 """
 
-COMMANDS = {
+SUBCOMMANDS = {
     'sim_node': ('rigid_body_sim.node.sim_node:main',
                  'run a scene as a ROS 2 node: topics, commands, recording'),
     'lifecycle_sim_node': ('rigid_body_sim.node.lifecycle_sim_node:main',
@@ -45,4 +45,4 @@ MISSING = {
     'viser': 'the view needs it: pip install ".[view]" in the source tree, or pip install viser',
     'xarray': 'sweeps need it: pip install ".[sweep]" in the source tree',
 }
-"""The line printed where a package that a command needs is absent."""
+"""The line printed where a package that a subcommand needs is absent."""

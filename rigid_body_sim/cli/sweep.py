@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `sweep`: a scene over grids or samples of its keys, to a store that resumes."""
+"""The subcommand `sweep`: a scene over grids or samples of its keys, to a store that resumes."""
 
 import contextlib
 import logging
@@ -19,7 +19,7 @@ PART = 2**22         # runs whose status is read at once
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'sweep', 'Run a scene over grids or samples of its keys, to a Zarr or Parquet store. '
         'Repeat the command to resume a sweep that was cut short.',

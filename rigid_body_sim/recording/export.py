@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `export`: a recording to CSV, Parquet or NumPy.
+"""The subcommand `export`: a recording to CSV, Parquet or NumPy.
 
 It is read a chunk at a time, so its length does not matter. Topics whose messages keep their form
 (numbers, times, frames) become tables, one per topic: a column per number
@@ -247,7 +247,7 @@ def _export_texts(recording, topic, folder, done):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'export', 'Write a recording to CSV, Parquet or NumPy: one file per topic, and one table '
         'of all that was recorded at every tick.',

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `recover`: make a cut or damaged recording whole.
+"""The subcommand `recover`: make a cut or damaged recording whole.
 
 What a kill -9, a full disk or a power cut left behind gets the tail and metadata.yaml that every
 reader needs. Everything that was completely written is kept, and of the chunk in which a file is
@@ -96,7 +96,7 @@ def _write_metadata(path, names, found, bag):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'recover', 'Make a recording whole that a kill, a full disk or a power cut left cut.',
         'python -m rigid_body_sim recover recordings/racket')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `check_scenes`: it runs every scene of the notes and compares it with theory."""
+"""The subcommand `check_scenes`: it runs every scene of the notes and compares it with theory."""
 
 import concurrent.futures
 import contextlib
@@ -20,7 +20,7 @@ SHAPES = 'inertia_tensors'
 
 
 def main(arguments=None):
-    """Run the command; return the exit status: 1 if a quantity is not as predicted."""
+    """Run the subcommand; return the exit status: 1 if a quantity is not as predicted."""
     parser = command_line.parser(
         'check_scenes',
         'Run every scene by its exact motion and by dop8 on the full equations, measure what the '

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `view`: the body in a browser, moving, and pushed with the mouse."""
+"""The subcommand `view`: the body in a browser, moving, and pushed with the mouse."""
 
 import pathlib
 import sys
@@ -12,7 +12,7 @@ from rigid_body_sim.view.access import LOCAL, Access
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'view', 'Open a page in which a body moves: a scene, a running node, or a recording. '
         'Drag the body to pull it, click it to strike it.',

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigid_body_sim import Recording, States
 from rigid_body_sim.cli.simulate import main as simulate
-from rigid_body_sim.cli.subcommands import COMMANDS
+from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / 'docs' / 'recordings.md'
 
@@ -36,5 +36,5 @@ def test_the_python_of_the_page_does_what_it_says(tmp_path, monkeypatch, capsys)
 
 def test_the_commands_of_the_page_exist():
     named = re.findall(r'^    python -m rigid_body_sim (\w+)', PAGE.read_text(), re.MULTILINE)
-    assert set(named) <= set(COMMANDS)
+    assert set(named) <= set(SUBCOMMANDS)
     assert len(named) >= 6

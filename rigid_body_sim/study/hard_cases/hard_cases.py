@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `hard_cases`: the table of hard cases, with the peers beside our own results."""
+"""The subcommand `hard_cases`: the table of hard cases, with the peers beside our own results."""
 
 import sys
 
@@ -17,7 +17,7 @@ stand beside ours."""
 
 
 def main(arguments=None):
-    """Run the command; return the exit status: 1 if one of ours fails."""
+    """Run the subcommand; return the exit status: 1 if one of ours fails."""
     parser = command_line.parser(
         'hard_cases', ABOUT, 'python -m rigid_body_sim hard_cases --peers')
     parser.add_argument('--peers', action='store_true', help='run the peers too, some minutes')

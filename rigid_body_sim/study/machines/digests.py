@@ -51,7 +51,7 @@ def different(found, kept):
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser('digests', 'Compute the digests of all scenes and methods and '
                                  'compare them with those kept, the same on every machine.',
                                  'python -m rigid_body_sim.study.machines.digests')

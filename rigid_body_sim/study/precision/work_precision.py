@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `work_precision`: error against CPU time of every method, and of peers."""
+"""The subcommand `work_precision`: error against CPU time of every method, and of peers."""
 
 import contextlib
 import json
@@ -22,7 +22,7 @@ QUICK_REPEATS, FULL_REPEATS = 5, 7
 
 
 def main(arguments=None):
-    """Run the command; return the exit status."""
+    """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'work_precision',
         'Error against CPU time of every method that can run a scene, and of peers.',
