@@ -5,12 +5,15 @@ The source is read, not run.
 """
 
 import ast
+import collections
 import functools
 import importlib
 import pathlib
 import pkgutil
 import re
+import types
 
+from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.scene import constraints, effects
 
@@ -188,6 +191,76 @@ FOREIGN = ('compilation/', 'numerics/double_double.py', 'sweeps/engine.py')
 def test_nothing_is_found_by_looking_for_an_attribute():
     wrong = [f'{path}:{call.lineno} {ast.unparse(call)}' for path, _, tree in sources()
              if not path.startswith(FOREIGN) for call in calls(tree, 'hasattr')]
+    assert wrong == []
+
+
+DECORATORS = {'compiled', 'compiled_inline', 'compiled_allocating', 'inlined'}
+IN_VECTORS = {('integrators/marching/gauss_march.py', 'spread')}
+"""Where each constant is worth a version: with its place known the matrix lies apart from the
+stages, and the loop is vector code; with a place of run time it is not."""
+
+
+def constant(argument, names, local):
+    """Return the text of an argument that numba types as a literal, else None.
+
+    That is a whole number or a bool, typed there or under a name of the module; in a template it
+    may be a name that is bound later.
+    """
+    if isinstance(argument, ast.UnaryOp):    # -1
+        argument = argument.operand
+    if isinstance(argument, ast.Constant) and type(argument.value) in (int, bool):
+        return ast.unparse(argument)
+    if isinstance(argument, ast.Name) and argument.id not in local and (
+            type(names.get(argument.id)) in (int, bool)
+            or (argument.id.isupper() and names.get(argument.id, ...) is UNBOUND)):
+        return argument.id
+    return None
+
+
+def handed_over():
+    """Return {(module, kernel): {place of an argument: what kernels hand to it}}.
+
+    What is no constant is None.
+    """
+    found = collections.defaultdict(lambda: collections.defaultdict(set))
+    for path, lines, tree in sources():
+        if not any(line.removeprefix('@') in DECORATORS for line in map(str.strip, lines)):
+            continue
+        names = vars(importlib.import_module(f'rigid_body_sim.{path[:-3].replace("/", ".")}'))
+        for kernel in ast.walk(tree):
+            if not isinstance(kernel, ast.FunctionDef) or not DECORATORS & {
+                    one.id for one in kernel.decorator_list if isinstance(one, ast.Name)}:
+                continue
+            local = {one.arg for one in kernel.args.args} | {
+                one.id for one in ast.walk(kernel)
+                if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+            for call in ast.walk(kernel):
+                if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
+                    continue
+                called = names.get(call.func.id, ...)
+                if called is UNBOUND:
+                    key = path, call.func.id
+                elif isinstance(called, types.FunctionType) or hasattr(called, 'py_func'):
+                    key = called.__module__, called.__name__
+                else:
+                    continue
+                for place, argument in enumerate(call.args):
+                    found[key][place].add(constant(argument, names, local))
+    return found
+
+
+def test_no_kernel_is_compiled_once_more_for_a_constant():
+    """A literal has a type of its own in numba, which makes a version of the kernel.
+
+    What int() returns has none.
+
+    One version for the same constant at all calls is as good as none.
+    """
+    found = handed_over()
+    assert len(found) > 300
+    wrong = [f'{key} takes {sorted(map(str, kinds))} as argument {place}'
+             for key, places in found.items() for place, kinds in places.items()
+             if len(kinds) > 1 and kinds != {None} and key not in IN_VECTORS]
     assert wrong == []
 
 

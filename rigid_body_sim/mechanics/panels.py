@@ -23,6 +23,8 @@ POINTS = COUNT + 1       # points of a panel: its beginning and the nodes
 COLUMNS = ENTRIES_SIZE + 1    # rates at a point: those of the entries, then |omega|
 FIRST_TAIL = 12
 TAIL = COUNT - FIRST_TAIL
+# numba compiles a function once more where a constant is handed to it, but not for int(constant)
+WORK = ENTRIES.part('work').first
 IMPULSE = ENTRIES.part('angular_impulse').first    # entries before it are energies
 # places in the array `sums`, behind the entries: what they lost, and the sizes of what they sum
 LOST = ENTRIES_SIZE
@@ -151,8 +153,8 @@ def add_panels(rates, edges, longest, shortest, slack, sums):
         at, length, fastest = panel * POINTS, edges[panel + 1] - edges[panel], 0.0
         for i in range(POINTS):
             fastest = max(fastest, rates[at + i, ENTRIES_SIZE])
-        energy = _advice(rates, at, 0, 2, length, sums[ENERGY], slack)
-        momentum = _advice(rates, at, 2, ENTRIES_SIZE, length, sums[MOMENTUM], slack)
+        energy = _advice(rates, at, int(WORK), int(IMPULSE), length, sums[ENERGY], slack)
+        momentum = _advice(rates, at, int(IMPULSE), int(LOST), length, sums[MOMENTUM], slack)
         advice = min(energy, momentum)
         if length > shortest and (advice == SHORTER or length * fastest > TURNED):
             return panel, SHORTER

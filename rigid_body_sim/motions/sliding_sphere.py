@@ -158,7 +158,7 @@ def anchor(parameters, start, anchor):
     along, across, axis = _split_spin(omega, ex, ey)
     store_slide(anchor, Slide(slip, (ex, ey), deceleration, ramp, along, across, axis))
     store_track(anchor, Track(1.0, 0.0))
-    store_quaternion(anchor, q, ATTITUDES)
+    store_quaternion(anchor, q, int(ATTITUDES))
     gain = k * slip / (1.0 + k)
     if ramp == 0.0 or gain > 1e300 * deceleration:
         store_duration(anchor, math.inf)
@@ -210,7 +210,7 @@ def _lay_checkpoints(anchor, duration):
     elif 0.0 < across < rim and along < rim and end > -rim:
         count = CHECKPOINTS
     store_track(anchor, Track(count, duration / count))
-    q = load_quaternion(anchor, ATTITUDES)
+    q = load_quaternion(anchor, int(ATTITUDES))
     for n in range(count):
         q = _sliding_attitude(anchor, n, duration / count)
         if n + 1 < count:

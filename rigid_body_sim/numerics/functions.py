@@ -112,6 +112,9 @@ COUNTED = 1647099.0                      # rad; smaller angles have at most 2^20
 DIGIT = 2.0 ** -24                       # weight of a digit of TURN_DIGITS after the one before it
 SIGNIFICANT, WHOLE = 9, 4                # digits from whole turns to 2^-139, and those above 1
 SMALLEST_NORMAL = 2.0 ** -1022
+# numba compiles a function once more where a constant is handed to it, but not for int(constant)
+LARGEST_POWER = 1023                     # of two that a double has
+AS_IT_IS, LIFTED = 0, 54                 # power of two by which the base of a power is multiplied
 TINY = 2.0 ** -27                        # 1 plus the square of a smaller number rounds to 1
 FAR = 2.0 ** -30                         # below this ratio of sides a triangle is a line, to 2^-61
 SPLIT_27 = 1.5 * 2.0 ** 26               # adding and subtracting it rounds to multiples of 2^-26
@@ -304,7 +307,7 @@ def _exponential(x, low):
     power = POWERS[2 * j]
     more = POWERS[2 * j + 1] + power * (r + r * r * (E2 + r * (E3 + r * (E4 + r * E5))))
     if k == 1024:
-        return 2.0 * ((power + more) * power_of_two(1023))
+        return 2.0 * ((power + more) * power_of_two(int(LARGEST_POWER)))
     if k > -1022 or (k == -1022 and power + more >= 1.0):
         return (power + more) * power_of_two(k)
     # subnormal doubles are as far apart as doubles between 1 and 2, up to the power of two
@@ -406,7 +409,9 @@ def _power_of_rest(x, y):
         return 1.0
     # |log x| > 1e-16, so a larger exponent overflows or underflows all the same
     y = min(max(y, -1e19), 1e19)
-    return _power(x * 2.0 ** 54, y, 54) if x < SMALLEST_NORMAL else _power(x, y, 0)
+    if x < SMALLEST_NORMAL:
+        return _power(x * 2.0 ** 54, y, int(LIFTED))
+    return _power(x, y, int(AS_IT_IS))
 
 
 @compiled
@@ -417,7 +422,7 @@ def power(x, y):
     """
     if not (SMALLEST_NORMAL <= x < math.inf and 2.0 ** -70 <= abs(y) <= 1e19):
         return _power_of_rest(x, y)
-    return _power(x, y, 0)
+    return _power(x, y, int(AS_IT_IS))
 
 
 @compiled

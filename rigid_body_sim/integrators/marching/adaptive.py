@@ -45,7 +45,7 @@ TRIALS = 60                # refusals of one step after which it is given up
 @compiled
 def begin(p, control, point):
     """Choose the first step from a point whose time and unknowns are set."""
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     speed = fastest(y, rate(p, y))
     point[STEP] = power(control[TOLERANCE], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
@@ -69,7 +69,7 @@ def march(p, control, point, following, target, end, limit):
     if moved < 0:
         return 0, True
     t, planned = point[TIME], point[STEP]
-    scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
+    scales, y, c = load_scales(point, SCALES), load(point, int(VALUES)), load(point, VALUES + SIZE)
     good = True
     while t < end:
         k0 = rate(p, y)
@@ -95,14 +95,14 @@ def march(p, control, point, following, target, end, limit):
         if not good or target < t1 or moved == limit:
             following[TIME], following[STEP] = t1 if good else t, h    # t: none follows
             put_scales(scales1, following, SCALES)
-            put(y1, following, VALUES)
+            put(y1, following, int(VALUES))
             put(c1, following, VALUES + SIZE)
             break
         t, planned, y, c, scales = t1, h, y1, c1, scales1
         moved += 1
     point[TIME], point[STEP] = t, planned
     put_scales(scales, point, SCALES)
-    put(y, point, VALUES)
+    put(y, point, int(VALUES))
     put(c, point, VALUES + SIZE)
     return moved, good
 
@@ -113,7 +113,7 @@ def between(p, control, point, following, dt):
 
     One step of the method.
     """
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     if dt > 0.0:
         # the same step as in the march, so that there is one to compile; its error is not looked
         # at

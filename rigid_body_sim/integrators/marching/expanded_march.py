@@ -47,7 +47,7 @@ def begin(p, control, point):
     """Note the origin of a point whose time and unknowns are set, and its scales."""
     control[ORIGIN], control[FOR] = point[TIME], math.nan
     point[STEP] = 0.0
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     put_scales(grown(load_scales(point, SCALES), y, y, 0.0), point, SCALES)
 
 
@@ -109,18 +109,18 @@ def march(p, control, point, following, target, end, limit):
         return 0, True
     tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
     t, last = point[TIME], point[STEP]
-    scales, y, c = load_scales(point, SCALES), load(point, VALUES), load(point, VALUES + SIZE)
+    scales, y, c = load_scales(point, SCALES), load(point, int(VALUES)), load(point, VALUES + SIZE)
     good = True
     while t < end:
         over = expanded(p, control, y, t, last)
-        scales1 = grown(scales, y, load(S, PLACES), last if fixed == 0.0 else fixed)
+        scales1 = grown(scales, y, load(S, int(PLACES)), last if fixed == 0.0 else fixed)
         if fixed > 0.0:
             step = last + 1.0
             t1, h = control[ORIGIN] + step * fixed, fixed
             if t1 + NEARLY * fixed >= end:
                 t1, h = end, end - t
         else:
-            final, before = measured(S, ORDER, scales1), measured(S, ORDER - 1, scales1)
+            final, before = measured(S, int(ORDER), scales1), measured(S, ORDER - 1, scales1)
             h, step = within(S, *chosen(final, before, tolerance, last), last, over)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
@@ -131,7 +131,7 @@ def march(p, control, point, following, target, end, limit):
             following[TIME] = t1 if good else t    # t: none follows
             following[STEP] = step
             put_scales(scales1, following, SCALES)
-            put(y1, following, VALUES)
+            put(y1, following, int(VALUES))
             put(c1, following, VALUES + SIZE)
             control[FOR] = t
             break
@@ -139,7 +139,7 @@ def march(p, control, point, following, target, end, limit):
         moved += 1
     point[TIME], point[STEP] = t, last
     put_scales(scales, point, SCALES)
-    put(y, point, VALUES)
+    put(y, point, int(VALUES))
     put(c, point, VALUES + SIZE)
     return moved, good
 
@@ -147,7 +147,7 @@ def march(p, control, point, following, target, end, limit):
 @compiled
 def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point, within the step from it, by its series."""
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     if not dt > 0.0:
         return y
     S = control[WORK:]

@@ -42,7 +42,7 @@ def march(p, control, point, following, target, end, limit):
     """
     h, origin = control[FIXED], control[ORIGIN]
     t, count = point[TIME], point[COUNT]
-    y, c = load(point, VALUES), load(point, VALUES + SIZE)
+    y, c = load(point, int(VALUES)), load(point, VALUES + SIZE)
     moved = 0
     while t < end and moved < limit:
         t1, size = origin + (count + 1.0) * h, h
@@ -55,7 +55,7 @@ def march(p, control, point, following, target, end, limit):
         t, count = t1, count + 1.0
         moved += 1
     point[TIME], point[COUNT] = t, count
-    put(y, point, VALUES)
+    put(y, point, int(VALUES))
     put(c, point, VALUES + SIZE)
     return moved, y[0] == y[0]
 
@@ -66,7 +66,7 @@ def between(p, control, point, following, dt):
 
     One step of the method.
     """
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     if dt > 0.0:
         y, _ = step(p, y, load(point, VALUES + SIZE), rate(p, y), dt)
     return y

@@ -80,6 +80,7 @@ CURVE = UNBOUND
 SWING = CONTROL.size      # places in `control`
 WORK = SWING + 1
 
+AGAIN = False            # of relax: the stages are not predicted ones
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
 GROWTH, SHRINK, SAFETY = 1.5, 0.3, 0.9
 # a step stays unless it changes by more: another predictor costs half a sweep
@@ -105,7 +106,7 @@ ENOUGH = 0.03            # share of the allowed change: after one so small a swe
 @compiled
 def _load_point(point):
     """Return the Standing of a point."""
-    return Standing(point[TIME], point[STEP], load_scales(point, SCALES), load(point, VALUES),
+    return Standing(point[TIME], point[STEP], load_scales(point, SCALES), load(point, int(VALUES)),
                     load(point, VALUES + SIZE), point[LAST], int(point[SWEEPS]))
 
 
@@ -115,7 +116,7 @@ def _store_point(standing, point):
     point[TIME], point[STEP] = standing.time, standing.step
     point[LAST], point[SWEEPS] = standing.last, standing.sweeps
     put_scales(standing.scales, point, SCALES)
-    put(standing.y, point, VALUES)
+    put(standing.y, point, int(VALUES))
     put(standing.lost, point, VALUES + SIZE)
 
 
@@ -137,7 +138,7 @@ def _keep_rates(S, point):
 def begin(p, control, point):
     """Choose the first step from a point whose time and unknowns are set, and the scales."""
     control[ORIGIN], control[WORK + FOR_POINT] = point[TIME], math.nan    # no curve yet
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     k = rate(p, y)
     speed = fastest(y, k)
     h = FIRST / speed if speed > 0.0 else UNMOVED
@@ -223,7 +224,7 @@ def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
     while True:
         spread(S, y, MATRIX)
         stage_rates(p, S)
-        relax(S, y, h, False)
+        relax(S, y, h, bool(AGAIN))
         before, mean = mean, combined(S, B)
         change = h * h * measure(mean, before, 1.0, scales)
         if change <= enough or smallest <= change <= floor:
@@ -387,7 +388,7 @@ def between(p, control, point, following, dt):
     After a step of the same size they follow the polynomial through the rates of both, 16 in all,
     if its last coefficient is small enough; else a shorter step of the method is made.
     """
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     if not dt > 0.0:
         return y
     S, h, last = control[WORK:], following[LAST], point[LAST]

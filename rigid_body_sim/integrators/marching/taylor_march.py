@@ -62,7 +62,7 @@ def begin(p, control, point):
     """Note the origin of a point whose time and unknowns are set, and the scale."""
     control[ORIGIN], control[FOR] = point[TIME], math.nan
     point[STEP] = 0.0
-    omega = load_omega(point, VALUES)
+    omega = load_omega(point, int(VALUES))
     point[SCALE] = dot(omega, omega)
 
 
@@ -156,7 +156,7 @@ def chosen(final, before, tolerance, planned):
 def _step(S, tolerance, planned, scale):
     """Return what `chosen` does for the coefficients of all unknowns."""
     weight = 1.0 / scale if scale > NOTHING else 0.0
-    final, before = _square(S, ORDER, weight), _square(S, ORDER - 1, weight)
+    final, before = _square(S, int(ORDER), weight), _square(S, ORDER - 1, weight)
     return chosen(final, before, tolerance, planned)
 
 
@@ -175,12 +175,12 @@ def march(p, control, point, following, target, end, limit):
         return 0, True
     tolerance, fixed, S = control[TOLERANCE], control[FIXED], control[WORK:]
     t, last, scale = point[TIME], point[STEP], point[SCALE]
-    y, c = load(point, VALUES), load(point, VALUES + SIZE)
+    y, c = load(point, int(VALUES)), load(point, VALUES + SIZE)
     good = True
     while t < end:
         expand(p, S, (*y.q, *y.omega))
         # a body that hardly turns yet is measured by the rate that omega' gives it
-        omega_rate = load_omega(S, PLACES)
+        omega_rate = load_omega(S, int(PLACES))
         scale1 = max(scale, dot(y.omega, y.omega), math.sqrt(dot(omega_rate, omega_rate)))
         if fixed > 0.0:
             step = last + 1.0
@@ -198,14 +198,14 @@ def march(p, control, point, following, target, end, limit):
         if not good or target < t1 or moved == limit:
             following[TIME] = t1 if good else t    # t: none follows
             following[STEP], following[SCALE] = step, scale1
-            store(following, y1, VALUES)
+            store(following, y1, int(VALUES))
             store(following, c1, VALUES + SIZE)
             control[FOR] = t
             break
         t, last, y, c, scale = t1, step, y1, c1, scale1
         moved += 1
     point[TIME], point[STEP], point[SCALE] = t, last, scale
-    store(point, y, VALUES)
+    store(point, y, int(VALUES))
     store(point, c, VALUES + SIZE)
     return moved, good
 
@@ -213,7 +213,7 @@ def march(p, control, point, following, target, end, limit):
 @compiled
 def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point, within the step from it, by its series."""
-    y = load(point, VALUES)
+    y = load(point, int(VALUES))
     if dt > 0.0:
         S = control[WORK:]
         if control[FOR] != point[TIME]:

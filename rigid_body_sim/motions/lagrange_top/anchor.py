@@ -33,6 +33,7 @@ from rigid_body_sim.numerics.pairs import TURN, minus, plus, scaled, times
 from rigid_body_sim.numerics.phase import nearest
 
 QUARTER_TURN = 0.5 * math.pi
+FROM_LOWEST = True
 NOTICED = 1e-9
 TINY = 1e-60    # a tilt and swing below this follow linear equations, to far below round-off
 
@@ -254,7 +255,7 @@ def _begin_circular(roots, n, k, means, units, out):
     gap, wide = roots.gap, roots.wide[0]
     per_argument = 2.0 * means.mean    # 2v of an argument of Jacobi's functions
     powers = powers_of(nome(math.sqrt(2.0 * k * gap / wide), math.sqrt(roots.narrow[0] / wide)))
-    A, B, C, along = _arguments(roots, k, True)
+    A, B, C, along = _arguments(roots, k, bool(FROM_LOWEST))
     side_a, side_b, side_w = _sides(roots)
     a, _ = circular_terms(powers, exp(-per_argument * A), THETA_1, side_a,
                           units.a * math.sqrt(0.5 * roots.x2[0]))
