@@ -15,6 +15,7 @@ from hard_cases.conditioning import Allowed, anchored_anew
 from hard_cases.random_scenes import commands, run, scenes, stepped_scenes
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
+from numba_only import LONG_IN_PYTHON
 
 from rigid_body_sim.cli import simulate
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
@@ -96,6 +97,7 @@ def test_anchored_anew_on_the_way_it_ends_where_an_ulp_would_bring_it(scene, tim
     assert error <= bound
 
 
+@LONG_IN_PYTHON
 def test_a_failure_leaves_a_scene_file_that_the_command_runs(tmp_path, capsys):
     """A check that free bodies fail leaves the smallest one as a file, and `simulate` runs it."""
     def not_free(_, simulation):

@@ -226,6 +226,7 @@ def test_jellett_is_kept_by_a_sliding_top_and_it_sticks_after_36_ms():
 # -- events -----------------------------------------------------------------------------------
 
 
+@LONG_IN_PYTHON
 def test_egg_sticks_and_slips_and_every_event_is_in_the_ledger():
     sim = simulation(EGG, 'sliding_friction: {mu: 0.15}',
                      '{euler_zyz: [0, 1.2, 0.3], angular_velocity: [1, 2, 60]}')

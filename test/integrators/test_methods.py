@@ -11,6 +11,7 @@ import pytest
 from data import smooth_cases
 from integrators import slopes
 from integrators.order_conditions import largest_defect
+from numba_only import LONG_IN_PYTHON
 
 from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -147,6 +148,7 @@ def test_runge_kutta_does_not_come_back():
     assert slopes.error(back, scene.initial.vector) > 1e-6
 
 
+@LONG_IN_PYTHON
 def test_energy_does_not_walk():
     scene = scene_of('asymmetric_heavy_top')
     out = np.empty((201, 14))

@@ -93,7 +93,7 @@ def test_ball_rolls_when_and_as_fast_as_predicted(scene, overrides):
     ('billiard_center', ['sliding_friction.mu=0']),
     ('billiard_center', ['strike.time=1.0'])])
 def test_where_theory_is_silent_so_is_the_node(scene, overrides):
-    simulation = Simulation(load_scene(scene, overrides))
+    simulation = Simulation(load_scene(scene, overrides), accuracy=1e-3, horizon=1.0)
     assert Prediction(simulation.scene, simulation.state).compared() == {}
 
 
