@@ -212,6 +212,12 @@ def test_what_explodes_ends_soon_in_a_trial_and_without_numba(monkeypatch):
     assert steps_of(lambda n: n / 4900.0, 5000) == steps_of(lambda n: n / 2e6) == math.inf
 
 
+def test_a_march_that_gives_up_says_times_as_a_person_writes_them():
+    with pytest.raises(TooMuchWork) as given_up:
+        work.Work('a march', None).go(lambda limit: False, lambda: np.float64(0.5), 1.0)
+    assert 'steps from t = 0.5 s led to t = 0.5 s; to reach 1.0 s' in str(given_up.value)
+
+
 STRUCK = {'strike': {'impulse': [0, 1e-9, 0], 'point': [0.1, 0, 0.2], 'time': 0.002}}
 TOP = {'mass': 1.0, 'inertia': [0.02, 0.02, 0.01], 'center_of_mass': [0, 0, 0.1]}
 SWIFT = {

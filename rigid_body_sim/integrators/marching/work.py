@@ -74,13 +74,13 @@ class Work:
         """
         if target != self._target:
             self._target = target
-            self._begin, self._pace = (self.done, now()), 0.0
+            self._begin, self._pace = (self.done, float(now())), 0.0
             self._seen = self._begin
 
         def arrived(limit):
             if follow(limit):
                 return True
-            self.count(limit, now(), target)
+            self.count(limit, float(now()), target)
             return False
 
         in_slices(arrived, SLICE, self._until_look)
@@ -129,6 +129,6 @@ class Work:
         done, before = self._begin
         return TooMuchWork(
             f'{self._name}: {self.done - done} steps from t = {before!r} s '
-            f'led to t = {float(time)!r} s; '
+            f'led to t = {time!r} s; '
             f'to reach {target!r} s asks for too many. A slower body, weaker effects, a coarser '
             'accuracy, a shorter time, or another integrator would do')
