@@ -64,7 +64,7 @@ class _SceneLoader(yaml.SafeLoader):
                 )
             if keys.count(key) > 1:
                 raise yaml.constructor.ConstructorError(
-                    None, None, f'the key {key!r} stands twice', key_node.start_mark
+                    None, None, f'the key {key!r} is given twice', key_node.start_mark
                 )
         return super().construct_mapping(node, deep)
 
