@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings read: our own and those of ``ros2 bag record``.
+"""Reading of recordings: those of this package and those of ``ros2 bag record``.
 
 ::
 
