@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies at the edge of the table of inertia: rod, ball, needle, and a pendulum without spin."""
+"""Bodies at the limits of inertia: rod, ball, needle, and a pendulum without spin."""
 
 import numpy as np
 
