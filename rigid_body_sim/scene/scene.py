@@ -250,7 +250,21 @@ def load_scene(name_or_path: str | pathlib.Path,
 
 
 def parse_scene(text: str, overrides: Overrides = (), where: str = 'scene') -> Scene:
-    """Return the validated scene of a YAML text; `where` names it in error lines."""
+    """Return the validated scene of a YAML text.
+
+    Parameters
+    ----------
+    text : str
+    overrides : mapping of str to value, or sequence of str
+        As for :func:`load_scene`.
+    where : str
+        Name of the text in error lines.
+
+    Raises
+    ------
+    BadInput
+        One line: `where`, the line of the text, key path, value, what would be right.
+    """
     mapping = yaml_text.parse(text, where)
     if overrides:
         return _overridden(mapping, overrides, where)
