@@ -187,7 +187,7 @@ def _split_spin(omega, ex, ey):
 
 @compiled
 def _roll(anchor, a, wz, velocity, position, orientation):
-    """Fill what holds from the onset of rolling: omega = (-v_y, v_x)/a and the vertical spin."""
+    """Fill the motion from the onset of rolling: omega = (-v_y, v_x)/a and the vertical spin."""
     wx, wy = -velocity[1] / a, velocity[0] / a
     rate = hypot(hypot(wx, wy), wz)
     axis = (wx / rate, wy / rate, wz / rate) if rate > 0.0 else (0.0, 0.0, 0.0)

@@ -139,7 +139,7 @@ class Recording:
             file.close()
 
     def _about(self, custom):
-        """Return what the recorder left.
+        """Return the texts that the recorder left about the run.
 
         It is in the files, in metadata.yaml, or in the journal (which survives a conversion).
         """

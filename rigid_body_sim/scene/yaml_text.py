@@ -113,7 +113,7 @@ def copied(value):
 
 @functools.lru_cache(maxsize=KEPT)
 def _parsed(text, where):
-    """Return what `parse` returns, to be copied: loops read one text many times."""
+    """Return the mapping of `parse`, cached and to be copied: loops read one text many times."""
     if len(text.encode()) > MAXIMUM_BYTES:
         raise BadInput(
             where, f'{len(text.encode())} bytes', f'a scene has at most {MAXIMUM_BYTES} bytes'

@@ -153,7 +153,7 @@ def chosen(final, before, tolerance, planned):
 
 @compiled
 def _step(S, tolerance, planned, scale):
-    """Return what `chosen` does for the coefficients of all unknowns."""
+    """Return (step, next plan), as `chosen` does, from the coefficients of all unknowns."""
     weight = 1.0 / scale if scale > NOTHING else 0.0
     final, before = _square(S, int(ORDER), weight), _square(S, ORDER - 1, weight)
     return chosen(final, before, tolerance, planned)

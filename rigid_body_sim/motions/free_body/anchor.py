@@ -123,7 +123,7 @@ def rotation_parameters(inertia):
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(inertia, bits):
-    """Return what `rotation_parameters` does, the array that is kept; `bits` tell -0 from 0."""
+    """Return the array of `rotation_parameters`, which is cached; `bits` tell -0 from 0."""
     small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
     if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
         raise BadInput(

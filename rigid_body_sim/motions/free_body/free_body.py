@@ -122,7 +122,7 @@ def state(anchor, time, out):
 
 @compiled_inline
 def _state_of(attitude, flight, time, dt, omega, ZS):
-    """Return the state of what `turned` returns, its position that of the centre of mass."""
+    """Return the state for omega and Z S in the frame; its position is the centre of mass."""
     q, body_omega = attitude_of(attitude, omega, ZS)
     t = dt[0]
     fall = flight.g * t

@@ -301,7 +301,7 @@ def _agree(records, offsets, entries):
 
 
 def _by_entries(records, entries, others):
-    """Return what `_sift` does, by the message indexes alone."""
+    """Return (records, offsets, others), as `_sift` does, by the message indexes alone."""
     entries = entries[entries['offset'] + HEADS.itemsize <= len(records)]
     if not len(entries):
         return b'', np.empty(0, np.int64), []
