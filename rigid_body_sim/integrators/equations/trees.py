@@ -157,7 +157,7 @@ class Trees:
         return _rows(found)
 
     def _frame_definitions(self):
-        """Return the definitions of the names in an effect's kernels (Acting): those of the frame."""
+        """Return the definitions of the names in kernels of effects: those of the frame."""
         frame, place, drift = self._frame, map(own, STARTED), (tree.ZERO,) * 3
         if self._equations.on_hinge:
             n = self._constants_of('axis', frame.hinge.axis)
