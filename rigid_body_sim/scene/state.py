@@ -41,7 +41,7 @@ SHOWN = 10    # states of a long series that a notebook shows
 
 
 class StateView(NamedTuple):
-    """The state in kernels (layout above)."""
+    """The state in kernels, in the layout of the module's table."""
 
     time: float
     orientation: Quaternion
@@ -54,11 +54,13 @@ STATE = layout(StateView)
 
 
 class State:
-    """One state, a view on its vector (layout above); the parts are views too.
+    """One state: a view on its vector of 14 doubles; the parts are views too.
 
     Parameters
     ----------
     vector : array (14,)
+        Time, orientation (4), angular velocity, position, velocity (3 each); units and axes are
+        those of the properties.
     """
 
     __slots__ = ('vector',)
@@ -130,6 +132,7 @@ class States(State):
     Parameters
     ----------
     vector : array (n, 14)
+        A row for each state, as State has it.
     """
 
     __slots__ = ()

@@ -86,7 +86,7 @@ class Constraint(Protocol):
         return cls()
 
     def begun(self, start: Start) -> Self:
-        """Return the constraint with what it takes from the initial conditions."""
+        """Return the constraint with the numbers that it takes from the initial conditions."""
         return self
 
     def initial(self, start: Start, body: Body, where: str) -> State:
