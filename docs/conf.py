@@ -38,6 +38,7 @@ exclude_patterns = ['_build', 'figures', 'images', *([] if own else ['notebooks'
 
 autosummary_generate = True
 autodoc_typehints = 'none'           # numpydoc shows the types that the docstrings say
+autodoc_preserve_defaults = True     # signatures show defaults as the source has them
 autodoc_default_options = {'members': True, 'undoc-members': False}
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = False

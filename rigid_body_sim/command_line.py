@@ -65,7 +65,7 @@ def interruptible(function, *arguments):
     into another error or print it. The function may still handle SIGINT in its own way.
     """
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        # in the background, or within a program that has a way of its own
+        # in the background, or within a program that handles SIGINT itself
         return function(*arguments)
     heard = []
 
@@ -90,7 +90,7 @@ def interruptible(function, *arguments):
             raise
         with contextlib.suppress(OSError, ValueError):
             print('interrupted', file=sys.stderr)
-        # left here, because freeing what a compiler was interrupted at may crash
+        # the process ends here: freeing the memory of an interrupted compiler may crash
         _leave(INTERRUPTED)
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -6,11 +6,11 @@ import importlib
 MOST_SLIPS = 2
 """Most typing errors in a misspelt word; with more it is another word."""
 LETTERS_TO_A_SLIP = 3
-"""A short word has at most one slip for so many letters: `force` is no misspelling of `free`."""
+"""Letters of a short word for each slip in it: `force` is not a misspelling of `free`."""
 
 
 class BadInput(ValueError):
-    """Input that cannot be run.
+    """Input that cannot be used.
 
     Parameters
     ----------

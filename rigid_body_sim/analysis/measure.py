@@ -126,7 +126,8 @@ def check_numbers(topic, columns, name):
     q = columns.get('pose.orientation')
     if q is not None and not (np.abs((q * q).sum(axis=1) - 1.0) < UNIT).all():
         raise BadInput(
-            topic, 'holds an orientation that is no unit quaternion', 'a recording of a rigid body'
+            topic, 'holds an orientation that is not a unit quaternion',
+            'a recording of a rigid body'
         )
 
 

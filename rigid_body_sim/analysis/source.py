@@ -58,7 +58,7 @@ class Source:
         '' where unknown.
     history : History
     entries : list of dict
-        Its journal; empty in recordings of others.
+        Its journal; empty in recordings of other programs.
     start, end : int
         Log times of the first tick, which is t = 0 of all curves, and of the last one, ns.
     ticks : int

@@ -62,7 +62,7 @@ def _client(address):
         return
     need('distributed')
     import distributed
-    # a line of ours explains the loss of a scheduler; these loggers would add tracebacks
+    # one line of this command reports a lost scheduler; these loggers would add tracebacks
     for name in ('distributed', 'distributed.client', 'asyncio', 'tornado.application'):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:

@@ -23,7 +23,7 @@ class Abandoned(Exception):
 
 @contextlib.contextmanager
 def one_core():
-    """Let the calling thread do all work by itself, where others keep the other cores busy."""
+    """Do all work in the calling thread, while other threads keep the other cores busy."""
     before = getattr(_mine, 'alone', False)
     _mine.alone = True
     try:
@@ -66,8 +66,8 @@ def in_slices(work, size, most=None):
 def on_all_cores(work, count, least=1):
     """Call work(slice) on all cores until all of `count` items are done.
 
-    Within :func:`one_core` no thread is started. What one thread raises, an interrupt of the
-    calling one included, ends the work of the others at their next `look`.
+    Within :func:`one_core` no thread is started. An exception in one thread, or an interrupt of
+    the calling one, ends the work of the others at their next `look`.
 
     Parameters
     ----------

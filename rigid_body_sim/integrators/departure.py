@@ -2,7 +2,8 @@
 """The departure of a free body with internal dissipation from rotation about a principal axis.
 
 As long as the other two components of omega are so small that their products are rounding, they
-obey linear equations, whose solution holds for 1e-300 as for 1e-9 (i, j, k cyclic, k the axis):
+obey linear equations, whose solution holds at 1e-300 as well as at 1e-9 (i, j, k cyclic, k the
+axis):
 
     omega_i' = a omega_j - g_i omega_i,    a = (I_j - I_k) omega_k/I_i
     omega_j' = b omega_i - g_j omega_j,    b = (I_k - I_i) omega_k/I_j
@@ -14,7 +15,7 @@ r = m + sqrt(s) and m - sqrt(s); where s < 0 they turn with sqrt(-s) and change 
 The momentum is constant in the world, so the attitude is a turn about it by omega_k t and a small
 tilt of the axis against it. A march takes over when the two components are no longer so small.
 Near an axis that attracts they stay small, and no march is needed: a march ends when it has come
-near that axis, and however fast and long the body then turns costs nothing.
+near that axis, and the turning after that costs nothing, however fast and long.
 """
 
 import math

@@ -22,7 +22,7 @@ acting = UNBOUND
 
 @compiled
 def rates(p, states, out):
-    """Fill the rows of `out` with the rates of the Entries, and |omega| behind them.
+    """Fill the rows of `out` with the rates of the Entries, and |omega| after them.
 
     Parameters
     ----------

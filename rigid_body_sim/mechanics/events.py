@@ -72,7 +72,7 @@ def watches(scene):
 
 
 def _momentum_along_middle_axis(inertia):
-    """Return what a Watch takes for flips: value, share, largest.
+    """Return value, share and largest of the Watch for flips.
 
     The value is the share of the momentum that lies along the middle axis.
     """

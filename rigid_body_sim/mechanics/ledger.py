@@ -39,7 +39,7 @@ ANGULAR_IMPULSE = ENTRIES.part('angular_impulse').places
 
 HEATS = ('dissipated_sliding', 'dissipated_rolling', 'dissipated_air_film', 'dissipated_impacts',
          'dissipated_spinning')
-"""Causes of heat at a plane (J): they stand behind the entries of a body on it."""
+"""Causes of heat at a plane (J): they follow the entries of a body on it."""
 
 
 def entries_size(scene):
@@ -60,7 +60,7 @@ def balance(start, now, entries, swing=0.0):
     start, now : array (6,)
         Diagnosis.
     entries : array (5,) or longer
-        The Entries from start to now, and behind them the HEATS of a body on a plane.
+        The Entries from start to now, and after them the HEATS of a body on a plane.
     swing : float
         Angular momentum that potentials can give the body, kg m^2/s: one that is let go passes
         through it and is at rest again where it turns back.

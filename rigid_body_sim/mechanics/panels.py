@@ -3,12 +3,12 @@
 
 A panel is integrated by Gauss's rule with 16 nodes. The same values give the coefficients c_k of
 its integrand along Legendre's polynomials. Where these fall like a geometric series, as those of
-every analytic function do in the end, the rule errs by about c_32, which the last ones foretell:
+every analytic function do in the end, the rule errs by about c_32, which the last ones predict:
 
     a = max(|c_14|, |c_15|),    b = max(|c_12|, |c_13|),    error = a (a/b)^8
 
-The value at the beginning of a panel must also fit the polynomial through the nodes: what is over
-before the first node would not be seen otherwise. A panel with too large an error is halved.
+The value at the beginning of a panel must also fit the polynomial through the nodes: a part that
+ends before the first node would not be seen otherwise. A panel with too large an error is halved.
 Source of the rule: NIST DLMF 3.5(v).
 """
 
@@ -26,7 +26,7 @@ TAIL = COUNT - FIRST_TAIL
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)
 WORK = ENTRIES.part('work').first
 IMPULSE = ENTRIES.part('angular_impulse').first    # entries before it are energies
-# places in the array `sums`, behind the entries: what they lost, and the sizes of what they sum
+# places in the array `sums`, after the entries: what they lost, and the sizes of what they sum
 LOST = ENTRIES_SIZE
 ENERGY = LOST + ENTRIES_SIZE
 MOMENTUM = ENERGY + 1

@@ -22,7 +22,7 @@ NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
 
 
 class SceneParameters(NamedTuple):
-    """A body and its constraint; values of potentials and parts stand behind it (potential.py).
+    """A body and its constraint; values of potentials and parts follow it (potential.py).
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages as bytes: little-endian CDR (XCDR1), the wire format of ROS 2.
 
-The encoder is our own, so padding is zero and bytes are repeatable.
+The package encodes them itself, so padding is zero and bytes are repeatable.
 
 A message begins with four bytes of encapsulation (00 01 00 00). The fields follow in order, each
 aligned to its size (counted after the encapsulation). A string is its length including the final

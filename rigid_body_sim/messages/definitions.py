@@ -4,7 +4,7 @@
 ``definitions.json`` keeps those of the types that this package publishes and records, as ROS 2
 Jazzy has them (common_interfaces, Apache 2.0; tf2_msgs), for installations without ROS.
 ``python -m rigid_body_sim.messages.definitions > rigid_body_sim/messages/definitions.json`` makes
-it anew where a ROS 2 Jazzy is installed; what that lacks stays as it is.
+it anew where a ROS 2 Jazzy is installed; types that it lacks stay as they are.
 
 The text is ``ros2msg``, as recordings contain it, so the parser reads foreign recordings as well.
 A schema is a dict from type name (``geometry_msgs/msg/Pose``) to its fields in wire order.

@@ -24,7 +24,7 @@ class Solid(NamedTuple):
     at, orientation : tuple of floats
         Centre (m) and axes (quaternion) in the body.
     clear : bool
-        Whether it is translucent, because others are shown inside it.
+        Whether it is translucent, because other solids are shown inside it.
     """
 
     kind: str

@@ -6,12 +6,12 @@ of mass leaves the rotation alone. The centre of mass of a pivoted body is the p
 pulls at it.
 
 With r the rate of the drag, Euler's equations are I omega' = -omega x I omega - r I omega. In the
-time s, which passes more and more slowly,
+time s, which slows down more and more,
 
     s = (1 - exp(-r t))/r,     omega(t) = exp(-r t) Omega(s),     q(t) = Q(s),
 
 Q and Omega are the torque-free rotation (free_body/rotation.py) from the same start. So a sphere
-under angular drag, and a rod or a point mass that drags at its end, are free rotations coming to
+under angular drag, and a rod or a point mass with drag at its end, are free rotations coming to
 rest after a finite angle. s is a pair of doubles, as the time is.
 
 The event is the `flip` of free_body.py.

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion of a free or pivoted body under a constant torque that lets omega grow along a line.
+"""Motion of a free or pivoted body under a constant torque that changes omega linearly.
 
 It absorbs a body with two equal moments under a constant torque N along its third axis a, fixed in
 the body, and a sphere (three equal moments) under any constant torque, fixed in the body or in the
 world. A free body may also fly under a constant force and linear drag (flight.py). The spin may
-run through zero.
+pass through zero.
 
 With I1 the equal moments, I that about a, w the spin about a and t the part of omega across it,
 
     w = w0 + N tau/I,     Phi = w0 tau + N tau^2/(2 I),
 
 and omega's part across a turns in the body by the angle (I - I1)/I1 Phi, quadratic in time. Seen
-from axes that turn in the body with it, the angular velocity is t0 + (I/I1) w a: it runs along a
-straight line at constant speed. The turn of these axes is that of numerics/ramped_rotation.py
+from axes that turn in the body with it, the angular velocity is t0 + (I/I1) w a: it changes
+linearly with time. The turn of these axes is that of numerics/ramped_rotation.py
 (parabolic-cylinder functions; the Landau-Zener problem), and the body lags behind them by the same
-angle. A torque that is fixed in the world lets omega of a sphere run along a line in world axes.
+angle. Under a torque fixed in the world omega of a sphere changes linearly in world axes.
 """
 
 import math

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion about an axis that stays where it is, under a constant torque and drag, in closed form.
+"""Rotation about a fixed axis under a constant torque and drag, in closed form.
 
 It absorbs a body on a hinge about which its weight does nothing: the centre of mass lies on the
 axis, or the axis is vertical. It also absorbs a free body that spins about a principal axis, as
@@ -10,8 +10,8 @@ and k the drag of the turning:
     phi'' = g - r phi',     g = N/I,     r = k/I,
     phi = phi0' t f1(r t) + g t^2 f2(r t),     phi' = phi0' exp(-r t) + g t f1(r t)
 
-with f1 and f2 of numerics/relaxation.py. The angle and what it comes from are pairs of doubles, so
-its error does not grow with time.
+with f1 and f2 of numerics/relaxation.py. The angle and the numbers that it comes from are pairs of
+doubles, so its error does not grow with time.
 
 The event is a `turning point`: phi' changes its sign.
 """

@@ -32,7 +32,7 @@ class Field(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """How the reference point moves from a start on."""
+    """The motion of the reference point from a start on."""
 
     position: Vector     # world, m
     velocity: Vector     # m/s

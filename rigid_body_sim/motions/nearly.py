@@ -9,9 +9,9 @@ Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third axis k, in 
     omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
 
 It is summed up along the closed form, stretch by stretch, and given to the body as a kick at the
-start of each stretch. The closed form itself says what a kick does until the horizon, so the way
-in which a motion magnifies or averages out is included. The changes of attitude by all kicks are
-added as vectors, because they are small; TWICE their largest sum counts as the error.
+start of each stretch. The closed form itself says what a kick does until the horizon, so it
+includes how the motion magnifies kicks or averages them out. The changes of attitude by all kicks
+are added as vectors, because they are small; TWICE their largest sum counts as the error.
 """
 
 import dataclasses
@@ -32,7 +32,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 NEARLY = 1e-9                           # difference of two moments over the larger one
 STRETCHES = 32                          # kicks about each axis, and looks at what they do
 LOOKS_A_RADIAN, MOST_LOOKS = 8.0, 2 ** 17
-SHOWN = 1e-7                            # rad/s over those of the body: kicks that rounding spares
+SHOWN = 1e-7                            # size of the tried kicks over the rates of the body
 TWICE = 2.0
 
 

@@ -8,18 +8,18 @@ gravity that presses the ball on the table, z up, v velocity of the centre, omeg
 in world axes, u = v - a omega x z velocity of the lowest point (the slip), e = u/|u|.
 
 While u != 0 the table pushes with -mu M g e, so v' = -mu g e, a omega' = (mu g/k) z x e,
-u' = -mu g (1 + 1/k) e: the slip keeps its direction and dies at the onset of rolling,
+u' = -mu g (1 + 1/k) e: the slip keeps its direction and ends at the onset of rolling,
 
     t_r = k |u0|/((1 + k) mu g),        v_r = (v0 + k a omega0 x z)/(1 + k)
 
 (solid: t = 2 |v0 - a omega0|/(7 mu g), v = 5 v0 (1 + h/a)/7). From there on v and omega are
 constant and the slip is exactly zero. Spin about the vertical is untouched. While sliding omega
-runs along a straight line, so the attitude is a ramped rotation (numerics/ramped_rotation.py):
+changes linearly, so the attitude is a ramped rotation (numerics/ramped_rotation.py):
 elementary without side spin, else parabolic-cylinder functions, with checkpoints along the slide
 so that a later state costs one short step.
 
-A state whose slip is below ROUNDING (|v| + a |omega|) rolls: that much is left of zero when a
-rolling state goes through body axes.
+A state whose slip is below ROUNDING (|v| + a |omega|) rolls: the rounding of a rolling state in
+body axes leaves that much.
 
 Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `exchanged`,
 `next_event`.
@@ -79,7 +79,7 @@ class Rolling(NamedTuple):
 
 
 class Track(NamedTuple):
-    """Checkpoints along the slide; their attitudes stand behind the anchor."""
+    """Checkpoints along the slide; their attitudes follow the anchor in the array."""
 
     count: float
     interval: float        # s
@@ -175,7 +175,7 @@ def anchor(parameters, start, anchor):
 def _split_spin(omega, ex, ey):
     """Return the parts of omega0 along omega' = ramp (z x e) and across it, and the latter's axis.
 
-    Rounding of omega0 is no side spin.
+    A side spin no larger than the rounding of omega0 counts as none.
     """
     wx, wy, wz = omega
     forward, along = wx * ex + wy * ey, wy * ex - wx * ey
@@ -187,7 +187,7 @@ def _split_spin(omega, ex, ey):
 
 @compiled
 def _roll(anchor, a, wz, velocity, position, orientation):
-    """Fill what holds from the onset of rolling: omega = (-v_y, v_x)/a and the vertical spin."""
+    """Fill the motion from the onset of rolling: omega = (-v_y, v_x)/a and the vertical spin."""
     wx, wy = -velocity[1] / a, velocity[0] / a
     rate = hypot(hypot(wx, wy), wz)
     axis = (wx / rate, wy / rate, wz / rate) if rate > 0.0 else (0.0, 0.0, 0.0)

@@ -167,6 +167,6 @@ def _free_path(node, settings, scene):
 
 
 def _numbered(path, taken):
-    """Return the path, with the first number behind it (from 2 on) that is not taken."""
+    """Return the path, with the first number after it (from 2 on) that is not taken."""
     paths = (path.with_name(f'{path.name}_{number}') for number in itertools.count(2))
     return next(one for one in itertools.chain([path], paths) if not taken(one))

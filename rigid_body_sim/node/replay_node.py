@@ -92,7 +92,7 @@ class ReplayNode(Answering, Node):
                 f'install {package or "it"}, or name others by --topics',
             ) from None
         if not topic.name.startswith('/'):
-            raise BadInput(topic.name, 'is no complete name of a topic', 'other --topics')
+            raise BadInput(topic.name, 'is not the complete name of a topic', 'other --topics')
         return self.create_publisher(message_type, topic.name, offered_qos(topic.qos))
 
     def _publish_latched(self, names, start):

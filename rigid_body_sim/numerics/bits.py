@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exponents of doubles: exact operations, so that their bits do not depend on how they are done.
+"""Exact operations on the exponents of doubles: compiled code and plain Python give the same bits.
 
 Compiled code reads and writes the exponent field of the double; plain Python calls ``math.frexp``
 and ``math.ldexp``, which round nothing here.

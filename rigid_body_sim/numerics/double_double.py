@@ -75,14 +75,14 @@ def add(a, al, b, bl):
 
 @compiled_inline
 def add_double(a, al, b):
-    """Return a + b for a pair a and a double b, as in a sum that keeps what it would lose."""
+    """Return a + b for a pair a and a double b, as a compensated sum needs it."""
     s, e = two_sum(a, b)
     return quick_two_sum(s, e + al)
 
 
 @compiled
 def add_alike(a, al, b, bl):
-    """Return a + b to 3 u^2 of the result, for a and b of one sign."""
+    """Return a + b to 3 u^2 of the result, for a and b of the same sign."""
     s, e = two_sum(a, b)
     return quick_two_sum(s, e + (al + bl))
 

@@ -69,7 +69,7 @@ def carlson_rf_pair(x, y, z, u, v, w):
 def carlson_rc(x, y):
     """Return Carlson's R_C(x, y) = R_F(x, y, y) (DLMF 19.2.17) for x >= 0, y > 0.
 
-    It is atan and artanh in one, without a seam at x = y.
+    It stands for atan where x < y and for artanh where x > y, and is smooth at x = y.
     """
     mean = (x + y + y) / 3.0
     while abs(y - mean) > 0.01 * mean:

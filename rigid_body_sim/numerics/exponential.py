@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """exp(-x) from tables and a short polynomial instead of the C library.
 
-So the bits are the same on every machine, and loops over it become vector code.
+Its bits are the same on every machine, and loops over it become vector code.
 """
 
 import math

@@ -116,7 +116,7 @@ SMALLEST_NORMAL = 2.0 ** -1022
 LARGEST_POWER = 1023                     # of two that a double has
 AS_IT_IS, LIFTED = 0, 54                 # power of two by which the base of a power is multiplied
 TINY = 2.0 ** -27                        # 1 plus the square of a smaller number rounds to 1
-FAR = 2.0 ** -30                         # below this ratio of sides a triangle is a line, to 2^-61
+FAR = 2.0 ** -30                         # below it sqrt(1 + ratio^2) is 1, to 2^-61
 SPLIT_27 = 1.5 * 2.0 ** 26               # adding and subtracting it rounds to multiples of 2^-26
 HUGE, TINIER = 2.0 ** 500, 2.0 ** -400   # squares of the numbers between are exact as pairs
 SHRINK, GROW = 2.0 ** -600, 2.0 ** 600   # scale numbers beyond those bounds
@@ -185,7 +185,7 @@ def _pair_plus(high, low, more):
 @compiled_inline
 def _less_turns(turns):
     """Return turns less a whole number of turns, for |turns| < 2^100."""
-    # the first line leaves a small number of a huge one
+    # the first line reduces a huge number to a small one
     turns -= nearest(turns)
     return turns - nearest(turns)
 
@@ -195,8 +195,8 @@ def _far_reduced(x):
     """Return the result of _reduced for any finite angle, by the method of Payne and Hanek.
 
     x is multiplied by those digits of 1/(2 pi) that matter: the digits before give whole turns,
-    and those after come to less than 2^-139 turns, where no double is within 2^-65 turns of a
-    multiple of pi/2 (Muller, section 11.3.2). The products of the halves of x and a digit are
+    those after add less than 2^-139 turns, and no double is within 2^-65 turns of a multiple of
+    pi/2 (Muller, section 11.3.2). The products of the halves of x and a digit are
     exact.
     """
     skipped = max(balanced(abs(x))[1] - 53, 0) // 24

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Print the constants of functions.py: ``python rigid_body_sim/numerics/make_functions.py``.
 
-Each polynomial is fitted to the rest of a function without its leading terms, which functions.py
+Each polynomial is fitted to what a function is beyond its leading terms, which functions.py
 adds with more than a double's digits. The fit interpolates at the Chebyshev nodes of an interval,
 which comes within a small factor of the best uniform approximation (L. N. Trefethen, Approximation
 Theory and Approximation Practice, theorem 16.1); fits in z = x^2 serve odd and even functions. The

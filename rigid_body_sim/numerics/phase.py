@@ -11,8 +11,8 @@ from rigid_body_sim.compilation.jit import compiled_inline
 from rigid_body_sim.numerics.double_double import two_product, two_sum
 
 ROUNDER = 6755399441055744.0    # 1.5 * 2^52: adding and subtracting it rounds to an integer
-COUNTABLE = 2.0 ** 51           # half turns; beyond, two events have the same time as a double
-TRIES = 8    # at a next event; if none is later, doubles do not tell two events apart
+COUNTABLE = 2.0 ** 51           # half turns; beyond it two events have the same time as doubles
+TRIES = 8    # at the next event; if none is later, two events share a double
 
 
 @compiled_inline
@@ -54,7 +54,7 @@ def sin_cos(turns, low):
     quarter = nearest(4.0 * turns)
     x = (turns - 0.25 * quarter) + low
     z = x * x
-    # The leading terms stand apart and have more than a double's digits: rounding 2 pi alone
+    # The leading terms are added last, with more than a double's digits: rounding 2 pi alone
     # would make every sine too small.
     s = x * 6.283185307179586 + x * (2.4492935982947064e-16 + z * (-41.341702240399755 + z * (
         81.6052492760517 + z * (-76.70585973562093 + z * (42.05868918088512 + z * (

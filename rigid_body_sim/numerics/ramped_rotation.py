@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turn of a body whose angular velocity moves along a straight line at constant speed.
+"""Rotation of a body whose angular velocity changes linearly with time.
 
 In world axes omega(t) = omega0 + w t. A sphere sliding on a table with side spin turns like this.
 In the frame e1 = w/|w|, e2 along the part of omega0 across w, e3 = e1 x e2, the angular velocity
@@ -7,8 +7,8 @@ is (c + |w| t, p, 0), and the turn U (dU/dt = omega U / 2 as quaternions, U(0) =
 parabolic-cylinder functions: it is the Landau-Zener problem of quantum mechanics. With
 T = omega_1/sqrt|w|, P = p/sqrt|w|, rho^2 = T^2 + P^2 there are two regions:
 
-- Inside the ellipse T^2 + (pi/2) P^2 = 100 the turn is composed of Taylor series about the middle
-  of steps of at most 3 rad of half-angle; ten of them reach from the middle to the rim.
+- Inside the ellipse T^2 + (pi/2) P^2 = 100 the turn is a product of steps of at most 3 rad of
+  half-angle, each a Taylor series about its middle; ten steps reach from the middle to the rim.
 - Outside, one step of any length suffices. Let theta be the angle from e1 to omega,
   s = sin(theta) = P/rho, x = cos(theta). Seen from axes that follow omega, the turn keeps a slowly
   moving axis, whose stereographic coordinate is the series of Riccati's equation
@@ -238,7 +238,7 @@ def _outside(c, p, w, time):
     ex, ey, ez, es, end_turn = _slow_axis(end, p, root / end_speed, end_speed)
     half = 0.5 * (_angle(c, end, p, speed, end_speed, w * time, time) + (end_turn - turn))
     if not abs(half) < math.inf:
-        half = 0.0    # more than a double holds: within an ulp of omega the angle can be anything
+        half = 0.0    # it overflows: within an ulp of omega the angle can be anything
     x, y, z, s = multiply(sin(half), 0.0, 0.0, cos(half), -x, -y, -z, s)
     return multiply(ex, ey, ez, es, x, y, z, s)
 

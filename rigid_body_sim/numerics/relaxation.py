@@ -23,7 +23,7 @@ from rigid_body_sim.numerics.pairs import minus, over, pair_of, plus, scaled, ti
 PAIRS = 10          # terms of f1 and f2 that are summed in pairs; the rest are below 1e-16 of them
 SMALL = 0.125       # the series is summed up to here
 PAST = 80.0         # exp(-x) is below 1e-34 from here on
-LEAST = -740.0      # exp(-x) is beyond all doubles below
+LEAST = -740.0      # below it exp(-x) overflows
 ONE = 1.0, 0.0
 
 C = [pair_of(Fraction((-1) ** n, math.factorial(n + 2))) for n in range(20)]

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A root between two arguments where a function has different signs.
+"""A root of a function between two arguments at which its signs differ.
 
 Source: R. P. Brent, Algorithms for Minimization without Derivatives, chapter 4, in the form of
-SciPy's brentq. That one is C code, in which a compiler may fuse products and sums; here every
+SciPy's brentq. SciPy's is C code, in which a compiler may fuse products and sums; here every
 operation is rounded, so that a root has the same bits on every machine.
 """
 
 import math
 
-ITERATIONS = 200    # bisection alone takes 60 from neighbours of an hour to an ulp
+ITERATIONS = 200    # bisection alone narrows an hour to an ulp in 60
 
 
 def root(function, begin, end, absolute, relative):

@@ -80,7 +80,7 @@ def from_matrix(R):
     (S. W. Shepperd, Journal of Guidance and Control 1 (1978) 223).
     """
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R
-    # the squares of 2 x, 2 y, 2 z, 2 w
+    # (2 x)^2, (2 y)^2, (2 z)^2, (2 w)^2
     squares = (1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz, 1.0 + xx + yy + zz)
     k = squares.index(max(squares))
     products = ((squares[0], xy + yx, xz + zx, zy - yz), (xy + yx, squares[1], yz + zy, xz - zx),

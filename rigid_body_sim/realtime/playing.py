@@ -25,7 +25,7 @@ BATCH, BATCH_BYTES, BATCHES = 256, 2**20, 32
 
 
 class Reading(threading.Thread):
-    """Reads ahead, a bounded number of messages.
+    """A thread that reads ahead, by a bounded number of messages.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Reading(threading.Thread):
 
 
 class Player(threading.Thread):
-    """Publishes messages as they become due.
+    """A thread that publishes messages as they become due.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class Player(threading.Thread):
     loops : int
         Loops that were begun.
     lateness : Lateness
-        Of messages: from their instants to when they were handed over.
+        Of messages: from their instants until they are handed over.
     seconds : float
         From the first instant to the last message, without pauses.
     failure : Exception or None

@@ -16,8 +16,8 @@ SLICE = 100_000
 
 Without real-time scheduling the thread with the shorter slice runs first.
 
-A thread that sleeps in time is then late by 0.1 to 0.7 ms where it was by 3 to 4 (p99, both
-processors busy with others).
+It is then late by 0.1 to 0.7 ms instead of 3 to 4 ms (p99, both processors busy with other
+threads).
 """
 SCHED_SETATTR = {'x86_64': 314, 'aarch64': 274}
 """Number of the system call, which Python does not offer."""
@@ -63,7 +63,7 @@ def _ask_for_slice(nanoseconds):
 
 def quicken():
     """Keep pauses of the interpreter short, just before the thread that keeps deadlines starts."""
-    # present objects stay alive: the collector need not look at them again
+    # the objects of now stay alive: the garbage collector need not visit them again
     gc.collect()
     gc.freeze()
     sys.setswitchinterval(SWITCH_INTERVAL)

@@ -28,8 +28,8 @@ class Stop:
         self._wake = lambda: None
         self.by_signal = False
         self.last_resort = lambda: None
-        """Function that closes things, in another thread, if the process is still busy at its
-        end."""
+        """Function that closes files in another thread, if the process is still busy after
+        the longest time."""
 
     @property
     def wanted(self):

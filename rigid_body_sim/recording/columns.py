@@ -21,7 +21,7 @@ class Decoder:
     ----------
     type_name : str
     schema_text : str
-        As recorded (``ros2msg``), or '' for one of the types we ship.
+        As recorded (``ros2msg``), or '' for one of the types that the package ships.
     """
 
     def __init__(self, type_name, schema_text=''):

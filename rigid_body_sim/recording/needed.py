@@ -11,7 +11,7 @@ PACKAGES = ('mcap', 'zstandard', 'lz4')     # the last two come with the first
 def need_mcap():
     """Raise BadInput where recordings cannot be read and written: modules below mcap/ need these.
 
-    They are imported behind this call, so that everything else runs without them.
+    They are imported after this call, so that everything else runs without them.
     """
     missing = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
     if missing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings read: our own and those of ``ros2 bag record``.
+"""Reading of recordings: those of this package and those of ``ros2 bag record``.
 
 ::
 
@@ -139,7 +139,7 @@ class Recording:
             file.close()
 
     def _about(self, custom):
-        """Return what the recorder left.
+        """Return the texts that the recorder left about the run.
 
         It is in the files, in metadata.yaml, or in the journal (which survives a conversion).
         """
@@ -173,27 +173,49 @@ class Recording:
         ----------
         namespace : str, optional
             Of the body, where the recording has several: ``/left``.
+
+        Raises
+        ------
+        BadInput
+            The recording has no scene, or several bodies and no `namespace` is given.
         """
         bodies = _bodies()
         return bodies.scene(self, bodies.namespace_of(self, namespace))
 
     def states(self, namespace=None, start=0, end=2**63, progress=None):
-        """Return the recorded States; `namespace` as for :meth:`scene`.
+        """Return the recorded States.
 
         Times are seconds of stamps since the recording's first tick. The velocity was recorded
-        only if ``odom`` was; otherwise it is NaN. `start`, `end` and `progress` as for
-        :meth:`blocks`.
+        only if ``odom`` was; otherwise it is NaN.
+
+        Parameters
+        ----------
+        namespace : str, optional
+            As for :meth:`scene`.
+        start, end, progress
+            As for :meth:`blocks`.
+
+        Raises
+        ------
+        BadInput
+            The topics ``pose`` and ``angular_velocity`` were not both recorded.
         """
         bodies = _bodies()
         return bodies.states(self, bodies.namespace_of(self, namespace), start, end, progress)
 
     def events(self, namespace=None):
-        """Return what was published on ``events``, as a list of bodies.Event."""
+        """Return what was published on ``events``, as a list of bodies.Event.
+
+        Each has ``time`` (s since the start), ``log_time`` (ns), ``name``, ``message`` and
+        ``values`` (a dict of texts). `namespace` is that of :meth:`scene`.
+        """
         bodies = _bodies()
         return bodies.events(self, bodies.namespace_of(self, namespace))
 
     def commands(self, namespace=None):
         """Return the commands that were sent to the body, as columns.
+
+        `namespace` is that of :meth:`scene`.
 
         Returns
         -------
@@ -260,9 +282,14 @@ class Recording:
                 progress(len(piece.heads))
 
     def read(self, topic, names=None, start=0, end=2**63, progress=None):
-        """Return the columns of one topic in the order of log time; see :meth:`blocks`.
+        """Return the columns of one topic in the order of log time.
 
-        Without `names` these are all columns that every message has.
+        Parameters are those of :meth:`blocks`.
+
+        Returns
+        -------
+        dict of str to array (n, ...)
+            The columns in `names`; without it all columns that every message has.
         """
         blocks = [columns for _, columns in self.blocks([topic], names, start, end, progress)]
         if not blocks:
@@ -301,7 +328,7 @@ class Recording:
     def messages(self, topics=None, start=0, end=2**63):
         """Yield the Messages of all topics, or those named, in the order of log time.
 
-        Messages of equal times come as recorded.
+        Messages of equal times come as recorded. `start` and `end` are log times in ns, inclusive.
         """
         pending, pieces = [], self._pieces(topics, start, end)
         for channels, piece, place in pieces:
@@ -315,7 +342,8 @@ class Recording:
     def decoded(self, topic, start=0, end=2**63):
         """Yield (log_time, nested dict) for each message of a topic.
 
-        This reads any type, also those whose sequences vary in length, like diagnostics.
+        This reads any type, also those whose sequences vary in length, like diagnostics. Times
+        are in ns; `start` and `end` are inclusive.
         """
         decoder = self.decoder(topic)
         for message in self.messages([topic], start, end):
@@ -324,8 +352,8 @@ class Recording:
     def journal(self):
         """Return the entries of the journals in order.
 
-        They are dicts with ``kind``, what the recorder wrote, ``log_time`` and ``topic``; [] in
-        recordings of others.
+        They are dicts with ``kind``, what the recorder wrote, ``log_time`` (ns) and ``topic``;
+        [] in recordings of other programs.
         """
         entries = []
         for name, topic in self.topics.items():

@@ -167,7 +167,7 @@ class Recorder:
 
     @property
     def process_id(self):
-        """Process id of the recorder, of the newest one."""
+        """Process id of the newest recorder."""
         return self._process.pid
 
     def tick(self, log_time, publish_time, messages):
@@ -212,7 +212,7 @@ class Recorder:
     def commands(self, tick, log_time, publish_time, rows):
         """Record the commands that took effect at a tick (rows of command_rows.py).
 
-        CommandMessages says as what; none is ever lost.
+        CommandMessages makes the messages of them; none is ever lost.
         """
         with self._lock:
             packet = packets.commands_packet(self._number + 1, tick, log_time, publish_time, rows)

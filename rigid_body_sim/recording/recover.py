@@ -3,12 +3,12 @@
 
 What a kill -9, a full disk or a power cut left behind gets the tail and metadata.yaml that every
 reader needs. Everything that was completely written is kept, and of the chunk in which a file is
-cut (at most 0.1 s of a node's recording) what can be decompressed. Then only what lies behind the
+cut (at most 0.1 s of a node's recording) what can be decompressed. Then only what lies after the
 last whole record is replaced, so that a full disk needs room for the index only. Where bytes are
 wrong, each chunk is read by redundant information, and the file is rewritten beside the old one,
 which stays as NAME.mcap.orig. What is lost is counted by the statistics, the message indexes, the
-sequence numbers or metadata.yaml; where none of them tells, it is said to be unknown. A second run
-changes nothing.
+sequence numbers or metadata.yaml; where none of them tells, it is reported as unknown. A second
+run changes nothing.
 """
 
 import dataclasses

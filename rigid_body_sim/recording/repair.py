@@ -26,20 +26,20 @@ class Recovered:
     ----------
     path : pathlib.Path
     messages : int
-        It holds now.
+        In the file now.
     lost_messages : int
     certainty : str
         How `lost_messages` is known, see :class:`rigid_body_sim.recording.mcap.mending.Losses`.
     lost_seconds : float
-        Of stamps between the messages around what is lost.
+        Difference of the stamps of the messages before and after what is lost.
     lost_bytes : int
-        Of which nothing was kept.
+        Bytes of which nothing was kept.
     doubtful_messages : int
-        Kept, though the checksum over them is wrong: among them are wrong bytes.
+        Messages that were kept, though the checksum over them is wrong: some bytes are wrong.
     changed : bool
         False where the file was whole.
     original : pathlib.Path or None
-        Where the file is as it was, if it had to be written anew.
+        Path of the file as it was, if it had to be written anew.
     """
 
     path: pathlib.Path
@@ -113,7 +113,7 @@ def _profiles(channel):
 def recover_file(path, expected=None):
     """Make one file whole; return (Recovered, Found): what was done, and what the file holds.
 
-    Only what lies behind the last whole record is replaced in place. Where more is wrong, the file
+    Only what lies after the last whole record is replaced in place. Where more is wrong, the file
     is written anew beside the old one, read back, and put in its place; the old one stays, as
     ``NAME.mcap.orig``.
 

@@ -18,7 +18,7 @@ _to_json = json.JSONEncoder(allow_nan=False, check_circular=False).encode
 class Topic:
     """A topic to be recorded.
 
-    `name` is complete (``/racket/pose``), `type` a message type we know; `depth`, `reliability`
+    `name` is complete (``/racket/pose``), `type` a known message type; `depth`, `reliability`
     (``reliable``, ``best_effort``) and `durability` (``volatile``, ``transient_local``) are those
     that its publisher offers.
     """

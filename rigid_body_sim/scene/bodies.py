@@ -25,8 +25,8 @@ from rigid_body_sim.scene.shapes import SHAPES, SPHERES
 from rigid_body_sim.scene.surfaces import Surface
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
-LARGEST_MOMENT = 1e150    # kg m^2: squares of it are doubles
-SMALLEST_MOMENT = 1e-150  # kg m^2, of a moment that is not zero: what it divides stays a double
+LARGEST_MOMENT = 1e150    # kg m^2: its square fits a double
+SMALLEST_MOMENT = 1e-150  # kg m^2, of a moment that is not zero: quotients by it fit
 SMALLEST_MASS = 1e-75     # kg
 
 
@@ -41,9 +41,8 @@ class Inertia:
     def of_matrix(cls, matrix):
         """Diagonalise a symmetric 3 x 3 tensor.
 
-        Of all orders and signs of the principal axes, and of all choices within the plane of equal
-        moments, the one nearest to the body axes is taken. A diagonal tensor is kept to the last
-        bit.
+        The principal axes nearest to the body axes are taken, of all orders and signs and of all
+        choices within the plane of equal moments. A diagonal tensor is kept to the last bit.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
@@ -90,8 +89,8 @@ def moved(inertia, M, shift, sign):
     """Return the tensor moved by the parallel-axis theorem.
 
     It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass. No
-    moment is then below the least one about the centre, which therefore replaces a moment that
-    rounding leaves below zero, on a body that is small beside the shift.
+    moment is then below the least one about the centre. That one replaces a moment that rounding
+    leaves below zero, on a body that is small beside the shift.
     """
     if not any(shift):
         return inertia
@@ -154,7 +153,7 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
     else:
         body = Body(M, center, given, moved(given, M, center, 1.0), radius)
     _check_moments(body, given, where)
-    # what is below zero there is rounding
+    # a moment below zero there is rounding
     return replace(body, about_center=_not_negative(body.about_center),
                    about_origin=_not_negative(body.about_origin))
 

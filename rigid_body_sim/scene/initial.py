@@ -96,7 +96,8 @@ def _only(mapping: dict[str, Any], ways: Sequence[str], what: str, where: str) -
     """Return the key that is given of those that say the same thing, or None."""
     given = [way for way in ways if way in mapping]
     if len(given) > 1:
-        raise BadInput(f'{where}.{given[1]}', f'stands beside {given[0]}', f'give {what} once')
+        raise BadInput(f'{where}.{given[1]}', f'is given together with {given[0]}',
+                       f'give {what} once')
     return given[0] if given else None
 
 

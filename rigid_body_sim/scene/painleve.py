@@ -23,8 +23,8 @@ def inverse_of(matrix):
 def painleve_bound(body):
     """Return mu_P: below this coefficient of friction the force of every slip has one solution.
 
-    It is the least of G_nn/|G_nt| over the attitudes with G of mechanics/contact/laws.py, looked
-    for on a grid and refined; infinite for a sphere about its centre of mass.
+    It is the least of G_nn/|G_nt| over the attitudes, with G of mechanics/contact/laws.py, found
+    on a grid and refined; infinite for a sphere about its centre of mass.
     """
     surface = body.surface
     inverse = inverse_of(tuple(map(tuple, body.about_center.matrix.tolist())))

@@ -175,9 +175,9 @@ class Scene:
 
 
 def kept(function):
-    """Let a function of a scene keep what it returns with the scene: a scene never changes.
+    """Cache the result of a function of a scene with the scene, which never changes.
 
-    What it returns must not change either.
+    The result must not change either.
     """
     @functools.wraps(function)
     def of(scene):
@@ -250,7 +250,21 @@ def load_scene(name_or_path: str | pathlib.Path,
 
 
 def parse_scene(text: str, overrides: Overrides = (), where: str = 'scene') -> Scene:
-    """Return the validated scene of a YAML text; `where` names it in error lines."""
+    """Return the validated scene of a YAML text.
+
+    Parameters
+    ----------
+    text : str
+    overrides : mapping of str to value, or sequence of str
+        As for :func:`load_scene`.
+    where : str
+        Name of the text in error lines.
+
+    Raises
+    ------
+    BadInput
+        One line: `where`, the line of the text, key path, value, what would be right.
+    """
     mapping = yaml_text.parse(text, where)
     if overrides:
         return _overridden(mapping, overrides, where)
@@ -321,7 +335,7 @@ def _inert_body(mapping, where):
     if way == 'parts':
         surplus = [key for key in mapping if key not in ('parts', 'surface')]
         if surplus:
-            raise BadInput(f'{where}.{surplus[0]}', 'stands beside parts',
+            raise BadInput(f'{where}.{surplus[0]}', 'is given together with parts',
                            'a composite takes mass and centre of mass from its parts')
         return bodies.composite([_part(part, f'{where}.parts.{place}')
                                  for place, part in enumerate(mapping['parts'])], where)
@@ -330,7 +344,7 @@ def _inert_body(mapping, where):
     if way == 'shape':
         for key in ('inertia_about', 'radius'):
             if key in mapping:
-                raise BadInput(f'{where}.{key}', 'stands beside shape',
+                raise BadInput(f'{where}.{key}', 'is given together with shape',
                                'the shape already says it')
         (name, dimensions), = mapping['shape'].items()
         return bodies.of_shape(name, M, dimensions, center, where)
@@ -360,9 +374,9 @@ def _mass(mapping, where):
     if 'density' not in mapping:
         return float(mapping['mass'])
     if 'mass' in mapping:
-        raise BadInput(f'{where}.density', 'stands beside mass', 'give one of them')
+        raise BadInput(f'{where}.density', 'is given together with mass', 'give one of them')
     if 'shape' not in mapping:
-        raise BadInput(f'{where}.density', 'stands without a shape',
+        raise BadInput(f'{where}.density', 'is given without a shape',
                        'a density needs the volume of a shape: give mass')
     (name, dimensions), = mapping['shape'].items()
     return float(mapping['density']) * shapes.EXTENTS[name](**dimensions)
@@ -387,7 +401,7 @@ def _part(mapping, where):
     else:
         for key in ('at', 'orientation'):
             if key in mapping:
-                raise BadInput(f'{where}.{key}', 'stands beside point',
+                raise BadInput(f'{where}.{key}', 'is given together with point',
                                'point: [x, y, z] says where it is')
         nothing = bodies.Inertia((0.0, 0.0, 0.0))
         part = bodies.Body(abs(M), (0.0, 0.0, 0.0), nothing, nothing)
@@ -432,7 +446,7 @@ def _effects(entries, body, constraint, parameters, where):
             raise BadInput(f'{where}.{place}', f'got {yaml_text.brief(entry)}',
                            f'{hint} (one effect per entry)')
         if name in seen and not effect.repeatable:
-            raise BadInput(at, 'stands twice', 'list it once')
+            raise BadInput(at, 'is listed twice', 'list it once')
         seen.add(name)
         if constraint.mechanism not in effect.mechanisms:
             able = [kind for kind, one in CONSTRAINTS.items()
@@ -449,7 +463,7 @@ def _effects(entries, body, constraint, parameters, where):
 def _refuse_beside_turning(effects, body, constraint, where):
     """Refuse a rotor or a moving pivot beside internal dissipation.
 
-    It would not turn the rotor's momentum, nor the velocity that the pivot gives the body.
+    Dissipation would turn neither the rotor's momentum nor the velocity given by the pivot.
     """
     carrying = [effect.name for effect in effects if effect.momentum is not None]
     frame = constraint.frame(body)
@@ -460,7 +474,7 @@ def _refuse_beside_turning(effects, body, constraint, where):
     for effect in effects:
         if effect.acting is not None and any(one.gives == 'turning'
                                              for one in effect.acting(frame, 0.0)):
-            raise BadInput(f'{where}.{effect.name}', f'stands beside {carrying[0]}',
+            raise BadInput(f'{where}.{effect.name}', f'is given together with {carrying[0]}',
                            'heat at constant momentum is that of the body alone: leave one out')
 
 

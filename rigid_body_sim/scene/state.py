@@ -41,7 +41,7 @@ SHOWN = 10    # states of a long series that a notebook shows
 
 
 class StateView(NamedTuple):
-    """The state in kernels (layout above)."""
+    """The state in kernels, in the layout of the module's table."""
 
     time: float
     orientation: Quaternion
@@ -54,11 +54,13 @@ STATE = layout(StateView)
 
 
 class State:
-    """One state, a view on its vector (layout above); the parts are views too.
+    """One state: a view on its vector of 14 doubles; the parts are views too.
 
     Parameters
     ----------
     vector : array (14,)
+        Time, orientation (4), angular velocity, position, velocity (3 each); units and axes are
+        those of the properties.
     """
 
     __slots__ = ('vector',)
@@ -69,7 +71,19 @@ class State:
     @classmethod
     def of(cls, time=0.0, orientation=(0.0, 0.0, 0.0, 1.0), angular_velocity=(0.0, 0.0, 0.0),
            position=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> 'State':
-        """Make a state of its parts."""
+        """Make a state of its parts.
+
+        Parameters
+        ----------
+        time : float
+            Since the start of the simulation, s.
+        orientation : sequence of 4 floats
+            Unit quaternion (x, y, z, w), body to world.
+        angular_velocity : sequence of 3 floats
+            Body axes, rad/s.
+        position, velocity : sequence of 3 floats
+            Those of the body's origin, world axes, m and m/s.
+        """
         return cls(np.array([time, *orientation, *angular_velocity, *position, *velocity],
                             dtype=float))
 
@@ -118,6 +132,7 @@ class States(State):
     Parameters
     ----------
     vector : array (n, 14)
+        A row for each state, as State has it.
     """
 
     __slots__ = ()
@@ -163,6 +178,7 @@ class States(State):
         """Return a DataFrame indexed by time, with a column for each component.
 
         The columns are ``orientation_x`` ... ``velocity_z``; the units are those of the parts.
+        Raises BadInput where pandas is not installed.
         """
         pandas = optional('pandas')
         columns = [f'{part}_{axis}' for part, axes in AXES.items() for axis in axes]
@@ -170,7 +186,10 @@ class States(State):
                                 index=pandas.Index(self.time, name='time'))
 
     def to_xarray(self) -> 'xarray.Dataset':
-        """Return a Dataset: a variable for each part, over time and its axes, with units."""
+        """Return a Dataset: a variable for each part, over time and its axes, with units.
+
+        Raises BadInput where xarray is not installed.
+        """
         xarray = optional('xarray')
         coordinates = {'time': ('time', self.time, {'units': UNITS['time']}),
                        'quaternion': list('xyzw'), 'axis': list('xyz')}

@@ -64,7 +64,7 @@ class _SceneLoader(yaml.SafeLoader):
                 )
             if keys.count(key) > 1:
                 raise yaml.constructor.ConstructorError(
-                    None, None, f'the key {key!r} stands twice', key_node.start_mark
+                    None, None, f'the key {key!r} is given twice', key_node.start_mark
                 )
         return super().construct_mapping(node, deep)
 
@@ -113,7 +113,7 @@ def copied(value):
 
 @functools.lru_cache(maxsize=KEPT)
 def _parsed(text, where):
-    """Return what `parse` returns, to be copied: loops read one text many times."""
+    """Return the mapping of `parse`, cached and to be copied: loops read one text many times."""
     if len(text.encode()) > MAXIMUM_BYTES:
         raise BadInput(
             where, f'{len(text.encode())} bytes', f'a scene has at most {MAXIMUM_BYTES} bytes'

@@ -113,7 +113,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     progress : bool
         Whether to show a bar on stderr.
     horizon : float
-        Duration over which the accuracy is asked for, s.
+        Duration over which the accuracy is asked for, s; 100 by default.
 
     Returns
     -------

@@ -76,7 +76,7 @@ class Simulation:
     step : float, optional
         Fixed step of the method, s, instead of step control.
     horizon : float
-        Duration over which the accuracy is asked for, s.
+        Duration over which the accuracy is asked for, s; 100 by default.
     settled : choice.settling.Settled, optional
         What `auto` chose in an earlier run (choice.choose).
     overrides : mapping of str to value, or sequence of str
@@ -159,8 +159,8 @@ class Simulation:
         Raises
         ------
         BadInput
-            Another shape, numbers that are not finite, an orientation that is no unit quaternion,
-            more energy than a double holds. The simulation stays as it was.
+            Another shape, numbers that are not finite, an orientation that is not a unit
+            quaternion, more energy than a double holds. The simulation stays as it was.
         """
         start = np.array(getattr(initial, 'vector', initial), dtype=float)
         if start.shape != (STATE_SIZE,):
@@ -274,7 +274,7 @@ class Simulation:
         return Span(time, self.choice.solver(start, wrench), wrench, strikes, given, start)
 
     def copy(self) -> 'Simulation':
-        """Return a simulation of its own at the same tick, which goes on with the same bits.
+        """Return an independent simulation at the same tick, which goes on with the same bits.
 
         What a stepped method has computed is not copied: the copy steps it again when it is
         asked for.

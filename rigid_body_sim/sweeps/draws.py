@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random samples that depend on the seed, the key and the number of the run, on nothing else.
+"""Random samples that depend only on the seed, the key and the number of the run.
 
-Philox counts: run i has the four 64-bit words of counter i + 1, whoever draws them and in which
-order (Salmon, Moraes, Dror, Shaw, SC11 2011). The functions are the package's own, so that the
-samples have the same bits on every machine.
+Philox is a counter-based generator: run i has the four 64-bit words of counter i + 1, whoever
+draws them and in which order (Salmon, Moraes, Dror, Shaw, SC11 2011). The functions are the
+package's own, so that the samples have the same bits on every machine.
 """
 
 import math
@@ -69,7 +69,7 @@ class Sampled:
         Bounds of `uniform`; mean and standard deviation of `normal`; the length of a `direction`.
     seed : int
     key : str
-        The key that is sampled: each has random numbers of its own.
+        The key that is sampled: each key has its own random numbers.
     """
 
     def __init__(self, kind, a, b, seed, key):

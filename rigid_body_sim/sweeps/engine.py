@@ -25,9 +25,9 @@ would make it the limit."""
 BLOCKS = 8
 """Blocks of a store for each worker, if there is enough work: the last one to finish is short."""
 PIECES = 4
-"""The same of a result in memory, where no process needs a block to begin with."""
+"""Pieces of a result in memory for each worker: there no other process waits for a block."""
 ENOUGH_QUICK = 24_576
-"""Runs that are enough work for a piece, of single states in closed form: some 10 ms."""
+"""Least number of runs in a piece, for single states in closed form: some 10 ms of work."""
 FIRST_PIECE, FIRST_QUICK = 16, 2**15
 """Runs of the first pieces, which show how long runs take: of any kind, and of single states in
 closed form."""
@@ -112,7 +112,7 @@ def run(workers, pieces, submit, take, window):
     ----------
     workers : Workers
     pieces : iterator
-        What :func:`submit` takes; asked for as late as possible.
+        Arguments of `submit`; each is taken as late as possible.
     submit : callable
         (workers, piece) -> Future.
     take : callable

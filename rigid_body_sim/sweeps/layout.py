@@ -10,7 +10,7 @@ class Layout:
     """Blocks of runs that follow each other and are a box of the grid too.
 
     A block has one place along the dimensions before `along`, a range of places along it, and all
-    places along those behind.
+    places along those after it.
 
     Attributes
     ----------

@@ -131,7 +131,7 @@ class Plan:
 
     @property
     def is_quick(self):
-        """Whether all runs are states in closed form of one scene, and nothing else is kept."""
+        """Whether all runs are states of one scene in closed form, and nothing else is kept."""
         return (self.choice.method == 'exact' and not self.slow and self.starts_alone_differ
                 and self.wants <= {'final', 'states', 'minimum', 'maximum'})
 
@@ -225,8 +225,8 @@ def _places(shape, first, stop):
 def starts_alone_differ(scene, integrator):
     """Return whether runs of a scene that differ in direct keys differ in their starts alone.
 
-    Not so where the constraint makes the start of other numbers, an axis without moment refuses a
-    spin, or the choice of a method looks at the start.
+    This is not so where the constraint computes the start from other numbers, an axis without
+    moment refuses a spin, or the choice of a method looks at the start.
     """
     constraint = scene.constraint
     if not constraint.starts_as_given or \
@@ -272,7 +272,7 @@ def _check_events(keep):
 
 
 def word(name):
-    """Return a name that may stand in the name of a variable."""
+    """Return a name as part of the name of a variable: other characters become ``_``."""
     return re.sub(r'\W+', '_', name)
 
 

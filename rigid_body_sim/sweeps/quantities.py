@@ -67,7 +67,7 @@ QUANTITIES |= {
         lambda _, found: found[..., energy.MOMENTUM_SQUARED], True),
 }
 
-# the last word of a key path that is no number -> unit
+# the last word of a key path that is not a number -> unit
 _OF_KEYS = {
     'mass': 'kg', 'inertia': 'kg m2', 'center_of_mass': 'm', 'radius': 'm', 'length': 'm',
     'width': 'm', 'height': 'm', 'size': 'm', 'semi_axes': 'm', 'tube': 'm', 'at': 'm',

@@ -58,7 +58,7 @@ _OWN = threading.local()
 
 
 def _scratch(name, shape):
-    """Return an array that the next call in this thread takes again: fresh memory is slow."""
+    """Return an array that later calls in this thread use again: fresh memory is slow."""
     size = math.prod(shape)
     kept = vars(_OWN).get(name)
     if kept is None or len(kept) < size:

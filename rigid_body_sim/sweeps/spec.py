@@ -78,7 +78,7 @@ class Spec:
     functions : dict of str to callable
         By the names in `keep`.
     carried : dict of str to callable
-        Those of them that were given as they are, not by name: workers need them with the text.
+        Those of them that were given as objects, not by name: workers need them with the text.
     text : str
         JSON of all of it: enough to make the Spec again, but for functions that have no name.
     """
@@ -142,7 +142,7 @@ def _check_words(mapping, where):
     for key in mapping:
         if key not in WORDS:
             near = difflib.get_close_matches(str(key), WORDS, 1)
-            raise BadInput(f'{where}: {key}', 'is no word of a sweep',
+            raise BadInput(f'{where}: {key}', 'is not a word of a sweep',
                            f'did you mean {near[0]}?' if near else
                            f'the words are {", ".join(WORDS)}')
     for key in ('scene', 'keep'):
@@ -151,16 +151,16 @@ def _check_words(mapping, where):
 
 
 def _check_keys(vary, sample, where):
-    """Refuse a sweep that changes nothing, a key twice, and what is no key of a scene."""
+    """Refuse a sweep that changes nothing, a key given twice, and a key that no scene has."""
     if not vary and not sample:
         raise BadInput(where, 'neither vary nor sample names a key',
                        'give keys of the scene, for example vary: {body.mass: [1, 2]}')
     for key in sample:
         if key in vary:
-            raise BadInput(f'{where}: sample.{key}', 'stands in vary too', 'give it once')
+            raise BadInput(f'{where}: sample.{key}', 'is in vary too', 'give it once')
     for key in (*vary, *sample):
         if '/' in key or key in ('run', 'time', 'axis', 'quaternion', 'block'):
-            raise BadInput(f'{where}: {key}', 'is no key of a scene',
+            raise BadInput(f'{where}: {key}', 'is not a key of a scene',
                            'a key path such as body.mass')
 
 
@@ -277,7 +277,7 @@ def _refuse_twice(keep, where):
     names = [(one.kind, one.what if isinstance(one.what, str) else '') for one in keep]
     for place, name in enumerate(names):
         if name in names[:place]:
-            raise BadInput(f'{where}.{place}', f'{" ".join(name).strip()} stands twice',
+            raise BadInput(f'{where}.{place}', f'{" ".join(name).strip()} is listed twice',
                            'list it once')
 
 

@@ -61,7 +61,7 @@ def store_at(path):
 
 
 class Store:
-    """The common part of both kinds: created once and whole, and checked against its spec.
+    """The common part of both kinds of store: created once, whole, and checked against its spec.
 
     Parameters
     ----------
@@ -103,8 +103,8 @@ class Store:
         try:
             kept = self._kept()
         except (OSError, ValueError, KeyError, TypeError):
-            raise BadInput(str(self.path), 'is no store of a sweep',
-                           'give a path where nothing stands yet') from None
+            raise BadInput(str(self.path), 'is not a store of a sweep',
+                           'give a path where nothing exists yet') from None
         ours = specs.fingerprint(plan.spec)
         theirs = kept['words']
         other = sorted(word for word in {*ours, *theirs} if ours.get(word) != theirs.get(word))
@@ -122,7 +122,7 @@ class Store:
 
     @contextlib.contextmanager
     def alone(self):
-        """Hold the lock of the store; the system releases it when the process ends anyhow."""
+        """Hold the lock of the store; the system releases it however the process ends."""
         with open(self.path / self.LOCK, 'a+', encoding='ascii') as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -101,7 +101,10 @@ def prepared(spec):
 
 
 def forecast(spec, executor=None) -> Forecast:
-    """Return the expected cost of a sweep: some runs are tried, for less than a second."""
+    """Return the expected cost of a sweep: some runs are tried, for less than a second.
+
+    Parameters and errors are those of :func:`sweep`.
+    """
     plan = prepared(spec)
     workers = engine.Workers(executor)
     seconds = engine.seconds_a_run(plan, patience=0.5) * plan.spec.size / workers.count

@@ -45,7 +45,7 @@ def angular_acceleration(h, a, mu, g):
 
 
 def sliding_time(slip, mu, g, share=2.0 / 5.0):
-    """Return how long a ball slides whose lowest point slips at a speed (m/s), s.
+    """Return the sliding time of a ball whose lowest point slips at the speed `slip` (m/s), s.
 
     The time is 2 slip/(7 mu g) for a solid ball; `share` = I/(M a^2) of another ball.
     """
@@ -53,7 +53,7 @@ def sliding_time(slip, mu, g, share=2.0 / 5.0):
 
 
 def speed_when_rolling(speed, rim_speed, share=2.0 / 5.0):
-    """Return the speed of a rolling ball that began with a speed and a rim speed a omega, m/s.
+    """Return the speed of a rolling ball that began with `speed` and `rim_speed` = a omega, m/s.
 
     For a solid ball it is (5/7) (speed + (2/5) rim_speed); `share` = I/(M a^2) of another ball.
     Friction does not enter: the angular momentum about a point of the table is conserved.

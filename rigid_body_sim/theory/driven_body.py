@@ -2,8 +2,8 @@
 """Symmetric body driven by a constant torque about its axis (notes, "Euler's Equations").
 
 Euler's equations with this Gamma have a closed form. Symbols: I1 = I2 and I3 moments (kg m^2),
-Gamma3 torque about the symmetry axis (N m), omega angular velocity in body axes (rad/s); zero at
-the end of a name means at t = 0.
+Gamma3 torque about the symmetry axis (N m), omega angular velocity in body axes (rad/s); a name
+that ends in _0 is the value at t = 0.
 """
 
 import numpy as np

@@ -40,7 +40,7 @@ def body_rates(alpha_rate, beta_rate, gamma_rate, beta, gamma):
 def euler_rates(omega, beta, gamma):
     """Return (alpha', beta', gamma') for the body rates, shape (3, ...), rad/s.
 
-    It solves the formulas of :func:`body_rates`, which is not possible at beta = 0 or pi.
+    They invert the formulas of :func:`body_rates`, which are singular at beta = 0 and pi.
     """
     alpha_rate = (omega[1] * np.sin(gamma) - omega[0] * np.cos(gamma)) / np.sin(beta)
     return np.array([alpha_rate,

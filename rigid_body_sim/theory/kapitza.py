@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kapitza's pendulum: upside down on a pivot that shakes along the vertical with A cos(w t).
 
-Symbols: theta the tilt from upright, l = I/(M r) the reduced length, I the moment about the pivot,
-r from there to the centre of mass.
+Symbols: theta the tilt from upright (rad), l = I/(M r) the reduced length (m), I the moment about
+the pivot (kg m^2), r the distance (m) from there to the centre of mass, A the amplitude (m) and w
+the rate (rad/s) of the shaking, g gravity (m/s^2).
 
     theta'' = (g/l - (A w^2/l) cos(w t)) sin(theta)
 

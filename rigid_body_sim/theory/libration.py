@@ -2,7 +2,8 @@
 """Librations of a rigid satellite on a circular orbit under the gravity gradient.
 
 Body axes at rest in the frame of the orbit: 1 outwards (a turn about it is yaw), 2 along the track
-(roll), 3 along the normal (pitch); n the rate of the orbit, I1, I2, I3 the moments.
+(roll), 3 along the normal (pitch); n the rate of the orbit (rad/s), I1, I2, I3 the moments
+(kg m^2), theta the pitch angle and theta0 its `amplitude` (rad).
 
     pitch            theta'' = -(3/2) n^2 ((I2 - I1)/I3) sin(2 theta), any amplitude
     roll and yaw     s^4 + (1 + 3 k1 + k1 k3) n^2 s^2 + 4 k1 k3 n^4 = 0,

@@ -2,8 +2,7 @@
 """Small rocking of a rattleback that spins slowly: frequencies and growth of both modes.
 
 The equations of rolling without slip are linear in the tilts about the spin n about the vertical:
-M p'' + n G p' + (K + n^2 L) p = 0. Here they are derived from the full equations by finite
-differences.
+M p'' + n G p' + (K + n^2 L) p = 0. Here finite differences of the full equations give them.
 
 Source: T. R. Kane and D. A. Levinson, Int. J. Non-Linear Mech. 17 (1982) 175 (the body and its
 motion); A. Garcia and M. Hubbard, Proc. R. Soc. Lond. A 418 (1988) 165.
@@ -15,7 +14,7 @@ STEP = 1e-5    # step of the differences
 
 
 def modes(body, surface, g, spin):
-    """Return the eigenvalues (1/s) of small rocking at a spin (rad/s), the oscillating ones.
+    """Return the eigenvalues (1/s) of the oscillating modes of small rocking at a spin (rad/s).
 
     Parameters
     ----------
@@ -23,6 +22,8 @@ def modes(body, surface, g, spin):
         Mass (kg), tensor about the centre of mass (kg m^2), centre of mass from the origin (m).
     surface : tuple of 3 floats
         Semi-axes of the ellipsoid about the origin, m; the third one is vertical.
+    g : float
+        Gravity, m/s^2.
     """
     x0 = np.array([0.0, 0.0, 1.0, 0.0, 0.0, spin])
 

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tops that rise while they slip: the tippe top, and an egg that spins on its side.
 
-Symbols: m mass, A moment across the axis of symmetry, C along it, theta from the vertical to the
-axis, R radius of a spherical foot, a = e R the distance of the centre of mass below its middle,
-h(theta) height of the centre of mass, r from the centre of mass to the point of contact.
+Symbols: m mass (kg), A moment across the axis of symmetry, C along it (kg m^2), theta from the
+vertical to the axis (rad), R radius of a spherical foot (m), a = e R the distance (m) of the
+centre of mass below its middle, h(theta) height of the centre of mass (m), r the vector (m) from
+the centre of mass to the point of contact, g gravity (m/s^2), Omega the precession (rad/s).
 
-Jellett's integral lambda = -(I omega) . r is kept by any friction on a spherical foot. Of all
-motions with the same lambda the one of least energy at an inclination has omega parallel to r: it
-does not slip, and E = lambda^2/(2 r.I r) + m g h. Friction can only lower the energy towards the
-minimum of this. So a top that stands on its heavy end is left if A/C > 1 - e and it spins fast
-enough; it can end on its stem if A/C < 1 + e, else it stops on the way.
+Jellett's integral lambda = -(I omega) . r is constant under any friction on a spherical foot. Of
+all motions with the same lambda the one of least energy at an inclination has omega parallel to r:
+it does not slip, and E = lambda^2/(2 r.I r) + m g h. Friction can only lower the energy towards
+the minimum of this. So a top leaves the rest on its heavy end if A/C > 1 - e and it spins fast
+enough; it can end on its stem if A/C < 1 + e, otherwise it stops on the way.
 
-While a fast top slips, A Omega theta' = F h and Omega h is kept: with F = mu m g it passes from
-one inclination to another in the time J/(mu m g) times the integral of 1/h^2, J = A Omega h.
+While a fast top slips, A Omega theta' = F h and Omega h is constant: with F = mu m g it passes
+from one inclination to another in the time J/(mu m g) times the integral of 1/h^2, J = A Omega h.
 
 Sources: T. Ueda, K. Sasaki, S. Watanabe, SIAM J. Appl. Dyn. Syst. 4 (2005) 1159 (the groups);
 H. K. Moffatt, Y. Shimomura, Nature 416 (2002) 385 (the time, for an egg).

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A disk or hoop that rolls without slip, and the end of one that is slowed by its contour.
 
-Symbols: m mass, R radius, A moment across the axis, C along it, theta from the vertical to the
-axis, s = phi' sin(theta) with phi' the precession, w3 the spin, g gravity.
+Symbols: m mass (kg), R radius (m), A moment across the axis, C along it (kg m^2), theta from the
+vertical to the axis (rad), s = phi' sin(theta) with phi' the precession, w3 the spin (rad/s), g
+gravity (m/s^2).
 
 Sources: P. Appell, Rend. Circ. Mat. Palermo 14 (1900) 1; D. J. Korteweg, ibid. 2; A. V. Borisov,
 I. S. Mamaev, A. A. Kilin, Regul. Chaotic Dyn. 8 (2003) 201 (the constants); H. K. Moffatt, Nature
@@ -51,5 +52,8 @@ def precession_with_centre_at_rest(theta, A, m, R, g):
 
 
 def time_to_end_viscous(a, m, c):
-    """Return the time (s) in which the inclination a falls to 0 under -c s': 3 m a^2/(16 c)."""
+    """Return the time (s) in which the inclination a (rad) falls to 0, 3 m a^2/(16 c).
+
+    The force -c u (c in N s/m) acts against the velocity u of the point of contact.
+    """
     return 3.0 * m * a * a / (16.0 * c)

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Balls that roll without slip: Routh's, with its centre of mass off the middle, and Chaplygin's.
 
-Symbols: m mass, A moment across the axis of symmetry, C along it, R radius, a from the middle down
-to the centre of mass, theta from the vertical to the axis, s and w3 the parts of omega along the
-horizontal line's normal in the body and along the axis, r from the centre of mass to the contact.
+Symbols: m mass (kg), A moment across the axis of symmetry and C along it (kg m^2), R radius (m), a
+from the middle down to the centre of mass (m), theta from the vertical to the axis (rad), w3 the
+part of omega along the axis and s the part across it in the vertical plane through the axis
+(rad/s), r from the centre of mass to the point of contact (m), g gravity (m/s^2).
 
-Routh's sphere keeps its energy, Jellett's A R s sin(theta) + C w3 (R cos(theta) - a), and Routh's
-w3 sqrt(A C + m r.I r). So s and w3 are functions of theta, and theta(t) is one quadrature.
-Chaplygin's sphere has its centre of mass in the middle and any moments: it keeps its energy,
-and M = I omega + m r x (omega x r) as a vector in the world.
+Routh's sphere has three constants: the energy, Routh's w3 sqrt(A C + m r.I r) and Jellett's
+A R s sin(theta) + C w3 (R cos(theta) - a). So s and w3 are functions of theta, and theta(t) is one
+quadrature. Chaplygin's sphere has its centre of mass in the middle and any moments: its energy is
+constant, and so is M = I omega + m r x (omega x r) as a vector in the world.
 
 Sources: C. G. Gray and B. G. Nickel, Am. J. Phys. 68 (2000) 821; A. V. Borisov, Y. N. Fedorov,
 I. S. Mamaev, Regul. Chaotic Dyn. 13 (2008) 443.
@@ -41,7 +42,7 @@ def swing(theta, s, w3, A, C, m, R, a, g):
     routh = routh_constant(w3, theta, A, C, m, R, a)
 
     def parts(x):
-        """Return twice the energy without theta', and what theta'^2 is multiplied by."""
+        """Return twice the energy less its term in theta'^2, and the factor of theta'^2."""
         along, across = a - R * math.cos(x), R * math.sin(x)
         square = along * along + across * across
         w3 = routh / routh_constant(1.0, x, A, C, m, R, a)
@@ -64,7 +65,7 @@ def swing(theta, s, w3, A, C, m, R, a, g):
     middle, half = 0.5 * (theta + other), 0.5 * abs(other - theta)
 
     def share(angle):
-        # theta = middle + half sin(angle): the roots at both ends are taken out
+        # theta = middle + half sin(angle) removes the square roots at both ends
         x = middle + half * math.sin(angle)
         speed = left(x) / parts(x)[1]
         return half * math.cos(angle) / math.sqrt(speed)

@@ -40,8 +40,8 @@ def test_good_columns_are_taken(name):
     ('energy', 'data', np.ones((3, 1)), 'has no data in its messages, or not of 1 doubles'),
     ('energy', 'data', np.array([0.0, np.inf, 0.0]), 'not finite'),
     ('pose', 'pose.orientation', np.array([[0, 0, 0, 1], [0, 0, 0, 1.001], [0, 0, 0, 1]]),
-     'no unit quaternion'),
-    ('pose', 'pose.orientation', np.zeros((3, 4)), 'no unit quaternion')])
+     'not a unit quaternion'),
+    ('pose', 'pose.orientation', np.zeros((3, 4)), 'not a unit quaternion')])
 def test_what_is_wrong_is_said(name, column, value, said):
     broken = columns(name)
     if value is None:

@@ -51,12 +51,12 @@ def test_angular_momentum_is_that_of_the_world_about_the_point_of_reference(cons
 
 @pytest.mark.parametrize(('initial', 'line'), [
     ('euler: [0, 0, 1], tilt: 1',
-     'scene, line 5: initial.tilt: stands beside euler; give the orientation once'),
+     'scene, line 5: initial.tilt: is given together with euler; give the orientation once'),
     ('spin: 1, angular_momentum: [1, 2, 3]',
-     'scene, line 5: initial.spin: stands beside angular_momentum; '
+     'scene, line 5: initial.spin: is given together with angular_momentum; '
      'give the angular velocity once'),
     ('angular_velocity: [1, 2, 3], angular_velocity_world: [1, 2, 3]',
-     'scene, line 5: initial.angular_velocity_world: stands beside angular_velocity; '
+     'scene, line 5: initial.angular_velocity_world: is given together with angular_velocity; '
      'give the angular velocity once')])
 def test_saying_it_twice_gets_one_line(initial, line):
     with pytest.raises(BadInput) as refusal:

@@ -74,14 +74,14 @@ def test_a_body_by_its_density():
     ('{parts: [{mass: 1, shape: {disk: {radius: 1}}}, {mass: -0.9, shape: {disk: {radius: 2}}}]}',
      'body.inertia: moment -0.65 about the centre of mass is negative; '
      'moments of inertia are zero or positive'),
-    ('{density: 3, inertia: [1, 2, 3]}', 'body.density: stands without a shape; '
+    ('{density: 3, inertia: [1, 2, 3]}', 'body.density: is given without a shape; '
      'a density needs the volume of a shape: give mass'),
     ('{mass: 1, density: 3, shape: {disk: {radius: 2}}}',
-     'body.density: stands beside mass; give one of them'),
+     'body.density: is given together with mass; give one of them'),
     ('{parts: [{mass: 0, point: [1, 0, 0]}]}',
      'body.parts.0.mass: got 0; needs a number that is not 0'),
     ('{parts: [{mass: 1, point: [1, 0, 0], at: [1, 0, 0]}]}',
-     'body.parts.0.at: stands beside point; point: [x, y, z] says where it is'),
+     'body.parts.0.at: is given together with point; point: [x, y, z] says where it is'),
     ('{parts: [{mass: 1}]}',
      'body.parts.0: got none of them; give exactly one of shape, inertia, point')])
 def test_what_no_body_is_gets_one_line(body, line):

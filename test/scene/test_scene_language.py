@@ -337,7 +337,7 @@ def scene_of(effect, constraint='free', parameters=''):
     ('gravity_gradient: {mu: 1, position: [0, 0, 0]}', '', 'not the attracting point'),
     ('gravity_gradient: {mu: 1}', '', "the key 'position' is missing; needed: mu and"),
     ('gravity_gradient: {mu: 1, orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 0]}}', '',
-     'gravity_gradient.orbit: stands beside mu or position'),
+     'gravity_gradient.orbit: is given together with mu or position'),
     ('gravity_gradient: {orbit: {rate: 1, normal: [0, 0, 1], toward: [1, 0, 1]}}', '',
      'orbit.toward: got [1, 0, 1]; a direction perpendicular to normal'),
     ('gravity: {g: [1, 2]}', '', 'gravity.g: got [1, 2]; needs at least 3 entries'),
@@ -346,7 +346,7 @@ def scene_of(effect, constraint='free', parameters=''):
     ('drag: {quadratic: -1}', '', 'needs a number of at least 0'),
     ('rotor: {axis: [0, 0, 1], momentum: 1, rate: 2}', '', 'give momentum alone, or inertia and'),
     ('rotor: {axis: [0, 0, 1], momentum: 1}}, {internal_dissipation: {coefficient: 1}', '',
-     'internal_dissipation: stands beside rotor'),
+     'internal_dissipation: is given together with rotor'),
     ('rotor: {axis: [0, 0, 0], momentum: 1}', '', 'a direction: three numbers, not all zero'),
     ('spring: {at: [0, 0, 0], anchor: [0, 0, 1]}', '', "the key 'stiffness' is missing"),
     ('spring: {anchor: [0, 0, 1], stiffness: 1}', '', "the key 'at' is missing")])
@@ -361,7 +361,8 @@ def test_what_does_not_fit_gets_one_line(effect, parameters, words):
     ("[0, 0, 'x']", 'drag: {linear: 1}', "pivot.motion.2: got 'x': x is not known here"),
     ("[0, 0, '1/t']", 'drag: {linear: 1}', 'the place at time 0 is [0.0, 0.0, inf]'),
     ("[0, 0, 'sqrt(t)']", 'drag: {linear: 1}', 'the velocity at time 0 is'),
-    ("[0, 0, 't']", 'internal_dissipation: {coefficient: 1}', 'stands beside a pivot that moves'),
+    ("[0, 0, 't']", 'internal_dissipation: {coefficient: 1}',
+     'is given together with a pivot that moves'),
     ('[0, 0]', 'drag: {linear: 1}', 'needs at least 3 entries')])
 def test_a_path_that_no_pivot_can_take_gets_one_line(motion, effect, words):
     with pytest.raises(BadInput, match=re.escape(words)) as refusal:

@@ -77,7 +77,7 @@ def test_mistake_gets_one_line(assignment, line):
 @pytest.mark.parametrize(
     ('text', 'words'),
     [('a: *b', 'racket.yaml, line 1'), ('a: {b: 1', 'racket.yaml, line'),
-     ('a: 1\na: 2', 'stands twice'), ('- 1', 'a scene is a mapping'),
+     ('a: 1\na: 2', 'is given twice'), ('- 1', 'a scene is a mapping'),
      ('a: ' + '[' * 50 + ']' * 50, 'nested deeper'),
      ('a: !!python/object:os.system x', 'python/object'), ('\x00', 'special characters'),
      ('a: &x [1]\nb: *x', 'alias'), ('a: ' + 'x' * 300_000, 'at most 262144 bytes'),
@@ -192,7 +192,7 @@ def test_what_a_reader_turns_is_one_override(scene, assignment, found, expected)
      ('billiard_follow', 'strike={height: 0}',
       'billiard_follow.yaml: effects.strike: got the keys height; give one of impulse (N s) and'),
      ('billiard_follow', 'strike={speed: 1, height: 0, point: [0, 0, 0]}',
-      'billiard_follow.yaml: effects.strike.height: stands beside point'),
+      'billiard_follow.yaml: effects.strike.height: is given together with point'),
      ('baseball_bat', 'strike.speed=1',
       "baseball_bat.yaml: effects.strike.speed: has no meaning on constraint 'hinge'"),
      ('baseball_bat', 'strike.height=1',
@@ -205,9 +205,9 @@ def test_what_a_reader_turns_is_one_override(scene, assignment, found, expected)
      ('kater_pendulum', 'constraint.hinge={axis: [0, 0, 1], distance: 1}',
       'kater_pendulum.yaml: constraint.hinge.distance: got an axis'),
      ('kater_pendulum', 'constraint.hinge={axis: [0, 1, 0], distance: 1, through: [0, 0, 1]}',
-      'kater_pendulum.yaml: constraint.hinge.distance: stands beside through'),
+      'kater_pendulum.yaml: constraint.hinge.distance: is given together with through'),
      ('heavy_top', 'initial={tilt: 1, euler_zyz: [0, 0, 0]}',
-      'heavy_top.yaml: initial.tilt: stands beside euler_zyz')])
+      'heavy_top.yaml: initial.tilt: is given together with euler_zyz')])
 def test_a_wrong_turn_gets_one_line(scene, assignment, line):
     with pytest.raises(BadInput) as caught:
         load_scene(scene, [assignment])

@@ -125,12 +125,12 @@ def test_what_cannot_be_kept_is_refused(entry):
 
 @pytest.mark.parametrize('key', ['a/b', 'run', 'time', 'axis', 'quaternion', 'block'])
 def test_names_of_dimensions_are_no_keys(key):
-    with pytest.raises(BadInput, match='is no key of a scene'):
+    with pytest.raises(BadInput, match='is not a key of a scene'):
         spec(vary={key: [1]})
 
 
 def test_a_key_stands_in_one_place_and_there_is_one():
-    with pytest.raises(BadInput, match='stands in vary too'):
+    with pytest.raises(BadInput, match='is in vary too'):
         spec(sample={'runs': 2, 'body.mass': {'uniform': [1, 2]}})
     with pytest.raises(BadInput, match='neither vary nor sample'):
         spec(vary={})

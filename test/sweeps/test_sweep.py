@@ -212,11 +212,11 @@ def test_samples_depend_on_seed_key_and_run_alone():
 
 
 @pytest.mark.parametrize(('change', 'line'), [
-    ({'varry': {}}, 'varry: is no word of a sweep; did you mean vary?'),
+    ({'varry': {}}, 'varry: is not a word of a sweep; did you mean vary?'),
     ({'keep': ['finale']}, "did you mean 'final'?"),
     ({'keep': [{'first': 'flop'}]}, "got 'flop'; an event: flip"),
     ({'keep': [{'minimum': 'cos_tlt'}]}, 'did you mean cos_tilt?'),
-    ({'keep': ['final', 'final']}, 'final stands twice'),
+    ({'keep': ['final', 'final']}, 'final is listed twice'),
     ({'keep': [{'function': 'nowhere:nothing'}]}, 'module:name, or file.py:name'),
     ({'vary': {'body.mass': {'linspce': [1, 2, 3]}}}, 'linspace: [first, last, count]'),
     ({'vary': {'body.mass': []}}, 'a list of values'),
@@ -260,7 +260,7 @@ def test_store_of_another_spec_or_version_is_refused(tmp_path, monkeypatch, kind
     with pytest.raises(BadInput, match=r'was made by version .* of rigid_body_sim, and this is 9'):
         sweep(SMALL, store=store)
     (tmp_path / f'other.{kind}').mkdir()
-    with pytest.raises(BadInput, match='is no store of a sweep'):
+    with pytest.raises(BadInput, match='is not a store of a sweep'):
         sweep(SMALL, store=tmp_path / f'other.{kind}')
     with pytest.raises(BadInput, match=r'a path that ends in \.zarr'):
         sweep(SMALL, store=tmp_path / 'maps.nc')

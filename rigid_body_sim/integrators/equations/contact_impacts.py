@@ -56,7 +56,7 @@ def velocity_of_lowest(p, y):
 def collide(p, y, restitution, out):
     """Change the unknowns of a flight by an impact.
 
-    An impact that would make energy, as Newton's law with friction can, has no restitution.
+    An impact that would create energy, as Newton's law with friction can, has no restitution.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ along the axes of the plane.
 
     FLIGHT    no contact: x'' = F/m
     SLIDING   u != 0 (with a patch of contact: or a spin about the normal): f = N (n - mu u/|u|).
-              Where u dies its direction may turn ever faster, so time is an unknown and the
+              As u vanishes its direction may turn ever faster, so time is an unknown and the
               independent variable is s with dt = |u| ds (|u| with the spin of a patch):
               everything is smooth in s, and |u| dies like an exponential
     ROLLING   u = 0: f = -G^-1 b, as long as |F_t| <= mu N. With a patch of contact nothing spins
@@ -78,7 +78,7 @@ applied = UNBOUND
 ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
 SLOW = 1e-13             # share of the speeds below which a body does not roll
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
-SHORT = 1e-6             # time of a difference, over that in which the body moves by its size
+SHORT = 1e-6             # time of a difference, over the time in which the body moves by its size
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns, store_row = CONTACT.load, UNKNOWNS.load, ROW.store
@@ -163,7 +163,7 @@ def _applied(p, c, now, at, omega, v, ahead):
 
 @compiled_inline
 def _short(c):
-    """Return the time of a difference, s."""
+    """Return the time step of a finite difference, s."""
     return SHORT * c.size[0] / c.swift
 
 
@@ -191,7 +191,7 @@ def _lagging(p, c, now, at, push, slow):
     """Return the direction of a creep |u|: it lags behind the direction d, which turns.
 
     With the angle phi of u, |u| phi' is the part of u' across u. Where d turns at the rate phi', u
-    stands off d by |u| phi' over the slope of that part. phi' is a difference over a short time.
+    stands off d by |u| phi' over the slope of that part. phi' is a finite difference.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def _lagging(p, c, now, at, push, slow):
 
 @compiled
 def _parting(p, c, now, at, push, slow):
-    """Return the direction of a creep |w| of a patch that holds no more.
+    """Return the direction of a creep |w| of a patch that has begun to slip.
 
     It lags behind the direction along which the slip begins, as in `_lagging`.
     """

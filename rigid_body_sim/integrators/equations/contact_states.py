@@ -45,7 +45,7 @@ NOTHING = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0.0)
 def write(p, y, row, time, start, out):
     """Fill the state vector `out` from the unknowns and a row of their rates.
 
-    Behind it, where there is room, stand the entries of the ledger and the heat by its cause.
+    After it, where there is room, come the entries of the ledger and the heat by its cause.
 
     Parameters
     ----------

@@ -140,7 +140,7 @@ class Equations:
         self.fixed_count = len(self._fixed)
 
     def _lost_force(self):
-        """Return the BadInput of an effect whose force a bearing would take unseen."""
+        """Return the BadInput of an effect whose force a bearing would balance unnoticed."""
         name = next(actor.name for actor in self._actors if any(
             one.gives == 'force' for one in actor.acting(self.frame, -np.inf)))
         return BadInput(f'effects.{name}', 'gives a force, and a bearing holds the body',

@@ -3,8 +3,8 @@
 
 scene/frame.py has the frame.
 
-The parameters of every scene kind begin with EquationParameters; the values of all that acts stand
-behind them.
+The parameters of every scene kind begin with EquationParameters; the values of all that acts come
+after them.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ class EquationParameters(NamedTuple):
     Attributes
     ----------
     euler : Vector
-        (I2 - I3)/I1 and so on in turn; 0 where the moment is 0.
+        (I2 - I3)/I1 and cyclically; 0 where the moment is 0.
     inverse : Vector
         1/I1 ..., 0 where the moment is 0; on a hinge the first is that of the moment about it.
     moments : Vector
@@ -132,9 +132,9 @@ def lost_norm(qx, qy, qz, qw):
 def unit(qx, qy, qz, qw, cx, cy, cz, cw):
     """Return q + c with norm 1, as the nearest doubles and what they lose.
 
-    The stretch must go into q itself: left in c it would be added after the next step, which turns
-    q by x, half the angle of the body, and so shrink the error of the norm to 1 - cos(x) only:
-    beyond a quarter turn of q errors would grow from step to step.
+    The stretch must go into q itself. Left in c it would be added after the next step, which turns
+    q by x, half the angle of the body; the share 1 - cos(x) of the error of the norm would remain,
+    and beyond a quarter turn of q errors would grow from step to step.
     """
     lost = lost_norm(qx, qy, qz, qw) - (qx * cx + qy * cy + qz * cz + qw * cw)
     dx, dy, dz, dw = cx + lost * qx, cy + lost * qy, cz + lost * qz, cw + lost * qw

@@ -34,7 +34,7 @@ class Expanded(Equations):
         The number of series that have to stay positive within a step.
     expand : str
         Source of ``expand(p, S, y)``: the coefficients of the unknowns, and of the integrals of
-        those series behind them.
+        those series after them.
 
     Raises
     ------
@@ -68,7 +68,7 @@ class Expanded(Equations):
         return super().parameters(self._fixed, -np.inf).size
 
     def parameters(self, fixed, time):
-        """Return the parameters that hold just after a time, those of the plan behind the rest."""
+        """Return the parameters that hold just after a time, those of the plan after the rest."""
         before = super().parameters(fixed, time)
         changing = {f'parameter_{name}': value
                     for name, value in self._trees.numbers(time).items()}

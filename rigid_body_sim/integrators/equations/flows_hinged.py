@@ -32,7 +32,7 @@ def kick(p, y, c, h):
 def kick_with_heat(p, y, c, h):
     """Return (y, c) after a torque that depends on the rate has acted alone for a time h.
 
-    By the explicit midpoint rule.
+    The explicit midpoint rule is used.
     """
     (phi, speed), (phi_lost, lost) = y, c
     _, growth = rate(p, y)

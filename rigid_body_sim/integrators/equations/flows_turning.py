@@ -42,7 +42,7 @@ def kick(p, y, c, h):
 def kick_with_heat(p, y, c, h):
     """Return (y, c) after all that acts has acted alone for a time h.
 
-    By the explicit midpoint rule.
+    The explicit midpoint rule is used.
     """
     q1, q2, q3, q4, w1, w2, w3 = y
     half = 0.5 * h

@@ -3,18 +3,18 @@
 
 A closed form would give the new state, rounded to the size of the state and not of the change.
 
-    omega1' = ((I2 - I3)/I1) omega2 omega3 and so on in turn
+    omega1' = ((I2 - I3)/I1) omega2 omega3 and cyclically
     q(t) = q(0) Delta(t),    Delta' = Delta omega/2,    Delta(0) = 1
 
 Both are power series about the start of a span h, of omega h and Delta in t/h, summed down to
 round-off. With M the largest |omega_i h|, the coefficients of omega_i h are not above M^(k + 1),
 for Euler's are between -1 and 1; so M = REACH needs fewer than TERMS terms, and a longer drift is
-cut into spans. The sums begin with t/h, so that increments of omega and Delta - 1 err by a
-rounding of themselves.
+cut into spans. The sums begin with t/h, so that increments of omega and Delta - 1 have
+only their own rounding error.
 
-Kinetic energy is held: what the increments change of it, formed with 32 digits from omega and what
-its sums have lost, is taken back along the new omega. That corrects their rounding, 1e-16 of them
-and less.
+Kinetic energy is conserved: the change that the increments make, formed with 32 digits from omega
+and what its sums have lost, is subtracted along the new omega. This corrects the rounding of the
+increments, at most 1e-16 of them.
 """
 
 import math

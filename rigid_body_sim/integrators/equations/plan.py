@@ -23,7 +23,7 @@ def unknown(place):
 
 
 def rewritten(trees, definitions, parameters):
-    """Return trees in which names are what definitions say, made of what recurrences know.
+    """Return trees with names replaced by definitions, made of operations with recurrences.
 
     Whole powers are multiplied out; a tangent is a quotient, and a power of a changing exponent an
     exponential.

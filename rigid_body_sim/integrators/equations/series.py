@@ -21,7 +21,7 @@ from rigid_body_sim.scene.frame import turned_back
 
 
 class SeriesParameters(NamedTuple):
-    """The numbers of the recurrences, behind those of a body that turns and falls.
+    """The numbers of the recurrences, after those of a body that turns and falls.
 
     Attributes
     ----------

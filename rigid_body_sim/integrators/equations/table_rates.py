@@ -11,7 +11,7 @@ ball stays on the table). With e = a omega x z and p = v + k e, which friction d
     p' = F/M + (T x z)/(M a),    I omega_z' = T_z,
     v = (p + k u)/(1 + k),   e = (p - u)/(1 + k).
 
-SLIDING: f = -mu N u/|u|. Where u dies its direction may turn ever faster, so there time is an
+SLIDING: f = -mu N u/|u|. As u vanishes its direction may turn ever faster, so there time is an
 unknown too and the independent variable is s with dt = |u| ds: everything is smooth in s, and |u|
 dies like an exponential. ROLLING: u = 0, f = -M G k/(1 + k), as long as |f| <= mu N. GLIDING: no
 friction. CREEPING: slip that has just begun. It is so small that it follows G, whose direction
@@ -49,7 +49,7 @@ class Pushed(NamedTuple):
 
 
 class Unknowns(NamedTuple):
-    """The unknowns; behind them stands the ledger."""
+    """The unknowns; the ledger follows them."""
 
     q: Quaternion
     u: Pair
@@ -114,7 +114,7 @@ def motion(p, y):
 def rate(p, y):
     """Return the rates of the unknowns, then of the ledger.
 
-    Per unit of the independent variable.
+    Both are per unit of the independent variable.
     """
     a, k, M = p[RADIUS], p[RATIO], p[MASS]
     (fx, fy, _), (tx, ty, tz) = wrench(p, y[:U])

@@ -157,7 +157,7 @@ class Trees:
         return _rows(found)
 
     def _frame_definitions(self):
-        """Return what the names of kernels of effects are (Acting): those of the frame."""
+        """Return the definitions of the names in kernels of effects: those of the frame."""
         frame, place, drift = self._frame, map(own, STARTED), (tree.ZERO,) * 3
         if self._equations.on_hinge:
             n = self._constants_of('axis', frame.hinge.axis)
@@ -181,7 +181,7 @@ class Trees:
                       (source.VELOCITY, drift), (source.TIME, (clock,)))
 
     def _definitions(self):
-        """Return what the public names of the state are: name -> tree of public and own names."""
+        """Return the definitions of the public names of the state: name -> tree of other names."""
         frame, of = self._frame, self._of_frame
         attitude, omega, place, drift, clock = (
             [of[name] for name in names] for names in (

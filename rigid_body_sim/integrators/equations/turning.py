@@ -4,7 +4,7 @@
 The unknowns are q (4) and omega (3) of the frame.
 
     q' = q (omega + u)/2,    m = I omega
-    omega1' = ((I2 - I3)/I1) omega2 omega3 + (Gamma + m x u)_1/I1 and so on in turn
+    omega1' = ((I2 - I3)/I1) omega2 omega3 + (Gamma + m x u)_1/I1 and cyclically
 
 Gamma is the torque about the point of reference, u the extra turning rate of internal dissipation.
 The coefficients of Euler's terms are between -1 and 1 for every body, needles included. The point

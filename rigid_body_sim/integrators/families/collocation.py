@@ -65,7 +65,7 @@ def march(method, equations, adapts):
 
 @functools.cache
 def _of_unknowns(size, groups, parameter_count):
-    """Return what binds the part of gauss_march.py that the unknowns and their number decide."""
+    """Return the bindings of gauss_march.py that depend on the unknowns and their number."""
     relative = sum(not absolute for _, _, absolute in groups)
     places = _places(size)
     return {
@@ -93,7 +93,7 @@ def _places(size):
 
 
 def _relax(found, places):
-    """Return what binds the `relax` of gauss_march.py: a kernel, or the source of an idle one.
+    """Return the binding of `relax` in gauss_march.py: a kernel, or the source of an idle one.
 
     `found` are the Relaxations of the equations.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march with a Runge-Kutta method that chooses its own steps.
 
-A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost;
-`control` holds, behind its Control, the rounding of the rates of the first relative group per
+A point of the march holds, after its Head (points.py), the unknowns and what their sums lost;
+`control` holds, after its Control, the rounding of the rates of the first relative group per
 second and from WEIGHTS on the weights of the method (unroll.py). A step is accepted when its
 estimated error per second is below the tolerance, so that errors add up in proportion to time and
 not to the number of steps.
@@ -111,7 +111,7 @@ def march(p, control, point, following, target, end, limit):
 def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point, within the step from it.
 
-    One step of the method.
+    It is one step of the method.
     """
     y = load(point, int(VALUES))
     if dt > 0.0:

@@ -92,8 +92,8 @@ class Batch:
                 else 'advance_with_drag' if equations.dragged else 'advance')
         self._kernels = specialise(batch_march, advance=f'{batch_series.__name__}:{step}')
         rising, begin = times[self._order], -math.inf
-        # between two breakpoints the equations hold, and what they give at the end is the start
-        # behind it
+        # between two breakpoints the equations hold, and their result at the end is the start of
+        # the next stretch
         for end in (*(time for time in equations.breakpoints if time <= rising[-1]), math.inf):
             p, (first, last) = (
                 equations.held(begin),

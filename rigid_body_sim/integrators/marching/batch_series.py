@@ -8,11 +8,11 @@ The unknowns are two directions of the world seen in the body, e1 and e2, and om
     e' = e x omega,
     omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2 + D omega)_1
 
-and so on in turn, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
+and cyclically, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
 in the world, and D is the matrix of drag; so one form serves all scenes of the method, by 15
 products of two series for each order (4 on a hinge; drag and hinge have kernels of their own).
-Their Cauchy sums run over a loop: two of its terms, those with the newest coefficients, stand
-behind it, so that it need not wait for them.
+Their Cauchy sums are loops; the two terms with the newest coefficients are added after the loop,
+so that it need not wait for them.
 
 The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
 to the result of integrating omega alone.
@@ -70,7 +70,7 @@ UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
 DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
 ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
 
-# Places, in rows of eight numbers: a point; behind it the coefficients of higher orders, the point
+# Places, in rows of eight numbers: a point; after it the coefficients of higher orders, the point
 # that follows, where the march ends, squared norm of the unknowns there; the time since the point
 # that `between` takes, the Attitude that it finds; the numbers of the equations, and 1/k for
 # k = 1 ... ORDER

@@ -50,7 +50,7 @@ CREEPS = 1e-4            # share of the speeds, times the cube root of the accur
 LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
-MOST_PHASES, AT_ONCE = 4000, 1e-6    # phases in that share of the time of a length: a fault
+MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
                                           'rolling', 'restitution'))
@@ -341,7 +341,7 @@ class PlaneCourse:
             self._open(int(p[MODE]), p, y)
 
     def _wake(self, y, time):
-        """Let a body rest on that is held under what acts from now on, else let it move."""
+        """Let a body stay at rest if it is held under what acts from now on, else let it move."""
         p = self._parameters(time)
         p[SWIFT] = self._speed(y)
         self._land(p, y, (0.0, 0.0))
@@ -358,7 +358,7 @@ class PlaneCourse:
     def state(self, time, out):
         """Fill `out` with the state at a time not before the start.
 
-        Columns from 14 on, where `out` has them, get the entries of the ledger, and behind them
+        Columns from 14 on, where `out` has them, get the entries of the ledger, and after them
         the heat by its cause (ledger.HEATS).
         """
         elapsed = time - self._begin
@@ -367,7 +367,7 @@ class PlaneCourse:
         phase.write(self._place, self._begin, np.array([time]), FIRST, out[np.newaxis])
 
     def exchanged(self, time):
-        """Return the ledger's entries from the start to a time, and the HEATS behind them."""
+        """Return the ledger's entries from the start to a time, and the HEATS after them."""
         row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS))
         self.state(time, row)
         return row[STATE_SIZE:]
@@ -479,7 +479,7 @@ class _Phase:
 
 
 def _died(p, y):
-    """Return whether a slip has died: a step past its end turns what is left of it around.
+    """Return whether a slip has died: a step past its end reverses what is left of it.
 
     What the laws say of a slip the other way is then no event.
     """

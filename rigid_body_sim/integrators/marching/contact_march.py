@@ -66,9 +66,9 @@ no longer rolls."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
 FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely
-DEAD = 2.0 ** -56            # slip below that share of the speeds is none
+DEAD = 2.0 ** -56            # slip below that share of the speeds counts as none
 DYING = 2.0 ** -50           # slip below that share dies soon; an error of that size is allowed
-STRETCH = 64.0               # a step in which a slip grows more than so many times is none
+STRETCH = 64.0               # growth of a slip in a step beyond which its error has no more room
 TOO_SHORT = 1e-5             # share of the time in which a ring that is almost flat falls
 CROWD = 25000                # so many steps in a row that short: friction leaves no motion
 STALLED = 2000               # and so many in a row of a slip that dies: it is dead

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march by the Taylor series of a scene's own equations (recurrences.py).
 
-A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost.
+A point of the march holds, after its Head (points.py), the unknowns and what their sums lost.
 `control` is that of taylor_march.py, and so is the choice of the steps.
 """
 
@@ -55,7 +55,7 @@ def begin(p, control, point):
 def change(S, base, h):
     """Return by how much a base can change within a step, at most.
 
-    Bases are what roots and powers are taken of; S has their integrals behind the unknowns.
+    Bases are what roots and powers are taken of; S has their integrals after the unknowns.
     """
     found = 0.0
     for k in range(ORDER, 1, -1):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march with steps of one size.
 
-A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost;
+A point of the march holds, after its Head (points.py), the unknowns and what their sums lost;
 `control` is a Control. The k-th point stands at origin + k h, formed anew each time; the last one
 stands at the end.
 """
@@ -64,7 +64,7 @@ def march(p, control, point, following, target, end, limit):
 def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point, within the step from it.
 
-    One step of the method.
+    It is one step of the method.
     """
     y = load(point, int(VALUES))
     if dt > 0.0:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march by Gauss collocation with eight stages (gauss16.py).
 
-A point holds, behind its Head (points.py), the unknowns and what their sums lost; in LAST the size
+A point holds, after its Head (points.py), the unknowns and what their sums lost; in LAST the size
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds, behind its Control, in SWING the square of the rate that potentials can give
+`control` holds, after its Control, in SWING the square of the rate that potentials can give
 (rad/s), and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
@@ -15,7 +15,7 @@ at the stages.
     FOR         the step of the matrix; FOR_STEP, FOR_BEFORE: the two steps of the predictor
     FOR_POINT   the time of the point whose step has its curve kept
     TAIL        the size of the curve's last coefficients
-    CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown; behind it what
+    CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown; after it what
                 relaxing.py needs where drag is stiff
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gauss nodes and the polynomials through them, for eight stages.
 
-They are formed once, with 60 digits, and right to the last bit of a double.
+They are formed once, with 60 digits, and correct to the last bit of a double.
 """
 
 from decimal import Decimal, localcontext

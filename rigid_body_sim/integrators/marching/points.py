@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Points of a march: its present place, and the step to the next point.
 
-A point is an array that begins with a Head; behind it stand the unknowns, and what their sums have
-lost (as many numbers again). What a march is told stands in its `control`, an array that begins
+A point is an array that begins with a Head; after it come the unknowns, and what their sums have
+lost (as many numbers again). The settings of a march are in its `control`, an array that begins
 with a Control. The templates of this folder add to both what their method keeps.
 """
 

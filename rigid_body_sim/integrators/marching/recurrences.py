@@ -122,7 +122,7 @@ class _Recurrence:
                 return _Delayed(o, own.role(OWN), of(args[1], REST)),
             case 'exp':
                 return _Delayed(o, own.role(OWN), of(args[0], GROWTH)),
-            case 'sin':    # the cosine is the step behind
+            case 'sin':    # the cosine is the next step
                 return _Delayed(o, of(number + 1, OWN), of(args[0], GROWTH)),
             case 'cos':
                 return _Delayed(o, of(number - 1, OWN), of(args[0], GROWTH)),

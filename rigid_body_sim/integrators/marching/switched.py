@@ -278,7 +278,7 @@ class Switched:
                 if (side * mode < 0.0 if mode != 0.0 else side != 0.0)]
 
     def _cross(self, course, stretch, low, high):
-        """Enter the stretch behind the first kink between two times."""
+        """Enter the stretch after the first kink between two times."""
         out = np.empty(STATE_SIZE)
         while True:    # bisection takes as many turns as a double has bits
             middle = low + 0.5 * (high - low)

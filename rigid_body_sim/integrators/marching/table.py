@@ -45,7 +45,7 @@ from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 CLOCK = table_rates.TIME
 KEPT = 2048              # most points of a phase; then every other one is dropped
-# rad: as far the ball turns before a new slip leaves the direction of its drive; its lag is of the
+# rad: the ball turns so far before a new slip leaves the direction of its drive; its lag is of the
 # order of CREEP^2
 CREEP = 1e-4
 DEAD = 2.0 ** -56        # share of the speeds: a smaller slip counts as none

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march by Taylor series (taylor.py).
 
-A point of the march holds, behind its Head (points.py), the unknowns and what their sums lost; of
-the scales there is one, the squared scale of omega. `control` holds, behind its Control, in FOR
-the time of the point whose series stand behind, and from WORK on their coefficients, order by
-order.
+A point of the march holds, after its Head (points.py), the unknowns and what their sums lost; of
+the scales there is one, the squared scale of omega. `control` holds, after its Control, in FOR
+the time of the point whose series follow, and from WORK on their coefficients, order by order.
 
 A step h should make the larger of its last two terms, c, what the tolerance allows in that time: c
 h^ORDER = tolerance h. What c says at one point is the plan for the next one: so a step is known
@@ -154,7 +153,7 @@ def chosen(final, before, tolerance, planned):
 
 @compiled
 def _step(S, tolerance, planned, scale):
-    """Return what `chosen` does for the coefficients of all unknowns."""
+    """Return (step, next plan), as `chosen` does, from the coefficients of all unknowns."""
     weight = 1.0 / scale if scale > NOTHING else 0.0
     final, before = _square(S, int(ORDER), weight), _square(S, ORDER - 1, weight)
     return chosen(final, before, tolerance, planned)

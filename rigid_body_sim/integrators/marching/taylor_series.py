@@ -2,7 +2,7 @@
 """Taylor series of a turning body: a step of taylor as a recurrence for eight lanes (lanes.py).
 
     q' = q omega/2,
-    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + Gamma_1/I1 and so on in turn,
+    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + Gamma_1/I1 and cyclically,
     f' = f x omega
 
 Gamma = constant + arm x f + c - D omega, where f and c are the components in the frame of a force
@@ -63,7 +63,7 @@ class Series:
 class Products:
     """A sum of products of series with signs, [(sign, a, b), ...].
 
-    B should be the one whose coefficients are known first.
+    `b` should be the one whose coefficients are known first.
 
     None stands for a series that is zero throughout: its products are left out.
     """

@@ -31,7 +31,7 @@ POINT = UNBOUND
 FOLLOWING = UNBOUND
 COUNTS = UNBOUND
 
-STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # behind COUNTS
+STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # after COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)

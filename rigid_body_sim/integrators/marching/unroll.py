@@ -51,7 +51,7 @@ def trial_source(method, n, extra, groups):
     Like ``step``, with the error estimate of DOP853: err5^2/sqrt(err5^2 + 0.01 err3^2), each a sum
     over groups of unknowns of the squared error over the squared scale of the group. Where err5 is
     only the rounding of its own terms, the error is 0: it says nothing, and the error of order 8
-    is far below it. More than forty lines: it stands in the order of the text that it writes.
+    is far below it. More than forty lines: its lines follow the text that it writes.
 
     Parameters
     ----------

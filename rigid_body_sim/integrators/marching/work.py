@@ -4,10 +4,10 @@
 A march goes in slices, so that an interrupt is handled between two of them
 (compilation/threads.py). Whether it gives up depends on its steps alone, not on the clock. Steps
 that Python makes, and events between two phases of a march, count as the steps of a compiled march
-that they cost. So do the steps of a march that is not compiled, where it is judged what lies
-ahead. A run under a bound of its own, as a trial, gives up after the same steps with numba and
-without; it looks ahead early, since it is one of many. Early looks let a march go on whose steps
-grow: it may begin with what is stiff.
+that they cost. So do the steps of an uncompiled march when the steps ahead are judged. A run
+with its own bound, such as a trial, gives up after the same steps with numba and without; it looks
+ahead early, since it is one of many. An early look lets a march go on if its steps grow: it may
+begin with a stiff part.
 """
 
 import math

@@ -32,9 +32,9 @@ from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 
-NEWTON = 50         # largest number of its steps for a direction
-SECTORS = 32        # in which directions are looked for where it fails
-CLOSE = 1e-16       # rad: the last of its steps
+NEWTON = 50         # most Newton steps for a direction
+SECTORS = 32        # directions that are tried where they fail
+CLOSE = 1e-16       # rad: a step that short is the last
 
 
 class System(NamedTuple):
@@ -290,7 +290,7 @@ def _patch_refined(patch, mu, d):
 
 @compiled
 def patch_lagging(patch, mu, d, turned):
-    """Return the direction of a slip behind a direction d that turns.
+    """Return the direction of a slip that lags behind a direction d, which turns.
 
     `turned` is the velocity at which d turns, times the speed of the slip, m/s^2.
     """

@@ -8,11 +8,11 @@ from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, 
 FLAT = 1e-6              # rad: a ring that is inclined by less lies flat, where friction stops it
 FILMY = 1e-4             # rad: and where a film of air does
 FLATTER = 1e-10          # rad: and where neither does
-LOW = 1e-3               # rad: below it friction of rolling jams a ring that no step can follow
+LOW = 1e-3               # rad: below it rolling friction jams a ring that no step can follow
 
 
 class ContactParameters(NamedTuple):
-    """A body and its plane; the values of what else acts stand behind it.
+    """A body and its plane; the values of what else acts follow it.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class ContactParameters(NamedTuple):
     swift : float
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
-        A slip that has just begun is slaved to its direction up to this speed, m/s.
+        Largest speed of a slip that has just begun and follows its direction, m/s.
     until : float
         Time at which what acts jumps, since the start of the course, s; infinite if never.
     began : float

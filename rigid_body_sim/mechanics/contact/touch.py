@@ -56,7 +56,7 @@ def response(c, axes, r, wrung):
 
 @inlined
 def spinning(c, axes, r, torque, wrung):
-    """Return what `patch_system` takes: how forces, and couples about the normal, spin a body.
+    """Return arguments of `patch_system`: how forces and couples about the normal spin a body.
 
     `torque` is without that of the contact, body axes.
     """

@@ -3,17 +3,17 @@
 
 The phases v and Omega t/2 of rotation.py grow with time. Their rates are counted in turns and have
 more digits than a double, so the error does not grow with time beyond what the doubles of the
-input carry. With Euler's coefficients e1 = (I2 - I3)/I1 and so on in circle, Euler's equations are
+input carry. With Euler's coefficients e1 = (I2 - I3)/I1 and cyclically, Euler's equations are
 omega_1' = e1 omega_2 omega_3 ..., and
 
     p^2      = -e1 e2 omega_3^2 + e1 e3 omega_2^2,
     k^2 p^2  = -e2 e3 omega_1^2 + e1 e3 omega_2^2,      both sums of positive terms,
     k'^2 p^2 = e2 (I3 (I3 - I2) omega_3^2 - I1 (I2 - I1) omega_1^2)/(I1 I3),
 
-the last one decides by its sign which axis is polar: the largest moment's where it is positive or
-zero, else the smallest's, with 1 and 3 exchanged. It is formed with 32 digits from the input
-doubles, as are the products of the e. The period follows from agm(1, k') = pi/(2 K), and
-chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
+where the sign of the last one decides which axis is polar: that of the largest moment if it is
+positive or zero, else that of the smallest, with 1 and 3 exchanged. It is formed with 32 digits
+from the input doubles, as are the products of the e. The period follows from
+agm(1, k') = pi/(2 K), and chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
 """
 
 import functools
@@ -123,7 +123,7 @@ def rotation_parameters(inertia):
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(inertia, bits):
-    """Return what `rotation_parameters` does, the array that is kept; `bits` tell -0 from 0."""
+    """Return the array of `rotation_parameters`, which is cached; `bits` tell -0 from 0."""
     small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
     if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
         raise BadInput(
@@ -245,7 +245,7 @@ def _discriminant(parameters, small, large):
 def _fill_course(axes, omega, gap, lift, scale, unscale, start, out):
     """Fill how the rotation goes on, from omega in the frame and the discriminant.
 
-    Its eight arguments are what the choice of the frame leaves.
+    Its eight arguments are the results of the choice of the frame.
     """
     w1, w2, w3 = omega
     squares = two_product(w1, w1), two_product(w2, w2), two_product(w3, w3)
@@ -356,11 +356,11 @@ def _argument_and_shift(axes, omega, A, k2):
 
 @compiled
 def _fill_attitude(start, out):
-    """Fill what takes the quaternion of Z S to the body's attitude, and what omega lacks at first.
+    """Fill what takes the quaternion of Z S to the attitude, and what rounding took from omega.
 
     The missing ulp or so is added to omega at all times. Then the start comes back to the last
-    bit, and in a motion that is anchored anew at every tick energy and momentum walk at random:
-    what the formulas round to one side cancels between two evaluations.
+    bit. In a motion that is anchored anew at every tick energy and momentum make a random walk and
+    have no trend: one-sided rounding of the formulas cancels between two evaluations.
     """
     begin, to_body = load_state(start), load_to_body(out)
     omega, (x, y, z, w) = turned(out, (0.0, 0.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion of a free rigid body, in closed form over any time: any inertia, perhaps a uniform field.
+"""Motion of a free body of any inertia in closed form, with or without a uniform field.
 
 The rotation is that of rotation.py, which has the equations; anchor.py computes what it takes. The
 centre of mass flies on a parabola; the pose is that of the body's origin, which may be elsewhere.
@@ -122,7 +122,7 @@ def state(anchor, time, out):
 
 @compiled_inline
 def _state_of(attitude, flight, time, dt, omega, ZS):
-    """Return the state of what `turned` returns, its position that of the centre of mass."""
+    """Return the state for omega and Z S in the frame; its position is the centre of mass."""
     q, body_omega = attitude_of(attitude, omega, ZS)
     t = dt[0]
     fall = flight.g * t

@@ -203,7 +203,7 @@ def fill_hyperbolic(out, A, s, k, kc, period, shift):
 
 @compiled_inline
 def hyperbolic_series(amplitudes, series, v):
-    """Return what :func:`circular_series` returns, and a part of the half angle.
+    """Return omega, the half angle's theta function (re, im), and a part of the half angle.
 
     The part (turns) is the one that goes along with v between two half turns.
     """
@@ -255,7 +255,7 @@ def circular(course, series, dt):
 
 @compiled_inline
 def hyperbolic(course, series, dt):
-    """Return what :func:`circular` returns: hyperbolic form."""
+    """Return omega and the quaternion of Z S, as :func:`circular` does: hyperbolic form."""
     half, half_low = phase(*course.half_rate, *dt)
     omega, re, im, along = hyperbolic_series(course.amplitudes, series, phase_of(course, dt))
     half, low = two_sum(half, along)
@@ -264,7 +264,7 @@ def hyperbolic(course, series, dt):
 
 @compiled_inline
 def steady(course, dt):
-    """Return what :func:`circular` returns: omega constant."""
+    """Return omega, which is constant, and the quaternion of Z S, as :func:`circular` does."""
     half = phase(*course.half_rate, *dt)
     return course.amplitudes, _joined(course, course.amplitudes, 1.0, 0.0, half)
 
@@ -281,7 +281,7 @@ def _joined(course, omega, re, im, half):
 
 @compiled
 def turned(rotation, dt):
-    """Return what :func:`circular` returns, by the form that the motion has."""
+    """Return omega and the quaternion of Z S by the form that the motion has."""
     course = load_course(rotation)
     if course.form == CIRCULAR:
         return circular(course, load_circular(rotation), dt)

@@ -10,7 +10,7 @@ Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the
 moments about the pivot; k = M g h/I1; n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the
 vertical, u = cos(beta).
 
-A top with I3 := I1 and the same n differs from ours by a steady rotation about e3 at the rate
+A top with I3 := I1 and the same n differs from this one by a steady rotation about e3 at the rate
 omega_3 - n = omega_3 (I1 - I3)/I1, so I3 enters nowhere else. The attitude is a pair of complex
 numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2, |b|^2 = (1 - u)/2),
 so nothing happens at beta = 0 and pi, where Euler's angles fail. a, b and omega_c = omega_2 - i

@@ -73,7 +73,7 @@ def circular_functions(course, series, dt):
 
 @compiled_inline
 def hyperbolic_functions(course, series, dt):
-    """Return what :func:`circular_functions` returns: hyperbolic form."""
+    """Return the Klein that :func:`circular_functions` gives, by the hyperbolic form."""
     turns, low = phase(*course.rate, *dt)
     turns_a, low_a = phase(*course.rate_a, *dt)
     turns_b, low_b = phase(*course.rate_b, *dt)
@@ -110,7 +110,7 @@ def _with_phases(course, klein, phase_a, phase_b, turn):
 
 @compiled
 def functions(nutation, dt):
-    """Return what :func:`circular_functions` returns, by the form that the motion has."""
+    """Return the Klein at a time by the form that the motion has."""
     course = load_course(nutation)
     if course.form == CIRCULAR:
         return circular_functions(course, load_circular(nutation), dt)

@@ -184,7 +184,7 @@ def parameters(scene):
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(bits, weight, axis, center, point, mass, inertia):
-    """Return what `parameters` does, the array that is kept; `bits` tell -0 from 0 in `point`."""
+    """Return the array of `parameters`, which is cached; `bits` tell -0 from 0 in `point`."""
     held, force = _axle(axis, center, point, mass, inertia), Fraction(mass) * Fraction(weight)
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
@@ -377,21 +377,21 @@ def steady(course, swing, dt):
 
 @compiled_inline
 def circular(course, series, swing, dt):
-    """Return what :func:`steady` returns: by the nome."""
+    """Return s, c and w (rad/s) at a time after the start, by the nome."""
     omega, _, _ = circular_series(course.amplitudes, series, phase_of(course, dt))
     return _sorted(swing, omega)
 
 
 @compiled_inline
 def hyperbolic(course, series, swing, dt):
-    """Return what :func:`steady` returns: by the complementary nome."""
+    """Return s, c and w (rad/s) at a time after the start, by the complementary nome."""
     omega, _, _, _ = hyperbolic_series(course.amplitudes, series, phase_of(course, dt))
     return _sorted(swing, omega)
 
 
 @compiled_inline
 def _sorted(swing, omega):
-    """Return s, c and w from what goes like cn, sn and dn."""
+    """Return s, c and w from the functions that go like cn, sn and dn."""
     like_cn, like_sn, like_dn = omega
     swings = swing.swings != 0.0
     c, w = (like_dn, like_cn) if swings else (like_cn, like_dn)
@@ -400,7 +400,7 @@ def _sorted(swing, omega):
 
 @compiled
 def functions(anchor, dt):
-    """Return what :func:`steady` returns, by the form that the motion has."""
+    """Return s, c and w (rad/s) at a time after the start, by the form of the motion."""
     course, swing = load_course(anchor), load_swing(anchor)
     if course.form == CIRCULAR:
         return circular(course, load_circular(anchor), swing, dt)

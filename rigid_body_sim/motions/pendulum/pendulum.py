@@ -11,8 +11,8 @@ r and gamma across n; phi the angle of r from its lowest position, positive abou
     d G cos(phi) = -r_across . gamma,       d G sin(phi) = (n x r) . gamma.
 
 With s = sin(phi/2), c = cos(phi/2) and w = phi'/2, both h^2 = w^2 + Omega^2 s^2 and
-Delta = Omega^2 c^2 - w^2 = (Omega c - w)(Omega c + w) stay. Delta decides, and gives the
-complementary modulus without cancellation:
+Delta = Omega^2 c^2 - w^2 = (Omega c - w)(Omega c + w) are constant. The sign of Delta decides the
+case, and Delta gives the complementary modulus without cancellation:
 
     swings, Delta >= 0:   w = Omega k cn u,   s = k sn u,   c = dn u,
                           u' = Omega,         k' = sqrt(Delta)/Omega

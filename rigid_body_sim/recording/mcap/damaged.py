@@ -84,7 +84,7 @@ class DamagedRecords(Findings):
         return damage
 
     def _following(self, offset, length, hint, is_index):
-        """Return where the record behind a damaged one is; the file's size where there is none."""
+        """Return where the record after a damaged one is; the file's size where there is none."""
         source, limit = self._bytes, self._limit
         known = self._channels() or None
         following = offset + HEAD.size + length

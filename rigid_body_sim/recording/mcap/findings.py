@@ -40,9 +40,9 @@ class Findings:
         True if no end record was found.
     damages : list of Damage
     descriptions : list of mcap.records.Schema and Channel
-        To be written behind the head, because those in the file are damaged or missing.
+        To be written after the head, because those in the file are damaged or missing.
     header : bytes
-        The record at the head, where what is before or behind it is damaged; else empty.
+        The record at the head, where what is before or after it is damaged; else empty.
     header_end : int
         Where it ends in a file with a whole head.
     cut_damage : Damage or None
@@ -141,7 +141,7 @@ class Findings:
             self.parts.append(Loose(begin, end))
 
     def _drop(self):
-        """Begin another part behind bytes that are not kept."""
+        """Begin another part after bytes that are not kept."""
         self._part = None
 
     def _settle(self, remake=False):

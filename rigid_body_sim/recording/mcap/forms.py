@@ -2,7 +2,7 @@
 """Whether a record begins at a place of a damaged file: its opcode and its lengths must agree.
 
 A record says more than once how long it is: its own length, the lengths of what it holds, and the
-record that follows. So one wrong byte in a head is found out, and the next whole record behind it
+record that follows. So one wrong byte in a head is found out, and the next whole record after it
 is found again. Why not `mcap.stream_reader.StreamReader`: it believes the first length it reads.
 """
 
@@ -31,7 +31,7 @@ from rigid_body_sim.recording.mcap.walk import MESSAGE, MESSAGE_FIXED
 SUMMARY = frozenset(map(int, (
     Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.STATISTICS,
     Opcode.METADATA_INDEX, Opcode.SUMMARY_OFFSET, Opcode.DATA_END)))
-"""Opcodes of the records behind the data section."""
+"""Opcodes of the records after the data section."""
 SELF_DELIMITING = {
     int(Opcode.SCHEMA): Schema, int(Opcode.CHANNEL): Channel, int(Opcode.METADATA): Metadata,
     int(Opcode.HEADER): Header}
@@ -78,7 +78,7 @@ def parsed(kind, content):
 def chunk_end(source, offset, may_be_cut=False):
     """Return the end of the chunk at `offset`, whatever its opcode, if its lengths agree.
 
-    Returns 0 otherwise, and where that is behind the end of the file, unless it `may_be_cut`.
+    Returns 0 otherwise, and where that is beyond the end of the file, unless it `may_be_cut`.
     """
     head = source.read(offset, CHUNK_HEAD.size + _LONGEST_NAME + 8)
     if len(head) < CHUNK_HEAD.size + 8:

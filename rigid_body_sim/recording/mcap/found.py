@@ -15,7 +15,7 @@ from rigid_body_sim.recording.mcap.walk import heads, walk
 
 
 class FoundChunk:
-    """A whole chunk, its place in the file, its messages, and the message indexes behind it.
+    """A whole chunk, its place in the file, its messages, and the message indexes after it.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class Damage:
     until : int
         Log time of the last message that the damaged chunk claims, ns; 0 if nothing tells.
     before, after : FoundChunk or None
-        The last whole chunk before and the first behind it.
+        The last whole chunk before and the first after it.
     """
 
     lost_bytes: int

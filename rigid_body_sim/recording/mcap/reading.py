@@ -86,7 +86,7 @@ class FileReader:
             self._contents, self._places = told
             size = os.fstat(self._stream.fileno()).st_size
             if any(place.offset + place.length > size for place in self._places):
-                raise Damaged('an index that points behind the end of the file')
+                raise Damaged('an index that points beyond the end of the file')
         except BaseException:
             self._stream.close()
             raise
@@ -159,7 +159,7 @@ def _whole_records(data):
     whole : int
         Bytes of whole records.
     last : bool
-        Whether the section ends behind them.
+        Whether the section ends after them.
     times : array
         Log times of their messages, ns.
     """

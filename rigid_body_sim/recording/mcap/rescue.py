@@ -3,7 +3,7 @@
 
 A chunk says most things about itself twice: its length in the record's head, before its data and
 in the file's index; its compression by name and by the first bytes of its data; its checksum over
-all; where its messages begin and when they were logged in the message indexes behind it. So one
+all; where its messages begin and when they were logged in the message indexes after it. So one
 wrong byte in any of these costs no message. Why not `mcap.stream_reader.breakup_chunk`: it
 believes each of these alone.
 """
@@ -301,7 +301,7 @@ def _agree(records, offsets, entries):
 
 
 def _by_entries(records, entries, others):
-    """Return what `_sift` does, by the message indexes alone."""
+    """Return (records, offsets, others), as `_sift` does, by the message indexes alone."""
     entries = entries[entries['offset'] + HEADS.itemsize <= len(records)]
     if not len(entries):
         return b'', np.empty(0, np.int64), []

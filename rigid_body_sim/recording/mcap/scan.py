@@ -4,7 +4,7 @@
 For files that are cut, damaged or without a summary. Why not `mcap.stream_reader.StreamReader`: it
 does not say where a record begins, and it ends at the first one that is cut or damaged. Here what
 is damaged is read by what else tells of it (damaged.py, rescue.py), or left out, and the next
-whole record behind it is found (forms.py).
+whole record after it is found (forms.py).
 """
 
 import numpy as np
@@ -89,7 +89,7 @@ class Scan(DamagedRecords):
         return following
 
     def _record(self, offset):
-        """Take the next record; return where the one behind it is, None where the data ends."""
+        """Take the next record; return where the one after it is, None where the data ends."""
         told = self.told
         if told and offset == told.data_end:
             self.end, self.cut = offset, False

@@ -101,7 +101,7 @@ def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) 
     """Return the point at the key `distance` from the centre of mass (body axes, m)."""
     distance, upward = float(settings['distance']), across(axis, (0.0, 0.0, 1.0))
     if 'through' in settings:
-        raise BadInput(f'{where}.distance', 'stands beside through', 'give one of them')
+        raise BadInput(f'{where}.distance', 'is given together with through', 'give one of them')
     if distance == 0.0:
         raise BadInput(f'{where}.distance', f'got {settings["distance"]!r}',
                        'hung at its centre of mass a body does not swing: give a distance in m, '

@@ -23,8 +23,8 @@ class Mechanism(enum.IntEnum):
 
     FREE moves and turns in all directions. POINT turns about a point that a bearing holds. AXIS
     turns about an axis that a bearing holds. TABLE is a sphere that rolls or slides on a plane.
-    PLANE is a convex body that flies, slides or rolls over a plane: between impacts a free body
-    for kernels that know nothing of the plane.
+    PLANE is a convex body that flies, slides or rolls over a plane; kernels that know nothing of
+    the plane take it as a free body between impacts.
     """
 
     FREE = 0
@@ -86,7 +86,7 @@ class Constraint(Protocol):
         return cls()
 
     def begun(self, start: Start) -> Self:
-        """Return the constraint with what it takes from the initial conditions."""
+        """Return the constraint with the numbers that it takes from the initial conditions."""
         return self
 
     def initial(self, start: Start, body: Body, where: str) -> State:

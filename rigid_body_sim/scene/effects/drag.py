@@ -202,7 +202,7 @@ class ShapedDrag(Effect):
         return Pull(formulas=(Formulas(torque, of_frame=True),))
 
     def damping(self, frame: Frame) -> Pull:
-        """Return the part in proportion to velocity; of a flight that against it alone."""
+        """Return the part in proportion to velocity; of a flight only a scalar drag."""
         angular, linear = _rows(self.angular, frame), _rows(self.linear, frame)
         columns = []
         for omega in np.eye(3).tolist():

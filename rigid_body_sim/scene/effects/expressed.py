@@ -75,8 +75,8 @@ class ExpressedTorque(Effect):
 class PotentialEnergy(Effect):
     """``potential: {energy: "0.5*k*(z - 1)^2"}``: U in J, of place and attitude.
 
-    Force and torque follow by differentiation: F = -dU/d(x, y, z) at the body's origin, and what
-    a turn about it takes. A scene may list several.
+    Force and torque follow by differentiation: F = -dU/d(x, y, z) at the body's origin, and the
+    torque -dU/d(turn about it). A scene may list several.
     """
 
     energy: tree.Term

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gravity gradient: a far body attracts the near side more than the far side: a torque."""
+"""Gravity gradient: the torque of a distant body, which attracts the near side most."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
@@ -39,9 +39,9 @@ class GravityGradient(Effect):
     with n the direction of the position and I the tensor about the centre of mass (Hughes,
     Spacecraft Attitude Dynamics, section 8.1). It turns the body and does not move it.
 
-    ``gravity_gradient: {orbit: {rate: n, normal: [x, y, z], toward: [x, y, z]}}`` is that on a
+    ``gravity_gradient: {orbit: {rate: n, normal: [x, y, z], toward: [x, y, z]}}`` is for a
     circular orbit: n turns with the rate (rad/s) about `normal` (world axes), beginning along
-    `toward` (square to it), and mu/r^3 = rate^2. What the orbit does is booked as work.
+    `toward` (square to it), and mu/r^3 = rate^2. The power of the orbit is booked as work.
     """
 
     energy: tree.Term | None    # None on an orbit
@@ -93,7 +93,7 @@ class GravityGradient(Effect):
     def _on_orbit(cls, settings, body, where, tensor):
         """Return the effect on a circular orbit."""
         if len(settings) > 1:
-            raise BadInput(where, 'stands beside mu or position', 'give one of the two')
+            raise BadInput(where, 'is given together with mu or position', 'give one of the two')
         orbit = settings['orbit']
         rate = float(orbit['rate'])
         unit = []

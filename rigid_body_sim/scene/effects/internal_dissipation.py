@@ -71,9 +71,9 @@ def turning(c, I1, I2, I3, qx, qy, qz, qw, wx, wy, wz, vx, vy, vz):
 
     The rest of a wobble (m within ENDED of its end, too small to show in the attitude) would keep
     the steps of a strong dissipation at 1/c for ever. So the rates fade out there, smoothly,
-    because an abrupt end would make the steps chatter. A rate that holds a component along the
-    axes of the least moment dies with that component, which always decays; the others die with all
-    that is across the axes of the largest moment.
+    because an abrupt end would make the steps chatter. A rate with a component of omega along an
+    axis of the least moment fades with that component, which always decays; the others fade with
+    the part of m across the axes of the largest moment.
     """
     m1, m2, m3 = I1 * wx, I2 * wy, I3 * wz
     s1, s2, s3 = m1 * m1, m2 * m2, m3 * m3

@@ -26,8 +26,8 @@ Vector = tuple[float, float, float]
 class Acting:
     """A force, a torque or a turning rate that acts as long as its values hold.
 
-    In a frame with a `path` an effect gives both: the torque about the point that moves, and the
-    force, whose part of the work of what moves it the ledger books.
+    In a frame with a `path` an effect gives both the torque about the moving point and the force;
+    the ledger books the share of that force in the work of the drive.
 
     Attributes
     ----------
@@ -67,8 +67,8 @@ class Acting:
         Torque with which it holds a body on a hinge at rest, N m: that of dry friction, whose one
         switch is the rate.
     rooted : bool
-        True if it takes a root, or a power that is not whole, of what moves: where that comes near
-        zero, as |v| does, it is all but a kink.
+        True if it takes a root or a fractional power of a quantity that changes: where that comes
+        near zero, as |v| does, it is nearly a kink.
     """
 
     kernel: str
@@ -198,7 +198,7 @@ class Contact(NamedTuple):
         Acceleration that presses a ball on the table (mechanism TABLE), m/s^2.
     rolling : float
         Coefficient of dry rolling friction: a force C N against the velocity of the point of
-        contact over the surface of the body (mechanism PLANE, as what follows).
+        contact over the surface of the body (mechanism PLANE, like the next fields).
     rolling_viscous : float
         c of the force -c v against that velocity v, N s/m.
     film : float
@@ -294,7 +294,7 @@ class Effect(Protocol):
         """``damping(frame)``: its drag in proportion to velocity, which may be stiff.
 
         Of the Pull, `drag` and `slowing` count. By default they are those of `series`; an effect
-        whose series has formulas instead tells them here.
+        whose series has formulas instead gives them here.
         """
         series = self.series
         return None if series is None else lambda frame: series(frame, 0.0)
@@ -329,7 +329,7 @@ class Effect(Protocol):
 
     @property
     def as_impulse(self) -> Callable[[Body, np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
-        """``as_impulse(body, vector)``: what it does at one instant, its attribute `time` (s).
+        """``as_impulse(body, vector)``: its impulse at one instant, the attribute `time` (s).
 
         For the state (14 doubles) just before it returns the impulse of force at the centre of
         mass (N s) and of torque (N m s), each of shape (3,) in world axes.
@@ -338,7 +338,7 @@ class Effect(Protocol):
 
     @property
     def bounds(self) -> Callable[[Body, Constraint], Bounds] | None:
-        """``bounds(body, constraint)``: what it can do at most; None counts as nothing."""
+        """``bounds(body, constraint)``: its Bounds; None counts as zero."""
         return None
 
     @property

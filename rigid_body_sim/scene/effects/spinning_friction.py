@@ -18,7 +18,7 @@ class SpinningFriction(Effect):
     force -mu N u/S and the couple -mu N rho^2 w/S: Coulomb's law in the three directions u and rho
     w, whose limit surface is an ellipsoid (R. Howe, M. Cutkosky, Int. J. Robotics Res. 15 (1996)
     531). So a spinning body slips as in a viscous fluid, and a pure spin meets the couple mu N
-    rho: rho is 3 pi/16 of the radius of a patch with Hertz' pressure, 2/3 of one with an even
+    rho: rho is 3 pi/16 of the radius of a patch with Hertz' pressure, 2/3 of one with a uniform
     pressure.
     """
 

@@ -60,7 +60,7 @@ class Spring(Effect):
             energy, damper = _torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis)
             return cls(energy, (), damper, None)
         if 'angle' in settings:
-            raise BadInput(f'{where}.angle', 'stands beside at, anchor or length'
+            raise BadInput(f'{where}.angle', 'is given together with at, anchor or length'
                            if constraint.axis is not None
                            else f'has no meaning on constraint {constraint.kind!r}',
                            'a torsion spring on a hinge has stiffness, angle and damping')

@@ -61,7 +61,7 @@ class Strike(Effect):
         impulse = _impulse(settings, body, constraint, where)
         ways = [way for way in ('point', 'height', 'distance') if way in settings]
         if len(ways) > 1:
-            raise BadInput(f'{where}.{ways[1]}', f'stands beside {ways[0]}',
+            raise BadInput(f'{where}.{ways[1]}', f'is given together with {ways[0]}',
                            'say once where it hits')
         if 'height' in settings and not on_table:
             raise BadInput(f'{where}.height', f'has no meaning on constraint {constraint.kind!r}',
@@ -111,7 +111,7 @@ def _impulse(settings, body, constraint, where):
         raise BadInput(f'{where}.speed', f'has no meaning on constraint {constraint.kind!r}',
                        remedy)
     if settings.get('frame', 'world') != 'world':
-        raise BadInput(f'{where}.speed', 'stands beside frame: body', remedy)
+        raise BadInput(f'{where}.speed', 'is given together with frame: body', remedy)
     return body.mass * float(settings['speed']), 0.0, 0.0
 
 

@@ -161,10 +161,10 @@ def pulls(energy, parameters, frame, turn=None, books='potential'):
     parameters : tuple of (str, float)
     frame : Frame
     turn : tuple of 3 Terms, optional
-        Gamma, body axes, for an effect that knows it without terms that cancel: what these leave
-        over spins a slim body about its axis.
+        Gamma, body axes, from an effect that has it without terms that cancel: the rounding of
+        such terms would spin a slim body about its axis.
     books : str
-        ``work`` where U depends on the time: then it is no potential.
+        ``work`` where U depends on the time and is not a potential.
     """
     place, turn = gradient(energy, frame, turn)
     found, moved = [], any(one is not tree.ZERO for one in place)

@@ -45,7 +45,7 @@ class Expression:
 
 
 def is_constant(value: Any) -> bool:
-    """Return whether a setting has no expression in it that is a text."""
+    """Return whether a setting contains no expression that is a text."""
     if isinstance(value, Expression):
         return not isinstance(value.text, str)
     if isinstance(value, list):

@@ -61,7 +61,7 @@ def raised(x, y):
 def raised_beyond(beyond, x, y):
     """Return x to the power y; beyond a kink -|x|^y for x < 0.
 
-    Steps look beyond the kink in which they end: there abs(x)^1.5 goes on as an odd function.
+    Steps look beyond the kink at which they end: there abs(x)^1.5 goes on as an odd function.
     """
     return -raised(-x, y) if beyond and x < 0.0 else raised(x, y)
 

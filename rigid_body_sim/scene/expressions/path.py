@@ -10,7 +10,7 @@ from rigid_body_sim.scene.expressions.source import KINKED, TIME, Kernel, Lines,
 
 
 def kinks(trees: tuple[tree.Term, ...]) -> list[str]:
-    """Return the functions with kinks that stand in trees, sorted."""
+    """Return the functions with kinks that trees contain, sorted."""
     return sorted({one.op for one in tree.parts(*trees)} & {*KINKED, 'where'})
 
 

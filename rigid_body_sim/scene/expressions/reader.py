@@ -93,7 +93,7 @@ class _Reader:
             self._refuse('too deep', f'at most {DEEPEST} operations within each other')
         match parsed:
             case ast.Constant(value=bool() | complex() | str() | bytes() | None):
-                self._refuse(f'{parsed.value!r} is no number', 'numbers like 2 or 1e-3')
+                self._refuse(f'{parsed.value!r} is not a number', 'numbers like 2 or 1e-3')
             case ast.Constant(value=int() | float() as value):
                 return self._number(value)
             case ast.Name(id=written):
@@ -122,7 +122,7 @@ class _Reader:
                 a, b = self.tree(left, depth + 1), self.tree(right, depth + 1)
                 return tree.term('less', *((a, b) if _ORDERS[type(op)] else (b, a)))
             case ast.Call(func=ast.Name(id=name)):
-                self._refuse(f'{name} is no function here',
+                self._refuse(f'{name} is not a function here',
                              f'the functions are {", ".join(tree.FUNCTIONS)}')
         self._refuse(f'{ast.unparse(parsed)[:40]!r} is not part of the language',
                      'numbers, names, + - * / ^, < >, parentheses and functions')

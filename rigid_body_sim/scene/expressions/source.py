@@ -64,8 +64,8 @@ class Lines:
     lines : list of str
     values : dict of str to float
     switches : dict of str to str
-        Name of a value, the side of a switch -> what is positive on the one side of the kink and
-        negative on the other.
+        Name of the value that holds the side of a switch -> the quantity that changes its sign
+        at the kink.
     """
 
     def __init__(self, parameters):
@@ -80,7 +80,7 @@ class Lines:
     def of(self, *trees):
         """Add the lines that compute trees; return the names of the results.
 
-        What has kinks comes first: powers that stand in its branches ask on which side it is.
+        Parts with kinks come first: powers in their branches ask for the side of the kink.
         """
         kinked = [one for one in tree.parts(*trees) if one.op in KINKED]
         for one in tree.parts(*kinked, *trees):

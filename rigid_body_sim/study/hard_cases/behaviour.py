@@ -33,7 +33,7 @@ SPEED = 1.5    # m/s, speed of the ball that is struck again
 RESTRUCK = 2.0 * SPEED / (7.0 * G * 0.25)
 """Coefficient mu with which that ball rolls after 0.25 s."""
 DRAWN = (1.0 - 0.4 * A * 140.0) / 1.4
-"""Speed (m/s) once it rolls of a ball of 1 m/s with 140 rad/s of back spin."""
+"""Final speed (m/s), rolling, of a ball that starts at 1 m/s with 140 rad/s of back spin."""
 OPPOSITE = tuple((0.1 * sign, 1e100 * sign, 5e-324 * sign) for sign in (1.0, -1.0))
 """Opposite angular impulses, N m s, in body axes."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The subcommand `hard_cases`: the table of hard cases, with the peers beside our own results."""
+"""The subcommand `hard_cases`: the table of hard cases, with the peers beside this package."""
 
 import sys
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Questions to the peers about dissipation and commands.
 
-They ask for the same numbers that behaviour.py measures in our own results.
+They ask for the same numbers that behaviour.py measures for this package.
 """
 
 import math
@@ -17,7 +17,7 @@ STATES = 400
 
 
 def _passed(run, seconds):
-    """Yield (time, omega) of a started Run at the times used for our own results."""
+    """Yield (time, omega) of a started Run at the times that behaviour.py uses."""
     for time in np.linspace(0.0, seconds, STATES)[1:]:
         run.to(float(time))
         yield float(time), np.array(run.state()[4:7])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Group 5, long runs: a statistical test whether a residual has a trend.
+"""Group 5, long runs: a statistical test of whether a residual has a trend.
 
 Stationary noise (anchored exact motion): least squares over the run gives a slope whose own
 uncertainty is known from the scatter; a trend is a slope beyond 5 of these. Random walk (anchored
@@ -117,7 +117,7 @@ def anchored_anew():
     assert np.abs(out[:, 2]).max() < 1e-14
     return Outcome(
         worst, SIGMAS, 'sigma',
-        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a walk at random')
+        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a random walk')
 
 
 def cases():

@@ -60,7 +60,7 @@ class Inputs:
         free, pivot, hinge or table.
     mass, g, linear, angular, inner, mu, radius : mpf
         Units kg and m/s^2, coefficients of drag, internal dissipation and sliding friction, and
-        m; 0 where the scene has none. The damper of a torsion spring is among `angular`.
+        m; 0 where the scene has none. The damper of a torsion spring is part of `angular`.
     moments : tuple of 3 mpf
         Principal moments about the point of reference, kg m^2.
     axes : tuple of 4 mpf

@@ -2,8 +2,8 @@
 """References: attitude and omega along a problem to 34 digits, and the floor that the inputs set.
 
 The floor is the effect of half an ulp on every input number, the largest over some random choices
-of signs, computed in the same arithmetic. In general no method in doubles can be better; one that
-is was lucky. Where the inputs are simple fractions that doubles hold exactly, it still tells how
+of signs, computed in the same arithmetic. In general no method in doubles can be better; a better
+one was lucky. Where the inputs are simple fractions that doubles hold exactly, it still tells how
 sensitive the problem is.
 """
 

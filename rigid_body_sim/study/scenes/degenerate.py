@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies at the edge of the table of inertia: rod, ball, needle, and a pendulum without spin."""
+"""Bodies at the limits of inertia: rod, ball, needle, and a pendulum without spin."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def thin_rod(run):
     omega = run.at(0.0).angular_velocity.copy()
     L = run.read(instruments.momentum_in_world((I1, I1, 0.0)), [0.0])[0]
     rate = symmetric_top.precession_rate_in_space(np.linalg.norm(L), I1)
-    yield Quantity('L/I1 with I1 = M L^2/12',
+    yield Quantity('L/I1 with I1 = M l^2/12, l the length',
                    np.linalg.norm(L) / inertia_tensors.rod_about_center(M, length)[0],
                    np.linalg.norm(omega), 1e-15, 'rad/s')
     start = instruments.axes(run.states([0.0]))[0, :, 2]

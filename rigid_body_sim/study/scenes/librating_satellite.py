@@ -49,7 +49,7 @@ def check(run):
 
 
 def _roll_yaw(run, n, moments):
-    """Yield what the polynomial of the two rates leaves over of roll and yaw at equal times."""
+    """Yield the remainder of roll and yaw at equal times under the polynomial of both rates."""
     step = 0.7 / n
     times = step * np.arange(9)
     small = run.variant({'initial.rotation_vector': [SMALL, 0.5 * SMALL, 0.0]})

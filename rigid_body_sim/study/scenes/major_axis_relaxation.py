@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check of the turn of a dissipating body to its largest axis.
+"""Check of how a dissipating body turns to its largest axis.
 
 Notes, "Is the Earth's rotation axis unstable?": T falls to its least value at constant L.
 """

@@ -26,16 +26,16 @@ def test_arithmetic_is_read_in_the_order_of_the_text(text, shown):
 
 
 @pytest.mark.parametrize(('text', 'problem'), [
-    ('__import__("os")', '__import__ is no function here'), ('x.real', "'x.real' is not part"),
+    ('__import__("os")', '__import__ is not a function here'), ('x.real', "'x.real' is not part"),
     ('1/0', 'a division by zero'), ('x^1e9', 'the power 1e+09'), ('9' * 400, 'a number too large'),
     ('1e999', 'a number too large'), ('x if x else 1', 'is not part of the language'),
     ('[x]', 'is not part'), ('lambda: 1', 'is not part'), ('sin(x', "'(' was never closed"),
     ('sin(x, x)', 'sin with 2 arguments'), ('-' * 100 + 'x', 'too deep'),
-    ('(' * 300 + 'x' + ')' * 300, ''), ('True', 'True is no number'), ('x y', 'invalid syntax'),
-    ('"a"', "'a' is no number"), ('x == 1', 'is not part'), ('é', 'é is not known here'),
+    ('(' * 300 + 'x' + ')' * 300, ''), ('True', 'True is not a number'), ('x y', 'invalid syntax'),
+    ('"a"', "'a' is not a number"), ('x == 1', 'is not part'), ('é', 'é is not known here'),
     ('sin', 'sin is not known here'), ('\x00', ''), ('', ''), ('x=1', ''), ('f"{x}"', ''),
     ('x' * (LONGEST + 1), f'an expression of {LONGEST + 1} characters'), ('sin(x=1)', ''),
-    ('1j', '1j is no number'), ('x@k', 'is not part'), ('x//k', 'is not part'), ('...', '')])
+    ('1j', '1j is not a number'), ('x@k', 'is not part'), ('x//k', 'is not part'), ('...', '')])
 def test_what_is_no_expression_gets_one_line(text, problem):
     with pytest.raises(BadInput) as refusal:
         read(text, NAMES, 'scene: effects.torque.value.0')
