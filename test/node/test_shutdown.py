@@ -30,9 +30,12 @@ def processor_time():
 
 
 def of_process(pid):
-    """Return the processor time that a process has taken so far, s."""
+    """Return the processor time that a process and its children have taken so far, s."""
     fields = pathlib.Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+    children = [int(child) for task in pathlib.Path(f'/proc/{pid}/task').iterdir()
+                for child in (task / 'children').read_text().split()]
+    return ((int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+            + sum(map(of_process, children)))
 
 
 def recording_of(running):
