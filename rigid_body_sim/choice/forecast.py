@@ -37,7 +37,7 @@ MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start 
 FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
-FINER = 1e-2             # factor of the accuracy of the run that a run is compared with
+FINER = 2.0 ** -7        # share of a tolerance: that of the finer run, which tells the error
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 

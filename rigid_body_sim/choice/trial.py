@@ -19,6 +19,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.choice import forecast, measured
+from rigid_body_sim.choice.forecast import FINER
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
@@ -34,7 +35,6 @@ LEAST, MOST, AIM = 0.1, 0.4, 0.2      # shares of the accuracy: errors that are 
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
 SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
 COARSER = 8.0   # factor between the tolerance of the table and that of a scene, either way
-FINER = 2.0 ** -7    # share of a tolerance: that of the finer run, which tells the error
 NEAR = 2.0 ** -4     # largest such share: a run that is less fine does not tell the error
 FINER_ONES = FINER, NEAR, 0.25    # shares that are tried in turn where runs take too much work
 TRIES = 6       # largest number of tolerances

@@ -9,7 +9,8 @@ numba.
 
 import math
 
-from rigid_body_sim.choice.trial import COARSER, FINER, NEAR, SATURATED, Trial
+from rigid_body_sim.choice.forecast import FINER
+from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
 from rigid_body_sim.integrators.marching.contact import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.methods import dop8
