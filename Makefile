@@ -14,6 +14,8 @@ ifneq ($(LEFT_BEHIND),)
 $(info Unset for this run, they belong to another installation: $(LEFT_BEHIND))
 endif
 unexport $(FOREIGN)
+# without it each of some hundred processes would read every source anew
+unexport PYTHONDONTWRITEBYTECODE
 export AMENT_PREFIX_PATH := $(CURDIR)/.venv
 
 PYTHON_VERSIONS = 3.11 3.12 3.13
@@ -60,9 +62,8 @@ mutants: .venv/test.stamp ## COUNT (100) random changes of the code, drawn by SE
 
 soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes beside a truth; millions of arguments of each function; mutants
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
-	    test/recording test/analysis/test_damaged.py test/hard_cases test/study/test_check_scenes.py \
-	    test/node/test_long_run.py test/node/test_cold_start.py test/test_digests.py test/test_docs.py \
-	    test/numerics/test_functions.py test/scene/test_scene_language.py test/choice/test_random_scenes.py test/view/test_hand.py
+	    test/recording test/analysis test/hard_cases test/study test/node test/test_digests.py test/test_docs.py \
+	    test/numerics test/integrators test/motions test/scene test/choice test/simulation test/view
 	.venv/bin/python bench/choice_random.py --count 300
 	@$(MAKE) --no-print-directory mutants
 

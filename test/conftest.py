@@ -89,13 +89,15 @@ def plain(shared):
 
 WITHOUT_NUMBA = pytest.StashKey()
 """Of a session: the results of the tests that ran without numba, by name."""
+IN_ONE_PROCESS = 4
+"""Files of a folder whose tests run without numba in one process: starting one takes a second."""
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem):
-    """Run the tests of a file marked `without_numba` in one process that does not compile.
+    """Run the tests of some files marked `without_numba` in one process that does not compile.
 
     They run a kind of scene for a second or less: plain Python takes less than compiling it would,
     and gives the same bits (test_digests.py).
@@ -111,12 +113,17 @@ def pytest_pyfunc_call(pyfuncitem):
 
 
 def _without_numba(wanted):
-    """Return name -> what failed, '' if nothing, of the tests like it in the file of a test.
+    """Return name -> what failed, '' if nothing, of a test and those like it in files beside its.
 
     Workers share what one of them has run.
     """
-    names = [item.nodeid for item in wanted.session.items if item.path == wanted.path
-             and item.get_closest_marker('without_numba') is not None]
+    beside = {item.nodeid: item.path for item in wanted.session.items
+              if item.path.parent == wanted.path.parent
+              and item.get_closest_marker('without_numba') is not None}
+    files = sorted(set(beside.values()))
+    first = files.index(wanted.path) // IN_ONE_PROCESS * IN_ONE_PROCESS
+    names = [name for name, path in beside.items()
+             if path in files[first:first + IN_ONE_PROCESS]]
     return json.loads(done_once(wanted.session.stash[SHARED], names,
                                 lambda: json.dumps(_run_without_numba(names, wanted.config))))
 

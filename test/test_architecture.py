@@ -5,6 +5,7 @@ The source is read, not run, so an import inside a function counts like any othe
 """
 
 import ast
+import functools
 import pathlib
 
 import pytest
@@ -35,20 +36,19 @@ def imports_of(path, name):
             yield part.lineno, part.module
             if part.module == 'rigid_body_sim':
                 yield from ((part.lineno, f'rigid_body_sim.{alias.name}') for alias in part.names)
-        elif (isinstance(part, ast.Call) and 'import_module' in ast.unparse(part.func)
-                and part.args and isinstance(part.args[0], ast.Constant)):
+        elif (isinstance(part, ast.Call) and part.args and isinstance(part.args[0], ast.Constant)
+                and 'import_module' in ast.unparse(part.func)):
             yield part.lineno, part.args[0].value
 
 
+@functools.cache
 def arrows():
-    """Yield (module, line, imported module) for each import in the package."""
+    """Return (module, line, imported module) of each import in the package."""
+    found = []
     for path in sorted(PACKAGE.rglob('*.py')):
         name = '.'.join(path.relative_to(PACKAGE).with_suffix('').parts)
-        for line, imported in imports_of(path, name):
-            yield name, line, imported
-
-
-ARROWS = list(arrows())
+        found += [(name, line, imported) for line, imported in imports_of(path, name)]
+    return found
 
 
 def test_every_folder_is_a_room_that_has_its_place():
@@ -59,7 +59,7 @@ def test_every_folder_is_a_room_that_has_its_place():
 
 def test_no_arrow_points_upwards():
     wrong = []
-    for name, line, imported in ARROWS:
+    for name, line, imported in arrows():
         below = imported.removeprefix('rigid_body_sim.')
         if not imported.startswith('rigid_body_sim.') or room_of(name) in FRONT_DOOR:
             continue
@@ -70,7 +70,7 @@ def test_no_arrow_points_upwards():
 
 
 def test_nothing_below_the_node_imports_ros():
-    wrong = [f'{name}:{line} imports {imported}' for name, line, imported in ARROWS
+    wrong = [f'{name}:{line} imports {imported}' for name, line, imported in arrows()
              if room_of(name) not in (*FRONT_DOOR, 'view')
              and ROOMS.index(room_of(name)) < ROOMS.index('node')
              and (imported.split('.')[0] in ROS or imported.split('.')[0].endswith('_msgs'))]
@@ -80,7 +80,7 @@ def test_nothing_below_the_node_imports_ros():
 def test_no_room_is_in_a_circle():
     """Follow the imports between rooms from each of them: none leads back, in any order."""
     leads_to = {}
-    for name, _, imported in ARROWS:
+    for name, _, imported in arrows():
         if imported.startswith('rigid_body_sim.') and room_of(name) not in FRONT_DOOR:
             there = room_of(imported.removeprefix('rigid_body_sim.'))
             if there != room_of(name) and there not in FRONT_DOOR:

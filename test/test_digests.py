@@ -13,6 +13,7 @@ import subprocess
 import sys
 
 import pytest
+from soak import SOAK
 
 from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.scene.scene import load_scene, scene_names
@@ -22,7 +23,6 @@ from rigid_body_sim.study.machines.cases import cases
 
 KEPT = arithmetic.digests()
 SCENES = sorted({case.scene for case in cases().values()})
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 WITHOUT_NUMBA = """
 import json, sys
 from rigid_body_sim.study.machines import digests
@@ -35,9 +35,16 @@ LONG = ('kapitza_pendulum: choice of auto', 'kapitza_pendulum by taylor',
         'kapitza_pendulum by dop8', 'rising_egg: choice of auto', 'rising_egg by dop8',
         'tippe_top: choice of auto', 'euler_disk: choice of auto', 'composite_top: choice of auto',
         'skew_top_damped: choice of auto', 'tossed_coin: choice of auto',
+        'skew_top: choice of auto', 'driven_in_pieces: choice of auto',
+        'rattleback: choice of auto', 'stiff_relaxation: choice of auto',
+        'major_axis_relaxation: choice of auto', 'librating_satellite: choice of auto',
+        'kapitza_pendulum by gauss16', 'tippe_top by dop8', 'euler_disk by dop8',
         *(f'{bodies} of skew_top by taylor: {threads} threads'
-          for bodies in (17, 40) for threads in (1, 5)))
-"""What takes plain Python half of the time of all cases: as long as other cases of its kind."""
+          for bodies in (17, 40) for threads in (1, 2, 5)),
+        # the equations of a heavy top, which runs
+        *(f'{top} by split{order}' for order in (6, 8)
+          for top in ('fast_top', 'sleeping_top', 'steady_precession')))
+"""What takes plain Python two thirds of the time of all cases: others of its kind run."""
 
 
 @pytest.mark.timeout(1200)    # a cold cache: each kind of scene is compiled for each method

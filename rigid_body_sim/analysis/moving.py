@@ -76,7 +76,7 @@ class Moving:
             'springs': [{'at': _round(one.at / unit, 5), 'anchor': _round(one.anchor / unit, 5)}
                         for one in springs_of(self.scene)],
             'shaft': _mesh(surfaces.cylinder(0.012, 1.0).placed(
-                Rotation.identity(), (0.0, 0.0, 0.5)), 1.0, 'holder'),
+                (0.0, 0.0, 0.5)), 1.0, 'holder'),
             'arrows': self._arrows(turns)}
 
     def _arrows(self, turns):
@@ -119,10 +119,9 @@ def moving(measured):
 
 def _arrow(radius):
     """Return an arrow of length 1 along z with a shaft of a radius."""
-    still = Rotation.identity()
     head = surfaces.cone(2.5 * radius, 0.14)
-    return surfaces.joined([surfaces.cylinder(radius, 0.86).placed(still, (0.0, 0.0, 0.43)),
-                            head.placed(still, (0.0, 0.0, 0.895))])
+    return surfaces.joined([surfaces.cylinder(radius, 0.86).placed((0.0, 0.0, 0.43)),
+                            head.placed((0.0, 0.0, 0.895))])
 
 
 def _mesh(surface, unit, color=None):

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 import yaml
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing import surfaces
 from rigid_body_sim.scene.bodies import IDENTITY
@@ -62,7 +61,7 @@ def drawing_of(scene):
         return solid
     if scene.body.radius is not None:
         return Drawing([surfaces.sphere(scene.body.radius).placed(
-            Rotation.identity(), scene.body.center_of_mass)], 'the true shape, a sphere')
+            scene.body.center_of_mass)], 'the true shape, a sphere')
     return Drawing([_equal_box(scene.body)],
                    'a box with the same mass and moments of inertia: the scene gives no shape',
                    True)
@@ -98,13 +97,13 @@ def _surface(surface):
     size = {'ellipsoid': [surface.size], 'torus': surface.size[:2]}
     drawn = surfaces.SURFACES[OF_SURFACE.get(surface.kind, surface.kind)](
         *size.get(surface.kind, surface.size[:1]))
-    return drawn.placed(Rotation.identity(), surface.center)
+    return drawn.placed(surface.center)
 
 
 def _shape(mapping, at, orientation=IDENTITY):
     (name, dimensions), = mapping.items()
     surface = surfaces.SURFACES[name](**dimensions)
-    return surface.placed(Rotation.from_quat(orientation), at)
+    return surface.placed(at, orientation)
 
 
 def _is_hole(part):
@@ -129,5 +128,4 @@ def _part(mapping):
 def _equal_box(body):
     edges = np.array(box_of(body))
     edges = np.maximum(edges, THINNEST * edges.max()) if edges.any() else np.full(3, 0.1)
-    turn = Rotation.from_quat(body.about_center.axes)
-    return surfaces.box(edges).placed(turn, body.center_of_mass)
+    return surfaces.box(edges).placed(body.center_of_mass, body.about_center.axes)

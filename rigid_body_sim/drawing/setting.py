@@ -67,11 +67,11 @@ def holder_of(scene, reach):
     if mechanism is Mechanism.POINT:
         height = float(start[2]) - ground_of(scene, reach).height
         column = surfaces.cone(0.12 * reach, height)
-        return [column.placed(Rotation.identity(), start - (0.0, 0.0, 0.75 * height))]
+        return [column.placed(start - (0.0, 0.0, 0.75 * height))]
     if mechanism is Mechanism.AXIS:
         to_axis = Rotation.align_vectors([scene.constraint.axis], [[0.0, 0.0, 1.0]])[0]
         turn = Rotation.from_quat(scene.initial.orientation) * to_axis
-        return [surfaces.cylinder(0.025 * reach, reach).placed(turn, start)]
+        return [surfaces.cylinder(0.025 * reach, reach).placed(start, turn.as_quat())]
     return []
 
 

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.scene.bodies import IDENTITY
+
 AROUND, ALONG = 48, 24
 """Number of segments around an axis and along it."""
 THIN = 0.01
@@ -40,9 +42,14 @@ class Surface(NamedTuple):
     smooth: bool
     clear: bool = False
 
-    def placed(self, rotation, at):
-        """Return the surface turned by a scipy Rotation, then moved by `at` (m)."""
-        return self._replace(vertices=rotation.apply(self.vertices) + np.asarray(at, float))
+    def placed(self, at, orientation=IDENTITY):
+        """Return the surface turned by a quaternion (x, y, z, w), then moved by `at` (m)."""
+        vertices = self.vertices
+        if any(orientation[:3]):
+            # to import it takes a fifth of what a node needs to start; few scenes turn a shape
+            from scipy.spatial.transform import Rotation
+            vertices = Rotation.from_quat(orientation).apply(vertices)
+        return self._replace(vertices=vertices + np.asarray(at, float))
 
     def depth(self, point):
         """Return how far (m) a point is below all planes of the triangles, 0 where it is not.

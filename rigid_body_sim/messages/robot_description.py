@@ -9,7 +9,6 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import yaml
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.drawing.body import THINNEST, box_of
 from rigid_body_sim.messages import cdr
@@ -69,6 +68,7 @@ def _hinge(robot, scene, frames):
     axis = np.array(scene.constraint.axis)
     through = np.array(scene.constraint.point(scene.body))
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
+    from scipy.spatial.transform import Rotation  # see _roll_pitch_yaw
     attitude = Rotation.from_quat(scene.initial.orientation)
     place = scene.initial.position + attitude.apply(through)
     unturned = attitude * Rotation.from_rotvec(-start * axis)
@@ -106,8 +106,16 @@ def _inertial(link, body):
 
 
 def _origin(element, at, orientation):
-    turn = Rotation.from_quat(orientation).as_euler('xyz')
+    turn = _roll_pitch_yaw(orientation)
     ElementTree.SubElement(element, 'origin', xyz=_numbers(at), rpy=_numbers(turn))
+
+
+def _roll_pitch_yaw(orientation):
+    if not any(orientation[:3]):
+        return 0.0, 0.0, 0.0
+    # to import it takes a fifth of what a node needs to start, and few scenes have turned parts
+    from scipy.spatial.transform import Rotation
+    return Rotation.from_quat(orientation).as_euler('xyz')
 
 
 def _numbers(values):

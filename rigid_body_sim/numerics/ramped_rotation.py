@@ -42,8 +42,10 @@ SMALLEST = 1e-18        # terms below this are left out
 
 def _product(first, second):
     result = [Fraction(0)] * (len(first) + len(second) - 1)
+    # half of the coefficients are zero
+    others = [(j, right) for j, right in enumerate(second) if right]
     for i, left in enumerate(first):
-        for j, right in enumerate(second):
+        for j, right in others if left else ():
             result[i + j] += left * right
     return result
 

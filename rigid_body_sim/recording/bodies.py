@@ -8,7 +8,6 @@ import json
 import typing
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.state_topics import OUTPUTS
@@ -123,6 +122,8 @@ def states(recording, namespace, start, end, progress):
     if odom:
         moved = recording.read(odom, ['header.stamp', 'twist.twist.linear'], start, end, progress)
         _, mine, theirs = np.intersect1d(stamps, moved['header.stamp'], return_indices=True)
+        # a node that records does not need it
+        from scipy.spatial.transform import Rotation
         turn = Rotation.from_quat(vectors[mine, ORIENTATION])
         vectors[mine, VELOCITY] = turn.apply(moved['twist.twist.linear'][theirs])
     return States(vectors)

@@ -11,7 +11,6 @@ Errata: the notes carry I1 into the second and third linear equation; they are I
 import math
 
 import numpy as np
-from scipy.special import ellipkm1
 
 
 def linear_rates(eta, omega0, I1, I2, I3):
@@ -84,4 +83,5 @@ def time_between_flips(moments, omega):
     complement = (I3 - I1) * abs(middle) / lead if lead > 0.0 else 0.0
     if not (side > 0.0 and complement > 0.0):
         return None
+    from scipy.special import ellipkm1
     return 2.0 * ellipkm1(complement) / math.sqrt(lead / (I1 * I2 * I3))

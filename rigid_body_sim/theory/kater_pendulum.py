@@ -11,7 +11,6 @@ l' = l + a^2/l and a~^2 = l l' = l^2 + a^2.
 """
 
 import numpy as np
-from scipy.special import ellipk
 
 
 def conjugate_length(length, a):
@@ -63,6 +62,7 @@ def period(Omega, amplitude=0.0):
 
     It is (2 pi/Omega) (2/pi) K(k) with k = sin(phi0/2).
     """
+    from scipy.special import ellipk
     return 4.0 / Omega * ellipk(np.sin(0.5 * amplitude) ** 2)
 
 
@@ -71,4 +71,5 @@ def gravity_bias(amplitude):
 
     It is ((2/pi) K(k))^-2 = 1 - phi0^2/8 + ...
     """
+    from scipy.special import ellipk
     return (2.0 / np.pi * ellipk(np.sin(0.5 * amplitude) ** 2)) ** -2

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A few of the scenes of bench/choice_random.py: what `auto` promises, beside a truth."""
 
-import os
 import pathlib
 import sys
 
 import numpy as np
 import pytest
+from soak import SOAK
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / 'bench'
 SCENES = {2: 'a ball on a table', 166: 'dry friction of a hinge', 172: 'gravity along a vector',
           205: 'drag by matrices'}
-IN_WORDS = {0: 'a moving pivot', 2: 'dissipation at a pivot'}
-if os.environ.get('RIGID_BODY_SIM_SOAK'):    # ten seconds of plain Python
-    IN_WORDS[186] = 'a swing whose velocity nearly vanishes'
+IN_WORDS = {2: 'dissipation at a pivot'}
+if SOAK:    # ten seconds of plain Python each
+    IN_WORDS |= {0: 'a moving pivot', 186: 'a swing whose velocity nearly vanishes'}
 
 
 @pytest.fixture

@@ -105,7 +105,7 @@ initial: {}
     drawing = drawing_of(scene)
     assert 'no shape' in drawing.about
     volume, center, inertia = solid_integrals(drawing.surfaces[0].placed(
-        Rotation.identity(), (-0.1, -0.2, -0.3)))
+        (-0.1, -0.2, -0.3)))
     np.testing.assert_allclose(center, 0.0, atol=1e-12)
     np.testing.assert_allclose(inertia * 2.0 / volume, scene.body.about_center.matrix, rtol=1e-12,
                                atol=1e-12)

@@ -15,6 +15,7 @@ import time
 import numpy as np
 import pytest
 from hard_cases.stiff_scenes import scene
+from soak import IN_SOAK
 
 from rigid_body_sim.compilation import threads
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
@@ -237,7 +238,9 @@ SWIFT = {
 
 @pytest.mark.without_numba
 @pytest.mark.timeout(60)
-@pytest.mark.parametrize('parts', SWIFT.values(), ids=SWIFT)
+@pytest.mark.parametrize('parts', [
+    pytest.param(parts, id=name, marks=[IN_SOAK] * (name in ('damped body', 'pendulum')))
+    for name, parts in SWIFT.items()])
 def test_events_that_doubles_do_not_tell_apart_are_not_looked_for(parts):
     simulation = Simulation(scene(**parts))
     assert simulation.method == 'exact'

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import parse_scene
@@ -23,7 +24,8 @@ def simulation(effects, body=EGG, initial=SPUN, table='table'):
         f'sliding_friction: {{mu: 0.15}}, {effects}]\ninitial: {initial}\n'), 'dop8', 1e-13)
 
 
-@pytest.mark.parametrize('table', ['table', '{table: {normal: [0.1, 0.05, 1]}}'])
+@pytest.mark.parametrize('table', [pytest.param('table', marks=IN_SOAK),
+                                   '{table: {normal: [0.1, 0.05, 1]}}'])
 @pytest.mark.parametrize('effect', [
     'force: {value: [0.05, 0, 0], frame: world, at: [0, 0, 0.01]}',
     'magnetic: {moment: [0, 0, 0.2], field: [0.01, 0, 0.02]}',

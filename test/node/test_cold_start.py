@@ -8,6 +8,8 @@ tests look at the latter: see cold_starts.py.
 import json
 import os
 import pathlib
+import subprocess
+import sys
 
 import pytest
 
@@ -71,3 +73,14 @@ def test_cold_start_with_an_empty_cache(ros_domain, tmp_path, case):
     assert any((tmp_path / 'cache').rglob('*.nbc'))
     assert found['first_times'] == []
     assert found['dearest_tick'] < COMPILED_IN
+
+
+def test_a_node_starts_without_what_few_scenes_need():
+    """SciPy's modules take a third of what the others take to import, matplotlib as much."""
+    code = ('import sys, rigid_body_sim.node.simulation_node\n'
+            "print(*{'.'.join(name.split('.')[:2]) for name in sys.modules})")
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True,
+                          timeout=120, env=os.environ | {'PYTHONPATH': os.getcwd()})
+    assert set(done.stdout.split()) & {
+        'scipy.integrate', 'scipy.optimize', 'scipy.sparse', 'scipy.spatial', 'scipy.special',
+        'matplotlib', 'plotly', 'viser', 'xarray', 'sympy', 'pytest'} == set()

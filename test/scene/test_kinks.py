@@ -6,6 +6,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import runnable
@@ -120,7 +121,8 @@ def period(power):
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('power', 'method', 'accuracies'), [
-    (0.5, 'dop8', [1e-9]), (1.5, 'dop8', [1e-5, 1e-11]), (1.5, 'gauss16', [1e-8])])
+    (0.5, 'dop8', [1e-9]), (1.5, 'dop8', [1e-5, 1e-11]),
+    pytest.param(1.5, 'gauss16', [1e-8], marks=IN_SOAK)])
 def test_a_power_that_is_not_whole_has_its_kink_where_its_base_is_zero(power, method, accuracies):
     """A step looks beyond the kink in which it ends, where |x|^1.5 as it stands is not real."""
     scene = scene_of(f"[force: {{value: ['-2*sign(x)*abs(x)^{power}', 0, 0], frame: world}}]",
@@ -138,14 +140,13 @@ def test_branches_of_a_kink_may_have_roots_that_end_there():
     """A ball on a Hertzian wall under a steady push, written in three ways."""
     ends = []
     for wall in ('max(x, 0)^1.5', 'where(x > 0, x^1.5, 0)',
-                 'where(0 < x, x, 0)*sqrt(max(x, 0))'):
+                 'where(0 < x, x, 0)*sqrt(max(x, 0))')[:2 + SOAK]:
         scene = scene_of(f"[force: {{value: ['0.6 - 10*{wall}', 0, 0], frame: world}}]",
                          '{velocity: [1, 0, 0]}')
         _, kinks, _, end = followed(scene, 9.0)
         assert len(kinks) == 2
         ends.append(end)
-    assert np.abs(ends[1] - ends[0]).max() < 1e-12
-    assert np.abs(ends[2] - ends[0]).max() < 1e-12
+    assert np.abs(np.array(ends[1:]) - ends[0]).max() < 1e-12
 
 
 @pytest.mark.without_numba

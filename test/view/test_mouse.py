@@ -45,8 +45,8 @@ def test_a_ray_meets_a_box_where_its_planes_say(seed):
 def test_the_nearer_of_two_surfaces_is_met():
     still = np.zeros(14)
     still[4] = 1.0
-    near = surfaces.box((1.0, 1.0, 1.0)).placed(Rotation.identity(), (5.0, 0.0, 0.0))
-    far = surfaces.box((1.0, 1.0, 1.0)).placed(Rotation.identity(), (8.0, 0.0, 0.0))
+    near = surfaces.box((1.0, 1.0, 1.0)).placed((5.0, 0.0, 0.0))
+    far = surfaces.box((1.0, 1.0, 1.0)).placed((8.0, 0.0, 0.0))
     for both in ([near, far], [far, near]):
         found = hit(Drawing(both, ''), still, np.array([0.0, 0.2, 0.1]), np.array([1.0, 0, 0]))
         assert found == pytest.approx([4.5, 0.2, 0.1])

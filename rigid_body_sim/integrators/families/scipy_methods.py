@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Family of SciPy's solvers, on the scene's own compiled rates.
 
-A method is a module with SOLVER, a ``scipy.integrate.OdeSolver``.
+A method is a module with SOLVER, the name of a ``scipy.integrate.OdeSolver``.
 
 They run forward as far as they were asked and keep the interpolant of each step (about 1 kB a
 step); states come from these, so a state does not depend on which other times were asked.
@@ -33,7 +33,7 @@ COST = 200   # steps of a compiled march that cost as much as one step here
 
 def bind(method, stepped):
     """Return the rates of a scene for one solver."""
-    return Bound(stepped)
+    return Bound(method, stepped)
 
 
 class Bound:
@@ -41,8 +41,11 @@ class Bound:
 
     EXCHANGES = False
 
-    def __init__(self, stepped):
+    def __init__(self, method, stepped):
+        # to import it takes a quarter of what a node needs to start
+        from scipy import integrate
         self.equations = Equations(stepped.scene, stepped.wrench)
+        self.solver = getattr(integrate, method.SOLVER)
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: this one."""
@@ -53,7 +56,7 @@ class Bound:
 
     def course(self, stepped):
         """Return the course of a started solver."""
-        return _Course(stepped, self.equations)
+        return _Course(stepped, self.equations, self.solver)
 
 
 class _Course:
@@ -64,8 +67,9 @@ class _Course:
 
     TELLS_EVENTS = False
 
-    def __init__(self, stepped, equations):
+    def __init__(self, stepped, equations, solver):
         self._equations, self._method, self._scene = equations, stepped.method, stepped.scene
+        self._started = solver
         self._first, self._y = equations.start(stepped.vector)
         y = self._y
         self._begin = float(stepped.vector[TIME])
@@ -89,7 +93,7 @@ class _Course:
         rate = self._equations.kernels.rate
         self._p = p
         end = next(time for time in self._ends if time > begin)
-        self._solver = self._method.SOLVER(
+        self._solver = self._started(
             lambda time, y: np.array(rate(p, tuple(y.tolist()))),
             begin,
             y,

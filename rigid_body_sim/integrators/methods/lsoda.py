@@ -4,8 +4,6 @@
 Adams methods of variable order up to 12 give way to BDF up to order 5 where a scene is stiff.
 """
 
-from scipy import integrate
-
 from rigid_body_sim.integrators.families import scipy_methods as FAMILY  # noqa: F401, N812
 
 NAME = 'lsoda'
@@ -17,5 +15,5 @@ FIELD = True
 STIFF = ('dissipation', 'drag')
 TABLE = False
 TAKES = ('accuracy',)
-SOLVER = integrate.LSODA
+SOLVER = 'LSODA'
 SOURCE = 'L. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; ODEPACK, by SciPy'

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """radau: SciPy's Radau IIA of order 5, implicit, for stiff scenes; scipy_methods.py."""
 
-from scipy import integrate
-
 from rigid_body_sim.integrators.families import scipy_methods as FAMILY  # noqa: F401, N812
 
 NAME = 'radau'
@@ -14,5 +12,5 @@ FIELD = True
 STIFF = ('dissipation', 'drag')
 TABLE = False
 TAKES = ('accuracy',)
-SOLVER = integrate.Radau
+SOLVER = 'Radau'
 SOURCE = 'Hairer, Wanner, Solving ODEs II (1996), IV.8, by SciPy'
