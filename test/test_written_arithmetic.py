@@ -34,8 +34,7 @@ REDUCTIONS = ('dot', 'mean', 'std', 'var', 'trace')
 EXCEPTED = {
     # lsoda and radau are SciPy's: simulation/arithmetic.py says that their bits are not promised
     ('integrators/families/scipy_methods.py', 'np.linalg'),
-    ('integrators/methods/lsoda.py', 'import of scipy'),
-    ('integrators/methods/radau.py', 'import of scipy'),
+    ('integrators/families/scipy_methods.py', 'import of scipy'),
     # a first guess with two digits, which Newton's method makes 60 in Decimal
     ('numerics/gauss.py', 'math.cos'),
     # of Decimals and Fractions

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The place where numba keeps compiled kernels: one for all copies of the same sources."""
 
+import contextlib
 import pathlib
+import warnings
 
 import numba
 from numba.core.caching import FunctionCache, NullCache
@@ -31,6 +33,16 @@ class Place(UserProvidedCacheLocator):
         return super().get_suitable_cache_subpath(py_file)
 
 
+@contextlib.contextmanager
+def _going_on():
+    """Let a full disk, or a folder that somebody removes meanwhile, not end what is computed."""
+    try:
+        yield
+    except (OSError, RuntimeError) as error:    # the second one is numba's: no folder for a cache
+        warnings.warn(f'compiled kernels are not kept for the next process: {error}',
+                      RuntimeWarning, stacklevel=2)
+
+
 class DeferredCache:
     """The cache of one kernel, which makes numba's own cache only when the kernel is compiled.
 
@@ -49,11 +61,14 @@ class DeferredCache:
 
     def load_overload(self, signature, target_context):
         """Return the compiled code for the types of a call, or None."""
-        return self._cache.load_overload(signature, target_context)
+        with _going_on():
+            return self._cache.load_overload(signature, target_context)
+        return None
 
     def save_overload(self, signature, data):
         """Keep the compiled code for the types of a call."""
-        self._cache.save_overload(signature, data)
+        with _going_on():
+            self._cache.save_overload(signature, data)
 
     def flush(self):
         """Remove the compiled code."""

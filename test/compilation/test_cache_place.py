@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cache of kernels works with the numba of each distribution."""
+"""The cache of kernels works with the numba of each distribution, and where nothing is kept."""
 
+import os
 import subprocess
 import sys
 
@@ -23,3 +24,26 @@ def test_a_numba_before_0_61_names_its_locator_otherwise():
     done = subprocess.run([sys.executable, '-c', OLDER], cwd=ros.ROOT, capture_output=True,
                           text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
+
+
+REMOVED = """
+import shutil, sys, warnings
+from rigid_body_sim.compilation import environment
+from rigid_body_sim.numerics.rotations import angle_between
+shutil.rmtree(environment.cache_folder())
+open(environment.cache_folder(), 'x').close()
+with warnings.catch_warnings(record=True) as heard:
+    warnings.simplefilter('always')
+    print(angle_between(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
+print(*{f'{one.category.__name__}: {one.message}' for one in heard})
+"""
+
+
+def test_a_folder_that_is_gone_does_not_end_what_is_computed(tmp_path):
+    done = subprocess.run([sys.executable, '-c', REMOVED], cwd=ros.ROOT, capture_output=True,
+                          text=True, timeout=120, check=False,
+                          env=os.environ | {'XDG_CACHE_HOME': str(tmp_path)})
+    assert done.returncode == 0, done.stderr
+    value, heard = done.stdout.splitlines()
+    assert value == '0.0'
+    assert heard.startswith('RuntimeWarning: compiled kernels are not kept for the next process: ')
