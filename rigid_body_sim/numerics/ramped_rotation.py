@@ -25,7 +25,6 @@ Source: M. V. Berry, Histories of adiabatic quantum transitions, Proc. R. Soc. L
 """
 
 import math
-from fractions import Fraction
 
 import numpy as np
 
@@ -41,46 +40,42 @@ SMALLEST = 1e-18        # terms below this are left out
 
 
 def _product(first, second):
-    result = [Fraction(0)] * (len(first) + len(second) - 1)
-    # half of the coefficients are zero
-    others = [(j, right) for j, right in enumerate(second) if right]
+    result = [0] * (len(first) + len(second) - 1)
     for i, left in enumerate(first):
-        for j, right in others if left else ():
+        for j, right in enumerate(second):
             result[i + j] += left * right
     return result
 
 
 def _sum(*polynomials):
-    return [sum((each[power] for each in polynomials if power < len(each)), Fraction(0))
+    return [sum(each[power] for each in polynomials if power < len(each))
             for power in range(max(map(len, polynomials)))]
 
 
 def _axis_polynomials():
-    """Return p_1 ... p_TERMS as lists of exact coefficients of powers of x."""
-    polynomials = [[Fraction(-1, 2)]]
+    """Return 2^n p_n, n = 1 ... TERMS, as lists of coefficients of powers of x: integers."""
+    polynomials = [[-1]]
     for n in range(1, TERMS):
         last = polynomials[-1]
-        derivative = [power * value for power, value in enumerate(last)][1:] or [Fraction(0)]
+        derivative = [2 * power * value for power, value in enumerate(last)][1:] or [0]
         pairs = [_product(polynomials[a], polynomials[n - 2 - a]) for a in range(n - 1)]
-        bracket = _sum(derivative, *[[-value / 2 for value in pair] for pair in pairs])
-        stretched, bent = (_product([Fraction(0), Fraction(-2 * n - 1)], last),
-                           _product([Fraction(1), Fraction(0), Fraction(-1)], bracket))
-        polynomials.append(_sum(stretched, bent))
+        bracket = _sum(derivative, *[[-value for value in pair] for pair in pairs])
+        polynomials.append(_sum(_product([0, -4 * n - 2], last), _product([1, 0, -1], bracket)))
     return polynomials
 
 
 def _turn_polynomial(axis_polynomial, n):
-    """Return the exact coefficients of r, a polynomial in 1 - x.
+    """Return the coefficients of r, a polynomial in 1 - x, from those of 2^n p_n.
 
     It is defined by integral_x^1 (1 - x^2)^n p_n dx = (1 - x)^(n + 1) r(1 - x).
     """
-    integrand, power_of_x = [Fraction(0)], [Fraction(1)]
+    integrand, power_of_x = [0], [1]
     for value in axis_polynomial:
         integrand = _sum(integrand, [value * each for each in power_of_x])
-        power_of_x = _product(power_of_x, [Fraction(1), Fraction(-1)])
+        power_of_x = _product(power_of_x, [1, -1])
     for _ in range(n):
-        integrand = _product(integrand, [Fraction(2), Fraction(-1)])
-    return [value / (n + 1 + power) for power, value in enumerate(integrand)]
+        integrand = _product(integrand, [2, -1])
+    return [value / (2 ** n * (n + 1 + power)) for power, value in enumerate(integrand)]
 
 
 def _tables():
@@ -90,12 +85,11 @@ def _tables():
     """
     axis, turn = np.zeros((TERMS, (TERMS + 1) // 2)), np.zeros((TERMS, 2 * TERMS))
     for index, polynomial in enumerate(_axis_polynomials()):
-        sign = -1 if index % 4 >= 2 else 1
-        coefficients = [float(sign * value) for value in polynomial[index % 2:index + 1:2]]
+        n, sign = index + 1, -1 if index % 4 >= 2 else 1
+        coefficients = [sign * value / 2 ** n for value in polynomial[index % 2:n:2]]
         axis[index, :len(coefficients)] = coefficients
         if index % 2 == 0:
-            coefficients = [float(sign * value)
-                            for value in _turn_polynomial(polynomial[:index + 1], index + 1)]
+            coefficients = [sign * value for value in _turn_polynomial(polynomial[:n], n)]
             turn[index, :len(coefficients)] = coefficients
     return axis, turn
 
