@@ -48,8 +48,11 @@ def _product(first, second):
 
 
 def _sum(*polynomials):
-    return [sum(each[power] for each in polynomials if power < len(each))
-            for power in range(max(map(len, polynomials)))]
+    result = [0] * max(map(len, polynomials))
+    for each in polynomials:
+        for power, value in enumerate(each):
+            result[power] += value
+    return result
 
 
 def _axis_polynomials():
