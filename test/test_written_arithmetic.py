@@ -60,8 +60,6 @@ SUMS = {
     'motions/pendulum/anchor.py: '
     'sum((a * column[k] for a, column in zip(along, columns, strict=True)))',
     'numerics/functions.py: sum(((-u * u) ** n * u / (2 * n + 1) for n in range(12)))',
-    'numerics/ramped_rotation.py: '
-    'sum((each[power] for each in polynomials if power < len(each)), Fraction(0))',
     'simulation/ensemble.py: sum(map(_width, names))'}
 
 
