@@ -4,6 +4,7 @@
 `make package` builds it and runs this.
 """
 
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -40,10 +41,12 @@ def run(prefix, domain, folder, name, *arguments):
 def test_every_command_is_installed_and_shows_its_help(prefix, ros_domain, tmp_path):
     installed = {path.name for path in (prefix / 'lib' / 'rigid_body_sim').iterdir()}
     assert installed == set(SUBCOMMANDS)
-    for name in SUBCOMMANDS:
-        result = run(prefix, ros_domain, tmp_path, name, '--help')
-        assert (result.returncode, result.stderr) == (0, ''), name
-        assert 'example' in result.stdout, name
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        results = pool.map(lambda name: run(prefix, ros_domain, tmp_path, name, '--help'),
+                           SUBCOMMANDS)
+        for name, result in zip(SUBCOMMANDS, results, strict=True):
+            assert (result.returncode, result.stderr) == (0, ''), name
+            assert 'example' in result.stdout, name
 
 
 def test_executables_run_in_the_environment_that_built_them(prefix):
