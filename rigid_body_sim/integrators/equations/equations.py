@@ -19,7 +19,7 @@ from rigid_body_sim.integrators.equations import (
     hinged_field,
     turning,
 )
-from rigid_body_sim.mechanics.parameters import moment_about_hinge
+from rigid_body_sim.mechanics.parameters import scene_parameters
 from rigid_body_sim.scene.state import TIME
 
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
@@ -82,8 +82,7 @@ class Equations:
 
         More than forty lines: each attribute is made from those before it.
         """
-        self.frame = scene.frame
-        self._axis = scene.constraint.axis
+        self.frame, self._body = scene.frame, scene_parameters(scene)
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self._actors += [wrench] if wrench else []
         self.breakpoints = tuple(
@@ -92,13 +91,12 @@ class Equations:
         acting = self._acting(-np.inf)
         if not self.frame.pushed and any(one.gives == 'force' for one in acting):
             raise self._lost_force()
-        path, self.on_hinge = self.frame.path, self._axis is not None
+        path, self.on_hinge = self.frame.path, scene.constraint.axis is not None
         in_field = path is not None or any(one.in_field for one in acting)
         if path is not None:
             self.kind = carried
         elif self.on_hinge:
             self.kind = hinged_field if in_field else hinged
-            self._moment = moment_on_hinge(scene)
         else:
             self.kind = (field if in_field else
                          flying if any(one.gives == 'force' for one in acting) else turning)
@@ -170,16 +168,14 @@ class Equations:
         moments = np.zeros(3) if hinge else np.array(frame.moments)
         inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
         if hinge:
-            inverse[0] = 1.0 / self._moment
+            inverse[0] = 1.0 / self._body.hinge_moment
         differences = moments[[1, 2, 0]] - moments[[2, 0, 1]]
         share = np.divide(differences, moments, out=np.zeros(3), where=moments > 0.0)
         fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
         euler.EQUATION.store(fixed, euler.EquationParameters(
-            euler=share, inverse=inverse, moments=moments, axes=frame.axes,
-            point=frame.from_body(frame.point), start=euler.NO_START, mass=frame.mass,
+            scene=self._body, euler=share, inverse=inverse,
+            point=frame.from_body(frame.point), start=euler.NO_START,
             moves=float(frame.pushed)))
-        if hinge:
-            hinged.PARAMETERS.part('axis').store(fixed, self._axis)
         return fixed
 
     def held(self, time):
@@ -211,18 +207,6 @@ class Equations:
         """
         acting = (value for one in self._acting(time) for value in one.values)
         return np.array([*fixed, *acting, *(self.frame.path.values if self.frame.path else ())])
-
-
-def moment_on_hinge(scene):
-    """Return the moment of inertia about the hinge (kg m^2); BadInput if it is zero."""
-    moment = moment_about_hinge(scene.body, scene.constraint)
-    if not moment > 0.0:
-        raise BadInput(
-            f'{scene.name}: constraint.hinge',
-            'the moment of inertia about the axis is zero',
-            'move the axis',
-        )
-    return moment
 
 
 class _Call:

@@ -3,14 +3,15 @@
 
 scene/frame.py has the frame.
 
-The parameters of every scene kind begin with EquationParameters; the values of all that acts come
-after them.
+The parameters of every scene kind begin with EquationParameters, and these with SceneParameters
+(mechanics/parameters.py); the values of all that acts come after them.
 """
 
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
+from rigid_body_sim.mechanics.parameters import SceneParameters
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
 from rigid_body_sim.scene.state import STATE, StateView
@@ -37,30 +38,24 @@ class EquationParameters(NamedTuple):
 
     Attributes
     ----------
+    scene : SceneParameters
+        The body; its `frame_axes` are those of this frame.
     euler : Vector
         (I2 - I3)/I1 and cyclically; 0 where the moment is 0.
     inverse : Vector
         1/I1 ..., 0 where the moment is 0; on a hinge the first is that of the moment about it.
-    moments : Vector
-        I1 ..., kg m^2.
-    axes : Quaternion
-        Frame -> body.
     point : Vector
         Body origin -> point of reference, frame components, m.
     start : Start
-    mass : float
-        kg.
     moves : float
         1 where the point of reference moves, 0 where it is held in its place.
     """
 
+    scene: SceneParameters
     euler: Vector
     inverse: Vector
-    moments: Vector
-    axes: Quaternion
     point: Vector
     start: Start
-    mass: float
     moves: float
 
 
@@ -89,13 +84,14 @@ class Unknowns(NamedTuple):
 OMEGA, PLACE, DRIFT, CLOCK = (layout(Unknowns).part(name).first
                               for name in ('omega', 'place', 'drift', 'time'))
 EQUATION = layout(EquationParameters)
-EULER, INVERSE, MOMENTS, MASS, MOVES = (
-    EQUATION.part(name).first for name in ('euler', 'inverse', 'moments', 'mass', 'moves'))
+BODY = EQUATION.part('scene')
+EULER, INVERSE, MOVES = (EQUATION.part(name).first for name in ('euler', 'inverse', 'moves'))
+MOMENTS, MASS = BODY.part('moments').first, BODY.part('mass').first
 FIXED = EQUATION.size
 NO_START = Start(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-load_equation, load_mass = EQUATION.load, EQUATION.part('mass').load
-load_euler, load_inverse, load_moments = (EQUATION.part(name).load
-                                          for name in ('euler', 'inverse', 'moments'))
+load_moments, load_axes = BODY.part('moments').load, BODY.part('frame_axes').load
+load_euler, load_inverse, load_point, load_moves = (
+    EQUATION.part(name).load for name in ('euler', 'inverse', 'point', 'moves'))
 load_start, store_start = EQUATION.part('start').load, EQUATION.part('start').store
 load_state, store_state = STATE.load, STATE.store
 
@@ -165,12 +161,12 @@ def read_state(p, vector):
     tuples
         q and omega of the frame, position and velocity of its point (world).
     """
-    equation, state = load_equation(p), load_state(vector)
-    q = multiply(*state.orientation, *equation.axes)
-    omega = rotate_back(*equation.axes, *state.angular_velocity)
-    place = plus(state.position, rotate(*q, *equation.point))
-    carried = rotate(*q, *cross(omega, equation.point))
-    drift = scaled(equation.moves, plus(state.velocity, carried))
+    axes, point, state = load_axes(p), load_point(p), load_state(vector)
+    q = multiply(*state.orientation, *axes)
+    omega = rotate_back(*axes, *state.angular_velocity)
+    place = plus(state.position, rotate(*q, *point))
+    carried = rotate(*q, *cross(omega, point))
+    drift = scaled(load_moves(p), plus(state.velocity, carried))
     store_start(p, Start(state.time, place, drift))
     return q, taken(p, omega[0], omega[1], omega[2]), place, drift
 
@@ -191,8 +187,7 @@ def write_state(p, time, q, omega, place, drift, out):
         Position (m) and velocity (m/s) of the point of reference, world axes.
     out : array (14,)
     """
-    equation = load_equation(p)
-    (ax, ay, az, aw), point = equation.axes, equation.point
+    (ax, ay, az, aw), point = load_axes(p), load_point(p)
     q = normalised(*q)
     attitude, omega_body = multiply(*q, -ax, -ay, -az, aw), rotate(ax, ay, az, aw, *omega)
     if point[0] != 0.0 or point[1] != 0.0 or point[2] != 0.0:

@@ -13,9 +13,10 @@ import math
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
+from rigid_body_sim.compilation.layout import Quaternion, layout
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import (
+    BODY,
     INVERSE,
     EquationParameters,
     load_start,
@@ -39,14 +40,13 @@ GROUPS = ((PHI, SPEED, True), (SPEED, UNKNOWNS, False))
 class HingedParameters(NamedTuple):
     """The parameters of a body on a hinge."""
 
-    equation: EquationParameters
-    axis: Vector              # n, frame components
-    attitude: Quaternion      # q0, at the start
+    equation: EquationParameters    # its frame has the body's axes: n is the hinge_axis
+    attitude: Quaternion            # q0, at the start
 
 
 PARAMETERS = layout(HingedParameters)
 load_omega = STATE.part('angular_velocity').load
-load_axis = PARAMETERS.part('axis').load
+load_axis = BODY.part('hinge_axis').load
 load_attitude, store_attitude = PARAMETERS.part('attitude').load, PARAMETERS.part('attitude').store
 
 

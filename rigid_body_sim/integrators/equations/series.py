@@ -14,8 +14,9 @@ from rigid_body_sim.compilation.layout import Matrix, Vector, layout
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import euler, falling, turning
-from rigid_body_sim.integrators.equations.equations import Equations, moment_on_hinge
+from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.equations.falling import FallingParameters
+from rigid_body_sim.mechanics.parameters import moment_about_hinge, scene_parameters
 from rigid_body_sim.numerics.rotations import normalised
 from rigid_body_sim.scene.frame import turned_back
 
@@ -74,6 +75,7 @@ class Series(Equations):
 
     def __init__(self, scene):
         self.frame = _frame(scene)
+        self._body = scene_parameters(scene)._replace(frame_axes=self.frame.axes)
         self.hinged = scene.constraint.axis is not None
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self.modes = []    # nothing with kinks has a series
@@ -133,7 +135,7 @@ def _frame(scene):
     axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)
     return dataclasses.replace(
         frame,
-        moments=(0.0, 0.0, moment_on_hinge(scene)),
+        moments=(0.0, 0.0, moment_about_hinge(scene.body, scene.constraint)),
         axes=axes,
         arm=turned_back(axes, frame.arm),
     )
