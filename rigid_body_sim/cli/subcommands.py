@@ -12,7 +12,7 @@ SUBCOMMANDS = {
                            'run the node in its managed form: configure, activate, ...'),
     'run': ('rigid_body_sim.cli.run:main',
             'run the node for a while, record it, and report: what `make run` does'),
-    'view': ('rigid_body_sim.view.command:main',
+    'view': ('rigid_body_sim.view.subcommand:main',
              'show the body in a browser: a scene, a node or a recording; push it with the mouse'),
     'simulate': ('rigid_body_sim.cli.simulate:main',
                  'run a scene to a recording as fast as it goes'),

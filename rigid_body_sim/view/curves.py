@@ -48,13 +48,14 @@ class Curves:
     def _scales(self):
         return {'x': {'time': False, 'range': (-WINDOW * self._speed, 0.0)}, 'y': {'auto': True}}
 
-    def take(self, frame):
-        """Remember the residuals of a Frame."""
-        if frame.restarted:
+    def take(self, snapshot):
+        """Remember the residuals of a Snapshot."""
+        if snapshot.restarted:
             self._rows.clear()
-        if math.isfinite(frame.energy_residual) and not (
-                self._rows and frame.time <= self._rows[-1][0]):
-            self._rows.append((frame.time, frame.energy_residual, frame.momentum_residual))
+        if math.isfinite(snapshot.energy_residual) and not (
+                self._rows and snapshot.time <= self._rows[-1][0]):
+            self._rows.append((snapshot.time, snapshot.energy_residual,
+                               snapshot.momentum_residual))
 
     def draw(self, speed):
         """Draw what is remembered; a few times a second is enough.

@@ -25,18 +25,18 @@ PULL = 2.0 * math.pi * 0.8
 DAMPING = 0.7
 """Damping of the spring, relative to critical."""
 STEADY = 0.2
-"""Largest angle of the spring's oscillation from one frame to the next, rad.
+"""Largest angle of the spring's oscillation from one snapshot to the next, rad.
 
-A wrench is held from frame to frame and acts a frame or two late: a faster spring would be driven
-by its own delay. With a delay of two frames the limit is 0.3 rad.
+A wrench is held from snapshot to snapshot and acts a snapshot or two late: a faster spring would
+be driven by its own delay. With a delay of two snapshots the limit is 0.3 rad.
 """
 FOLLOWS = 0.3
-"""Turn of the body from frame to frame, rad, at which a hand follows a point only halfway."""
+"""Turn of the body between snapshots, rad, at which a hand follows a point only halfway."""
 SLACK = 1e-2
 """The hand exerts no torque about an axis whose moment is this small, relative to the largest.
 
 Commands to a body that has such an axis are in body axes: a couple that stayed fixed in the world
-for a frame, while the axis turns into it, would spin a needle by millions of turns.
+for a snapshot, while the axis turns into it, would spin a needle by millions of turns.
 """
 
 
@@ -45,7 +45,7 @@ class Hand:
 
     Parameters
     ----------
-    mechanics : frames.Mechanics
+    mechanics : snapshots.Mechanics
     """
 
     def __init__(self, mechanics):
@@ -88,7 +88,7 @@ class Hand:
     def held_point(self, vector, grip, lag):
         """Return the point (world, m) where a hand holds the body.
 
-        It is the grabbed point of the body while the body turns little from frame to frame. A hand
+        It is the grabbed point of the body while the body turns little between snapshots. A hand
         cannot follow a point that whirls about an axis: it holds such a body at the axis.
 
         Parameters
@@ -98,7 +98,7 @@ class Hand:
         grip : array (3,)
             The grabbed point in body axes, m.
         lag : float
-            Simulated time from frame to frame, s.
+            Simulated time from snapshot to snapshot, s.
         """
         turn, omega = Rotation.from_quat(vector[ORIENTATION]), vector[ANGULAR_VELOCITY]
         rate = float(np.linalg.norm(omega))
@@ -155,7 +155,7 @@ def pace_of(strength, speed, lag):
     speed : float
         Simulated seconds per second of the clock.
     lag : float
-        Simulated time from frame to frame, or from tick to tick if that is longer, s.
+        Simulated time from snapshot to snapshot, or from tick to tick if that is longer, s.
     """
     return min(PULL * math.sqrt(strength) / speed, STEADY / lag)
 

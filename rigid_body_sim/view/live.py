@@ -34,7 +34,7 @@ class Live:
     Attributes
     ----------
     scene : Scene
-        The scene of the frames; it changes when a new one has begun.
+        The scene of the snapshots; it changes when a new one has begun.
     generation : int
         Number of scenes that have begun.
     method : str
@@ -107,25 +107,25 @@ class Live:
         return self._pipe.poll(seconds)
 
     def poll(self):
-        """Return the Frames that have come since the last call.
+        """Return the Snapshots that have come since the last call.
 
         Raises
         ------
         BadInput, NotConverged
             If the first scene cannot run with the settings given.
         """
-        frames = []
+        snapshots = []
         while self._pipe.poll():
             name, value = self._pipe.recv()
             if name == 'impossible':
                 raise value
-            if name == 'frame':
-                frames.append(value)
+            if name == 'snapshot':
+                snapshots.append(value)
             elif name == 'scene':
                 self.scene, self.method = parse_scene(value.text), value.method
                 self.generation += 1
                 self.expected = {}
-                frames.clear()
+                snapshots.clear()
             elif name == 'expected':
                 self.expected = value
             elif name == 'preparing':
@@ -134,7 +134,7 @@ class Live:
                 self._prepared()
             else:
                 self.messages.append(value)
-        return frames
+        return snapshots
 
     def command(self, rows):
         """Give commands (simulation.command_rows) to the body, unless another one is awaited."""

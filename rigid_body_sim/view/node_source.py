@@ -4,7 +4,7 @@
 The node sends the latest state at the rate of a display (node/display.py); for a node without
 these topics, such as a replay, those of every tick are used. Subscriptions keep one message and
 are best effort. Nothing is spun: the page's loop takes the latest message of each when it draws. A
-held wrench is sent again at every frame; if the page is gone, the node's ``command_timeout``
+held wrench is sent again at every snapshot; if the page is gone, the node's ``command_timeout``
 releases it.
 """
 
@@ -44,11 +44,11 @@ from rigid_body_sim.simulation.command_rows import (
     TORQUE,
     wrench_of,
 )
-from rigid_body_sim.view.frames import (
+from rigid_body_sim.view.snapshots import (
     LONGEST_GAP,
     UNKNOWN,
-    Frame,
     Mechanics,
+    Snapshot,
     trail_between,
 )
 
@@ -64,7 +64,7 @@ NANOSECONDS = 1e9
 
 
 class NodeSource:
-    """A node as a source of frames.
+    """A node as a source of snapshots.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class NodeSource:
     wait = staticmethod(time.sleep)
 
     def poll(self):
-        """Return the newest Frame, if there is a new one."""
+        """Return the newest Snapshot, if there is a new one."""
         rclpy.spin_once(self._asking, timeout_sec=0.0)
         self._take_scene()
         for message in self._take('diagnostics'):
@@ -171,7 +171,7 @@ class NodeSource:
         self._miss(fresh)
         if not fresh or not {'pose', 'angular_velocity'} <= self._last.keys():
             return []
-        return [self._frame()]
+        return [self._snapshot()]
 
     def _miss(self, fresh):
         """Say once that the node is gone, where nothing of it has come for a while."""
@@ -185,7 +185,7 @@ class NodeSource:
                 self.messages.append(f'{self._name} is gone, and its last state is shown; the '
                                      'terminal that it ran in says why')
 
-    def _frame(self):
+    def _snapshot(self):
         pose, turning = self._last['pose'], self._last['angular_velocity'].vector
         stamp = pose.header.stamp.sec + pose.header.stamp.nanosec / NANOSECONDS
         self._start = stamp if self._start is None else self._start
@@ -198,7 +198,7 @@ class NodeSource:
         self._add_velocity(vector)
         trail = vector[np.newaxis] if self._shown is None else trail_between(self._shown, vector)
         self._shown = vector
-        return Frame(stamp - self._start, vector, trail, self._wrench, energy,
+        return Snapshot(stamp - self._start, vector, trail, self._wrench, energy,
                      self._residuals.get('energy_residual', math.nan),
                      self._residuals.get('momentum_residual', math.nan), events, net=self._net)
 

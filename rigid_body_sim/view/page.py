@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page: a viser server, and the loop that brings frames to it and pushes to the body."""
+"""The page: a viser server, and the loop that brings snapshots to it and pushes to the body."""
 
 import contextlib
 import io
@@ -21,7 +21,7 @@ FIELD_OF_VIEW = 0.7
 LAST_PORT = 65000
 """Largest first port to try: from there on some are left to try if it is taken."""
 PULLED_EVERY = 0.1
-"""Time after which a pull is sent again where no frame comes, s."""
+"""Time after which a pull is sent again where no snapshot comes, s."""
 NUMBERS_EVERY = 0.2
 """Time between two updates of numbers, curves and traces, s."""
 
@@ -85,7 +85,7 @@ class Page:
         self._generation, self._stages, self._hand = None, [], None
         self._grips, self._held, self._pulling = {}, [], False
         self._pulled, self._lag, self._numbers_due = 0.0, PERIOD, 0.0
-        self.frame = None
+        self.snapshot = None
 
     @property
     def address(self):
@@ -119,28 +119,29 @@ class Page:
             self._source.wait(due - now)
 
     def turn(self):
-        """Handle requests, frames and the mouse."""
+        """Handle requests, snapshots and the mouse."""
         while not self.panel.requests.empty():
             self._do(*self.panel.requests.get())
         text = self.panel.edited() if self._source.edits else None
         if text is not None:
             self._source.begin(text)
-        frames = self._source.poll()
+        snapshots = self._source.poll()
         if self._source.generation != self._generation:
             self._begin()
         for message in self._source.messages:
             self.panel.say(message)
         self._source.messages.clear()
-        if frames and self.frame is not None and not any(frame.restarted for frame in frames):
-            self._lag = frames[-1].time - self.frame.time
-        for frame in frames:
-            self.frame = frame
-            self.panel.take(frame)
-            self._stages[0].trace(frame)
+        if snapshots and self.snapshot is not None and not any(
+                one.restarted for one in snapshots):
+            self._lag = snapshots[-1].time - self.snapshot.time
+        for snapshot in snapshots:
+            self.snapshot = snapshot
+            self.panel.take(snapshot)
+            self._stages[0].trace(snapshot)
         self.panel.wait(self._source.preparing)
-        if self.frame is not None:
-            self._push(bool(frames))
-            if frames:
+        if self.snapshot is not None:
+            self._push(bool(snapshots))
+            if snapshots:
                 self._show()
             self._numbers()
         # else viser gathers messages for a sixtieth of a second of its own
@@ -168,32 +169,32 @@ class Page:
     def _show(self):
         stage = self._stages[0]
         stage.follows = self._shown['follow']
-        stage.show(self.frame, self._held)
+        stage.show(self.snapshot, self._held)
         for other in self._stages[1:]:
             other.follows = False
             other.show(self._beside())
             other.move_with(stage)
 
     def _beside(self):
-        """Return the Frame of the second recording, or None."""
+        """Return the Snapshot of the second recording, or None."""
         beside = self._source.beside
-        return None if beside is None else beside.beside_of(self.frame)
+        return None if beside is None else beside.beside_of(self.snapshot)
 
     def _numbers(self):
         now = time.monotonic()
         if now < self._numbers_due:
             return
         self._numbers_due = now + NUMBERS_EVERY
-        stage, frame = self._stages[0], self.frame
+        stage, snapshot = self._stages[0], self.snapshot
         stage.draw_traces()
-        arrows = stage.mechanics.of(frame) if stage.mechanics else None
-        self.panel.draw(frame, arrows, self._source.expected, self._beside())
+        arrows = stage.mechanics.of(snapshot) if stage.mechanics else None
+        self.panel.draw(snapshot, arrows, self._source.expected, self._beside())
 
     def _push(self, fresh):
-        """Apply the commands of the mouse to the body; `fresh` says whether a frame has come."""
+        """Apply the commands of the mouse to the body; `fresh`: whether a snapshot has come."""
         if not self._source.pushes:
             return
-        stage, vector = self._stages[0], self.frame.vector
+        stage, vector = self._stages[0], self.snapshot.vector
         strength = 10.0 ** self.panel.strength.value
         pulls = dict(self.mouse.pulls)
         now = time.monotonic()
@@ -211,7 +212,7 @@ class Page:
 
     def _pull(self, pulls, strength):
         """Hold the wrench of the springs of all browsers that drag the body."""
-        stage, vector, source = self._stages[0], self.frame.vector, self._source
+        stage, vector, source = self._stages[0], self.snapshot.vector, self._source
         lag = max(self._lag, PERIOD * source.speed, source.tick)
         pace = hand.pace_of(strength, source.speed, lag)
         known, self._grips, self._held, rows = self._grips, {}, [], []

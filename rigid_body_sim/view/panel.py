@@ -69,7 +69,7 @@ class Panel:
     ----------
     server : viser.ViserServer
     source : object
-        Where the frames come from (frames.py).
+        Where the snapshots come from (snapshots.py).
     shown : dict
         Name of an arrow or trace -> whether it is drawn; the check boxes change it.
 
@@ -237,18 +237,18 @@ class Panel:
         self._problem.content = (f'<div style="{style}">{html.escape(problem)}</div>'
                                  if problem else '')
 
-    def take(self, frame):
-        """Take the events of a Frame."""
+    def take(self, snapshot):
+        """Take the events of a Snapshot."""
         if self.curves:
-            self.curves.take(frame)
-        self._events = [*self._events, *frame.events][-EVENTS:]
+            self.curves.take(snapshot)
+        self._events = [*self._events, *snapshot.events][-EVENTS:]
 
-    def draw(self, frame, arrows, expected, beside=None):
-        """Show the numbers of a Frame; a few times a second is enough.
+    def draw(self, snapshot, arrows, expected, beside=None):
+        """Show the numbers of a Snapshot; a few times a second is enough.
 
-        `beside` is the Frame of a second recording at the same time, or None.
+        `beside` is the Snapshot of a second recording at the same time, or None.
         """
-        rows = [('t', f'{frame.time:.3f} s'), ('E', f'{frame.energy:.9g} J')]
+        rows = [('t', f'{snapshot.time:.3f} s'), ('E', f'{snapshot.energy:.9g} J')]
         if arrows:
             for name, value, unit in (('ω', arrows.omega, 'rad/s'),
                                       ('L', arrows.momentum, 'N m s'),
@@ -257,13 +257,13 @@ class Panel:
                 size = math.hypot(*value)
                 rows.append((name, f'{size:.5g} {unit}' if math.isfinite(size) else 'unknown'))
         if beside is not None:
-            angle, distance = _apart(frame.vector, beside.vector)
+            angle, distance = _apart(snapshot.vector, beside.vector)
             rows += [('to the grey one', f'{angle:.3g} rad'), ('', f'{distance:.3g} m')]
         self._values.content = _table(rows)
         if self.curves:
             self.curves.draw(self._source.speed)
         if self._source.plays:
-            self._timeline.value = min(frame.time, self._source.end)
+            self._timeline.value = min(snapshot.time, self._source.end)
         lines = [f'{at:.6g} s: {html.escape(text)}' for at, text in reversed(self._events)]
         self._event_list.content = (f'<div style="padding:0 1em;font-size:0.85em">'
                                     f'{"<br>".join(lines) or "none yet"}</div>')

@@ -13,7 +13,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE, TIME
-from rigid_body_sim.view.frames import UNKNOWN, Frame, Mechanics, state_between
+from rigid_body_sim.view.snapshots import UNKNOWN, Mechanics, Snapshot, state_between
 
 MOST_STATES = 1_000_000
 """Most states that are kept; of a longer recording every n-th is kept."""
@@ -26,7 +26,7 @@ NANOSECONDS = 1e9
 
 
 class Player:
-    """A recording as a source of frames; a second one can be drawn beside it.
+    """A recording as a source of snapshots; a second one can be drawn beside it.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Player:
     wait = staticmethod(time.sleep)
 
     def poll(self):
-        """Return the Frame of now, if it differs from the last one."""
+        """Return the Snapshot of now, if it differs from the last one."""
         now = time.monotonic()
         if not self._paused:
             self._time += (now - self._last) * self.speed
@@ -76,25 +76,25 @@ class Player:
         if self._time == self._shown:
             return []
         before, self._shown = self._shown, self._time
-        frame = self.at(self._time, before)
+        snapshot = self.at(self._time, before)
         self._restarted = False
-        return [frame]
+        return [snapshot]
 
     def at(self, when, before):
-        """Return the Frame at a time (s), with the trail since another one."""
+        """Return the Snapshot at a time (s), with the trail since another one."""
         place = max(int(np.searchsorted(self._times, when, side='right')) - 1, 0)
         first = max(int(np.searchsorted(self._times, before, side='right')), 0)
         going_on = before <= when and not self._restarted
         between = range(first, place) if going_on else ()
         step = max(1, len(between) // MOST_BETWEEN)
         events = tuple(mark for mark in self.marks if going_on and before < mark[0] <= when)
-        return Frame(when, self._vectors[place], self._vectors[[*between[::step], place]],
+        return Snapshot(when, self._vectors[place], self._vectors[[*between[::step], place]],
                      Wrench(), float(self._energies[place]), math.nan, math.nan, events,
                      not going_on, self._net(place))
 
-    def beside_of(self, frame):
-        """Return the Frame at the time of another recording's Frame; the rates may differ."""
-        when = float(frame.vector[TIME])
+    def beside_of(self, snapshot):
+        """Return the Snapshot at the time of another recording's; the rates may differ."""
+        when = float(snapshot.vector[TIME])
         found = self.at(when, when)
         place = max(int(np.searchsorted(self._times, when, side='right')) - 1, 0)
         if place + 1 >= len(self._times) or when == self._times[place]:

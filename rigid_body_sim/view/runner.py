@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A simulation in a process of its own, at the pace of the clock, controlled through a pipe.
 
-The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('frame',
-Frame)``, ``('scene', About)``, ``('refused', text)``, ``('failed', text)`` and, if the very first
-scene cannot run, ``('impossible', error)`` back. While a scene is prepared, ``('preparing',
+The page's process sends ``(name, value)`` pairs, see :meth:`Runner.told`; it gets ``('snapshot',
+Snapshot)``, ``('scene', About)``, ``('refused', text)``, ``('failed', text)`` and, if the very
+first scene cannot run, ``('impossible', error)`` back. While a scene is prepared, ``('preparing',
 text)`` tells what is being done; ``('prepared', None)`` ends it, with or without a new scene. So a
 method that takes long never holds up the page, and the page never holds up the simulation.
 """
@@ -23,12 +23,12 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME, States
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, ZERO
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory.prediction import expectation
-from rigid_body_sim.view.frames import MOST_BETWEEN, TURN_BETWEEN, Frame
+from rigid_body_sim.view.snapshots import MOST_BETWEEN, TURN_BETWEEN, Snapshot
 
 PERIOD = 1.0 / 60.0
-"""Time between two frames, s of the clock."""
+"""Time between two snapshots, s of the clock."""
 LONGEST_WORK = 0.05
-"""Time that the computation of one frame may take, s of the clock: then the motion lags."""
+"""Time that the computation of one snapshot may take, s of the clock: then the motion lags."""
 LAST_TIME = 1e9
 """Simulated time that ends the motion, in seconds times the rate over 1000: ticks stay exact."""
 WAYS_ON = 'press reset, or let go of the body and press play'
@@ -69,7 +69,7 @@ class Runner:
 
         ``scene``: a YAML text begins. ``command``: rows of commands act at the present tick.
         ``speed``: simulated seconds per second. ``pause``: a bool. ``step``: the motion goes on by
-        one frame while paused. ``reset``: the state goes back to the initial one. A motion that
+        one snapshot while paused. ``reset``: the state goes back to the initial one. A motion that
         cannot go on halts until ``pause`` is false, a reset, or another scene.
         """
         self._told[name](value)
@@ -145,7 +145,7 @@ class Runner:
         self._write(lambda recording: recording.ticks(simulation.tick, states))
 
     def _take_events(self):
-        """Take the events since the last call, for the recording and for the frame."""
+        """Take the events since the last call, for the recording and for the snapshot."""
         events = list(self._simulation.events)
         self._simulation.events.clear()
         self._events += events
@@ -215,7 +215,7 @@ class Runner:
             self._restarted()
 
     def _advance(self, seconds):
-        """Advance by some seconds of the clock, and send the frame."""
+        """Advance by some seconds of the clock, and send the snapshot."""
         if self._simulation is None:
             return
         steps, self._steps = self._steps, 0
@@ -236,7 +236,7 @@ class Runner:
         self._cost = 0.8 * self._cost + 0.2 * took
 
     def _move(self, until):
-        """Advance the motion to any time (s), not only that of a tick, and send the frame."""
+        """Advance the motion to any time (s), not only that of a tick, and send the snapshot."""
         simulation = self._simulation
         origin = simulation.time_at(0)
         self._go(max(int((until - origin) * simulation.rate) - simulation.tick, 0))
@@ -258,7 +258,7 @@ class Runner:
             for at, name in happened:
                 self._expected.note(name, at)
             self._expected.look(simulation.state)
-        self._pipe.send(('frame', Frame(
+        self._pipe.send(('snapshot', Snapshot(
             float(trail[-1, TIME]), trail[-1], trail, simulation.wrench, simulation.energy,
             ledger['energy_residual'], ledger['momentum_residual'], tuple(happened), restarted)))
         if self._expected and (compared := self._expected.compared()):

@@ -23,7 +23,7 @@ from rigid_body_sim.drawing.setting import (
     start_of,
 )
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, POSITION
-from rigid_body_sim.view.frames import Mechanics
+from rigid_body_sim.view.snapshots import Mechanics
 
 BODY, ACCENT, GHOST = (70, 140, 210), (240, 165, 60), (150, 150, 160)
 HOLDER = (110, 110, 118)
@@ -46,7 +46,7 @@ HEAD = 0.11
 SMALLEST_MOVE = 1e-6
 """A holder that has moved by less than this, in units, stays where it is drawn."""
 FADING = 0.93
-"""Share of the lead of a pulled body that is left after each frame."""
+"""Share of the lead of a pulled body that is left after each snapshot."""
 
 
 def wxyz(quaternion):
@@ -171,9 +171,9 @@ class Stage:
             f'{folder}/trace_{key}', np.zeros((1, 2, 3)), TRACES[key], thickness=2.0,
             thickness_units='screen', visible=False)
 
-    def show(self, frame, held=()):
-        """Draw a Frame; `held` has (held point, cursor) of each mouse that pulls, world, m."""
-        vector, unit = frame.vector, self.unit
+    def show(self, snapshot, held=()):
+        """Draw a Snapshot; `held` has (held point, cursor) of each mouse that pulls, world, m."""
+        vector, unit = snapshot.vector, self.unit
         turn = Rotation.from_quat(vector[ORIENTATION])
         self._about = (vector[POSITION] + turn.apply(self._middle)) / unit
         self._follow(bool(held))
@@ -192,7 +192,7 @@ class Stage:
                     [(spring.anchor, vector[POSITION] + turn.apply(spring.at))
                      for spring in self._springs], np.float32) / np.float32(unit)
             if self.mechanics:
-                self._draw_arrows(frame)
+                self._draw_arrows(snapshot)
             self._draw_spring(held)
 
     def _follow(self, pulled):
@@ -204,9 +204,9 @@ class Stage:
             self._lead *= FADING
             self._offset = target + self._lead
 
-    def _draw_arrows(self, frame):
-        arrows = self.mechanics.of(frame)
-        center = self.mechanics.center(frame.vector) / self.unit - self._about
+    def _draw_arrows(self, snapshot):
+        arrows = self.mechanics.of(snapshot)
+        center = self.mechanics.center(snapshot.vector) / self.unit - self._about
         for key, value in arrows._asdict().items():
             start = center if value is arrows.force else np.zeros(3)
             self._draw_arrow(key, start, value if self.shown.get(key) else np.zeros(3))
@@ -241,14 +241,14 @@ class Stage:
         if handle.visible != bool(held):
             handle.visible = bool(held)
 
-    def trace(self, frame):
-        """Take the states of a Frame's trail into the traces."""
-        if frame.restarted:
+    def trace(self, snapshot):
+        """Take the states of a Snapshot's trail into the traces."""
+        if snapshot.restarted:
             self._references.clear()
             for trace in self._traces.values():
                 trace.clear()
-        turns = Rotation.from_quat(frame.trail[:, ORIENTATION])
-        omega = frame.trail[:, ANGULAR_VELOCITY]
+        turns = Rotation.from_quat(snapshot.trail[:, ORIENTATION])
+        omega = snapshot.trail[:, ANGULAR_VELOCITY]
         speed = float(np.linalg.norm(omega[-1]))
         if speed > GROWTH * self._references['omega']:
             self._references['omega'] = speed

@@ -76,8 +76,8 @@ def server():
     made.stop()
 
 
-def frames_of(scene):
-    """Return the frames that a page gets of a scene at its start and after two pictures."""
+def snapshots_of(scene):
+    """Return the snapshots that a page gets of a scene at its start and after two pictures."""
     pipe = Pipe()
     # a trial of methods takes seconds in plain Python
     quick = (scene.name in scene_names() and scene.name not in TRIED
@@ -90,7 +90,7 @@ def frames_of(scene):
         runner._advance(TURN)
     assert [name for name, _ in pipe if name in ('refused', 'failed')] == []
     assert [name for name, _ in pipe][:3] == ['preparing', 'preparing', 'scene']
-    return [value for name, value in pipe if name == 'frame']
+    return [value for name, value in pipe if name == 'snapshot']
 
 
 def test_every_scene_opens_and_moves(server):
@@ -101,13 +101,13 @@ def test_every_scene_opens_and_moves(server):
 
 def opens_and_moves(scene, server):
     """Assert that all that is drawn of a scene is finite, and that the body moves."""
-    frames = frames_of(scene)
+    snapshots = snapshots_of(scene)
     stage, shown = Stage(server, scene), []
     stage.shown = dict.fromkeys(('omega', 'momentum', 'force', 'torque', 'axis', 'polhode',
                                  'herpolhode'), True)
-    for frame in frames:
-        stage.trace(frame)
-        stage.show(frame)
+    for snapshot in snapshots:
+        stage.trace(snapshot)
+        stage.show(snapshot)
         stage.draw_traces()
         shown.append(np.concatenate([stage._body.position, stage._body.wxyz]))
         for handle in stage._arrows.values():
@@ -117,7 +117,7 @@ def opens_and_moves(scene, server):
     assert len(stage.bodies) > 0 and stage.drawing.about
     stage.remove()
 
-    states = np.array([frame.vector for frame in frames])
+    states = np.array([snapshot.vector for snapshot in snapshots])
     data = Moving(states[:, 0], states[:, 1:5], states[:, 5:8], states[:, 8:11], scene).data()
     json.dumps(data, allow_nan=False)
     assert data['orientation'][0] != data['orientation'][-1] or (
@@ -127,21 +127,21 @@ def opens_and_moves(scene, server):
 def test_a_spring_is_drawn_from_its_anchor_to_the_body(server):
     scene = parse_scene(MORE['spring'])
     stage = Stage(server, scene)
-    frame = frames_of(scene)[-1]
-    stage.show(frame)
+    snapshot = snapshots_of(scene)[-1]
+    stage.show(snapshot)
     [[begin, end]] = stage._coils.points * stage.unit
     assert begin == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
-    assert np.linalg.norm(end - frame.vector[8:11]) == pytest.approx(0.1, rel=1e-5)
+    assert np.linalg.norm(end - snapshot.vector[8:11]) == pytest.approx(0.1, rel=1e-5)
     assert stage._coils.visible
 
 
 def test_the_column_moves_with_a_pivot_that_moves(server):
     scene = parse_scene(MORE['moving_pivot'])
     stage = Stage(server, scene)
-    for frame in frames_of(scene):
-        stage.show(frame)
+    for snapshot in snapshots_of(scene):
+        stage.show(snapshot)
         assert stage._holder.position * stage.unit == pytest.approx(
-            [0.0, 0.0, 0.05 * np.sin(20.0 * frame.time)], abs=1e-9 + 1e-6 * stage.unit)
+            [0.0, 0.0, 0.05 * np.sin(20.0 * snapshot.time)], abs=1e-9 + 1e-6 * stage.unit)
     assert np.abs(stage._holder.position).max() > 0.0
 
 

@@ -13,9 +13,9 @@ from rigid_body_sim.drawing.body import drawing_of
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.scene.scene import parse_scene, scene_names
 from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, TORQUE
-from rigid_body_sim.view.frames import Mechanics
 from rigid_body_sim.view.hand import PULL, Hand, pace_of, together
 from rigid_body_sim.view.mouse import hit
+from rigid_body_sim.view.snapshots import Mechanics
 
 SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 SLIM = """
@@ -59,7 +59,7 @@ def test_the_wrench_is_the_force_at_the_grabbed_point():
 
 @pytest.mark.parametrize(('speed', 'strength'), [
     (1.0, 0.1), (1.0, 1.0), (1.0, 100.0), (100.0, 1.0), (1e-3, 1.0), (1e-3, 100.0)])
-def test_a_pull_that_acts_two_frames_late_ends_at_the_cursor(speed, strength):
+def test_a_pull_that_acts_two_snapshots_late_ends_at_the_cursor(speed, strength):
     """A strong spring, and any at 1/1000 of real time, was once driven by its own delay."""
     simulation = Simulation(load_scene('sphere', ['initial.angular_velocity=[0, 0, 0]']),
                             rate=1000.0)
@@ -130,7 +130,7 @@ RARE = {'major_axis_relaxation': {}, 'kapitza_pendulum': {'integrator': 'dop8', 
                  + [pytest.mark.skipif(not SOAK, reason='takes ten seconds: make soak')]
                  * (name == 'kapitza_pendulum'))
     for name in scene_names()])
-def test_a_pull_at_sixty_frames_a_second_is_taken_and_stays_bounded_in_every_scene(name):
+def test_a_pull_at_sixty_snapshots_a_second_is_taken_and_stays_bounded_in_every_scene(name):
     simulation = Simulation(name, rate=600.0, **RARE.get(name, {}))
     mechanics = Mechanics(simulation.scene)
     hand, drawing = Hand(mechanics), drawing_of(simulation.scene)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stage of a page shows what was looked at (kept.py), and moves as its frames say."""
+"""The stage of a page shows what was looked at (kept.py), and moves as its snapshots say."""
 
 import contextlib
 import types
@@ -13,7 +13,7 @@ pytest.importorskip('viser')
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.view.frames import Frame
+from rigid_body_sim.view.snapshots import Snapshot
 from rigid_body_sim.view.stage import ARROW, FADING, Stage
 
 SCENES = ('heavy_top', 'kater_pendulum_from_p', 'billiard_follow', 'tennis_racket', None,
@@ -44,9 +44,9 @@ class Server:
         return {path: vars(handle) for path, handle in self.added.items()}
 
 
-def frame(simulation, times, wrench=None, restarted=False):
+def snapshot(simulation, times, wrench=None, restarted=False):
     states = simulation.states(times).vector
-    return Frame(times[-1], states[-1], states, wrench or Wrench(), 0.0, 0.0, 0.0,
+    return Snapshot(times[-1], states[-1], states, wrench or Wrench(), 0.0, 0.0, 0.0,
                  restarted=restarted)
 
 
@@ -62,7 +62,7 @@ def test_the_stage(name):
         stage.shown = dict.fromkeys(('omega', 'momentum', 'force', 'torque', 'axis', 'polhode',
                                      'herpolhode'), True)
         stage.follows = True
-        one = frame(simulation, [0.01, 0.02, 0.04], Wrench((0.0, 0.1, 0.2), (0.0, 0.0, 0.1)))
+        one = snapshot(simulation, [0.01, 0.02, 0.04], Wrench((0.0, 0.1, 0.2), (0.0, 0.0, 0.1)))
         stage.show(one)
         stage.trace(one)
         stage.draw_traces()
@@ -101,7 +101,7 @@ def test_arrows_of_a_ball_begin_at_its_surface_and_are_told_apart_where_they_coi
     scene = load_scene('sphere')
     stage, simulation = Stage(server, scene), Simulation(scene)
     stage.shown = dict.fromkeys(('omega', 'momentum', 'herpolhode'), True)
-    one = frame(simulation, [0.0, 0.1])
+    one = snapshot(simulation, [0.0, 0.1])
     stage.show(one)
     stage.trace(one)
     stage.draw_traces()
@@ -123,11 +123,11 @@ def test_the_world_moves_against_a_body_that_is_followed_and_a_pull_halts_it():
     stage, simulation = Stage(server, scene), Simulation(scene)
     stage.follows = True
     root, body = server.added['/world'], server.added['/world/body']
-    stage.show(frame(simulation, [0.0, 0.5]))
+    stage.show(snapshot(simulation, [0.0, 0.5]))
     assert root.position == pytest.approx(-body.position, abs=1e-12)
     before = root.position.copy()
     point = np.array([0.1, 0.2, 0.3])
-    pulled = frame(simulation, [0.5, 0.7])
+    pulled = snapshot(simulation, [0.5, 0.7])
     stage.show(pulled, held=[(point, point + 0.1)])
     assert root.position == pytest.approx(before)
     spring = server.added['/world/reference/spring']
@@ -151,7 +151,7 @@ def test_traces_hold_their_last_points_and_begin_anew():
     stage, simulation = Stage(server, scene), Simulation(scene)
     stage.shown = {'axis': True}
     line = server.added['/world/reference/trace_axis']
-    stage.trace(frame(simulation, np.linspace(0.0, 1.0, 11).tolist()))
+    stage.trace(snapshot(simulation, np.linspace(0.0, 1.0, 11).tolist()))
     stage.draw_traces()
     assert line.visible
     assert line.points.shape == (10, 2, 3)
@@ -159,6 +159,6 @@ def test_traces_hold_their_last_points_and_begin_anew():
     radii = np.linalg.norm(line.points, axis=2)
     assert radii == pytest.approx(np.full((10, 2), radii[0, 0]), rel=1e-6)
     assert not server.added['/world/body/trace_polhode'].visible
-    stage.trace(frame(simulation, [2.0], restarted=True))
+    stage.trace(snapshot(simulation, [2.0], restarted=True))
     stage.draw_traces()
     assert not line.visible

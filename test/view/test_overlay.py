@@ -8,9 +8,10 @@ from analysis import made
 pytest.importorskip('viser')
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.view import command, panel
+from rigid_body_sim.view import panel
 from rigid_body_sim.view.page import Page
 from rigid_body_sim.view.player import Player
+from rigid_body_sim.view.subcommand import _player
 
 RATE, TICKS = 100.0, 40
 STRUCK = {20: [('cmd_impulse', (0.0, 0.0, 0.5), (0.5, 0.0, 0.0), 'world')]}
@@ -26,7 +27,7 @@ def paths(tmp_path_factory):
 
 
 def test_the_second_one_is_grey_beside_the_first_and_the_panel_says_how_far_they_are_apart(paths):
-    page = Page(command._player(paths, paths), port=0)
+    page = Page(_player(paths, paths), port=0)
     try:
         page.panel.requests.put(('run', 'pause'))
         told = {}
@@ -55,12 +56,12 @@ def test_the_same_motion_at_another_rate_is_nowhere_apart(paths, tmp_path):
     for one, other in ((paths[0], tmp_path / 'slow'), (tmp_path / 'slow', paths[0])):
         shown, beside = Player(one), Player(other)
         for when in (0.0, 0.123, 0.2501, 0.39):
-            frame = shown.at(when, when)
-            angle, distance = panel._apart(frame.vector, beside.beside_of(frame).vector)
+            snapshot = shown.at(when, when)
+            angle, distance = panel._apart(snapshot.vector, beside.beside_of(snapshot).vector)
             assert angle < 1e-3 and distance == 0.0
 
 
 def test_more_than_two_and_a_scene_beside_a_recording_are_refused(paths):
     for names in ([*paths, paths[0]], [paths[0], 'tennis_racket']):
         with pytest.raises(BadInput, match='one recording, or two of them'):
-            command._player(names, [one for one in names if one in paths])
+            _player(names, [one for one in names if one in paths])

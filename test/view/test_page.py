@@ -46,7 +46,7 @@ def until(page, condition):
 def page():
     """Return the page of a ball at rest."""
     opened = Page(Live(parse_scene(BALL).text, {'rate': 1000.0}), port=0)
-    until(opened, lambda: opened.frame)
+    until(opened, lambda: opened.snapshot)
     yield opened
     opened.close()
 
@@ -95,25 +95,25 @@ def parting_of(path):
 
 def test_a_pull_and_a_strike_are_commands_to_the_simulation(page):
     page.mouse.pulls[0] = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
-    until(page, lambda: page.frame.energy > 0.0)
-    assert page.frame.wrench.force[1] > 0.0 and page.frame.wrench.torque[2] > 0.0
+    until(page, lambda: page.snapshot.energy > 0.0)
+    assert page.snapshot.wrench.force[1] > 0.0 and page.snapshot.wrench.torque[2] > 0.0
     page.mouse.pulls.clear()
-    until(page, lambda: not page.frame.wrench)
-    before = page.frame.vector[11:14].copy()
+    until(page, lambda: not page.snapshot.wrench)
+    before = page.snapshot.vector[11:14].copy()
     page.mouse.clicks.append((np.array([-3.0, 0.0, 0.0]) + page._stages[0]._offset,
                               np.array([1.0, 0.0, 0.0])))
-    until(page, lambda: page.frame.vector[11] > before[0] + 0.01)
-    assert abs(page.frame.energy_residual) < 1e-12
+    until(page, lambda: page.snapshot.vector[11] > before[0] + 0.01)
+    assert abs(page.snapshot.energy_residual) < 1e-12
 
 
 def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_path):
     page = Page(Live(parse_scene(BALL).text, {'rate': 1000.0}, str(tmp_path / 'run')), port=0)
     try:
-        until(page, lambda: page.frame)
+        until(page, lambda: page.snapshot)
         page.mouse.pulls[0] = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
-        until(page, lambda: page.frame.energy > 0.0)
+        until(page, lambda: page.snapshot.energy > 0.0)
         page.mouse.pulls.clear()
-        until(page, lambda: not page.frame.wrench)
+        until(page, lambda: not page.snapshot.wrench)
         page.panel.requests.put(('run', 'pause'))
         page.mouse.clicks.append((np.array([-3.0, 0.0, 0.0]) + page._stages[0]._offset,
                                   np.array([1.0, 0.0, 0.0])))
@@ -121,13 +121,13 @@ def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_
         assert not page.mouse.clicks
         page.panel.requests.put(('run', 'play'))
         page.panel.requests.put(('run', 'reset'))
-        until(page, lambda: page.frame.energy == 0.0)
+        until(page, lambda: page.snapshot.energy == 0.0)
         page.panel.requests.put(('choose', 'tennis_racket'))
         until(page, lambda: page._source.scene.name == 'tennis_racket')
         page.panel.requests.put(('speed', 10.0))
-        until(page, lambda: page.frame.events)
+        until(page, lambda: page.snapshot.events)
         page.mouse.pulls[0] = mouse.Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
-        until(page, lambda: page.frame.wrench)
+        until(page, lambda: page.snapshot.wrench)
     finally:
         page.close()
     assert commands_in(tmp_path / 'run')[-1]['topic'] == 'release'
@@ -141,11 +141,11 @@ def test_whatever_the_page_does_is_recorded_and_runs_again_to_the_same_bits(tmp_
 
 def grab(page):
     """Drag the body of a page, off its middle."""
-    until(page, lambda: not page.frame.wrench)    # the frame is one of this scene
+    until(page, lambda: not page.snapshot.wrench)    # the snapshot is one of this scene
     stage = page._stages[0]
     begun = stage._about + stage._offset + np.array([0.4, 0.0, 0.3])
     page.mouse.pulls[0] = mouse.Pull(begun, begun + np.array([0.3, 0.4, 0.1]))
-    until(page, lambda: page.frame.wrench)
+    until(page, lambda: page.snapshot.wrench)
 
 
 def test_a_drag_ends_with_its_scene_and_lasts_through_all_else(tmp_path):
@@ -155,7 +155,7 @@ def test_a_drag_ends_with_its_scene_and_lasts_through_all_else(tmp_path):
     source.tell = lambda *request: (told.append(request), tell(*request))
     page = Page(source, port=0)
     try:
-        until(page, lambda: page.frame)
+        until(page, lambda: page.snapshot)
         grab(page)
         for request in (('run', 'reset'), ('speed', 100.0), ('speed', 1e-3), ('run', 'pause'),
                         ('run', 'play'), ('speed', 1.0)):
@@ -163,7 +163,7 @@ def test_a_drag_ends_with_its_scene_and_lasts_through_all_else(tmp_path):
             later = time.monotonic() + 0.3
             until(page, lambda later=later: time.monotonic() > later)
             assert page._pulling and page.mouse.pulls
-            assert np.isfinite(page.frame.vector).all()
+            assert np.isfinite(page.snapshot.vector).all()
         for name in ('rolling_disk', 'rattleback', None):
             begun = page._generation
             if name:
@@ -204,22 +204,22 @@ def test_a_page_says_what_it_waits_for_and_what_is_chosen_meanwhile_is_next(page
 def test_a_page_says_why_a_motion_halts_and_a_reset_leads_on(page):
     """A disk that must roll was pulled sideways; after a reset it stood still."""
     page.panel.requests.put(('choose', 'rolling_disk'))
-    until(page, lambda: page._source.scene.name == 'rolling_disk' and page.frame.energy > 1.0)
+    until(page, lambda: page._source.scene.name == 'rolling_disk' and page.snapshot.energy > 1.0)
     page._source.command(np.array([(HOLD, WORLD, *ZERO, 0.0, 20.0, 0.0)]))
     until(page, lambda: 'plane that pulls' in page.panel._problem.content)
     assert 'press reset' in page.panel._problem.content
     page.panel.requests.put(('run', 'reset'))
-    until(page, lambda: not page.frame.wrench)
-    again = page.frame.time
-    until(page, lambda: page.frame.time > again)
+    until(page, lambda: not page.snapshot.wrench)
+    again = page.snapshot.time
+    until(page, lambda: page.snapshot.time > again)
     assert page.panel._problem.content == ''
 
 
 def test_a_picture_goes_out_when_it_is_drawn_and_the_page_wakes_when_one_comes(
         page, monkeypatch):
     drawn, sent = [], []
-    monkeypatch.setattr(page, '_show', lambda: drawn.append(page.frame.time))
-    monkeypatch.setattr(page.server, 'flush', lambda: sent.append(page.frame.time))
+    monkeypatch.setattr(page, '_show', lambda: drawn.append(page.snapshot.time))
+    monkeypatch.setattr(page.server, 'flush', lambda: sent.append(page.snapshot.time))
     until(page, lambda: len(drawn) > 2)
     assert set(drawn) <= set(sent)
     page._source.tell('pause', True)
@@ -234,12 +234,12 @@ def test_another_scene_and_a_changed_number_begin_anew(page):
     # a free body is followed, and the box says so
     assert page.panel._boxes['follow'].value
     page.panel.requests.put(('choose', 'heavy_top'))
-    until(page, lambda: page._source.scene.name == 'heavy_top' and page.frame.energy > 1.0)
+    until(page, lambda: page._source.scene.name == 'heavy_top' and page.snapshot.energy > 1.0)
     assert not page.panel._boxes['follow'].value
     assert not page._shown['follow']
     text = load_scene('heavy_top', ['initial.angular_velocity.2=50']).text
     page.panel._edit = (0.0, lambda: text)
-    until(page, lambda: page.frame.vector[7] == 50.0)
+    until(page, lambda: page.snapshot.vector[7] == 50.0)
     page.panel._edit = (0.0, lambda: text.replace('mass: 1.0', 'mass: -1.0'))
     until(page, lambda: 'mass' in page.panel._problem.content)
     assert page._source.scene.body.mass == 1.0
@@ -249,21 +249,21 @@ def test_pause_step_speed_and_reset(page):
     page.panel.requests.put(('choose', 'tennis_racket'))
     until(page, lambda: page._source.scene.name == 'tennis_racket')
     page.panel.requests.put(('speed', 10.0))
-    until(page, lambda: page.frame.time > 3.0)
+    until(page, lambda: page.snapshot.time > 3.0)
     # what theory predicts is named: the flips
     until(page, lambda: 'predicted, measured' in page.panel._expected.content)
     assert '>flip<' in page.panel._expected.content
-    # the frame of the reset is the first one after the pause, however late it comes
+    # the snapshot of the reset is the first one after the pause, however late it comes
     page.panel.requests.put(('run', 'pause'))
     page.panel.requests.put(('run', 'reset'))
-    until(page, lambda: page.frame.time == 0.0)
+    until(page, lambda: page.snapshot.time == 0.0)
     for steps in (1, 2):
         deadline = time.monotonic() + 0.3
         until(page, lambda deadline=deadline: time.monotonic() > deadline)
-        stopped = page.frame.time
+        stopped = page.snapshot.time
         page.panel.requests.put(('run', 'step'))
-        until(page, lambda stopped=stopped: page.frame.time != stopped)
-        assert page.frame.time == pytest.approx(steps * 10.0 / 60.0)
+        until(page, lambda stopped=stopped: page.snapshot.time != stopped)
+        assert page.snapshot.time == pytest.approx(steps * 10.0 / 60.0)
 
 
 def test_the_motion_waits_for_the_first_page_and_a_second_one_lets_a_pause_be(open_tab):
@@ -276,16 +276,16 @@ def test_the_motion_waits_for_the_first_page_and_a_second_one_lets_a_pause_be(op
     def after(seconds):
         deadline = time.monotonic() + seconds
         page.run(lambda: time.monotonic() > deadline)
-        return page.frame.time
+        return page.snapshot.time
     try:
         page.await_client()
-        until(page, lambda: page.frame)
+        until(page, lambda: page.snapshot)
         assert after(0.3) == after(0.3) == 0.0
         open_tab(page.address)
-        until(page, lambda: page.frame.time > 0.5)
+        until(page, lambda: page.snapshot.time > 0.5)
         page.panel.requests.put(('run', 'pause'))
-        page.panel.requests.put(('run', 'reset'))    # its frame is the first after the pause
-        until(page, lambda: page.frame.time == 0.0)
+        page.panel.requests.put(('run', 'reset'))    # its snapshot is the first after the pause
+        until(page, lambda: page.snapshot.time == 0.0)
         second = open_tab(page.address)
         until(page, lambda: len(page.server.get_clients()) == 2)
         assert after(0.3) == after(0.3) == 0.0

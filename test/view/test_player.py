@@ -8,7 +8,7 @@ from analysis import made
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.view import frames, player
+from rigid_body_sim.view import player, snapshots
 from rigid_body_sim.view.player import Player
 
 RATE, TICKS = 100.0, 60
@@ -58,13 +58,13 @@ def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(pat
     assert begun.restarted
     assert (len(begun.trail), begun.events) == (1, ())
     one._restarted = False
-    frame = one.at(0.305, 0.195)
-    assert not frame.restarted
-    assert frame.vector[0] == pytest.approx(0.3)
-    assert frame.trail[:, 0] == pytest.approx(np.arange(20, 31) / RATE)
-    assert [text for _, text in frame.events] == [text for at, text in one.marks
+    snapshot = one.at(0.305, 0.195)
+    assert not snapshot.restarted
+    assert snapshot.vector[0] == pytest.approx(0.3)
+    assert snapshot.trail[:, 0] == pytest.approx(np.arange(20, 31) / RATE)
+    assert [text for _, text in snapshot.events] == [text for at, text in one.marks
                                                   if 0.195 < at <= 0.305]
-    assert any('commands' in text for _, text in frame.events)
+    assert any('commands' in text for _, text in snapshot.events)
     assert one.at(0.195, 0.305).restarted
     assert one.at(-1.0, -2.0).vector[0] == 0.0
 
@@ -77,7 +77,7 @@ def test_force_and_torque_of_a_recording_are_those_of_its_motion(tmp_path, scene
     """The topics have no velocity: a ball that rolls once seemed to slip, at full friction."""
     made.record(tmp_path / 'run', scene, 400, rate=4000.0)
     played = Player(tmp_path / 'run')
-    mechanics = frames.Mechanics(played.scene)
+    mechanics = snapshots.Mechanics(played.scene)
     simulation = Simulation(played.scene, accuracy=1e-9)
     for at in (0.005, 0.025, 0.075, 0.0975):
         found = mechanics.of(played.at(at + 1e-6, at))    # the tick itself
@@ -124,10 +124,10 @@ def test_it_plays_at_its_speed_and_begins_anew_after_the_end(path, clock):
     assert (first.time, first.restarted) == (0.0, True)
     assert one.poll() == []
     clock[0] += 0.125
-    [frame] = one.poll()
-    assert frame.time == 0.125
-    assert not frame.restarted
-    assert len(frame.trail) == 12
+    [snapshot] = one.poll()
+    assert snapshot.time == 0.125
+    assert not snapshot.restarted
+    assert len(snapshot.trail) == 12
     one.set_speed(2.0)
     clock[0] += 0.125
     assert one.poll()[0].time == 0.375
@@ -145,8 +145,8 @@ def test_it_halts_steps_and_goes_where_it_is_told(path, clock):
     one.tell('step')
     assert one.poll()[0].time == pytest.approx(1.0 / 60.0)
     one.seek(0.55)
-    [frame] = one.poll()
-    assert (frame.time, frame.restarted) == (0.55, True)
+    [snapshot] = one.poll()
+    assert (snapshot.time, snapshot.restarted) == (0.55, True)
     one.set_speed(6.0)
     one.tell('step')
     assert one.poll()[0].time == one.end

@@ -103,7 +103,7 @@ def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
             '-m', 'rigid_body_sim', 'view', '--node', '/sim_node', '--port', '0'))
         address = address_of(view)
         tab = open_tab(address)
-        tab.see('rad/s')       # frames have come
+        tab.see('rad/s')       # snapshots have come
         tab.drag((270, 250), (340, 215))
         pulled(tab, scene, False)
         browser, number = other_chromium

@@ -27,9 +27,9 @@ class Pipe:
     def poll(self, *_):
         return False
 
-    def frames(self):
-        """Return the frames since the last call."""
-        found = [value for name, value in self.sent if name == 'frame']
+    def snapshots(self):
+        """Return the snapshots since the last call."""
+        found = [value for name, value in self.sent if name == 'snapshot']
         self.sent.clear()
         return found
 
@@ -43,46 +43,46 @@ def running():
     return one, pipe
 
 
-def test_a_scene_begins_with_its_description_and_a_frame(running):
+def test_a_scene_begins_with_its_description_and_a_snapshot(running):
     _, pipe = running
     names = [name for name, _ in pipe.sent]
-    assert names[:4] == ['preparing', 'preparing', 'scene', 'frame'] and names[-1] == 'prepared'
+    assert names[:4] == ['preparing', 'preparing', 'scene', 'snapshot'] and names[-1] == 'prepared'
     about = pipe.sent[2][1]
     assert (about.method, about.text) == ('exact', SCENE.text)
-    [frame] = pipe.frames()
-    assert frame.restarted
-    assert (frame.time, len(frame.trail)) == (0.0, 1)
-    assert (frame.energy_residual, frame.momentum_residual) == (0.0, 0.0)
+    [snapshot] = pipe.snapshots()
+    assert snapshot.restarted
+    assert (snapshot.time, len(snapshot.trail)) == (0.0, 1)
+    assert (snapshot.energy_residual, snapshot.momentum_residual) == (0.0, 0.0)
 
 
 def test_a_scene_that_is_wrong_is_refused_and_the_one_before_goes_on(running):
     one, pipe = running
-    pipe.frames()
+    pipe.snapshots()
     one.told('scene', SCENE.text.replace('mass:', 'mess:'))
     assert [name for name, _ in pipe.sent] == ['preparing', 'refused', 'prepared']
-    pipe.frames()
+    pipe.snapshots()
     one._advance(0.1)
-    assert pipe.frames()[0].time == pytest.approx(0.1)
+    assert pipe.snapshots()[0].time == pytest.approx(0.1)
 
 
 def test_it_keeps_the_pace_of_the_clock_and_its_trail_is_dense(running):
     one, pipe = running
-    pipe.frames()
+    pipe.snapshots()
     one._advance(0.105)
-    [frame] = pipe.frames()
-    assert frame.time == pytest.approx(0.105)
-    truth = Simulation(SCENE, **SETTINGS).states(frame.trail[:, 0]).vector
-    assert frame.trail == pytest.approx(truth, abs=1e-14)
-    assert (frame.vector == frame.trail[-1]).all()
+    [snapshot] = pipe.snapshots()
+    assert snapshot.time == pytest.approx(0.105)
+    truth = Simulation(SCENE, **SETTINGS).states(snapshot.trail[:, 0]).vector
+    assert snapshot.trail == pytest.approx(truth, abs=1e-14)
+    assert (snapshot.vector == snapshot.trail[-1]).all()
     # from one state to the next the body turns by a tenth at most
-    assert len(frame.trail) == 1 + int(SPIN * 0.105 / runner.TURN_BETWEEN)
-    assert np.diff([0.0, *frame.trail[:, 0]]).max() * SPIN <= runner.TURN_BETWEEN * 1.01
+    assert len(snapshot.trail) == 1 + int(SPIN * 0.105 / runner.TURN_BETWEEN)
+    assert np.diff([0.0, *snapshot.trail[:, 0]]).max() * SPIN <= runner.TURN_BETWEEN * 1.01
     one.told('speed', 4.0)
     one._cost = 0.0    # a machine that is busy lags; this is about the pace
     one._advance(0.5)
-    [frame] = pipe.frames()
-    assert frame.time == pytest.approx(2.105)
-    assert len(frame.trail) == 1 + runner.MOST_BETWEEN
+    [snapshot] = pipe.snapshots()
+    assert snapshot.time == pytest.approx(2.105)
+    assert len(snapshot.trail) == 1 + runner.MOST_BETWEEN
 
 
 @pytest.mark.parametrize('request_', ['scene', 'reset'])
@@ -99,61 +99,61 @@ def test_what_a_preparation_takes_is_no_time_of_the_motion(running, monkeypatch,
         return prepare(*arguments)
     monkeypatch.setattr(runner, 'expectation', slowly)
     one.told(request_, SCENE.text)
-    pipe.frames()
+    pipe.snapshots()
     clock[0] += 0.01
     one._follow_clock()
-    assert pipe.frames()[0].time == pytest.approx(0.01)
+    assert pipe.snapshots()[0].time == pytest.approx(0.01)
 
 
 def test_work_that_takes_long_makes_the_motion_lag(running):
     one, pipe = running
-    pipe.frames()
+    pipe.snapshots()
     one._cost = 5.0    # a second of the motion takes five
     one._advance(0.5)
-    assert pipe.frames()[0].time == pytest.approx(runner.LONGEST_WORK / 5.0)
+    assert pipe.snapshots()[0].time == pytest.approx(runner.LONGEST_WORK / 5.0)
     assert one._cost < 5.0
 
 
-def test_a_pause_halts_it_and_steps_go_on_by_a_frame(running):
+def test_a_pause_halts_it_and_steps_go_on_by_a_snapshot(running):
     one, pipe = running
-    pipe.frames()
+    pipe.snapshots()
     one.told('pause', True)
     one._advance(0.5)
-    assert pipe.frames() == []
+    assert pipe.snapshots() == []
     one._cost = 0.0
     one.told('step', None)
     one.told('step', None)
     one._advance(0.5)
-    assert pipe.frames()[0].time == pytest.approx(2.0 * runner.PERIOD)
+    assert pipe.snapshots()[0].time == pytest.approx(2.0 * runner.PERIOD)
     one.told('pause', False)
     one._cost = 0.0
     one._advance(0.1)
-    assert pipe.frames()[0].time == pytest.approx(2.0 * runner.PERIOD + 0.1)
+    assert pipe.snapshots()[0].time == pytest.approx(2.0 * runner.PERIOD + 0.1)
 
 
 def test_a_command_acts_at_the_present_tick_and_a_reset_goes_back(running):
     one, pipe = running
     one._advance(0.1)
-    [_, before] = pipe.frames()
+    [_, before] = pipe.snapshots()
     push = (IMPULSE, WORLD, *ZERO, 0.0, 0.0, 0.25)
     one.told('command', np.array([push, (*push[:-1], np.inf)]))
     assert [name for name, _ in pipe.sent] == ['refused']
-    pipe.frames()
+    pipe.snapshots()
     one._cost = 0.0
     one._advance(0.05)
-    [frame] = pipe.frames()
+    [snapshot] = pipe.snapshots()
     other = Simulation(SCENE, **SETTINGS)
     other.advance(10)
     other.command(np.array([push]))
-    assert frame.vector == pytest.approx(other.states([frame.time])[0].vector, abs=1e-12)
-    assert abs(frame.energy - before.energy) > 1e-4
+    assert snapshot.vector == pytest.approx(other.states([snapshot.time])[0].vector, abs=1e-12)
+    assert abs(snapshot.energy - before.energy) > 1e-4
     one.told('reset', None)
-    [frame] = pipe.frames()
-    assert frame.restarted
-    assert frame.vector[1:] == pytest.approx(SCENE.initial.vector[1:])
+    [snapshot] = pipe.snapshots()
+    assert snapshot.restarted
+    assert snapshot.vector[1:] == pytest.approx(SCENE.initial.vector[1:])
     one._cost = 0.0
     one._advance(0.02)
-    assert pipe.frames()[0].time == pytest.approx(0.02)
+    assert pipe.snapshots()[0].time == pytest.approx(0.02)
 
 
 def test_what_happens_is_told_once():
@@ -169,7 +169,7 @@ def test_what_happens_is_told_once():
     for _ in range(40):
         one._cost = 0.0
         one._advance(0.25)
-        told += [event for frame in pipe.frames() for event in frame.events]
+        told += [event for snapshot in pipe.snapshots() for event in snapshot.events]
     simulation = Simulation(SCENE, **SETTINGS)
     simulation.advance(1000)
     assert told == [(event.time, event.name) for event in simulation.events]
@@ -177,7 +177,7 @@ def test_what_happens_is_told_once():
 
 
 def advance_until(one, pipe, condition):
-    """Advance a Runner in frames of 0.05 s until a condition holds; return the messages."""
+    """Advance a Runner in snapshots of 0.05 s until a condition holds; return the messages."""
     seen = []
     for _ in range(40):
         one._cost = 0.0
@@ -212,28 +212,28 @@ def test_a_body_pulled_where_it_cannot_go_halts_and_each_way_on_leads_on(disk, w
     seen = advance_until(one, pipe, has('failed'))
     [text] = [value for name, value in seen if name == 'failed']
     assert 'ideal rolling needs a plane that pulls' in text and text.endswith(runner.WAYS_ON)
-    last = [value for name, value in seen if name == 'frame'][-1].time
+    last = [value for name, value in seen if name == 'snapshot'][-1].time
     one._advance(0.5)
     assert pipe.sent == []
     one.told('pause', False)    # still pulled: it says so again
     advance_until(one, pipe, has('failed'))
     for name, value in way:
         one.told(name, value)
-    seen = [*pipe.sent, *advance_until(one, pipe, has('frame'))]
-    frames = [value for name, value in seen if name == 'frame']
+    seen = [*pipe.sent, *advance_until(one, pipe, has('snapshot'))]
+    snapshots = [value for name, value in seen if name == 'snapshot']
     assert not has('failed')(seen)
-    assert frames[0].restarted == begins
-    assert begins or frames[-1].time > last
+    assert snapshots[0].restarted == begins
+    assert begins or snapshots[-1].time > last
 
 
 def test_a_scene_that_cannot_take_its_first_step_is_refused_and_the_one_before_goes_on(running):
     """The process ended, and with it the page."""
     one, pipe = running
-    pipe.frames()
+    pipe.snapshots()
     one.told('scene', load_scene('rolling_disk', ['initial.angular_velocity=[-30, 3, 3]']).text)
     [text] = [value for name, value in pipe.sent if name == 'refused']
     assert 'needs a plane that pulls' in text
-    pipe.frames()
+    pipe.snapshots()
     one._cost = 0.0
     one._advance(0.1)
-    assert pipe.frames()[0].time == pytest.approx(0.1)
+    assert pipe.snapshots()[0].time == pytest.approx(0.1)

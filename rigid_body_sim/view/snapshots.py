@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames: the data that a page shows of one moment, from any source.
+"""Snapshots: the data that a page shows of one moment, from any source.
 
-A *source* gives frames: a simulation (live.py), a node (node_source.py), a recording (player.py).
+A *source* gives them: a simulation (live.py), a node (node_source.py), a recording (player.py).
 """
 
 from typing import NamedTuple
@@ -27,7 +27,7 @@ LONGEST_GAP = 0.5
 """Time between two states, s, beyond which a trail does not guess what was between them."""
 
 
-class Frame(NamedTuple):
+class Snapshot(NamedTuple):
     """One moment of a motion.
 
     Attributes
@@ -37,15 +37,15 @@ class Frame(NamedTuple):
     vector : array (14,)
         The state (scene.state).
     trail : array (n, 14)
-        States since the last frame, the present one last, for the traces.
+        States since the last snapshot, the present one last, for the traces.
     wrench : Wrench
         The held command.
     energy, energy_residual, momentum_residual : float
         Energy (J) and the relative residuals of the ledger; NaN where unknown.
     events : tuple of (float, str)
-        Time (s) and text of what happened since the last frame.
+        Time (s) and text of what happened since the last snapshot.
     restarted : bool
-        Whether traces and curves begin anew with this frame.
+        Whether traces and curves begin anew with this snapshot.
     net : tuple of (array (3,), array (3,)), optional
         Net force (N) and torque (N m), world axes, from a source whose states lack the velocity;
         NaN where unknown. Else they follow from the state and the held command.
@@ -64,7 +64,7 @@ class Frame(NamedTuple):
 
 
 UNKNOWN = (np.full(3, np.nan), np.full(3, np.nan))
-"""The `net` of a Frame whose source cannot tell."""
+"""The `net` of a Snapshot whose source cannot tell."""
 
 
 def trail_between(before, after):
@@ -174,12 +174,12 @@ class Mechanics:
         self._energies.diagnose(self.packed, vector, diagnosis)
         return diagnosis[energy.MOMENTUM:].copy()
 
-    def of(self, frame):
-        """Return the Arrows of a Frame."""
-        arrows = self.arrows(frame.vector, frame.wrench)
-        if frame.net is None:
+    def of(self, snapshot):
+        """Return the Arrows of a Snapshot."""
+        arrows = self.arrows(snapshot.vector, snapshot.wrench)
+        if snapshot.net is None:
             return arrows
-        return arrows._replace(force=frame.net[0], torque=frame.net[1])
+        return arrows._replace(force=snapshot.net[0], torque=snapshot.net[1])
 
     def need_velocity(self):
         """Return whether force and torque depend on the velocity of the body's origin."""

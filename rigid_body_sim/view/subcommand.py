@@ -69,7 +69,7 @@ def _serve(options):
 
 
 def _source(options):
-    """Return where the frames come from."""
+    """Return where the snapshots come from."""
     _refuse_output(options)
     recordings = [one for one in options.what if _is_recording(one)]
     if options.node:

@@ -12,11 +12,11 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.curves import POINTS, WINDOW, Curves
-from rigid_body_sim.view.frames import (
+from rigid_body_sim.view.snapshots import (
     MOST_BETWEEN,
     TURN_BETWEEN,
-    Frame,
     Mechanics,
+    Snapshot,
     trail_between,
 )
 
@@ -97,16 +97,16 @@ class Gui:
         return self.chart
 
 
-def frame(time, energy=0.0, momentum=0.0, restarted=False):
-    return Frame(time, None, None, None, 0.0, energy, momentum, (), restarted)
+def snapshot(time, energy=0.0, momentum=0.0, restarted=False):
+    return Snapshot(time, None, None, None, 0.0, energy, momentum, (), restarted)
 
 
 def test_curves_hold_the_last_residuals_in_units_of_their_scale():
     gui = Gui()
     curves = Curves(gui)
     assert [part.tolist() for part in gui.chart.data[:3]] == [[0.0], [0.0], [0.0]]
-    for one in (frame(1.0, 2e-16, -3e-16), frame(2.0, np.nan), frame(2.0, 1e-16, 0.0),
-                frame(2.0, 9e-16), frame(1.5, 9e-16), frame(3.0, 4e-16, 5e-16)):
+    for one in (snapshot(1.0, 2e-16, -3e-16), snapshot(2.0, np.nan), snapshot(2.0, 1e-16, 0.0),
+                snapshot(2.0, 9e-16), snapshot(1.5, 9e-16), snapshot(3.0, 4e-16, 5e-16)):
         curves.take(one)
     curves.draw(1.0)
     times, energy, momentum, upper, lower = gui.chart.data
@@ -115,14 +115,14 @@ def test_curves_hold_the_last_residuals_in_units_of_their_scale():
     assert momentum == pytest.approx([-3.0, 0.0, 5.0])
     assert upper == pytest.approx([FLOOR / 1e-16] * 3)
     assert (lower == -upper).all()
-    curves.take(frame(0.5, 7e-16, 0.0, restarted=True))
+    curves.take(snapshot(0.5, 7e-16, 0.0, restarted=True))
     curves.draw(1.0)
     assert gui.chart.data[0].tolist() == [0.0]
     assert gui.chart.scales['x']['range'] == (-WINDOW, 0.0)
     curves.draw(100.0)
     assert gui.chart.scales['x']['range'] == (-100.0 * WINDOW, 0.0)
     for k in range(2 * POINTS):
-        curves.take(frame(1.0 + k))
+        curves.take(snapshot(1.0 + k))
     curves.draw(1.0)
     assert len(gui.chart.data[0]) == POINTS
     assert gui.chart.data[0][0] == 1.0 - POINTS
