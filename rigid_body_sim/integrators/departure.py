@@ -208,11 +208,11 @@ class Departing:
             self._march = self._march_from(start)
         return self._march
 
-    def exchanges_until(self, time):
+    def entries_until(self, time):
         """Return the part of a time (s) in which dissipation still takes energy from the body."""
         if self._near.end == math.inf:    # the square of what is NEAR
             return self._near.begin
-        return time if time < self._near.end else self._later().exchanges_until(time)
+        return time if time < self._near.end else self._later().entries_until(time)
 
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""
@@ -258,7 +258,7 @@ class Arriving:
     def _look(self):
         return self._begin + self._ahead
 
-    def exchanges_until(self, time):
+    def entries_until(self, time):
         """Return the part of a time (s) in which dissipation still takes energy from the body."""
         self._reach(time)
         return time if self._rest is None else min(time, self._look)

@@ -69,7 +69,7 @@ class Solver(Protocol):
             As `states`; the message begins with the number of the body.
         """
 
-    def exchanged(self, time: float) -> np.ndarray:
+    def entries(self, time: float) -> np.ndarray:
         """Return the entries of the ledger from the start to a time, shape (5,).
 
         mechanics/ledger.py has their layout: work (J), heat (J), angular impulse (N m s, world).
@@ -197,12 +197,12 @@ class Bound(Protocol):
 
     Attributes
     ----------
-    EXCHANGES : bool
-        Whether its courses have a method ``exchanged(time)``, as Solver.exchanged. Otherwise the
-        ledger's entries are a quadrature over the states (mechanics/exchange.py).
+    KEEPS_ENTRIES : bool
+        Whether its courses have a method ``entries(time)``, as Solver.entries. Otherwise the
+        ledger's entries are a quadrature over the states (mechanics/quadrature.py).
     """
 
-    EXCHANGES: bool
+    KEEPS_ENTRIES: bool
 
     def at(self, stepped: Any) -> 'Bound':
         """Return the Bound of a solver that differs from the one bound in its accuracy alone."""
@@ -240,7 +240,7 @@ class Course(Protocol):
     def kinks(self, until: float) -> list[float]:
         """Return the times before another at which marches stopped at a kink, s.
 
-        Only courses whose Bound does not exchange are asked.
+        Only courses whose Bound keeps no entries are asked.
         """
 
 

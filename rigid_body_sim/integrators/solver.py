@@ -5,7 +5,7 @@
     solver = solver.start(vector)
     solver.state(time, out)        # out (14,)
     solver.states(times, out)      # out (n, 14), any order of times, none before the start
-    solver.exchanged(time)         # array (5,): the ledger's entries since the start
+    solver.entries(time)           # array (5,): the ledger's entries since the start
 
 Give `accuracy` (step control) or `step` (fixed steps); `step` takes precedence. A state does not
 depend on which other times were asked. Stepped does not apply the strikes of a scene:
@@ -27,8 +27,8 @@ from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
 from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
 from rigid_body_sim.mechanics.events import Watcher, watches
-from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.quadrature import Actors, Quadrature
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
@@ -118,7 +118,7 @@ class Stepped:
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        started._exchange, started._watcher = None, None
+        started._quadrature, started._watcher = None, None
         near = departure(self.scene, vector) if self._departs else None
         if near is None:
             started._course = self._marching(started)
@@ -244,23 +244,23 @@ class Stepped:
                                     unbounded(self.scene))
         return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
-    def exchanged(self, time):
+    def entries(self, time):
         """Return the ledger's entries from the start to a time, shape (5,), longer on a plane.
 
         mechanics/ledger.py has their layout. Raises what `states` raises.
         """
         time = float(time)
         self._within(time, time)
-        if self._bound.EXCHANGES:
-            return self._course.exchanged(time)
+        if self._bound.KEEPS_ENTRIES:
+            return self._course.entries(time)
         actors = self._ledger.actors
         if not actors.acts:
             return np.zeros(ENTRIES_SIZE)
-        if self._exchange is None:
+        if self._quadrature is None:
             slack = min(SLACK * self.accuracy, self.wanted) if self.step is None else 0.0
-            self._exchange = Exchange(actors, self._course.states, self.vector, slack,
-                                      self._course.kinks)
-        return self._exchange.until(self._course.exchanges_until(time) if self._departs else time)
+            self._quadrature = Quadrature(actors, self._course.states, self.vector, slack,
+                                          self._course.kinks)
+        return self._quadrature.until(self._course.entries_until(time) if self._departs else time)
 
 
 def _check_control(method, accuracy, step):

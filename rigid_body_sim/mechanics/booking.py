@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: the rates of the ledger's entries at the states of a body.
 
-exchange.py binds it to what acts in a scene.
+quadrature.py binds it to what acts in a scene.
 """
 
 from rigid_body_sim.compilation.jit import compiled

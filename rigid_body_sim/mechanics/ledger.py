@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger of a body: energy and angular momentum now, at the start, and exchanged in between.
+"""The ledger of a body: energy and angular momentum now, at the start, and the entries in between.
 
-The entries of the ledger are what commands, strikes and effects have exchanged with the body.
+The entries are the work, the heat and the angular impulse of commands, strikes and effects.
 """
 
 import math

@@ -50,7 +50,7 @@ from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ('flip',)
-exchanged = takes = fill_columns = None
+entries = takes = fill_columns = None
 
 
 class Parameters(NamedTuple):

@@ -42,7 +42,7 @@ from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ()
-exchanged = takes = next_event = None
+entries = takes = next_event = None
 fill_columns = None
 
 IN_BODY, IN_WORLD = 0.0, 1.0    # axes in which the torque is constant

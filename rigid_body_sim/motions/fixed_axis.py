@@ -39,7 +39,7 @@ from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE
 
 EVENTS = ('turning point',)
-exchanged = None
+entries = None
 fill_columns = None
 
 

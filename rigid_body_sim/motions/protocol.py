@@ -17,7 +17,7 @@ from rigid_body_sim.scene.scene import Scene
 class Motion(Protocol):
     """A motion in closed form over any time, from its anchor: the state of the last change.
 
-    `state`, `anchor`, `fill_columns`, `next_event` and `exchanged` are compiled kernels. States
+    `state`, `anchor`, `fill_columns`, `next_event` and `entries` are compiled kernels. States
     are those of scene/state.py (14 doubles), times are simulated seconds.
 
     Attributes
@@ -82,10 +82,10 @@ class Motion(Protocol):
         ...
 
     @property
-    def exchanged(self) -> Callable[[np.ndarray, float, np.ndarray], Any] | None:
-        """``exchanged(anchor, time, out)``: fill `out`, shape (5,), with the ledger's entries.
+    def entries(self) -> Callable[[np.ndarray, float, np.ndarray], Any] | None:
+        """``entries(anchor, time, out)``: fill `out`, shape (5,), with the ledger's entries.
 
-        They are what effects exchanged with the body since the anchor (mechanics/ledger.py). If
-        this is None, the ledger integrates them along the states, under error control.
+        They are those of effects since the anchor (mechanics/ledger.py). If this is None, the
+        ledger integrates them along the states, under error control.
         """
         ...

@@ -21,7 +21,7 @@ so that a later state costs one short step.
 A state whose slip is below ROUNDING (|v| + a |omega|) rolls: the rounding of a rolling state in
 body axes leaves that much.
 
-Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `exchanged`,
+Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `entries`,
 `next_event`.
 """
 
@@ -311,7 +311,7 @@ def reaction(anchor, time):
 
 
 @compiled
-def exchanged(anchor, time, out):
+def entries(anchor, time, out):
     """Fill out (mechanics/ledger.py) with what friction did since the anchor.
 
     Heat: mu M g times the distance slid. Angular impulse about the centre: a mu M g z x e times

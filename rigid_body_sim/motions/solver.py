@@ -11,8 +11,8 @@ from rigid_body_sim.compilation.threads import look, on_all_cores
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.mechanics.events import WATCHED, Watcher, watches
-from rigid_body_sim.mechanics.exchange import Actors, Exchange
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.quadrature import Actors, Quadrature
 from rigid_body_sim.motions import loops as template
 from rigid_body_sim.scene.state import TIME
 
@@ -78,7 +78,7 @@ class Exact:
         self._scene, self._solved = scene, solved or scene
         self._parameters = motion.parameters(self._solved)
         self._loops, self._asked = loops(motion), _Asked(scene, motion)
-        self._next_event, self._exchange, self._watcher = None, None, None
+        self._next_event, self._quadrature, self._watcher = None, None, None
         self._last_events = NONE_YET
 
     @property
@@ -157,15 +157,15 @@ class Exact:
         if len(times) and len(starts) and times.min() < starts[:, TIME].max():
             _refuse_beyond(out.reshape(-1, out.shape[-1]))
 
-    def exchanged(self, time):
+    def entries(self, time):
         """Return the ledger's entries from anchor to time, shape (5,) (mechanics/ledger.py)."""
         out = np.zeros(ENTRIES_SIZE)
-        if self.motion.exchanged is not None:
-            self.motion.exchanged(self.anchor, time, out)
+        if self.motion.entries is not None:
+            self.motion.entries(self.anchor, time, out)
         elif self._asked.actors.acts:
-            if self._exchange is None:
-                self._exchange = Exchange(self._asked.actors, self.states, self._start, 0.0)
-            out[:] = self._exchange.until(time)
+            if self._quadrature is None:
+                self._quadrature = Quadrature(self._asked.actors, self.states, self._start, 0.0)
+            out[:] = self._quadrature.until(time)
         return out
 
     def events(self, after, until, tick=0.0):

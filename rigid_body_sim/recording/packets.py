@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The packets that the node and its recorder process exchange over two pipes.
+"""The packets that the node and its recorder process send each other over two pipes.
 
 To the recorder: packets. Each has a tag and the length of what follows, then
 

@@ -86,14 +86,14 @@ class Given(NamedTuple):
         Force (N s) and torque (N m s) of all impulses, world axes.
     after : array (14,)
         The state after the sums.
-    exchange : array (10,)
-        What the sums exchange with the body (mechanics/impulse.py).
+    response : array (10,)
+        The Response to the sums (mechanics/impulse.py).
     """
 
     start: np.ndarray
     sums: np.ndarray
     after: np.ndarray
-    exchange: np.ndarray
+    response: np.ndarray
 
     @classmethod
     def at(cls, vector: np.ndarray) -> 'Given':
@@ -107,7 +107,7 @@ class Given(NamedTuple):
 
 
 @compiled_allocating
-def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
+def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
     """Take the commands of a tick, in their order.
 
     More than eight arguments: compiled code is handed the arrays of a Given one by one.
@@ -121,7 +121,7 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
         Ticks per second: a held wrench is tried as the impulse that it gives in a tick.
     rows : array (n, 8)
         See command_rows.py.
-    start, sums, after, exchange : array
+    start, sums, after, response : array
         Of a Given; the last three are changed in place.
     verdicts, amounts : array (n,)
         Filled with the verdict on each command, and with the amount that is too large: J or rad.
@@ -134,7 +134,7 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
     """
     last, taken = -1, 0
     alone, total = np.empty(6), np.empty(6)
-    trial, trial_exchange = np.empty(STATE_SIZE), np.empty(RESPONSE_SIZE)
+    trial, trial_response = np.empty(STATE_SIZE), np.empty(RESPONSE_SIZE)
     I1, I2, I3 = load_moments(p)
     some_do_not_turn = I1 == 0.0 or I2 == 0.0 or I3 == 0.0
     for k in range(len(rows)):
@@ -149,11 +149,11 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
         if some_do_not_turn:
             # asked of the command alone: in a sum that nearly cancels, rounding looks like a
             # torque
-            solvable = _apply(p, start, alone, trial, trial_exchange)
+            solvable = _apply(p, start, alone, trial, trial_response)
         for j in range(6):
             total[j] = sums[j] + alone[j]
-        _apply(p, start, total, trial, trial_exchange)
-        work = trial_exchange[WORK]
+        _apply(p, start, total, trial, trial_response)
+        work = trial_response[WORK]
         wx, wy, wz = load_omega(trial)
         turn = max(abs(wx), abs(wy), abs(wz)) / rate
         verdicts[k], amounts[k] = TAKEN, 0.0
@@ -170,7 +170,7 @@ def admit(p, rate, rows, start, sums, after, exchange, verdicts, amounts):
             for j in range(STATE_SIZE):
                 after[j] = trial[j]
             for j in range(RESPONSE_SIZE):
-                exchange[j] = trial_exchange[j]
+                response[j] = trial_response[j]
         elif acts and turn > LARGEST_TURN:
             verdicts[k], amounts[k] = TOO_FAST, turn
         else:
@@ -192,16 +192,16 @@ def _to_world(row, start, share, out):
 
 
 @compiled
-def _apply(p, start, given, after, exchange):
-    """Fill `after` and `exchange` with what an impulse (6,) does; return if it is possible."""
+def _apply(p, start, given, after, response):
+    """Fill `after` and `response` with what an impulse (6,) does; return if it is possible."""
     some = False
     for j in range(len(start)):
         after[j] = start[j]
-    for j in range(len(exchange)):
-        exchange[j] = 0.0
+    for j in range(len(response)):
+        response[j] = 0.0
     for j in range(6):
         some = some or given[j] != 0.0
-    return not some or apply_impulse(p, after, given[:3], given[3:], exchange)
+    return not some or apply_impulse(p, after, given[:3], given[3:], response)
 
 
 def scene_refuses(scene_name: str, count: int) -> list[Refusal]:

@@ -242,7 +242,7 @@ class Simulation:
             self._origin_time = previous.time
         self._initial = previous._initial
         span, now = previous._spans[-1], previous.time
-        given = span.given + span.solver.exchanged(now)
+        given = span.given + span.solver.entries(now)
         self._spans = [self._span(now, previous.vector.copy(), span.wrench, span.strikes, given)]
         self._arrive()
 
@@ -609,7 +609,7 @@ class Simulation:
         It runs from the start or the last reset on; see ledger.balance.
         """
         span = self._spans[-1]
-        given = span.given + span.solver.exchanged(self.time)
+        given = span.given + span.solver.entries(self.time)
         return balance(self._initial, self._diagnose(), given, swing_momentum(self.scene))
 
     def _diagnose(self):
@@ -644,12 +644,12 @@ class Simulation:
         if self.departed == time:
             self.departed = None    # the commands of the tick may cancel
         if given.any_impulse or commands.wrench != last.wrench:
-            exchanged = last.given + last.solver.exchanged(time)
+            entries = last.given + last.solver.entries(time)
             if given.any_impulse:
-                impulse.add_entries(given.exchange, exchanged)
+                impulse.add_entries(given.response, entries)
             kept = [
                 *kept,
-                self._span(time, given.after.copy(), commands.wrench, last.strikes, exchanged),
+                self._span(time, given.after.copy(), commands.wrench, last.strikes, entries),
             ]
             self.departed = time if self.departed is None else self.departed
         self._spans = kept

@@ -25,9 +25,8 @@ class Event:
 class Span:
     """A stretch of the motion that one solver covers, up to the next impulse, hold or strike.
 
-    `given` is what commands, strikes and effects have exchanged with the body up to the start:
-    work (J), angular impulse about the point of reference (world axes, N m s), dissipated energy
-    (J). `start` is the state (14 doubles) from which the solver was started.
+    `given` has the entries of the ledger up to the start (mechanics/ledger.py). `start` is
+    the state (14 doubles) from which the solver was started.
     """
 
     __slots__ = ('_looked_until', '_told', 'given', 'solver', 'start', 'strikes', 'time', 'wrench')

@@ -46,7 +46,7 @@ class Strikes:
         while last.strikes < len(self._all) and self._all[last.strikes].time <= time:
             strike = self._all[last.strikes]
             at = max(strike.time, last.time)
-            struck, given = np.empty(STATE_SIZE), last.given + last.solver.exchanged(at)
+            struck, given = np.empty(STATE_SIZE), last.given + last.solver.entries(at)
             last.solver.state(at, struck)
             taken, work = impulse.push(
                 self._mechanics, struck, *strike.as_impulse(self._scene.body, struck), given)

@@ -213,5 +213,5 @@ def _residuals(scene, choice, starts, ends, time):
     before, after = (diagnosis(kernels, p, np.ascontiguousarray(states))
                      for states in (starts, ends))
     swing = swing_momentum(scene)
-    return [balance(before[k], after[k], choice.solver(start, Wrench()).exchanged(time), swing)
+    return [balance(before[k], after[k], choice.solver(start, Wrench()).entries(time), swing)
             for k, start in enumerate(starts)]

@@ -237,7 +237,7 @@ def solve(name):
             now = stop
         if stop in asked:
             states[repr(stop)] = {'state': [mp.nstr(x, 34) for x in body.state(y, hinge)],
-                                  'exchanged': [mp.nstr(x, 34) for x in y[-5:]]}
+                                  'entries': [mp.nstr(x, 34) for x in y[-5:]]}
         print(name, stop, flush=True)
     return states
 

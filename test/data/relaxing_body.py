@@ -67,7 +67,7 @@ def sphere_turned(q, omega, time, moment, couple):
     """Return (q, omega) of a sphere under a torque that is constant in the world.
 
     The inverse rotation p = 1/q has p' = -omega_world-in-reverse p/2: with the roles of body and
-    world exchanged it is that of a sphere turning with -omega_world, under minus the torque.
+    world swapped it is that of a sphere turning with -omega_world, under minus the torque.
     """
     from high_precision_body import rotation_matrix
     q = [mpf(x) for x in q]

@@ -5,8 +5,8 @@ import numpy as np
 
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.bounds import swing_rate
-from rigid_body_sim.mechanics.exchange import MOST, RADIANS
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
+from rigid_body_sim.mechanics.quadrature import MOST, RADIANS
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 

@@ -17,14 +17,14 @@ from rigid_body_sim.scene.scene import parse_scene
 
 
 def solve(name, method, **control):
-    """Return {time: {state (13), exchanged (5)}} of a case of smooth_cases.py."""
+    """Return {time: {state (13), entries (5)}} of a case of smooth_cases.py."""
     scene, wrench, times = parse_scene(smooth_cases.text(name)), *smooth_cases.CASES[name][4:]
     solver = Stepped(scene, method, wrench=Wrench(*wrench) if wrench else None, **control).start(
         scene.initial.vector)
     out = np.empty((len(times), 14))
     solver.states(np.array(times), out)
     return {repr(time): {
-                'state': out[k, 1:].tolist(), 'exchanged': solver.exchanged(time).tolist()}
+                'state': out[k, 1:].tolist(), 'entries': solver.entries(time).tolist()}
             for k, time in enumerate(times)}
 
 

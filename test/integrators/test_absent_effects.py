@@ -59,5 +59,5 @@ def test_the_ledgers_kernel_is_not_made_before_the_ledger_asks():
     solver = Stepped(made, 'dop8', accuracy=1e-9).start(made.initial.vector)
     solver.state(0.1, np.empty(14))
     assert 'actors' not in vars(solver._ledger)
-    solver.exchanged(0.1)
+    solver.entries(0.1)
     assert solver._ledger.actors._kernels is not None

@@ -109,7 +109,7 @@ def test_what_does_nothing_is_not_computed():
     scene = parse_scene(smooth_cases.text('driven_body').replace(
         '[torque: {value: [0.3, -0.2, 0.5]}]', '[]'))
     idle = Stepped(scene, 'dop8', accuracy=1e-9, wrench=Wrench())
-    assert not idle.start(scene.initial.vector).exchanged(5.0).any()
+    assert not idle.start(scene.initial.vector).entries(5.0).any()
 
 
 @pytest.mark.parametrize(('control', 'where'),

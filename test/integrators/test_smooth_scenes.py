@@ -47,8 +47,8 @@ def check(name, states):
     for time, expected in REFERENCE[name].items():
         state, exact = (
             np.array(states[time]['state']), np.array([float(x) for x in expected['state']]))
-        exchanged, books = (np.array(states[time]['exchanged']),
-                            np.array([float(x) for x in expected['exchanged']]))
+        entries, books = (np.array(states[time]['entries']),
+                          np.array([float(x) for x in expected['entries']]))
         speed = max(speed, np.linalg.norm(exact[4:7]))
         floor = ULP * (4.0 + speed * float(time) + 0.5 * pushed(name) * float(time) ** 2)
         assert state[:4] @ exact[:4] > 0.0, 'the sign of q is continuous'
@@ -57,7 +57,7 @@ def check(name, states):
         for part in (slice(7, 10), slice(10, 13)):
             assert (np.abs(state[part] - exact[part]).max()
                     <= floor * (1.0 + np.abs(exact[part]).max()))
-        assert np.abs(exchanged - books).max() <= floor * max(np.abs(books).max(), ULP)
+        assert np.abs(entries - books).max() <= floor * max(np.abs(books).max(), ULP)
 
 
 def pushed(name):

@@ -113,13 +113,13 @@ def test_curved_slide_keeps_its_invariant(F):
 def test_energy_and_angular_momentum_balance(wrench):
     scene = ball('{velocity: [1.0, 0.5, 0], angular_velocity: [3, -10, 20]}')
     solver = held(scene, *wrench)
-    start, state, exchanged = scene.initial.vector, states(solver, [2.0])[0], solver.exchanged(2.0)
-    scale = max(energy(start), energy(state), exchanged[0])
+    start, state, entries = scene.initial.vector, states(solver, [2.0])[0], solver.entries(2.0)
+    scale = max(energy(start), energy(state), entries[0])
     # 4e-15
-    assert abs(energy(state) - energy(start) - exchanged[0] + exchanged[1]) < 2e-14 * scale
+    assert abs(energy(state) - energy(start) - entries[0] + entries[1]) < 2e-14 * scale
     gained = (I * (np.array(sliding_sphere.rotate(*state[1:5], *state[5:8]))
                    - sliding_sphere.rotate(*start[1:5], *start[5:8])))
-    assert np.abs(gained - exchanged[2:]).max() < 2e-14 * I * np.linalg.norm(state[5:8])
+    assert np.abs(gained - entries[2:]).max() < 2e-14 * I * np.linalg.norm(state[5:8])
 
 
 def test_a_push_that_turns_with_the_ball_makes_it_roll_and_slip_by_turns():

@@ -25,7 +25,7 @@ def scene_of(effects, initial, constraint='free'):
 def followed(scene, time, method='dop8', **control):
     """Return the rate at a time, the times of the kinks, the ledger's entries and the state."""
     solver, out = started(scene, time, method, control)
-    return float(out[7]), solver._course.kinks(time), solver.exchanged(time), out
+    return float(out[7]), solver._course.kinks(time), solver.entries(time), out
 
 
 def started(scene, time, method='dop8', control=None):

@@ -36,7 +36,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     ROW,
     SLIDING,
     UNKNOWNS,
-    Exchanged,
+    Ledger,
     Row,
     Unknowns,
     Watched,
@@ -335,7 +335,7 @@ def _resting(p, c, now, at):
     acts = _applied(p, c, now, at, at.omega, _centre(c, now, at), 0.0)
     # the plane holds body and rotors: it takes what a motor gives to its rotor
     held_back = scaled(-1.0, apply(at.axes, acts.inner))
-    nothing = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
+    nothing = Ledger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
     still = Unknowns((0.0, 0.0, 0.0, 0.0), ZERO, ZERO, (0.0, 0.0), 0.0, 1.0, nothing)
     return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0), scaled(-1.0, acts.force),
                ZERO,
@@ -380,7 +380,7 @@ def rate(p, y, k):
                                minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
               + c.rolling * contact.f[2] * contact.speed)
-    entries = Exchanged(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
+    entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
                         heat, work, turn, contact.spun)
     x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
     rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), apply(c.inverse, torque),

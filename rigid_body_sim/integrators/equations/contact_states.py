@@ -12,7 +12,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     FLIGHT,
     ROW,
     UNKNOWNS,
-    Exchanged,
+    Ledger,
     Unknowns,
 )
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
@@ -38,7 +38,7 @@ load_contact, load_unknowns, store_unknowns = CONTACT.load, UNKNOWNS.load, UNKNO
 load_lever, load_velocity = ROW.part('lever').load, ROW.part('velocity').load
 load_state, store_view = STATE.load, STATE.store
 store_entries, store_heats = ENTRIES.store, HEATS.store
-NOTHING = Exchanged(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0.0)
+NOTHING = Ledger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0.0)
 
 
 @compiled

@@ -11,7 +11,7 @@ from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 FLIGHT, SLIDING, ROLLING, GLIDING, CREEPING, RESTING = range(6)    # phases (contact_rates.py)
 
 
-class Exchanged(NamedTuple):
+class Ledger(NamedTuple):
     """The ledger since the start of the course, or its rates.
 
     Attributes
@@ -52,7 +52,7 @@ class Unknowns(NamedTuple):
         m.
     time : float
         Since the start of the course, s.
-    ledger : Exchanged
+    ledger : Ledger
     """
 
     q: Quaternion
@@ -61,7 +61,7 @@ class Unknowns(NamedTuple):
     place: Pair
     gap: float
     time: float
-    ledger: Exchanged
+    ledger: Ledger
 
 
 class Watched(NamedTuple):

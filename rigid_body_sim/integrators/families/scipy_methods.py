@@ -39,7 +39,7 @@ def bind(method, stepped):
 class Bound:
     """The rates of one scene for one solver."""
 
-    EXCHANGES = False
+    KEEPS_ENTRIES = False
 
     def __init__(self, method, stepped):
         # to import it takes a quarter of what a node needs to start

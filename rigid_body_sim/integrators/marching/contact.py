@@ -82,7 +82,7 @@ class OnPlane:
     The wrench is always in the code, so that no command waits for a compilation.
     """
 
-    EXCHANGES = True
+    KEEPS_ENTRIES = True
 
     def __init__(self, scene, method, wrench, step):
         if step is not None:
@@ -366,7 +366,7 @@ class PlaneCourse:
         phase = self._phases[bisect.bisect_right(self._begins, elapsed) - 1]
         phase.write(self._place, self._begin, np.array([time]), FIRST, out[np.newaxis])
 
-    def exchanged(self, time):
+    def entries(self, time):
         """Return the ledger's entries from the start to a time, and the HEATS after them."""
         row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS))
         self.state(time, row)

@@ -37,7 +37,7 @@ class Bound:
     stepped : Stepped
     """
 
-    EXCHANGES = False
+    KEEPS_ENTRIES = False
 
     def __init__(self, method, stepped):
         family = method.FAMILY

@@ -55,7 +55,7 @@ FLOOR = 1e-17            # smallest error that is asked for
 class OnTable:
     """The kernels and the numbers of one scene and wrench."""
 
-    EXCHANGES = True
+    KEEPS_ENTRIES = True
 
     def __init__(self, scene, method, wrench, step):
         if step is not None:
@@ -138,7 +138,7 @@ class TableCourse:
         """Fill `out` with the state at a time not before the start."""
         self._write(time, self._at(time - self._begin), out)
 
-    def exchanged(self, time):
+    def entries(self, time):
         """Return the entries of the ledger from the start to a time."""
         return np.array(self._at(time - self._begin)[UNKNOWNS:])
 

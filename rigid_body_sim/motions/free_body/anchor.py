@@ -11,7 +11,7 @@ omega_1' = e1 omega_2 omega_3 ..., and
     k'^2 p^2 = e2 (I3 (I3 - I2) omega_3^2 - I1 (I2 - I1) omega_1^2)/(I1 I3),
 
 where the sign of the last one decides which axis is polar: that of the largest moment if it is
-positive or zero, else that of the smallest, with 1 and 3 exchanged. It is formed with 32 digits
+positive or zero, else that of the smallest, with 1 and 3 swapped. It is formed with 32 digits
 from the input doubles, as are the products of the e. The period follows from
 agm(1, k') = pi/(2 K), and chi' = (2 E + L omega_3)/(L + m3) where omega_3 is greatest.
 """

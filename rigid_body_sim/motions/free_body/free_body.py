@@ -47,7 +47,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('flip',)
-exchanged = takes = None
+entries = takes = None
 
 
 class Parameters(NamedTuple):

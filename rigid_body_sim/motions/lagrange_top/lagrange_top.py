@@ -58,7 +58,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
-exchanged = takes = None
+entries = takes = None
 
 
 class Parameters(NamedTuple):

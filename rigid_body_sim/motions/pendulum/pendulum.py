@@ -62,7 +62,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
-exchanged = takes = None
+entries = takes = None
 
 PARAMETER_SIZE, ANCHOR_SIZE = anchor.PARAMETER_SIZE, anchor.ANCHOR_SIZE
 parameters, anchor = anchor.parameters, anchor.anchor

@@ -59,7 +59,7 @@ class Actors:
     Attributes
     ----------
     acts : bool
-        Whether anything exchanges energy or angular momentum with the body.
+        Whether anything gives the body energy or angular momentum, or takes it.
     breakpoints : list of float
         Times at which what acts jumps, s.
     is_carried : bool
@@ -118,7 +118,7 @@ class Actors:
         return max(found.kinetic, abs(found.potential)), hypot3(*found.momentum)
 
 
-class Exchange:
+class Quadrature:
     """The entries of the ledger along a trajectory.
 
     Parameters
@@ -241,7 +241,7 @@ def _source(acting, carried):
     """Return the source of ``acting(p, q, omega, v, m, time, place)`` for what acts.
 
     It returns the power of what does work, minus the power of what makes heat, and the torque in
-    the frame. Energy that effects have as a potential is not exchanged. At a pivot that moves,
+    the frame. Energy that effects have as a potential is no entry. At a pivot that moves,
     what potentials and heat take of the bearing's work is not in it (`Actors.carried`).
     """
     lines, at, power, torques = [], parameters.SCENE.size, {'work': [], 'heat': []}, []

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.integrators.solver import Stepped
-from rigid_body_sim.mechanics.exchange import Actors, Exchange, _edges
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
+from rigid_body_sim.mechanics.quadrature import Actors, Quadrature, _edges
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -83,12 +83,12 @@ def test_momentum_residual_does_not_depend_on_how_rarely_it_is_asked(g, tilt, ar
         assert worst < 4.0 * EPSILON * turned
     once, often = (Simulation(scene).choice.solver(scene.initial.vector, None) for _ in range(2))
     for time in np.linspace(0.0, 20.0, 37):
-        entries = often.exchanged(time)
-    assert np.array_equal(once.exchanged(20.0), entries)
+        entries = often.entries(time)
+    assert np.array_equal(once.entries(20.0), entries)
 
 
 def turning(scene, rate):
-    """Return an Exchange along a turn about z at a rate given as (angle, rate) of time."""
+    """Return an Quadrature along a turn about z at a rate given as (angle, rate) of time."""
     def states(times, out):
         out[:] = 0.0
         angle, speed = rate(times)
@@ -96,7 +96,7 @@ def turning(scene, rate):
             times, np.sin(0.5 * angle), np.cos(0.5 * angle), speed)
     start = np.empty((1, 14))
     states(np.zeros(1), start)
-    return Exchange(Actors(scene), states, start[0], 0.0)
+    return Quadrature(Actors(scene), states, start[0], 0.0)
 
 
 @pytest.mark.parametrize('damping', [1e-3, 1.0, 1e4, 1e10])
@@ -109,10 +109,10 @@ def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
     def rate(t):
         left = np.exp(-0.5 * damping * t)
         return -6.0 / damping * np.expm1(-0.5 * damping * t), 3.0 * left
-    exchange = turning(scene, rate)
+    quadrature = turning(scene, rate)
     for time in (1e-12, 0.3, 50.0):
         heat = -9.0 * np.expm1(-damping * time)
-        entries = exchange.until(time)
+        entries = quadrature.until(time)
         assert entries[DISSIPATED] == pytest.approx(heat, rel=1e-13, abs=1e-15)
         impulse = 6.0 * np.expm1(-0.5 * damping * time)
         assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-13, abs=1e-15)
@@ -123,10 +123,10 @@ def test_a_torque_in_pieces_is_integrated_up_to_each_jump():
         'scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: [torque: '
         '{times: [0.5, 0.500001, 2.5], values: [[0, 0, 1], [0, 0, -2], [0, 0, 0]], frame: world}]'
         '\ninitial: {angular_velocity: [0, 0, 7]}\n')
-    exchange = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
-    assert not exchange.until(0.5).any()
+    quadrature = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
+    assert not quadrature.until(0.5).any()
     for time, impulse in ((1.0, 1e-6 - 2.0 * 0.499999), (9.0, 1e-6 - 2.0 * 1.999999)):
-        entries = exchange.until(time)
+        entries = quadrature.until(time)
         assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-14)
         assert entries[WORK] == pytest.approx(7.0 * impulse, rel=1e-14)
 
@@ -141,9 +141,9 @@ def test_a_short_pulse_in_a_slow_motion_is_seen():
     def rate(t):
         x = (t - place) / width
         return 0.1 * t + np.arctan(x), 0.1 + 1.0 / (width * (1.0 + x * x))
-    exchange = turning(scene, rate)
+    quadrature = turning(scene, rate)
     work = 1.0 + np.arctan((10.0 - place) / width) + np.arctan(place / width)
-    assert exchange.until(10.0)[WORK] == pytest.approx(work, rel=1e-12)
+    assert quadrature.until(10.0)[WORK] == pytest.approx(work, rel=1e-12)
 
 
 def lengths_of_panels(scene, until):
@@ -159,7 +159,7 @@ def lengths_of_panels(scene, until):
         found.extend((first + last).tolist())
     start = np.zeros((1, 14))
     start[0, 4:8] = 1.0, *scene.initial.angular_velocity
-    Exchange(Actors(scene), states, start[0], 0.0).until(until)
+    Quadrature(Actors(scene), states, start[0], 0.0).until(until)
     return found
 
 
@@ -189,10 +189,10 @@ def test_time_that_goes_back_gives_the_entries_of_then():
     scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\n'
                         'effects: [torque: {times: [3], values: [[0, 0, 2]], frame: world}]\n'
                         'initial: {angular_velocity: [0, 0, 7]}\n')
-    exchange = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
-    later = exchange.until(9.0)
-    assert not exchange.until(2.0).any()
-    assert exchange.until(9.0).tobytes() == later.tobytes()
+    quadrature = turning(scene, lambda t: (7.0 * t, np.full(len(t), 7.0)))
+    later = quadrature.until(9.0)
+    assert not quadrature.until(2.0).any()
+    assert quadrature.until(9.0).tobytes() == later.tobytes()
     assert later[WORK] == pytest.approx(2.0 * 7.0 * 6.0, rel=1e-14)
 
 
@@ -225,8 +225,8 @@ def test_a_kink_of_what_acts_is_resolved_however_small_it_is():
                         f'effects: [torque: {{value: [0, 0, {torque}], frame: world}}, '
                         f'drag: {{angular_quadratic: {c}}}]\n'
                         f'initial: {{angular_velocity: [0, 0, {-a * b}]}}\n')
-    exchange = turning(scene, lambda t: (a * t * (0.5 * t - b), a * (t - b)))
-    entries = exchange.until(end)
+    quadrature = turning(scene, lambda t: (a * t * (0.5 * t - b), a * (t - b)))
+    entries = quadrature.until(end)
     after = end - b
     heat = 0.25 * c * a ** 3 * (after ** 4 + b ** 4)
     impulse = torque * end - c * a * a * (after ** 3 - b ** 3) / 3.0
@@ -240,8 +240,8 @@ def test_a_coarse_tolerance_that_is_fine_enough_leaves_the_ledger_as_fine_as_was
     scene = parse_scene(SLOW)
     start = scene.initial.vector
     solver = Stepped(scene, 'gauss16', 0.1, horizon=7.0)
-    exact = Exchange(Actors(scene), solver.start(start).states, start, 0.0).until(7.0)
-    loose, fine = (solver.at(0.1, wanted=wanted).start(start).exchanged(7.0)
+    exact = Quadrature(Actors(scene), solver.start(start).states, start, 0.0).until(7.0)
+    loose, fine = (solver.at(0.1, wanted=wanted).start(start).entries(7.0)
                    for wanted in (np.inf, 1e-11))
     size = np.abs(exact).max()
     assert np.abs(fine - exact).max() <= 1e-15 * size    # 6.7e-17
