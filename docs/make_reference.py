@@ -14,7 +14,7 @@ import re
 
 from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 from rigid_body_sim.messages import state_topics
-from rigid_body_sim.scene.constraints import DisplacedPivot, Hinge, MovingPivot, Plane
+from rigid_body_sim.scene.constraints import CONSTRAINTS
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects import EFFECTS
 
@@ -40,7 +40,7 @@ def topics():
     return '\n'.join(rows)
 
 
-def commands():
+def subcommands():
     """Return the subcommands."""
     return '\n'.join(['| name | does |', '|---|---|',
                       *(f'| `{name}` | {about} |' for name, (_, about) in SUBCOMMANDS.items())])
@@ -65,10 +65,11 @@ def effects():
 def constraints():
     """Return the constraints that take settings."""
     lines = []
-    for name, one in (('pivot', DisplacedPivot), ('pivot with motion', MovingPivot),
-                      ('hinge', Hinge), ('table', Plane)):
-        schema = one.SCHEMA
-        lines += [f'### {name}', '', schema['description'] + '.', '', *_keys(schema), '']
+    for kind, word in CONSTRAINTS.items():
+        schemas = [one.SCHEMA for one in word.variants() if one.SCHEMA]
+        for schema in schemas:
+            name = f'{kind} with {schema["required"][0]}' if len(schemas) > 1 else kind
+            lines += [f'### {name}', '', schema['description'] + '.', '', *_keys(schema), '']
     return '\n'.join(lines).rstrip()
 
 
@@ -105,7 +106,7 @@ def _takes(schema):
 
 def filled(text):
     """Return a page with its tables made anew."""
-    tables = {'parameters': parameters, 'topics': topics, 'commands': commands,
+    tables = {'parameters': parameters, 'topics': topics, 'subcommands': subcommands,
               'effects': effects, 'constraints': constraints}
     return MARK.sub(lambda match: f'{match[1]}{tables[match[2]]()}\n{match[3]}', text)
 

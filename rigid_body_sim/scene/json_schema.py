@@ -7,7 +7,7 @@ no schema can say (the triangle inequality, what a constraint allows) only parse
 
 import copy
 
-from rigid_body_sim.scene.constraints import CONSTRAINTS, DisplacedPivot, MovingPivot, Plane
+from rigid_body_sim.scene.constraints import CONSTRAINTS
 from rigid_body_sim.scene.effects import EFFECTS
 from rigid_body_sim.scene.scene import scene_schema
 from rigid_body_sim.scene.schema import MATRIX, VECTOR
@@ -24,9 +24,8 @@ def json_schema():
     body['parts']['items']['properties']['inertia'] = body['inertia']
     properties['constraint'] = {'anyOf': [
         {'enum': [kind for kind, one in CONSTRAINTS.items() if one.SCHEMA is None]},
-        _one_key('pivot', DisplacedPivot.SCHEMA), _one_key('pivot', MovingPivot.SCHEMA),
-        *(_one_key(one.kind, one.SCHEMA) for one in (*CONSTRAINTS.values(), Plane)
-          if one.SCHEMA)]}
+        *(_one_key(kind, one.SCHEMA) for kind, word in CONSTRAINTS.items()
+          for one in word.variants() if one.SCHEMA)]}
     properties['effects']['items'] = {'anyOf': [
         {'enum': [name for name, effect in EFFECTS.items() if not effect.SCHEMA.get('required')]},
         *(_one_key(name, effect.SCHEMA) for name, effect in EFFECTS.items())]}

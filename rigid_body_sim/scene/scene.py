@@ -19,9 +19,9 @@ import yaml
 from rigid_body_sim.errors import BadInput, nearest, printable
 from rigid_body_sim.scene import bodies, shapes, yaml_text
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints import CONSTRAINTS, Plane
+from rigid_body_sim.scene.constraints import CONSTRAINTS
 from rigid_body_sim.scene.constraints.allowed import refuse_forbidden
-from rigid_body_sim.scene.constraints.protocol import Constraint
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects import EFFECTS, effect_class
 from rigid_body_sim.scene.effects.carrying import Carrying
 from rigid_body_sim.scene.effects.protocol import Contact, Effect, Vector
@@ -63,7 +63,7 @@ BODY = mapping_of(
 
 def scene_schema():
     """Return the schema of a scene; `initial` may have the keys of every constraint."""
-    initial = {key: schema for constraint in (*CONSTRAINTS.values(), Plane)
+    initial = {key: schema for word in CONSTRAINTS.values() for constraint in word.variants()
                for key, schema in constraint.INITIAL.items()}
     return mapping_of(
         ['scene', 'body', 'constraint', 'effects', 'initial'],
@@ -451,7 +451,7 @@ def _effects(entries, body, constraint, parameters, where):
         if constraint.mechanism not in effect.mechanisms:
             able = [kind for kind, one in CONSTRAINTS.items()
                     if one.mechanism in effect.mechanisms]
-            if Plane.mechanism in effect.mechanisms:
+            if Mechanism.PLANE in effect.mechanisms:
                 able.append('table with a body that has a surface')
             raise BadInput(at, f'cannot act on constraint {constraint.kind!r}',
                            f'it can on {", ".join(able)}')

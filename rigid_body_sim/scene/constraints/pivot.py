@@ -43,6 +43,11 @@ class Pivot(Constraint):
             return MovingPivot
         return DisplacedPivot if settings else cls
 
+    @classmethod
+    def variants(cls) -> tuple[type[Constraint], ...]:
+        """Return the three classes of a pivot."""
+        return cls, DisplacedPivot, MovingPivot
+
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state as it is given; the origin is at rest."""
         start.refuse_spin_without_moment(body.about_origin, where)

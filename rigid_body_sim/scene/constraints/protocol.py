@@ -67,6 +67,11 @@ class Constraint(Protocol):
         return cls
 
     @classmethod
+    def variants(cls) -> 'tuple[type[Constraint], ...]':
+        """Return all classes that `variant` may return."""
+        return cls,
+
+    @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Self:
         """Return the constraint of its settings in a scene file.
 

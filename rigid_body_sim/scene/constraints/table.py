@@ -33,6 +33,11 @@ class Table(Constraint):
         return Plane if settings or body.surface is not None else cls
 
     @classmethod
+    def variants(cls) -> tuple[type[Constraint], ...]:
+        """Return Table and Plane."""
+        return cls, Plane
+
+    @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, where: str) -> Self:
         """Return the constraint; it takes a sphere whose centre of mass is its middle."""
         if body.radius is None:
