@@ -7,7 +7,31 @@ from another state. Here the default response is sent instead, which says `succe
 service with such a field, and a line in the log says why.
 """
 
-import functools
+
+class Answered:
+    """The callback of a service: that of a node, or the default response where it fails.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Its log says why.
+    name : str
+        The service's.
+    callback : callable (request, response) -> response
+    """
+
+    def __init__(self, node, name, callback):
+        self._node, self._name, self._callback = node, name, callback
+
+    def __call__(self, request, response):
+        """Return the response."""
+        try:
+            return self._callback(request, response)
+        except Exception as error:
+            why = ' '.join(str(error).split())[:200]
+            self._node.get_logger().warning(
+                f'{self._name}: the request does not fit: {type(error).__name__}: {why}')
+            return response
 
 
 class Answering:
@@ -15,22 +39,11 @@ class Answering:
 
     def create_service(self, srv_type, srv_name, callback, **options):
         """Create a service as rclpy.node.Node does."""
-        return super().create_service(srv_type, srv_name, self._answered(callback, srv_name),
+        return super().create_service(srv_type, srv_name, Answered(self, srv_name, callback),
                                       **options)
 
     def answer_all(self):
-        """Make the services that rclpy created itself answer too."""
+        """Make those services answer, too, that rclpy makes without `create_service`."""
         for service in self.services:
-            service.callback = self._answered(service.callback, service.service_name)
-
-    def _answered(self, callback, name):
-        @functools.wraps(callback)
-        def answer(request, response):
-            try:
-                return callback(request, response)
-            except Exception as error:
-                why = ' '.join(str(error).split())[:200]
-                self.get_logger().warning(
-                    f'{name}: the request does not fit: {type(error).__name__}: {why}')
-                return response
-        return answer
+            if not isinstance(service.callback, Answered):
+                service.callback = Answered(self, service.service_name, service.callback)
