@@ -91,10 +91,21 @@ def test_a_function_of_many_arguments_says_why():
 
 
 def literals(index):
-    """Yield the whole numbers of an index that are places typed by hand."""
+    """Yield the parts of an index that are places typed by hand.
+
+    They are a whole number beyond a vector, a sum with one (NAME + 2, at + 2), a slice of 2 or
+    more ([:3]; 1 is what follows the first), and rows counted by a factor (3 * i + 1).
+    """
     for one in index.elts if isinstance(index, ast.Tuple) else [index]:
         ends = [one.lower, one.upper] if isinstance(one, ast.Slice) else [one]
         for end in ends:
+            if isinstance(one, ast.Slice) and isinstance(end, ast.Constant) and end.value > 1:
+                yield end
+            if isinstance(end, ast.BinOp) and any(
+                    isinstance(part, ast.BinOp) and isinstance(part.op, ast.Mult)
+                    and isinstance(part.left, ast.Constant) and part.left.value > 2
+                    for part in ast.walk(end)):
+                yield end
             if isinstance(end, ast.BinOp) and isinstance(end.op, ast.Add):
                 left, right = end.left, end.right
                 if isinstance(left, ast.Constant):    # 4 + i

@@ -20,7 +20,7 @@ from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import FINEST
 from rigid_body_sim.mechanics import impulse
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE, MOMENTUM
+from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
@@ -162,9 +162,9 @@ def momenta_apart(scene, states, others):
     """
     found = []
     for vectors in (states, others):
-        out = np.empty((len(vectors), DIAGNOSIS_SIZE))
+        out = np.empty((len(vectors), DIAGNOSIS.size))
         energies(scene).diagnose_many(parameters(scene), vectors, out)
-        found.append(out[:, MOMENTUM:MOMENTUM + 3])
+        found.append(out[:, DIAGNOSIS.part('momentum').places])
     return _shares(*found)
 
 
@@ -265,15 +265,16 @@ def lost(scene, prototype, times, states, enough=math.inf):
 def _moved(scene, start, signs, many):
     """Return a start moved by so many half ulps of its numbers, with signs."""
     vector, by = start.copy(), HALF_ULP * many * np.array(signs, dtype=float)
-    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + by[:4]).tolist())
+    of_q, of_omega = np.split(by, (len(vector[ORIENTATION]),))
+    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + of_q).tolist())
     size = np.abs(vector[ANGULAR_VELOCITY])
     inertia = scene.constraint.inertia(scene.body)
     if tuple(inertia.axes) != IDENTITY and min(inertia.moments) > 0.0:
         size = np.full(3, hypot3(*size.tolist()))    # components along the principal axes mix
     if scene.constraint.axis is not None:
-        vector[ANGULAR_VELOCITY] *= 1.0 + by[4]      # the rotation stays along the hinge
+        vector[ANGULAR_VELOCITY] *= 1.0 + of_omega[0]    # the rotation stays along the hinge
     else:
-        vector[ANGULAR_VELOCITY] += by[4:] * size
+        vector[ANGULAR_VELOCITY] += of_omega * size
     return vector
 
 

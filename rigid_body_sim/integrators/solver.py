@@ -208,8 +208,8 @@ class Stepped:
         if batch is None:
             on_all_cores(one_by_one, len(starts))
             return
-        begins, squares = starts[:, TIME], np.square(starts[:, ANGULAR_VELOCITY])
-        rates = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2])
+        begins, (x2, y2, z2) = starts[:, TIME], np.square(starts[:, ANGULAR_VELOCITY].T)
+        rates = np.sqrt(x2 + y2 + z2)
         first, last = float(times.min()), float(times.max())
         for body in np.flatnonzero((first < begins) | (last > _latest(begins, rates))):
             with _naming(body):

@@ -201,7 +201,8 @@ def _apply(p, start, given, after, response):
         response[j] = 0.0
     for j in range(6):
         some = some or given[j] != 0.0
-    return not some or apply_impulse(p, after, given[:3], given[3:], response)
+    force, torque = load_push(given)
+    return not some or apply_impulse(p, after, force, torque, response)
 
 
 def scene_refuses(scene_name: str, count: int) -> list[Refusal]:

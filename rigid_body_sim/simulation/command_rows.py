@@ -93,10 +93,10 @@ def commands_of(rows: np.ndarray) -> list[dict]:
     """Return rows as the dicts that :func:`rows_of` takes."""
     return [
         {
-            'topic': TOPICS[int(kind)],
-            'frame': FRAMES[int(axes)],
-            'force': numbers[:3],
-            'torque': numbers[3:],
+            'topic': TOPICS[int(row[KIND])],
+            'frame': FRAMES[int(row[AXES])],
+            'force': row[FORCE],
+            'torque': row[TORQUE],
         }
-        for kind, axes, *numbers in rows.tolist()
+        for row in rows.tolist()
     ]

@@ -42,7 +42,8 @@ def start(p, vector, point, at):
     """
     q, omega, place, drift = read_state(p, vector)
     time = load_start(p).time
-    store_start(p, Start(time, minus(place, path(p, time)[:3]), drift))
+    x, y_, z, _, _, _, _, _, _ = path(p, time)
+    store_start(p, Start(time, minus(place, (x, y_, z)), drift))
     y = (*q, *omega, time)
     for u in range(UNKNOWNS):
         point[at + u] = y[u]

@@ -82,17 +82,17 @@ def settled(y, c):
     Two turns leave the attitude and the sign of q as they are. Stages and the attitude are formed
     from phi as a double: a phi that counted the turns would lose digits with each of them.
     """
-    phi, lost = y[0], c[0]
+    phi, lost = y[PHI], c[PHI]
     if phi > TURN:
-        return (phi - TWO_TURNS, *y[1:]), (lost - REST, *c[1:])
+        return (phi - TWO_TURNS, *y[SPEED:]), (lost - REST, *c[SPEED:])
     if phi < -TURN:
-        return (phi + TWO_TURNS, *y[1:]), (lost + REST, *c[1:])
+        return (phi + TWO_TURNS, *y[SPEED:]), (lost + REST, *c[SPEED:])
     return y, c
 
 
 @compiled
 def write(p, time, y, out):
     """Fill `out`, the state vector."""
-    phi, speed = y[:2]
+    phi, speed = y[PHI], y[SPEED]
     write_state(p, time, attitude(p, phi), scaled(speed, load_axis(p)), load_start(p).place,
                 (0.0, 0.0, 0.0), out)

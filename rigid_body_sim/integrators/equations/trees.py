@@ -101,8 +101,8 @@ class Trees:
         for one in formulas:
             turn, push = one.torque, one.force
             if one.of_frame:
-                of = rewritten([*turn, *push], self._of_frame, self.parameters)
-                torque, push = vectors.total(torque, of[:3]), of[3:]
+                x, y, z, *push = rewritten([*turn, *push], self._of_frame, self.parameters)
+                torque = vectors.total(torque, (x, y, z))
             else:
                 about = vectors.total(about, turn)
             pushing = vectors.total(pushing, push)

@@ -10,14 +10,9 @@ from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import read_state
 from rigid_body_sim.integrators.equations.falling import write
 from rigid_body_sim.integrators.marching.batch_series import (
-    END,
     FOLLOWING,
-    FOUND,
     POINT_SIZE,
-    SINCE,
-    SOUND,
-    TIME,
-    Attitude,
+    Lane,
     Point,
     Unknowns,
     between,
@@ -28,9 +23,13 @@ from rigid_body_sim.scene.state import TIME as STATE_TIME
 advance = UNBOUND
 
 # a lane is a column of W: its numbers stand LANES places apart
-COLUMN = layout(Point, LANES)
-load_q, load_omega = COLUMN.part('q').load, COLUMN.part('y').part('omega').load
-store_point, load_found = COLUMN.store, layout(Attitude, LANES).load
+COLUMN = layout(Lane, LANES)
+POINT, LATER = COLUMN.part('point'), COLUMN.part('following')
+store_point, load_found = POINT.store, COLUMN.part('found').load
+load_sound = COLUMN.part('sound').load
+load_time, load_later = POINT.part('time').load, LATER.part('time').load
+load_q, load_omega = POINT.part('q').load, POINT.part('y').part('omega').load
+store_end, store_since = COLUMN.part('end').store, COLUMN.part('since').store
 NONE = 0.0, 0.0, 0.0
 NONE_LOST = Unknowns(NONE, NONE, NONE)
 
@@ -93,11 +92,11 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         for lane in range(lanes):
             body, t, t1 = (
                 seats[BODY + lane],
-                W[LANES * TIME + lane],
-                W[LANES * (FOLLOWING + TIME) + lane],
+                load_time(W, lane),
+                load_later(W, lane),
             )
             if body != NOBODY:
-                if not ((t1 > t or t >= target) and W[LANES * SOUND + lane] < math.inf):
+                if not ((t1 > t or t >= target) and load_sound(W, lane) < math.inf):
                     return body, t
                 free |= t1 >= target
                 due |= seats[NEXT + lane] < last and times[order[seats[NEXT + lane]]] <= t1
@@ -108,7 +107,7 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         if free:
             for lane in range(lanes):
                 body = seats[BODY + lane]
-                if body != NOBODY and W[LANES * TIME + lane] >= target:
+                if body != NOBODY and load_time(W, lane) >= target:
                     if end < math.inf:
                         _write(p[lane], turn, load_q(W, lane), load_omega(W, lane), end,
                                states[body])
@@ -126,7 +125,7 @@ def _seat(W, p, turn, lane, state, target):
     e1, e2 = rotate_back(*q, 1.0, 0.0, 0.0), rotate_back(*q, 0.0, 1.0, 0.0)
     store_point(
         W, Point(state[STATE_TIME], 0.0, 0.0, NONE_LOST, q, Unknowns(e1, e2, omega)), lane)
-    W[LANES * END + lane] = target
+    store_end(W, target, lane)
 
 
 @compiled
@@ -142,18 +141,19 @@ def _give(W, p, turn, seats, times, order, last, out):
     while due:
         due = False
         for lane in range(len(p)):
-            W[LANES * SINCE + lane] = 0.0
+            store_since(W, 0.0, lane)
             if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
                 time = times[order[seats[NEXT + lane]]]
-                if time <= W[LANES * (FOLLOWING + TIME) + lane]:
-                    W[LANES * SINCE + lane], due = time - W[LANES * TIME + lane], True
+                if time <= load_later(W, lane):
+                    store_since(W, time - load_time(W, lane), lane)
+                    due = True
         if due:
             between(W, ())
             for lane in range(len(p)):
                 if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
                     k = order[seats[NEXT + lane]]
-                    if times[k] <= W[LANES * (FOLLOWING + TIME) + lane]:
-                        found = load_found(W, LANES * FOUND + lane)
+                    if times[k] <= load_later(W, lane):
+                        found = load_found(W, lane)
                         _write(p[lane], turn, found.q, found.omega, times[k],
                                out[seats[BODY + lane], k])
                         seats[NEXT + lane] += 1

@@ -22,7 +22,7 @@ from functools import partial
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
-from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
+from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, layout
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, NOTHING, UNMOVED
 
 ORDER = 18
@@ -65,26 +65,51 @@ class Numbers(NamedTuple):
     drag: Matrix
 
 
-UNKNOWN, POINT, NUMBERS = layout(Unknowns), layout(Point), layout(Numbers)
+class Sums(NamedTuple):
+    """The sums of `_products`: of e x omega what is added and what is subtracted, then omega'."""
+
+    e1: tuple[Pair, Pair, Pair]
+    e2: tuple[Pair, Pair, Pair]
+    gyroscopic: Vector
+
+
+class Lane(NamedTuple):
+    """All numbers of a lane: they stand in a column, one in each row of eight."""
+
+    point: Point
+    series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
+    following: Point                        # the point that follows
+    end: float                              # time where the march ends, s
+    sound: float                            # squared norm of the unknowns there
+    since: float                            # time since the point that `between` takes, s
+    found: Attitude                         # what `between` finds
+    numbers: Numbers
+    inverses: tuple[(float,) * ORDER]       # 1/k for k = 1 ... ORDER
+
+
+UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
 UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
 DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
 ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
 
-# Places, in rows of eight numbers: a point; after it the coefficients of higher orders, the point
-# that follows, where the march ends, squared norm of the unknowns there; the time since the point
-# that `between` takes, the Attitude that it finds; the numbers of the equations, and 1/k for
-# k = 1 ... ORDER
+# rows; those of the coefficients follow those of the unknowns, which are order 0
 TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
-FOLLOWING = SERIES + UNKNOWNS * (ORDER + 1)
-END = FOLLOWING + POINT_SIZE
-SOUND, SINCE, FOUND = END + 1, END + 2, END + 3
-EULER, CONSTANT, U, V, DRAG = (FOUND + layout(Attitude).size + NUMBERS.part(name).first
-                               for name in Numbers._fields)
-INVERSES = EULER + NUMBERS.size
-ROWS = INVERSES + ORDER
-# the sums of `_products`: of each component of e x omega two, by sign, then those of omega'
-GYROSCOPIC = 2 * DIRECTIONS
-SUMS = GYROSCOPIC + 3
+FOLLOWING, END, SOUND, SINCE, FOUND, INVERSES = (
+    LANE.part(name).first
+    for name in ('following', 'end', 'sound', 'since', 'found', 'inverses'))
+EULER, CONSTANT, U, V, DRAG = (LANE.part('numbers').part(name).first for name in Numbers._fields)
+ROWS = LANE.size
+SUMS, GYROSCOPIC = layout(Sums).size, layout(Sums).part('gyroscopic').first
+# of each component of e1 and e2: places of what is added, and of what is subtracted
+SIGNED = [[[layout(Sums).part(name).part(i).part(sign).first for sign in (0, 1)]
+           for i in range(3)] for name in ('e1', 'e2')]
+AXIS = 2    # the component of omega along a hinge
+
+
+def _directions(e):
+    """Return e1 and e2 of their six components."""
+    x1, y1, z1, x2, y2, z2 = e
+    return (x1, y1, z1), (x2, y2, z2)
 
 
 def _products(o, sums, e, w, others, hinged):
@@ -94,16 +119,14 @@ def _products(o, sums, e, w, others, hinged):
     third axis, all others are 0.
     """
     made = list(sums)
+    for vector, places in zip(_directions(e), SIGNED, strict=True):
+        for i, (added, subtracted) in enumerate(places):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            for place, a, b in ((added, j, k), (subtracted, k, j)):
+                if not hinged or b == AXIS:
+                    made[place] = o.gather(vector[a], others[b], made[place])
     if hinged:
-        for d in (0, 1):
-            made[6 * d] = o.gather(e[3 * d + 1], others[2], made[6 * d])
-            made[6 * d + 3] = o.gather(e[3 * d], others[2], made[6 * d + 3])
         return made
-    for d in (0, 1):
-        for i in range(3):
-            j, k, at = 3 * d + (i + 1) % 3, 3 * d + (i + 2) % 3, 6 * d + 2 * i
-            made[at] = o.gather(e[j], others[(i + 2) % 3], made[at])
-            made[at + 1] = o.gather(e[k], others[(i + 1) % 3], made[at + 1])
     for i in range(3):
         at = GYROSCOPIC + i
         made[at] = o.gather(w[(i + 1) % 3], others[(i + 2) % 3], made[at])
@@ -135,8 +158,9 @@ def _series(o, W, dragged, hinged):
 
     def next_order(k, sums, constant):
         e, w = e_of(k), omega_of(k) if dragged else ()
-        e1, e2 = e[:3], e[3:]
-        changes = [o.plus(sums[2 * i], o.minus(sums[2 * i + 1])) for i in range(DIRECTIONS)]
+        e1, e2 = _directions(e)
+        changes = [o.plus(sums[added], o.minus(sums[subtracted]))
+                   for places in SIGNED for added, subtracted in places]
         for i in turns:
             # terms that are known first come first
             rate = (
@@ -248,7 +272,7 @@ def _attitude(o, e, guess):
 
     4 q q^T is linear in the matrix.
     """
-    a, b = e[:3], e[3:]
+    a, b = _directions(e)
     c = [o.gather(a[i - 2], b[i - 1], o.minus(o.times(a[i - 1], b[i - 2]))) for i in range(3)]
     one = o.everywhere(o.number(1.0))
     together, apart = o.plus(b[1], c[2]), o.plus(b[1], o.minus(c[2]))
@@ -349,6 +373,7 @@ def _advance(o, W, tolerance2, dragged=False, hinged=False):
     ]
     # e1 and e2 are brought back to length 1 and to a right angle
     half, e = o.everywhere(o.number(-0.5)), y1[:DIRECTIONS]
+    e1, e2 = _directions(e)
 
     def product(a, b, start):
         return o.gather(a[0], b[0], o.gather(a[1], b[1], o.gather(a[2], b[2], start)))
@@ -356,15 +381,15 @@ def _advance(o, W, tolerance2, dragged=False, hinged=False):
     n1, n2, s = (
         o.times(half, x)
         for x in (
-            product(e[:3], e[:3], one),
-            product(e[3:], e[3:], one),
-            product(e[:3], e[3:], o.none()),
+            product(e1, e1, one),
+            product(e2, e2, one),
+            product(e1, e2, o.none()),
         )
     )
-    for i in range(DIRECTIONS):
-        back = o.gather(n1 if i < 3 else n2, e[i], o.gather(s, e[i - 3], lost[i]))
-        y1[i] = o.plus(e[i], back)
-        lost[i] = o.plus(back, o.minus(o.plus(y1[i], o.minus(e[i]))))
+    for i, (n, own, other) in enumerate(zip((n1, n1, n1, n2, n2, n2), e, (*e2, *e1), strict=True)):
+        back = o.gather(n, own, o.gather(s, other, lost[i]))
+        y1[i] = o.plus(own, back)
+        lost[i] = o.plus(back, o.minus(o.plus(y1[i], o.minus(own))))
     q = _attitude(o, y1[:DIRECTIONS], _turned(o, [row(QUATERNION + i) for i in range(4)], angle))
     sound = o.none()
     for value in y1:

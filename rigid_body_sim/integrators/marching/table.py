@@ -49,6 +49,7 @@ KEPT = 2048              # most points of a phase; then every other one is dropp
 # order of CREEP^2
 CREEP = 1e-4
 DEAD = 2.0 ** -56        # share of the speeds: a smaller slip counts as none
+FLAT = slice(0, 2)       # the components of a vector along the table
 FLOOR = 1e-17            # smallest error that is asked for
 
 
@@ -104,14 +105,14 @@ class TableCourse:
         q = normalised(*vector[ORIENTATION])
         omega, v = rotate(*q, *vector[ANGULAR_VELOCITY]), vector[VELOCITY]
         e = p[table_rates.RADIUS] * np.array([omega[1], -omega[0]])
-        u = v[:2] - e
+        u = v[FLAT] - e
         if hypot(*u) <= sliding_sphere.ROUNDING * (
-            hypot(*v[:2]) + p[table_rates.RADIUS] * hypot3(*omega)
+            hypot(*v[FLAT]) + p[table_rates.RADIUS] * hypot3(*omega)
         ):
             u = np.zeros(2)
-            e = v[:2]
+            e = v[FLAT]
         y = np.zeros(UNKNOWNS + ENTRIES_SIZE)
-        y[Q:U], y[U:P], y[P:SPIN], y[SPIN] = q, u, v[:2] + p[table_rates.RATIO] * e, omega[2]
+        y[Q:U], y[U:P], y[P:SPIN], y[SPIN] = q, u, v[FLAT] + p[table_rates.RATIO] * e, omega[2]
         self._start, self._begin = np.array(vector), float(vector[STATE_TIME])
         self._phases = [self._phase_from(tuple(y.tolist()))]
 

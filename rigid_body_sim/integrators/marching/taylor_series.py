@@ -90,12 +90,24 @@ class Products:
             else:
                 sums[place % len(sums)] = o.gather(factor, low, sums[place % len(sums)])
         while len(sums) > 1:
-            sums = [*sums[2:], o.plus(sums[0], sums[1])]
+            first, second, *rest = sums
+            sums = [*rest, o.plus(first, second)]
         self._sums = sums[0]
         return o.first(self._sums)
 
     def _signed(self, sign, factor):
         return factor if sign > 0 else self._operations.minus(factor)
+
+
+def _world(numbers):
+    """Return (the components of a vector of the world, what makes omega' of them)."""
+    x, y, z, *shares = numbers
+    return [x, y, z], shares
+
+
+def _rows(numbers, width):
+    """Return the rows of a matrix, row by row; none of no numbers."""
+    return list(zip(*[iter(numbers)] * width, strict=True))
 
 
 def _turned(o, f, w):
@@ -142,10 +154,10 @@ def expansion(pushed, coupled, dragged, hinged):
             [Series(o, value) for value in y[:OMEGA]],
             [Series(o, y[OMEGA + i]) if i in turns else None for i in range(3)],
         )
-        f, u = ([Series(o, value) for value in push[:3]], push[3:]) if pushed else ([], [])
-        c, inverse = (
-            ([Series(o, value) for value in couple[:3]], couple[3:]) if coupled else ([], [])
-        )
+        force, pull = _world(push) if pushed else ((), ())
+        turning, inverse = _world(couple) if coupled else ((), ())
+        f, c = [Series(o, value) for value in force], [Series(o, value) for value in turning]
+        u, D = _rows(pull, 2), _rows(drag, 3)
         gyroscopic = [Products(o, (1, w[i - 2], w[i - 1])) for i in range(3)]
         products = [
             *_turning(o, q, w),
@@ -162,7 +174,8 @@ def expansion(pushed, coupled, dragged, hinged):
                 driven = constant[i] if k == 0 else None
                 if f:
                     near, far = f[i - 2].coefficients[k], f[i - 1].coefficients[k]
-                    pull = o.gather(u[2 * i], near, o.times(u[2 * i + 1], far))
+                    by_near, by_far = u[i]
+                    pull = o.gather(by_near, near, o.times(by_far, far))
                     driven = pull if driven is None else o.plus(driven, pull)
                 if c:
                     turn = c[i].coefficients[k]
@@ -171,7 +184,7 @@ def expansion(pushed, coupled, dragged, hinged):
                         if driven is None
                         else o.gather(inverse[i], turn, driven)
                     )
-                for share, one in zip(drag[3 * i:3 * i + 3], w if drag else (), strict=True):
+                for share, one in zip(D[i], w, strict=True) if D else ():
                     if one:
                         turn = one.coefficients[k]
                         driven = (

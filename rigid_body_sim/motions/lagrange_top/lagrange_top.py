@@ -89,12 +89,18 @@ class Anchor(NamedTuple):
     steady: Steady
 
 
+class Reaction(NamedTuple):
+    """What the pivot does to the body."""
+
+    force: Vector        # world axes, N
+
+
 PARAMETERS, ANCHOR = layout(Parameters), layout(Anchor)
 PARAMETER_SIZE, ANCHOR_SIZE = PARAMETERS.size, ANCHOR.size
 load_parameters, load_state, store_state = PARAMETERS.load, STATE.load, STATE.store
 load_steady, store_steady = ANCHOR.part('steady').load, ANCHOR.part('steady').store
 load_start = ANCHOR.part('steady').part('start').load
-store_row = COLUMNS.store
+store_row, store_reaction = COLUMNS.store, layout(Reaction).store
 NOWHERE = (0.0, 0.0, 0.0)
 
 
@@ -273,4 +279,4 @@ def reaction(parameters, state, out):
     push = p.mass * p.arm
     x, y, z = rotate(*q, push * (rise_2 + omega_1 * omega_3), push * (omega_2 * omega_3 - rise_1),
                      -push * (omega_1 * omega_1 + omega_2 * omega_2))
-    out[0], out[1], out[2] = x, y, z + p.mass * p.g
+    store_reaction(out, Reaction((x, y, z + p.mass * p.g)))

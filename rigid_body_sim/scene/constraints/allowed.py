@@ -6,7 +6,7 @@ import math
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate
-from rigid_body_sim.numerics.vectors import across, cross, dot, minus, plus
+from rigid_body_sim.numerics.vectors import across, cross, minus, plus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism, Vector
 from rigid_body_sim.scene.expressions.path import along
@@ -14,7 +14,7 @@ from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
 
 ROUNDING = 2.0 ** -40    # largest share of the numbers of a state that is rounding
-AT_REST = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+AT_REST = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)    # place, velocity, acceleration
 
 
 def refuse_forbidden(state: State, constraint: Constraint, start: Start, body: Body,
@@ -39,7 +39,8 @@ def refuse_forbidden(state: State, constraint: Constraint, start: Start, body: B
     q, omega = state.orientation.tolist(), state.angular_velocity.tolist()
     place, velocity = state.position.tolist(), state.velocity.tolist()
     kind = f'constraint {constraint.kind}'
-    if abs(dot(q[:3], q[:3]) + q[3] * q[3] - 1.0) > ROUNDING:
+    x, y, z, w = q
+    if abs(x * x + y * y + z * z + w * w - 1.0) > ROUNDING:
         raise BadInput(where, f'the {kind} starts with the orientation {q}',
                        'a quaternion of norm 1')
     if constraint.mechanism is Mechanism.TABLE and velocity[2] != 0.0:
@@ -60,7 +61,7 @@ def refuse_forbidden(state: State, constraint: Constraint, start: Start, body: B
 
 def _refuse_loose(q, omega, place, velocity, constraint, start, body, where):
     """Refuse a state whose held point is not where the constraint holds it, or leaves it."""
-    held, its_velocity = AT_REST if constraint.path is None else along(constraint.path, 0.0)[:2]
+    held, its_velocity, _ = AT_REST if constraint.path is None else along(constraint.path, 0.0)
     arm = rotate(*q, *constraint.point(body))
     turning = cross(rotate(*q, *omega), arm)
     slip = minus(plus(velocity, turning), its_velocity)

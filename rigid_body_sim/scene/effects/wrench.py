@@ -41,10 +41,9 @@ class Wrench:
         The kernels are the same whatever is held, so that no command waits for a compilation.
         """
         in_body = self.frame == 'body'
-        given = (*map(float, self.force), *map(float, self.torque))
-        world_force, world_torque = (ZERO, ZERO) if in_body else (given[:3], given[3:])
-        force, torque = ((frame.from_body(given[:3]), frame.from_body(given[3:])) if in_body
-                         else (ZERO, ZERO))
+        given = tuple(map(float, self.force)), tuple(map(float, self.torque))
+        world_force, world_torque = (ZERO, ZERO) if in_body else given
+        force, torque = map(frame.from_body, given) if in_body else (ZERO, ZERO)
         if frame.moves:
             return (Acting(f'{ELEMENTARY}:held_force', (*world_force, *force), 'force', 'work'),
                     Acting(f'{ELEMENTARY}:held_torque', (*world_torque, *torque), 'torque',
