@@ -12,7 +12,8 @@ from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.analysis.summary import lines, summary, title
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording.reader import Recording, newest_recording
+from rigid_body_sim.recording.folders import newest_recording
+from rigid_body_sim.recording.reader import Recording
 
 
 def analyze(path, folder, short=False, shared_page=None):

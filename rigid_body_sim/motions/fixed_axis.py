@@ -25,8 +25,9 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
+from rigid_body_sim.motions.axle import axle
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
-from rigid_body_sim.motions.pendulum.anchor import Pairs, axle
+from rigid_body_sim.motions.pendulum.anchor import Pairs
 from rigid_body_sim.numerics.double_double import add, two_sum
 from rigid_body_sim.numerics.functions import exp, hypot3
 from rigid_body_sim.numerics.pairs import TURN, pair_of, times

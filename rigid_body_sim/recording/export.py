@@ -21,7 +21,8 @@ from tqdm import tqdm
 
 from rigid_body_sim import command_line
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording.reader import Recording, newest_recording
+from rigid_body_sim.recording.folders import newest_recording
+from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.tables import Joined, flat, seconds
 
 try:

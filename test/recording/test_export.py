@@ -16,7 +16,7 @@ from tqdm import tqdm
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording import export as module
 from rigid_body_sim.recording.export import export, main
-from rigid_body_sim.recording.reader import newest_recording
+from rigid_body_sim.recording.folders import newest_recording
 from rigid_body_sim.recording.tables import Joined
 
 NAMES = ['seconds', 'log_time', 'publish_time', 'sequence', 'header.stamp', 'header.frame_id',

@@ -14,6 +14,14 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
+from rigid_body_sim.motions.axle import (
+    KEPT,
+    axle_of,
+    cross_exactly,
+    dot_exactly,
+    held_of,
+    swung,
+)
 from rigid_body_sim.motions.free_body.rotation import (
     CIRCULAR,
     HYPERBOLIC,
@@ -33,7 +41,6 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.numerics import vectors
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf, complete_k
-from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import (
     TURN,
     minus,
@@ -50,7 +57,6 @@ from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import cross
 from rigid_body_sim.scene import principal_axes
-from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import STATE
 
 NEVER = 2.0 ** 200              # stands for the infinite period on the separatrix
@@ -108,69 +114,16 @@ load_swing, store_swing = ANCHOR.part('swing').load, ANCHOR.part('swing').store
 load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').store
 
 
-KEPT = 64    # hinges whose exact numbers are kept for bodies that differ in other things
-
-
-class Axle(NamedTuple):
-    """A body on a hinge, in exact numbers; vectors in body axes."""
-
-    axis: list[Fraction]       # n
-    arm: list[Fraction]        # r, m
-    distance: Fraction         # centre of mass to axis, m; 0 to rounding of the scene
-    momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
-    moment: Fraction           # about n, kg m^2
-
-
-def axle(scene):
-    """Return the Axle of a scene whose constraint holds an axis."""
-    return _axle(*_held(scene))
-
-
-def _held(scene):
-    """Return what an Axle depends on: axis, centre of mass, point, mass and inertia."""
-    body, constraint = scene.body, scene.constraint
-    return (tuple(constraint.axis), tuple(body.center_of_mass), tuple(constraint.point(body)),
-            body.mass, body.about_center)
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _axle(axis, center, point, mass, inertia):
-    n, r, d, swung = _swung(axis, center, point)
-    spun, mass = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis), Fraction(mass)
-    momentum = [a - mass * b for a, b in zip(spun, swung, strict=True)]
-    return Axle(n, r, d, momentum, _dot(n, momentum))
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _unit(axis):
-    """Return the unit vector along an axis, exactly."""
-    axis = _exact(axis)
-    size = _root(_dot(axis, axis))
-    return tuple(component / size for component in axis)
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _swung(axis, center, point):
-    """Return the unit vector n of an axis, r from a point to the centre, d, and r x (r x n)."""
-    n = _unit(axis)
-    r = tuple(c - t for c, t in zip(_exact(center), _exact(point), strict=True))
-    side = _cross(n, r)
-    d = _root(_dot(side, side))
-    if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
-        d = Fraction(0)         # on the axis, to the rounding of what the scene says
-    return n, r, d, _cross(r, _cross(r, n))
-
-
 @functools.lru_cache(maxsize=KEPT)
 def _directions(axis, center, point):
     """Return n, (n x r)/d and (n (n . r) - r)/d as pairs, the last two 0 where d is."""
-    n, r, d, _ = _swung(axis, center, point)
-    along = _dot(n, r)
+    n, r, d, _ = swung(axis, center, point)
+    along = dot_exactly(n, r)
     down = [along * a - b for a, b in zip(n, r, strict=True)]
 
     def over_d(vector):
         return [_pair_of_ratio(component, d) if d else NOTHING for component in vector]
-    return [pair_of(component) for component in n], over_d(_cross(n, r)), over_d(down)
+    return [pair_of(component) for component in n], over_d(cross_exactly(n, r)), over_d(down)
 
 
 def parameters(scene):
@@ -178,14 +131,14 @@ def parameters(scene):
 
     They come from the exact rationals that the doubles of the scene are.
     """
-    held = _held(scene)
+    held = held_of(scene)
     return _numbers(np.array(held[2]).tobytes(), scene.weight, *held).copy()
 
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(bits, weight, axis, center, point, mass, inertia):
     """Return the array of `parameters`, which is cached; `bits` tell -0 from 0 in `point`."""
-    held, force = _axle(axis, center, point, mass, inertia), Fraction(mass) * Fraction(weight)
+    held, force = axle_of(axis, center, point, mass, inertia), Fraction(mass) * Fraction(weight)
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         *_directions(axis, center, point), _pair_of_ratio(force * held.distance, held.moment),
@@ -196,43 +149,6 @@ def _numbers(bits, weight, axis, center, point, mass, inertia):
 def _pair_of_ratio(a, b):
     """Return a/b of two Fractions, b > 0, as a pair."""
     return quotient(a.numerator * b.denominator, a.denominator * b.numerator)
-
-
-def _exact(numbers):
-    return [Fraction(number) for number in numbers]
-
-
-def _dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def _cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def _root(number):
-    """Return the square root of a Fraction, to 40 digits or more."""
-    if not number:
-        return number
-    shift = max(0, 140 - (number.numerator.bit_length() - number.denominator.bit_length()) // 2)
-    return Fraction(math.isqrt((number.numerator << 2 * shift) // number.denominator), 1 << shift)
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _tensor_times(moments, axes, axis):
-    """Return I n for principal moments and axes, n the unit vector along an axis."""
-    n = _unit(axis)
-    if axes == IDENTITY:
-        return tuple(Fraction(moment) * along for moment, along in zip(moments, n, strict=True))
-    x, y, z, w = _exact(axes)
-    norm = x * x + y * y + z * z + w * w
-    columns = ((w * w + x * x - y * y - z * z, 2 * (x * y + z * w), 2 * (x * z - y * w)),
-               (2 * (x * y - z * w), w * w + y * y - z * z - x * x, 2 * (y * z + x * w)),
-               (2 * (x * z + y * w), 2 * (y * z - x * w), w * w + z * z - x * x - y * y))
-    along = [Fraction(moment) * _dot(column, n) / norm
-             for moment, column in zip(moments, columns, strict=True)]
-    return tuple(sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm
-                 for k in range(3))
 
 
 @compiled
