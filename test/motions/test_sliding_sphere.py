@@ -40,7 +40,7 @@ def at(anchor, time):
     return out
 
 
-def entries(anchor, time):
+def entries_at(anchor, time):
     out = np.empty(ENTRIES_SIZE)
     motion.entries(anchor, time, out)
     return out
@@ -193,7 +193,7 @@ def test_without_friction_it_glides():
     assert motion.slip(anchor, 0.1) == motion.slip(anchor, 0.0) != (0.0, 0.0)
     assert state[4] == near(math.cos(0.65), 1e-15)
     assert state[5:8] == near(start[5:8], 1e-15)
-    assert not entries(anchor, 0.1).any()
+    assert not entries_at(anchor, 0.1).any()
     assert motion.next_event(anchor, 0.0)[0] == math.inf
     assert motion.reaction(anchor, 0.1) == (0.0, 0.0, 0.0)
 
@@ -215,14 +215,14 @@ def test_energy_lost_is_heat():
         onset = motion.rolling_onset(anchor)
         for time in (-0.3 * onset, 0.4 * onset, onset, 2.0 * onset):
             state = at(anchor, time)
-            balance = kinetic(state) + entries(anchor, time)[DISSIPATED] - kinetic(start)
+            balance = kinetic(state) + entries_at(anchor, time)[DISSIPATED] - kinetic(start)
             # worst measured 2.3 epsilon
             assert abs(balance) <= 6.0 * EPSILON * max(kinetic(start), kinetic(state))
             gained = BALL[1] * BALL[2] * BALL[0] ** 2 * (world_spin(state) - world_spin(start))
             size = (BALL[1] * BALL[2] * BALL[0] ** 2
                     * max(np.linalg.norm(start[5:8]), np.linalg.norm(state[5:8])))
             # worst measured 5.8 epsilon
-            assert (np.linalg.norm(gained - entries(anchor, time)[ANGULAR_IMPULSE])
+            assert (np.linalg.norm(gained - entries_at(anchor, time)[ANGULAR_IMPULSE])
                     <= 12.0 * EPSILON * size)
 
 

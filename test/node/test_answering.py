@@ -6,7 +6,7 @@ import types
 from rigid_body_sim.node.answering import Answered, Answering
 
 
-class Plain:
+class Bare:
     """Stands for rclpy's Node: it makes one service itself, by no function of its own."""
 
     def __init__(self):
@@ -20,7 +20,7 @@ class Plain:
         return types.SimpleNamespace(warning=self.lines.append)
 
 
-class Node(Answering, Plain):
+class Node(Answering, Bare):
     """A node that answers."""
 
 
