@@ -97,6 +97,7 @@ class Equations:
             self.kind = carried
         elif self.on_hinge:
             self.kind = hinged_field if in_field else hinged
+            refuse_no_moment(scene, self._body)
         else:
             self.kind = (field if in_field else
                          flying if any(one.gives == 'force' for one in acting) else turning)
@@ -207,6 +208,16 @@ class Equations:
         """
         acting = (value for one in self._acting(time) for value in one.values)
         return np.array([*fixed, *acting, *(self.frame.path.values if self.frame.path else ())])
+
+
+def refuse_no_moment(scene, body):
+    """Raise BadInput where a body, SceneParameters, has no moment about the axis that holds it."""
+    if not body.hinge_moment > 0.0:
+        raise BadInput(
+            f'{scene.name}: constraint.hinge',
+            'the moment of inertia about the axis is zero',
+            'move the axis',
+        )
 
 
 class _Call:

@@ -14,9 +14,9 @@ from rigid_body_sim.compilation.layout import Matrix, Vector, layout
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import euler, falling, turning
-from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.equations.equations import Equations, refuse_no_moment
 from rigid_body_sim.integrators.equations.falling import FallingParameters
-from rigid_body_sim.mechanics.parameters import moment_about_hinge, scene_parameters
+from rigid_body_sim.mechanics.parameters import scene_parameters
 from rigid_body_sim.numerics.rotations import normalised
 from rigid_body_sim.scene.frame import turned_back
 
@@ -74,8 +74,9 @@ class Series(Equations):
     """
 
     def __init__(self, scene):
-        self.frame = _frame(scene)
-        self._body = scene_parameters(scene)._replace(frame_axes=self.frame.axes)
+        body = scene_parameters(scene)
+        self.frame = _frame(scene, body)
+        self._body = body._replace(frame_axes=self.frame.axes)
         self.hinged = scene.constraint.axis is not None
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self.modes = []    # nothing with kinks has a series
@@ -123,19 +124,20 @@ class Series(Equations):
         return p
 
 
-def _frame(scene):
-    """Return the frame of a scene's equations.
+def _frame(scene, body):
+    """Return the frame of a scene's equations; `body` is its SceneParameters.
 
     That of a hinge has its third axis along it, and takes no torque about the others.
     """
     frame = scene.frame
     if scene.constraint.axis is None:
         return frame
+    refuse_no_moment(scene, body)
     nx, ny, nz = scene.constraint.axis
     axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)
     return dataclasses.replace(
         frame,
-        moments=(0.0, 0.0, moment_about_hinge(scene.body, scene.constraint)),
+        moments=(0.0, 0.0, body.hinge_moment),
         axes=axes,
         arm=turned_back(axes, frame.arm),
     )
