@@ -116,7 +116,7 @@ def test_every_page_is_in_the_site():
         assert page in listed | {'index'} or page.startswith('systems/'), page
 
 
-@pytest.mark.parametrize('page', ['topics', 'commands', 'parameters', 'effects'])
+@pytest.mark.parametrize('page', ['topics', 'subcommands', 'parameters', 'effects'])
 def test_tables_of_the_reference_are_those_of_the_package(page):
     if page == 'parameters':
         pytest.importorskip('rclpy')

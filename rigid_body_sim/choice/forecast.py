@@ -33,6 +33,7 @@ LOOKS = 64               # times at which runs are compared
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
          (1, -1, -1, 1, 1, -1, -1))
 """Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
+OF_Q, OF_OMEGA = slice(0, 4), slice(4, 7)
 MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
 FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
@@ -265,16 +266,15 @@ def lost(scene, prototype, times, states, enough=math.inf):
 def _moved(scene, start, signs, many):
     """Return a start moved by so many half ulps of its numbers, with signs."""
     vector, by = start.copy(), HALF_ULP * many * np.array(signs, dtype=float)
-    of_q, of_omega = np.split(by, (len(vector[ORIENTATION]),))
-    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + of_q).tolist())
+    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + by[OF_Q]).tolist())
     size = np.abs(vector[ANGULAR_VELOCITY])
     inertia = scene.constraint.inertia(scene.body)
     if tuple(inertia.axes) != IDENTITY and min(inertia.moments) > 0.0:
         size = np.full(3, hypot3(*size.tolist()))    # components along the principal axes mix
     if scene.constraint.axis is not None:
-        vector[ANGULAR_VELOCITY] *= 1.0 + of_omega[0]    # the rotation stays along the hinge
+        vector[ANGULAR_VELOCITY] *= 1.0 + by[OF_OMEGA][0]    # the rotation stays along the hinge
     else:
-        vector[ANGULAR_VELOCITY] += of_omega * size
+        vector[ANGULAR_VELOCITY] += by[OF_OMEGA] * size
     return vector
 
 
