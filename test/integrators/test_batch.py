@@ -14,6 +14,7 @@ from rigid_body_sim import BadInput, NotConverged, ensemble
 from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
 from rigid_body_sim.compilation.lanes import LANES, Plain
 from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: N812
+from rigid_body_sim.integrators.marching import batch_lane
 from rigid_body_sim.integrators.marching import batch_series as series
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
@@ -26,7 +27,7 @@ pytestmark = pytest.mark.skipif(
 REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data'
                         / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
-OMEGA = series.SERIES + series.DIRECTIONS    # its first row
+OMEGA = batch_lane.SERIES + batch_lane.DIRECTIONS    # its first row
 
 
 def starts_of(scene, factors):
@@ -206,18 +207,18 @@ def test_who_fails_is_named():
 def test_a_step_is_the_same_in_plain_python():
     """The recurrence on arrays agrees to the rounding of sums of 18 terms, and so does the end."""
     draw = np.random.default_rng(1)
-    table = np.zeros((series.ROWS, LANES))
-    table[series.EULER:series.EULER + 3] = [[-0.3], [0.6], [-0.4]]
-    table[series.CONSTANT:series.DRAG] = draw.uniform(-1.0, 1.0, (15, 1))
-    table[series.INVERSES:] = 1.0 / np.arange(1.0, series.ORDER + 1.0).reshape(-1, 1)
+    table = np.zeros((batch_lane.ROWS, LANES))
+    table[batch_lane.EULER:batch_lane.EULER + 3] = [[-0.3], [0.6], [-0.4]]
+    table[batch_lane.CONSTANT:batch_lane.DRAG] = draw.uniform(-1.0, 1.0, (15, 1))
+    table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0).reshape(-1, 1)
     for lane in range(LANES):
         q = draw.normal(size=4)
         q /= np.linalg.norm(q)
-        table[series.QUATERNION:series.SERIES, lane] = q
-        table[series.SERIES:OMEGA, lane] = (
+        table[batch_lane.QUATERNION:batch_lane.SERIES, lane] = q
+        table[batch_lane.SERIES:OMEGA, lane] = (
             *rotate(*-q[:3], q[3], 1.0, 0.0, 0.0), *rotate(*-q[:3], q[3], 0.0, 1.0, 0.0))
-        table[OMEGA:series.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
-    table[series.END] = 1e3
+        table[OMEGA:batch_lane.POINT_SIZE, lane] = draw.uniform(-1.0, 1.0, 3)
+    table[batch_lane.END] = 1e3
 
     @compiled
     def advance(W):
@@ -226,16 +227,17 @@ def test_a_step_is_the_same_in_plain_python():
     series._advance(Plain(), plain, 1e-20)
     advance(written)
     plain, written = plain.reshape(table.shape), written.reshape(table.shape)
-    orders, end = (slice(series.SERIES, series.FOLLOWING),
-                   slice(series.FOLLOWING, series.FOLLOWING + series.POINT_SIZE))
+    orders, end = (slice(batch_lane.SERIES, batch_lane.FOLLOWING),
+                   slice(batch_lane.FOLLOWING, batch_lane.FOLLOWING + batch_lane.POINT_SIZE))
     # 1
     assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()
-    assert written[end][series.STEP] == near(plain[end][series.STEP], 1e-14)    # the same
-    for rows in (slice(series.QUATERNION, series.SERIES), slice(series.SERIES, series.POINT_SIZE)):
+    assert written[end][batch_lane.STEP] == near(plain[end][batch_lane.STEP], 1e-14)    # the same
+    for rows in (slice(batch_lane.QUATERNION, batch_lane.SERIES),
+                 slice(batch_lane.SERIES, batch_lane.POINT_SIZE)):
         assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
     # the quaternion turns with the directions
-    for q, e in zip(written[end][series.QUATERNION:series.SERIES].T,
-                    written[end][series.SERIES:OMEGA].T, strict=True):
+    for q, e in zip(written[end][batch_lane.QUATERNION:batch_lane.SERIES].T,
+                    written[end][batch_lane.SERIES:OMEGA].T, strict=True):
         # 3.5
         back = *-q[:3], q[3]
         axes = np.append(rotate(*back, 1.0, 0.0, 0.0), rotate(*back, 0.0, 1.0, 0.0))

@@ -8,6 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.compilation.lanes import LANES, Plain
+from rigid_body_sim.integrators.marching import batch_lane
 from rigid_body_sim.integrators.marching import batch_series as series
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, UNMOVED
 
@@ -19,11 +20,11 @@ def longest(final, before, last, scale, tolerance2=1e-20):
 
     `final` and `before` are nine coefficients: of two directions, and of omega.
     """
-    table = np.zeros((series.ROWS, LANES))
-    table[series.STEP] = last
-    for order, values in ((series.ORDER, final), (series.ORDER - 1, before)):
-        begin = series.SERIES + series.UNKNOWNS * order
-        table[begin:begin + series.UNKNOWNS] = np.reshape(values, (-1, 1))
+    table = np.zeros((batch_lane.ROWS, LANES))
+    table[batch_lane.STEP] = last
+    for order, values in ((batch_lane.ORDER, final), (batch_lane.ORDER - 1, before)):
+        begin = batch_lane.SERIES + batch_lane.UNKNOWNS * order
+        table[begin:begin + batch_lane.UNKNOWNS] = np.reshape(values, (-1, 1))
     found = series._longest(O, table.ravel(), lambda place: table[place], tolerance2,
                             np.full(LANES, scale))
     assert (found == found[0]).all()
@@ -31,7 +32,7 @@ def longest(final, before, last, scale, tolerance2=1e-20):
 
 
 def allowed(square, tolerance2=1e-20):
-    return (tolerance2 / square) ** (0.5 / (series.ORDER - 2))
+    return (tolerance2 / square) ** (0.5 / (batch_lane.ORDER - 2))
 
 
 CASES = [([3e-3] * 6 + [5e-3] * 3, [1e-9] * 9), ([1e-9] * 9, [3e-3] * 6 + [5e-3] * 3),

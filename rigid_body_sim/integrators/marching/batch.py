@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many bodies of a scene by Taylor series, eight at once: taylor's mode for ensembles.
 
-batch_series.py has a step in the vector unit, batch_march.py the march.
+batch_lane.py has the numbers of a body, batch_series.py a step in the vector unit, batch_march.py
+the march.
 
 The states agree with those of the method to the accuracy asked, not to the bit, since order and
 steps differ.
@@ -15,7 +16,7 @@ from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.integrators.equations import euler, series
-from rigid_body_sim.integrators.marching import batch_march, batch_series
+from rigid_body_sim.integrators.marching import batch_lane, batch_march, batch_series
 from rigid_body_sim.integrators.marching.batch_march import ANYBODY, NOBODY, SEATS
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import from_matrix
@@ -57,17 +58,17 @@ def rows_for(p):
 
     inverse = numbers(euler.EQUATION, 'inverse')
     force, couple = numbers(series.SERIES, 'force'), numbers(series.SERIES, 'couple')
-    rows, table = directions(force, couple), np.zeros((batch_series.ROWS, LANES))
+    rows, table = directions(force, couple), np.zeros((batch_lane.ROWS, LANES))
     along, aside, _ = apply(rows, couple)
     u1, u2, u3, u4, u5, u6 = numbers(series.SERIES, 'pull')
     pull = hypot3(*force) * np.array(((0.0, u1, u2), (u4, 0.0, u3), (u5, u6, 0.0)))
     for at, values in (
-        (batch_series.EULER, numbers(euler.EQUATION, 'euler')),
-        (batch_series.CONSTANT, numbers(series.SERIES, 'constant')),
-        (batch_series.U, (pull + np.diag(scaled(along, inverse))).ravel()),
-        (batch_series.V, scaled(aside, inverse)),
-        (batch_series.DRAG, numbers(series.SERIES, 'drag')),
-        (batch_series.INVERSES, 1.0 / np.arange(1.0, batch_series.ORDER + 1.0)),
+        (batch_lane.EULER, numbers(euler.EQUATION, 'euler')),
+        (batch_lane.CONSTANT, numbers(series.SERIES, 'constant')),
+        (batch_lane.U, (pull + np.diag(scaled(along, inverse))).ravel()),
+        (batch_lane.V, scaled(aside, inverse)),
+        (batch_lane.DRAG, numbers(series.SERIES, 'drag')),
+        (batch_lane.INVERSES, 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0)),
     ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
     return rows, table

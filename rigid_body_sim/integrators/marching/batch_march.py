@@ -9,14 +9,14 @@ from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import read_state
 from rigid_body_sim.integrators.equations.falling import write
-from rigid_body_sim.integrators.marching.batch_series import (
+from rigid_body_sim.integrators.marching.batch_lane import (
     FOLLOWING,
     POINT_SIZE,
     Lane,
     Point,
     Unknowns,
-    between,
 )
+from rigid_body_sim.integrators.marching.batch_series import between
 from rigid_body_sim.numerics.rotations import multiply, rotate_back
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
@@ -60,7 +60,7 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
     Parameters
     ----------
     W : array
-        Rows of lanes (batch_series.py), the numbers of the equations set.
+        Rows of lanes (batch_lane.py), the numbers of the equations set.
     p : array (LANES, ...)
         Parameters (euler.py), a row for each lane.
     turn : tuple of 4 floats

@@ -22,47 +22,33 @@ from functools import partial
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
-from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, layout
+from rigid_body_sim.compilation.layout import Pair, Vector, layout
+from rigid_body_sim.integrators.marching.batch_lane import (
+    CONSTANT,
+    DIRECTIONS,
+    DRAG,
+    END,
+    EULER,
+    FOLLOWING,
+    FOUND,
+    INVERSES,
+    LOST,
+    ORDER,
+    QUATERNION,
+    SCALE,
+    SERIES,
+    SINCE,
+    SOUND,
+    STEP,
+    TIME,
+    UNKNOWNS,
+    U,
+    V,
+)
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, NOTHING, UNMOVED
 
-ORDER = 18
 LOW = 8             # orders of omega that decide a sign
-
-
-class Unknowns(NamedTuple):
-    """The unknowns of a body, or the coefficients of an order."""
-
-    e1: Vector
-    e2: Vector
-    omega: Vector
-
-
-class Point(NamedTuple):
-    """A point of the march of a lane."""
-
-    time: float      # s
-    step: float      # that led here, s
-    scale: float     # squared, of omega, (rad/s)^2
-    lost: Unknowns   # by the sums
-    q: Quaternion
-    y: Unknowns
-
-
-class Attitude(NamedTuple):
-    """What `between` finds."""
-
-    q: Quaternion
-    omega: Vector
-
-
-class Numbers(NamedTuple):
-    """The numbers of the equations (see above)."""
-
-    euler: Vector
-    constant: Vector
-    u: Matrix
-    v: Vector
-    drag: Matrix
+ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
 
 
 class Sums(NamedTuple):
@@ -73,32 +59,6 @@ class Sums(NamedTuple):
     gyroscopic: Vector
 
 
-class Lane(NamedTuple):
-    """All numbers of a lane: they stand in a column, one in each row of eight."""
-
-    point: Point
-    series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
-    following: Point                        # the point that follows
-    end: float                              # time where the march ends, s
-    sound: float                            # squared norm of the unknowns there
-    since: float                            # time since the point that `between` takes, s
-    found: Attitude                         # what `between` finds
-    numbers: Numbers
-    inverses: tuple[(float,) * ORDER]       # 1/k for k = 1 ... ORDER
-
-
-UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
-UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
-DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
-ON_HINGE = 0, 1, 3, 4, 8    # the unknowns that change there
-
-# rows; those of the coefficients follow those of the unknowns, which are order 0
-TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
-FOLLOWING, END, SOUND, SINCE, FOUND, INVERSES = (
-    LANE.part(name).first
-    for name in ('following', 'end', 'sound', 'since', 'found', 'inverses'))
-EULER, CONSTANT, U, V, DRAG = (LANE.part('numbers').part(name).first for name in Numbers._fields)
-ROWS = LANE.size
 SUMS, GYROSCOPIC = layout(Sums).size, layout(Sums).part('gyroscopic').first
 # of each component of e1 and e2: places of what is added, and of what is subtracted
 SIGNED = [[[layout(Sums).part(name).part(i).part(sign).first for sign in (0, 1)]

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The numbers of a body in a lane of a batch, as one view, and the rows where they stand.
+
+batch_series.py says what the unknowns are and what the equations take.
+"""
+
+from typing import NamedTuple
+
+from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
+
+ORDER = 18
+
+
+class Unknowns(NamedTuple):
+    """The unknowns of a body, or the coefficients of an order."""
+
+    e1: Vector
+    e2: Vector
+    omega: Vector
+
+
+class Point(NamedTuple):
+    """A point of the march of a lane."""
+
+    time: float      # s
+    step: float      # that led here, s
+    scale: float     # squared, of omega, (rad/s)^2
+    lost: Unknowns   # by the sums
+    q: Quaternion
+    y: Unknowns
+
+
+class Attitude(NamedTuple):
+    """What `between` finds."""
+
+    q: Quaternion
+    omega: Vector
+
+
+class Numbers(NamedTuple):
+    """The numbers of the equations (batch_series.py)."""
+
+    euler: Vector
+    constant: Vector
+    u: Matrix
+    v: Vector
+    drag: Matrix
+
+
+class Lane(NamedTuple):
+    """All numbers of a lane: they stand in a column, one in each row of eight."""
+
+    point: Point
+    series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
+    following: Point                        # the point that follows
+    end: float                              # time where the march ends, s
+    sound: float                            # squared norm of the unknowns there
+    since: float                            # time since the point that `between` takes, s
+    found: Attitude                         # what `between` finds
+    numbers: Numbers
+    inverses: tuple[(float,) * ORDER]       # 1/k for k = 1 ... ORDER
+
+
+UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
+UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
+DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
+
+# rows; those of the coefficients follow those of the unknowns, which are order 0
+TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
+FOLLOWING, END, SOUND, SINCE, FOUND, INVERSES = (
+    LANE.part(name).first
+    for name in ('following', 'end', 'sound', 'since', 'found', 'inverses'))
+EULER, CONSTANT, U, V, DRAG = (LANE.part('numbers').part(name).first for name in Numbers._fields)
+ROWS = LANE.size
