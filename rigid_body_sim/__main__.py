@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shell command: ``rigid_body_sim NAME ...``, also ``python -m rigid_body_sim NAME ...``."""
+"""The program: ``rigid_body_sim NAME ...``, also ``python -m rigid_body_sim NAME ...``."""
 
 import importlib
 import os

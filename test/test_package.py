@@ -112,7 +112,7 @@ def scripts_of(tmp_path, command):
 @pytest.mark.parametrize('command', ['install', 'develop'])
 def test_colcon_makes_an_executable_of_every_command(tmp_path, command):
     _, scripts = scripts_of(tmp_path, command)
-    # by way of the shell command, which hears Ctrl-C before anything slow is imported
+    # by way of the program, which hears Ctrl-C before anything slow is imported
     assert scripts == {name: f'rigid_body_sim.__main__:{name}' for name in SUBCOMMANDS}
     assert all(callable(getattr(shell, name)) for name in SUBCOMMANDS)
 

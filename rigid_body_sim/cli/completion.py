@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The completion script of the shell command: names of subcommands, options, scenes.
+"""The completion script of the program: names of subcommands, options, scenes.
 
 The script holds all words, so completion starts no Python. The options are those that the help
 of each subcommand shows; a subcommand whose packages are absent completes without them.

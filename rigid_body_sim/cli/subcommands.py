@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of subcommands, which `ros2 run`, the shell command and `python -m` share.
+"""The table of subcommands, which `ros2 run`, the program and `python -m` share.
 
 setup.py runs this file alone, so it imports nothing. Each function takes the list of arguments
 (default: those of the process) and returns the exit status: 0 good, 1 a check failed, 2 bad input.

@@ -22,7 +22,7 @@ def main(arguments=None):
     """Run the subcommand; return the exit status."""
     parser = command_line.parser(
         'sweep', 'Run a scene over grids or samples of its keys, to a Zarr or Parquet store. '
-        'Repeat the command to resume a sweep that was cut short.',
+        'Repeat the line to resume a sweep that was cut short.',
         'python -m rigid_body_sim sweep config/sweeps/racket_periods.yaml --output maps.zarr')
     add = parser.add_argument
     add('spec', metavar='SPEC.yaml', help='what to run: scene, vary, sample, times, keep')
@@ -62,7 +62,7 @@ def _client(address):
         return
     need('distributed')
     import distributed
-    # one line of this command reports a lost scheduler; these loggers would add tracebacks
+    # one line of this subcommand reports a lost scheduler; these loggers would add tracebacks
     for name in ('distributed', 'distributed.client', 'asyncio', 'tornado.application'):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:

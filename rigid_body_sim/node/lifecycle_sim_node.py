@@ -11,7 +11,7 @@ EXAMPLES = (
 
 
 def main(arguments=None):
-    """Run the command, and end the process with its exit status."""
+    """Run the subcommand, and end the process with its exit status."""
     start(
         'lifecycle_sim_node',
         'Run a scene as a managed ROS 2 node.',

@@ -20,7 +20,7 @@ FASTEST = 1e6
 
 
 def _parser():
-    """Return the parser of the command."""
+    """Return the parser of the subcommand."""
     parser = command_line.parser(
         'replay',
         'Publish a recording again: its topics with their quality of service, /clock, and a '
@@ -54,7 +54,7 @@ def _parser():
 
 
 def main(arguments=None):
-    """Run the command, and end the process with its exit status."""
+    """Run the subcommand, and end the process with its exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
     own = arguments[: arguments.index('--ros-args')] if '--ros-args' in arguments else arguments
     options = _parser().parse_args(own)

@@ -37,7 +37,7 @@ class ReplayNode(Answering, Node):
         Asked to end the process when all is played.
     recording : Recording
     options : argparse.Namespace
-        ``rate``, ``start``, ``loop``, ``topics``, ``paused``, ``json`` of the command.
+        ``rate``, ``start``, ``loop``, ``topics``, ``paused``, ``json`` of the subcommand.
     """
 
     def __init__(self, stop, recording, options):

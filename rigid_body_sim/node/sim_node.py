@@ -10,7 +10,7 @@ EXAMPLES = (
 
 
 def main(arguments=None):
-    """Run the command, and end the process with its exit status."""
+    """Run the subcommand, and end the process with its exit status."""
     start(
         'sim_node',
         'Run a scene as a ROS 2 node.',

@@ -64,7 +64,7 @@ def about(made_by, simulation, parameters):
         The command: ``sim_node``, ``simulate``.
     simulation : Simulation
     parameters : dict
-        All settings of the command, defaults included.
+        All settings of the subcommand, defaults included.
 
     Returns
     -------

@@ -40,7 +40,7 @@ class SimulationRecording:
         The command that records.
     simulation : Simulation
     parameters : dict
-        All settings of the command.
+        All settings of the subcommand.
     publish : sequence of str
         Topics beside those of every tick, by the names of state_topics.ON_REQUEST.
     commanded : bool

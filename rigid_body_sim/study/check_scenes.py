@@ -90,7 +90,7 @@ def _tables(held, overrides):
 
 
 def _end_children(kind, *_):
-    """End the worker processes where an exception ends the command."""
+    """End the worker processes where an exception ends the subcommand."""
     if kind is not None:
         for child in multiprocessing.active_children():
             child.terminate()

@@ -68,7 +68,7 @@ class Access:
     def _answer(self, answer, connection, request):
         if not self.allows(request.path, request.headers):
             return connection.respond(http.HTTPStatus.FORBIDDEN,
-                                      'open the address that the command printed\n')
+                                      'open the address that the shell printed\n')
         response = answer(connection, request)
         if response is not None and self.token and _token_of(request.path):
             response.headers['Set-Cookie'] = (f'{COOKIE}={self.token}; HttpOnly; SameSite=Strict; '

@@ -89,7 +89,7 @@ class NodeSource:
         self._start, self._last, self._shown, self._net = None, {}, None, None
         self._velocity, self._asked = np.zeros(3), False
         self._heard, self._gone = time.monotonic(), False
-        # signals are the command's: those of rclpy take its context away while it is in use
+        # signals are the subcommand's: those of rclpy take its context away while it is in use
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node('rigid_body_sim_view')
         # another node, so that the answers of services can be awaited without taking states

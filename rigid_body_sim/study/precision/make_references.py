@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make references/*.json: the suite's references and the floors of its problems.
 
-A reference is a Taylor series in fixed point. If its file exists already, the command prints how
+A reference is a Taylor series in fixed point. If its file exists already, the script prints how
 far the new states are from those in it.
 
 ::
