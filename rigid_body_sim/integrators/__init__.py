@@ -53,7 +53,9 @@ def runnable(scene):
     hot = any(one.books == 'heat' or one.of_motion for one in acting)
     kinked = any(one.modes for one in acting)
     in_field = frame.path is not None or any(one.in_field for one in acting)
+    shown = {view for view in {method.NEEDS for method in METHODS.values()}
+             if all(getattr(effect, view) is not None for effect in effects)}
     return [name for name, method in METHODS.items()
-            if all(getattr(effect, method.NEEDS) is not None for effect in effects)
+            if method.NEEDS in shown
             and (method.HEAT or not hot) and (method.FIELD or not in_field)
             and (method.FAMILY.KINKS or not kinked)]

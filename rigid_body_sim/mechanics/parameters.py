@@ -72,7 +72,7 @@ def scene_parameters(scene):
     return SceneParameters(
         kind=kind if constraint.path is None else CARRIED, mass=body.mass,
         center=body.center_of_mass,
-        moments=inertia.moments, axes=inertia.axes, frame_axes=constraint.frame(body).axes,
+        moments=inertia.moments, axes=inertia.axes, frame_axes=scene.frame.axes,
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
         hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint),

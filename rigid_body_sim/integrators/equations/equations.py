@@ -166,12 +166,12 @@ class Equations:
     def _constants(self):
         """Return the fixed parameters, without those that a start decides."""
         frame, hinge = self.frame, self.on_hinge
-        moments = np.zeros(3) if hinge else np.array(frame.moments)
-        inverse = np.divide(1.0, moments, out=np.zeros(3), where=moments > 0.0)
+        I1, I2, I3 = moments = (0.0, 0.0, 0.0) if hinge else frame.moments
+        inverse = [1.0 / moment if moment > 0.0 else 0.0 for moment in moments]
         if hinge:
             inverse[0] = 1.0 / self._body.hinge_moment
-        differences = moments[[1, 2, 0]] - moments[[2, 0, 1]]
-        share = np.divide(differences, moments, out=np.zeros(3), where=moments > 0.0)
+        share = [difference / moment if moment > 0.0 else 0.0 for difference, moment in zip(
+            (I2 - I3, I3 - I1, I1 - I2), moments, strict=True)]
         fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
         euler.EQUATION.store(fixed, euler.EquationParameters(
             scene=self._body, euler=share, inverse=inverse,

@@ -47,6 +47,8 @@ def stiff_relaxations(scene, unknowns):
     There are none where no relaxation is much faster than the motion.
     """
     found = relaxations(scene, unknowns)
+    if not found:
+        return found
     motion = (hypot3(*scene.initial.angular_velocity.tolist()) + swing_rate(scene)
               + math.sqrt(drive(scene, None)))
     fastest = max((rate for one in found for rate in one.rates), default=0.0)
@@ -58,8 +60,10 @@ def relaxations(scene, unknowns):
     frame, axis = scene.frame, scene.constraint.axis
     pulls = [effect.damping(frame) for effect in scene.effects if effect.damping is not None]
     matrices = [pull.drag for pull in pulls if pull.drag is not None]
-    matrix = [[math.fsum(one[i][j] for one in matrices) for j in range(3)] for i in range(3)]
     slowing = math.fsum(pull.slowing for pull in pulls)
+    if not (matrices or slowing):
+        return []
+    matrix = [[math.fsum(one[i][j] for one in matrices) for j in range(3)] for i in range(3)]
     found = []
     if matrices and axis is not None:
         along = math.fsum(axis[i] * matrix[i][j] * axis[j] for i in range(3) for j in range(3))

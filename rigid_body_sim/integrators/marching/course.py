@@ -6,6 +6,7 @@ A piece is one array (track.py): the stretch between two breakpoints of what act
 """
 
 import bisect
+import itertools
 import math
 
 import numpy as np
@@ -47,7 +48,7 @@ class Bound:
         self._family, self._prototypes = family, {}
         self._beginning = np.concatenate((control, point))
         sizes = [equations.parameter_count, len(control), len(point), len(point)]
-        places = np.cumsum(sizes).tolist()
+        places = list(itertools.accumulate(sizes))
         self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
         self.track = self._track(places)
