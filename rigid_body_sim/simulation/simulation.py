@@ -52,7 +52,7 @@ from rigid_body_sim.simulation.strikes import Strikes
 
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
 KEPT = (
-    'tick', 'events', 'vector', 'departed', '_origin', '_origin_time', '_beginning', '_initial',
+    'tick', 'events', 'departed', '_vector', '_arrived', '_origin', '_origin_time', '_beginning', '_initial',
     '_commands',
 )
 """Attributes that a copy or a pickle takes over unchanged."""
@@ -86,9 +86,6 @@ class Simulation:
     ----------
     tick : int
         Ticks so far; it never falls, not even by :meth:`reset`.
-    vector : array (14,)
-        The present state; it changes with the next call, so copy what you keep (or take
-        :attr:`state`).
     events : list of Event
         The events so far.
     departed : float or None
@@ -131,13 +128,14 @@ class Simulation:
         self.choice = self._chosen
         self.tick = 0
         self.events, self.watching = [], True
-        self.vector = np.empty(STATE_SIZE)
+        self._vector = np.empty(STATE_SIZE)
         self._mechanics = parameters.parameters(self.scene)
         self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
         self._entries_size = entries_size(self.scene)
         self._strikes = Strikes(self.scene, self._mechanics)
         self._begin(self.choice, self.scene.initial.vector, 0)
+        self._arrive()
 
     @functools.cached_property
     def _dynamics(self):
@@ -259,8 +257,7 @@ class Simulation:
         spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
         if self._strikes:
             spans = self._strikes.follow(spans, 0.0, choice)
-        spans[-1].solver.state(0.0, self.vector)
-        self._diagnosed_tick = None
+        self._arrived, self._diagnosed_tick = False, None
         self.choice, self.tick, self._beginning = choice, tick, start
         own = self.scene.initial.vector    # the choice of the scene holds for its own start only
         elsewhere = choice is self._chosen and start.tobytes() != own.tobytes()
@@ -307,6 +304,16 @@ class Simulation:
     def time_at(self, tick):
         """Return the simulated time of a tick since the start or the last reset, s."""
         return self._origin_time + (tick - self._origin) / self.rate
+
+    @property
+    def vector(self) -> np.ndarray:
+        """The present state, shape (14,), whose parts `state` names.
+
+        It changes with the next call, so copy what you keep (or take :attr:`state`).
+        """
+        if not self._arrived:
+            self._arrive()
+        return self._vector
 
     @property
     def state(self) -> State:
@@ -362,8 +369,8 @@ class Simulation:
         foreseen = self._foreseen
         place = self.tick - foreseen.tick
         if foreseen.spans is self._spans and 0 <= place < len(foreseen.vectors):
-            self.vector[:] = foreseen.vectors[place]
-            self._diagnosed_tick = None
+            self._vector[:] = foreseen.vectors[place]
+            self._arrived, self._diagnosed_tick = True, None
             return
         spans = self._spans
         try:
@@ -424,13 +431,16 @@ class Simulation:
             A time before the first one kept, or not finite.
         """
         times = np.ascontiguousarray(times, dtype=float).reshape(-1)
-        if len(times) and not (np.isfinite(times).all() and times.min() >= self._spans[0].time):
+        if not len(times):
+            return States(np.empty((0, STATE_SIZE)))
+        first, last = times.min(), times.max()    # NaN if one is
+        if not (first >= self._spans[0].time and last < math.inf):
             raise BadInput(
                 'states',
-                f'got times from {float(times.min())!r} to {float(times.max())!r} s',
+                f'got times from {float(first)!r} to {float(last)!r} s',
                 f'finite times from {self._spans[0].time!r} s on',
             )
-        spans = self._spans_until(times.max()) if len(times) else []
+        spans = self._spans_until(last)
         return States(states_at(spans, times))
 
     def at_event(self, name: str, within: float = HORIZON) -> State:
@@ -622,8 +632,8 @@ class Simulation:
         """Evaluate the present state."""
         time = self.time
         self._spans = self._spans_until(time)
-        self._spans[-1].solver.state(time, self.vector)
-        self._diagnosed_tick = None
+        self._spans[-1].solver.state(time, self._vector)
+        self._arrived, self._diagnosed_tick = True, None
 
     def _events_between(self, spans, before, now):
         """Yield the events after `before` up to the tick at `now` (s), in their order."""

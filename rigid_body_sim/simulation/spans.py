@@ -53,7 +53,11 @@ def states_at(spans, times):
     """Return the states of a motion at times (s, any order), shape (n, 14)."""
     out = np.empty((len(times), STATE_SIZE))
     if len(spans) == 1:
-        spans[0].solver.states(times, out)
+        solver = spans[0].solver
+        if len(times) == 1:
+            solver.state(times.item(), out[0])    # without what sorts many
+        else:
+            solver.states(times, out)
         return out
     place = _places(spans, times)
     for k, span in enumerate(spans):

@@ -84,19 +84,20 @@ class Strike(Effect):
 
         Both have shape (3,) and are in world axes, for the attitude of a state.
         """
-        q = vector[ORIENTATION]
-        force = np.array(rotate(*q, *self.impulse) if self.frame == 'body' else self.impulse)
+        q, force = vector[ORIENTATION].tolist(), self.impulse
+        if self.frame == 'body':
+            force = rotate(*q, *force)
         if self.height:
             assert body.radius is not None    # `height` is for the table
-            size = hypot3(*force.tolist())
+            size = hypot3(*force)
             behind = (math.sqrt(body.radius * body.radius - self.height * self.height) / size
                       if size > 0.0 else 0.0)
             lever = -behind * force[0], -behind * force[1], self.height
         elif self.point is None:
-            return force, np.zeros(3)
+            return np.array(force), np.zeros(3)
         else:
             lever = rotate(*q, *minus(self.point, body.center_of_mass))
-        return force, np.array(cross(lever, force.tolist()))
+        return np.array(force), np.array(cross(lever, force))
 
 
 def _impulse(settings, body, constraint, where):
