@@ -14,6 +14,7 @@ import numpy as np
 from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
 from rigid_body_sim.numerics.vectors import apply, cross, dot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.scene import kept
 
 FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
 CARRIED = len(Mechanism)    # a pivot that moves
@@ -88,12 +89,14 @@ def parameters(scene):
     return p
 
 
+@kept
 def potentials(scene):
     """Return the Potential of each effect of a scene that has one."""
     frame = scene.frame
     return [effect.potential(frame) for effect in scene.effects if effect.potential is not None]
 
 
+@kept
 def momenta(scene):
     """Return the Momentum of each effect of a scene that carries one inside the body."""
     frame = scene.frame

@@ -52,8 +52,8 @@ from rigid_body_sim.simulation.strikes import Strikes
 
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
 KEPT = (
-    'tick', 'events', 'departed', '_vector', '_arrived', '_origin', '_origin_time', '_beginning', '_initial',
-    '_commands',
+    'tick', 'events', 'departed', '_vector', '_arrived', '_origin', '_origin_time', '_beginning',
+    '_initial', '_commands',
 )
 """Attributes that a copy or a pickle takes over unchanged."""
 NOTHING_HELD = Wrench()
@@ -159,6 +159,7 @@ class Simulation:
         BadInput
             Another shape, numbers that are not finite, an orientation that is not a unit
             quaternion, more energy than a double holds. The simulation stays as it was.
+            Whether the motion can be followed from there shows with the first state asked for.
         """
         start = np.array(getattr(initial, 'vector', initial), dtype=float)
         if start.shape != (STATE_SIZE,):

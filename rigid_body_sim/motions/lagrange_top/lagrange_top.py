@@ -55,6 +55,7 @@ from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.scene import bodies, principal_axes
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE, StateView
 
 EVENTS = ('turning point',)
@@ -112,11 +113,12 @@ def absorbs(scene):
     held = scene.constraint
     return (held.mechanism is Mechanism.POINT and held.path is None
             and not any(held.point(scene.body)) and scene.weight is not None
-            and symmetry_axis(scene.body) is not None)
+            and symmetry_axis(scene) is not None)
 
 
-def symmetry_axis(body):
-    """Return the symmetry axis of a body.
+@kept
+def symmetry_axis(scene):
+    """Return the symmetry axis of a scene's body.
 
     Two moments about the origin must be the same double, and the centre of mass must lie on the
     third axis: to the last bit where principal axes and body axes coincide up to order and sign,
@@ -130,8 +132,8 @@ def symmetry_axis(body):
         It turns the top's axes into the body's.
     The result is None where the body is not symmetric.
     """
-    moments, axes = body.about_origin.moments, body.about_origin.axes
-    center = body.center_of_mass
+    about, center = scene.body.about_origin, scene.body.center_of_mass
+    moments, axes = about.moments, about.axes
     distance = hypot3(*center)
     if moments[0] == moments[1] == moments[2]:
         if distance > 0.0:
@@ -158,7 +160,7 @@ def _turn_to(x, y, z):
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     body, g, arm = scene.body, scene.weight, hypot3(*scene.body.center_of_mass)
-    axis, frame = symmetry_axis(body)
+    axis, frame = symmetry_axis(scene)
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
     (I1, of_I1), (I3, of_I3) = (body.about_origin.moments[k].as_integer_ratio()
                                 for k in ((axis + 1) % 3, axis))
