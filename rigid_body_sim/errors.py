@@ -55,8 +55,9 @@ def refuse_without(part, names, where, remedy):
 
 def printable(text):
     """Return a text with its unprintable characters escaped, so no terminal obeys them."""
-    return ''.join(one if one.isprintable() else one.encode('unicode_escape').decode()
-                   for one in str(text))
+    text = str(text)
+    return text if text.isprintable() else ''.join(
+        one if one.isprintable() else one.encode('unicode_escape').decode() for one in text)
 
 
 def nearest(word, known):

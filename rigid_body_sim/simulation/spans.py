@@ -5,6 +5,8 @@ The spans of a motion are a list in the order of their times. Each ends where th
 the last one has no end.
 """
 
+import bisect
+import operator
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,12 +54,13 @@ class Span:
 def states_at(spans, times):
     """Return the states of a motion at times (s, any order), shape (n, 14)."""
     out = np.empty((len(times), STATE_SIZE))
+    if len(times) == 1:    # without what sorts many
+        time = times.item()
+        place = bisect.bisect_right(spans, time, key=operator.attrgetter('time')) - 1
+        spans[place].solver.state(time, out[0])
+        return out
     if len(spans) == 1:
-        solver = spans[0].solver
-        if len(times) == 1:
-            solver.state(times.item(), out[0])    # without what sorts many
-        else:
-            solver.states(times, out)
+        spans[0].solver.states(times, out)
         return out
     place = _places(spans, times)
     for k, span in enumerate(spans):

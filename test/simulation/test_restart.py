@@ -55,6 +55,9 @@ def test_a_closed_form_begun_anew_has_the_bits_of_a_new_simulation(name):
     start[0] = 0.0
     fresh = Simulation(with_start(simulation.scene, start))
     assert simulation.tick == 0 and not simulation.wrench and simulation.time == 0.0
+    alone = simulation.states(TIMES[1:2]).vector[0]    # before the start itself is asked for
+    assert alone.tobytes() == fresh.states(TIMES).vector[1].tobytes()
+    assert simulation.vector.tobytes() == fresh.vector.tobytes()
     for each in (simulation, fresh):
         each.advance(1234)
     assert simulation.vector.tobytes() == fresh.vector.tobytes()
