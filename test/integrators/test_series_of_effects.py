@@ -8,6 +8,8 @@ import pytest
 
 from rigid_body_sim.choice import measured
 from rigid_body_sim.integrators import runnable
+from rigid_body_sim.integrators.equations.expanded import Expanded
+from rigid_body_sim.integrators.equations.plan import Plan
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -33,6 +35,14 @@ SCENES = {
                         f'quadratic: {MATRIX}}}', WOBBLE),
     'drag on a hinge': ('{hinge: {axis: [1, 2, 2]}}', 'gravity: {g: 9.81}, drag: {quadratic: 0.1}',
                         '{angle: 1, rate: 2}'),
+    'door with springs': (
+        '{hinge: {axis: [0.1, 0, 1]}}', 'gravity: {g: 9.81}, spring: {stiffness: 12, angle: 0.4, '
+        'damping: 0.02}, spring: {at: [0.3, 0.1, 0], anchor: [1, 0, 0], stiffness: 3, length: 0.2}',
+        '{angle: -1.2, rate: 3}'),
+    'more than two turns on a hinge': (
+        '{hinge: {axis: [1, 2, 2]}}', "potential: {energy: '-0.3*cos(angle - 1)'}, force: {value: "
+        "['0.1*qx', 0, '0.2*x'], at: [0.1, 0, 0]}, torque: {value: ['0.1*wx^2', 0, 'd*rate']}",
+        '{angle: 5, rate: 9}'),
     'moving pivot': (f'{{pivot: {{{PATH}}}}}', 'gravity: {g: 9.81}, drag: {linear: 0.2}', WOBBLE),
     'moving pivot off the origin': (
         f'{{pivot: {{at: [0.1, 0.2, 0], {PATH}}}}}',
@@ -69,6 +79,14 @@ def test_taylor_and_dop8_agree(name):
     scene = scene_of(SKEW, *SCENES[name])
     found, other = (state(scene, 1.0, method, accuracy=1e-13) for method in ('taylor', 'dop8'))
     assert np.abs(found - other).max() < 2e-14    # measured: 6e-15
+
+
+def test_weight_on_a_hinge_takes_no_product_of_series():
+    """What the attitude turns is linear in sin and cos of the angle, which take two."""
+    scene = scene_of(SKEW, '{hinge: {axis: [1, 2, 2]}}',
+                     'gravity: {g: 9.81}, spring: {stiffness: 12, damping: 0.1}',
+                     '{angle: 1, rate: 2}')
+    assert Plan(Expanded(scene).rates).products == 2
 
 
 @pytest.mark.parametrize('name', AT_ZERO)

@@ -11,14 +11,18 @@ import numpy as np
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import hinged
 from rigid_body_sim.integrators.equations.equations import Equations
-from rigid_body_sim.integrators.equations.plan import Plan
+from rigid_body_sim.integrators.equations.plan import UNKNOWN, Plan
 from rigid_body_sim.integrators.equations.series import refusal
-from rigid_body_sim.integrators.equations.trees import FIRST, STARTED, TURNED, Trees
+from rigid_body_sim.integrators.equations.trees import FIRST, STARTED, TURNED, Trees, own
 from rigid_body_sim.integrators.marching import recurrences
+from rigid_body_sim.integrators.marching.taylor_series import ORDER
+from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import HEAD, Lines
 
 MOST = 200
 """Most products of series in a plan: with more of them compiling takes longer than most runs."""
+STEADY = '_steady'
+"""What names of parts begin with that are the same in all steps."""
 
 
 class Expanded(Equations):
@@ -32,9 +36,12 @@ class Expanded(Equations):
         The numbers at the beginning. A start on a hinge or a pivot adds those of its own.
     based : int
         The number of series that have to stay positive within a step.
-    expand : str
-        Source of ``expand(p, S, y)``: the coefficients of the unknowns, and of the integrals of
+    prepare, expand : str
+        Sources of ``prepare(p, S)``, which keeps in S what is the same in all steps from a start,
+        and of ``expand(p, S, y)``: the coefficients of the unknowns, and of the integrals of
         those series after them.
+    room : int
+        The size of S: the coefficients, then what is kept.
 
     Raises
     ------
@@ -59,7 +66,7 @@ class Expanded(Equations):
         self.named = self._trees.parameters | self._trees.numbers(-np.inf)
         self.based = len(plan.bases)
         lines = Lines(self.named)
-        self.expand = self._expand(plan, lines)
+        self.prepare, self.expand = self._sources(plan, lines)
         self._values, self.parameter_count = lines.values, self._first + len(lines.values)
 
     @property
@@ -75,47 +82,86 @@ class Expanded(Equations):
         return np.array([*before, *(self._values | {
             name: changing[name] for name in self._values if name in changing}).values()])
 
-    def _expand(self, plan, lines):
-        """Return the source of ``expand(p, S, y)``."""
-        before = self._of_start(lines)
-        names = lines.of(*plan.firsts, *plan.fixed)
+    def _sources(self, plan, lines):
+        """Return the sources of `prepare` and `expand`."""
+        steady, given = _apart([*plan.firsts, *plan.fixed])
+        before, once, each_step = self._of_start(lines)
+        kept, early = lines.of(*steady), len(lines.lines)
+        names = lines.of(*given)
         firsts, fixed = names[:len(plan.firsts)], names[len(plan.firsts):]
         size, first = self.kind.UNKNOWNS, self._first
+        width = recurrences.places(size + self.based)
+        at = width * (ORDER + 1)
+        kept = {f'the_{STEADY}{k}': name for k, name in enumerate(kept)} | once
+        self.room = at + len(kept)
+        before = [*(f'    {name} = p[{first + k}]' for k, name in enumerate(lines.values)), *before]
         ys = ''.join(f'the__y{k}, ' for k in range(size))
         return '\n'.join([
             HEAD,
-            f'from {hinged.__name__} import attitude, load_attitude, load_start',
+            f'from {hinged.__name__} import angle_between, less_turns, load_attitude, load_start',
+            '',
+            '',
+            '@compiled',
+            'def prepare(p, S):',
+            *before,
+            *lines.lines[:early],
+            *(f'    S[{at + k}] = {text}' for k, text in enumerate(kept.values())),
+            '',
+        ]), '\n'.join([
             f'from {recurrences.__name__} import expansion as kernel_for',
             '',
-            f'expansion = kernel_for({plan.steps!r}, {plan.rates + plan.bases!r}, '
-            f'{recurrences.places(size + self.based)})',
+            f'expansion = kernel_for({plan.steps!r}, {plan.rates + plan.bases!r}, {width})',
             '',
             '',
             '@compiled',
             'def expand(p, S, y):',
             f'    {ys}= y',
-            *(f'    {name} = p[{first + k}]' for k, name in enumerate(lines.values)),
             *before,
-            *lines.lines,
+            *(f'    {name} = S[{at + k}]' for k, name in enumerate(kept)),
+            *each_step,
+            *lines.lines[early:],
             f'    expansion(S, (({ys}), ({_listed(firsts)}), ({_listed(fixed)})))',
             '',
         ])
 
     def _of_start(self, lines):
-        """Return the lines that name what a start determines."""
+        """Return what the formulas need of a start.
+
+        Lines that name it; name -> text of what is kept; and lines of each step.
+        """
         place, first = (', '.join(f'the__{name}' for name in names) for names in (STARTED, FIRST))
         begin = [f'    {place} = load_start(p).place']
         if not self.on_hinge:
-            return begin
-        nx, ny, nz = (lines.value(f'hinge{k}', part)
-                      for k, part in enumerate(self.frame.hinge.axis))
-        zx, zy, zz, zw = (lines.value(f'zero{k}', part)
-                          for k, part in enumerate(self.frame.hinge.zero))
-        return [
-            *begin,
-            f'    {first} = load_attitude(p)',
-            f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, *attitude(p, the__y0))',
-            f'    the__{TURNED} = 2.0 * atan2({nx} * ux + {ny} * uy + {nz} * uz, uw) - the__y0']
+            return begin, {}, []
+        axis, zero = (''.join(f'{lines.value(f"{name}{k}", part)}, '
+                              for k, part in enumerate(parts)) for name, parts in (
+                                  ('hinge', self.frame.hinge.axis),
+                                  ('zero', self.frame.hinge.zero)))
+        first = f'({first})'
+        return ([*begin, f'    {first} = load_attitude(p)'],
+                {'turned': f'angle_between(({zero}), {first}, ({axis}))'},
+                [f'    the__{TURNED} = less_turns(turned, the__y0)'])
+
+
+def _apart(trees):
+    """Return the parts that are the same in all steps, and trees with names in their place."""
+    parts = tree.parts(*trees)
+    changing, parted, steady = set(), {}, {}
+    for one in parts:
+        leaf = one.op in ('number', 'name')
+        if (one.args[0].startswith(UNKNOWN) or one is own(TURNED) if one.op == 'name'
+                else not leaf and any(arg in changing for arg in one.args)):
+            changing.add(one)
+
+    def name_of(one):
+        if one in changing or one.op in ('number', 'name'):
+            return parted[one]
+        return steady.setdefault(one, tree.term('name', f'{STEADY}{len(steady)}'))
+    for one in parts:
+        parted[one] = (tree.term(one.op, *map(name_of, one.args))
+                       if one in changing and one.op != 'name' else one)
+    found = [name_of(one) for one in trees]
+    return list(steady), found
 
 
 def _listed(names):

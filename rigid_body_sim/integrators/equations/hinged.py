@@ -23,7 +23,7 @@ from rigid_body_sim.integrators.equations.euler import (
     read_state,
     write_state,
 )
-from rigid_body_sim.numerics.functions import sin_cos
+from rigid_body_sim.numerics.functions import atan2, sin_cos
 from rigid_body_sim.numerics.rotations import multiply
 from rigid_body_sim.numerics.vectors import dot, scaled
 from rigid_body_sim.scene.state import STATE
@@ -88,6 +88,22 @@ def settled(y, c):
     if phi < -TURN:
         return (phi + TWO_TURNS, *y[SPEED:]), (lost + REST, *c[SPEED:])
     return y, c
+
+
+@compiled
+def angle_between(first, second, n):
+    """Return the angle about n (body axes) from one attitude to another, within two turns."""
+    x, y, z, w = first
+    ux, uy, uz, uw = multiply(-x, -y, -z, w, *second)
+    return 2.0 * atan2(dot(n, (ux, uy, uz)), uw)
+
+
+@compiled
+def less_turns(turned, phi):
+    """Return an angle to which phi is added, less two turns if the sum is not within them."""
+    if turned + phi > TURN:
+        return turned - TWO_TURNS - REST
+    return turned + TWO_TURNS + REST if turned + phi <= -TURN else turned
 
 
 @compiled

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigid_body_sim.integrators.equations import euler
 from rigid_body_sim.integrators.equations.euler import DRIFT, OMEGA, PLACE
+from rigid_body_sim.integrators.equations.half_angles import Sums
 from rigid_body_sim.integrators.equations.plan import rewritten, unknown
 from rigid_body_sim.numerics.rotations import matrix, rotate
 from rigid_body_sim.scene.expressions import path, source, tree, vectors
@@ -56,6 +57,8 @@ class Trees:
         if equations.in_field:
             rates.append(tree.ONE)
         self.rates = rewritten(rates, self._definitions(), self.parameters)
+        if equations.on_hinge:
+            self.rates = Sums(unknown(0)).of(self.rates)
 
     def numbers(self, time):
         """Return the numbers of the equations at a time: name -> value."""

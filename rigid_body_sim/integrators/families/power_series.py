@@ -67,7 +67,7 @@ def _expanded_march(equations):
     places = recurrences.places(size + based)
     relative = [group for group in groups if not group[2]]
     return specialise(
-        expanded_march, expand=equations.expand,
+        expanded_march, prepare=equations.prepare, expand=equations.expand,
         along=f'from {recurrences.__name__} import along as along_of\n'
               f'along = along_of({size}, {places})\n',
         settled=f'{equations.kernels.__name__}:settled',
@@ -75,7 +75,8 @@ def _expanded_march(equations):
         load_scales=unroll.load_source('load_scales', len(relative)),
         put_scales=unroll.put_source('put_scales', len(relative)),
         grown=_grown(relative), measured=_measured(groups), added=_added(size),
-        SIZE=f'SIZE = {size}\n', BASED=f'BASED = {based}\n', PLACES=f'PLACES = {places}\n')
+        SIZE=f'SIZE = {size}\n', BASED=f'BASED = {based}\n', PLACES=f'PLACES = {places}\n',
+        ROOM=f'ROOM = {equations.room}\n')
 
 
 def _squares(text, first, last):
@@ -123,7 +124,7 @@ def _added(size):
 
 def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
-    control = np.zeros(march.WORK + march.PLACES * (taylor_series.ORDER + 1))
+    control = np.zeros(march.WORK + march.ROOM)
     tolerance = (
         SAFETY * stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     )

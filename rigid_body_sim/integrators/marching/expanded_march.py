@@ -22,6 +22,7 @@ from rigid_body_sim.integrators.marching.points import (
 from rigid_body_sim.integrators.marching.taylor_march import FOR, NEARLY, UNMOVED, WORK, chosen
 from rigid_body_sim.integrators.marching.taylor_series import ORDER
 
+prepare = UNBOUND
 expand = UNBOUND
 along = UNBOUND
 settled = UNBOUND
@@ -35,6 +36,7 @@ added = UNBOUND
 SIZE = UNBOUND
 BASED = UNBOUND
 PLACES = UNBOUND
+ROOM = UNBOUND
 
 CHANGE = 0.9               # largest change of a base within a step, relative to the base
 LEAST = 2.0 ** -25         # the step over the zero of a base, as a share of the planned step
@@ -47,6 +49,7 @@ def begin(p, control, point):
     """Note the origin of a point whose time and unknowns are set, and its scales."""
     control[ORIGIN], control[FOR] = point[TIME], math.nan
     point[STEP] = 0.0
+    prepare(p, control[WORK:])
     y = load(point, int(VALUES))
     put_scales(grown(load_scales(point, SCALES), y, y, 0.0), point, SCALES)
 
@@ -78,7 +81,7 @@ def expanded(p, control, y, t, planned):
     least = max(LEAST * max(planned, UNMOVED), TICKS * abs(t))
     for base in range(SIZE, SIZE + BASED):
         if not change(S, base, least) <= CHANGE * S[PLACES + base]:
-            S[PLACES * (LOW + 1):] = 0.0
+            S[PLACES * (LOW + 1):PLACES * (ORDER + 1)] = 0.0
             return least
     return 0.0
 

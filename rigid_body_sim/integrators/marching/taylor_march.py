@@ -40,6 +40,7 @@ load, store, load_omega = TURNING.load, TURNING.store, TURNING.part('omega').loa
 FOR = CONTROL.size    # places in `control`
 WORK = FOR + 1
 PLACES = 8               # places for the coefficients of an order
+ROOM = PLACES * (ORDER + 1)
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
 GROWTH = 4.0             # largest factor by which a step grows
 UNMOVED = 1e-3           # s, the first step where nothing moves
