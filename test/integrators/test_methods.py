@@ -161,6 +161,20 @@ def test_energy_does_not_walk():
     assert np.abs(residual).max() < 5e-15
 
 
+@pytest.mark.without_numba
+@pytest.mark.filterwarnings('error')
+@pytest.mark.parametrize('law', ['log(x)', 'sqrt(0.01 - t)'])
+@pytest.mark.parametrize('name', ['lsoda', 'radau'])
+def test_rates_that_are_not_finite_end_with_one_error(name, law):
+    """SciPy raises a ValueError of its own where it takes the Jacobian apart."""
+    scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        f"effects: [torque: {{value: ['{law}', 0, 0]}}]\n"
+                        'initial: {angular_velocity: [1, 2, 3]}\n')
+    with pytest.raises(NotConverged, match=r'not finite|no longer finite'):
+        Stepped(scene, name, accuracy=1e-6, horizon=1.0).start(scene.initial.vector).state(
+            1.0, np.empty(14))
+
+
 @pytest.mark.parametrize('name', ['dop8', 'lsoda', 'radau'])
 def test_too_many_turns_to_count_end_with_one_error(name):
     scene = parse_scene(smooth_cases.text('driven_body').replace(

@@ -37,8 +37,8 @@ SCENES = {
                         '{angle: 1, rate: 2}'),
     'door with springs': (
         '{hinge: {axis: [0.1, 0, 1]}}', 'gravity: {g: 9.81}, spring: {stiffness: 12, angle: 0.4, '
-        'damping: 0.02}, spring: {at: [0.3, 0.1, 0], anchor: [1, 0, 0], stiffness: 3, length: 0.2}',
-        '{angle: -1.2, rate: 3}'),
+        'damping: 0.02}, spring: {at: [0.3, 0.1, 0], anchor: [1, 0, 0], stiffness: 3, '
+        'length: 0.2}', '{angle: -1.2, rate: 3}'),
     'more than two turns on a hinge': (
         '{hinge: {axis: [1, 2, 2]}}', "potential: {energy: '-0.3*cos(angle - 1)'}, force: {value: "
         "['0.1*qx', 0, '0.2*x'], at: [0.1, 0, 0]}, torque: {value: ['0.1*wx^2', 0, 'd*rate']}",

@@ -94,7 +94,8 @@ class Expanded(Equations):
         at = width * (ORDER + 1)
         kept = {f'the_{STEADY}{k}': name for k, name in enumerate(kept)} | once
         self.room = at + len(kept)
-        before = [*(f'    {name} = p[{first + k}]' for k, name in enumerate(lines.values)), *before]
+        before = [*(f'    {name} = p[{first + k}]' for k, name in enumerate(lines.values)),
+                  *before]
         ys = ''.join(f'the__y{k}, ' for k in range(size))
         return '\n'.join([
             HEAD,

@@ -103,7 +103,12 @@ class _Course:
         )
 
     def _advance(self):
-        message = self._solver.step()
+        try:
+            message = self._solver.step()
+        except ValueError:    # SciPy takes no Jacobian apart that is not finite
+            raise NotConverged(
+                f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s '
+                'the rates are not finite') from None
         if self._solver.status == 'failed' or not np.isfinite(self._solver.y).all():
             raise NotConverged(
                 f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
@@ -139,9 +144,10 @@ class _Course:
 
     def states(self, times, out):
         """Fill out with the states at times not before the start."""
-        if self._solver is None:
-            self._enter(self._begin, self._y)
-        self._reach(float(times.max()))
+        with np.errstate(all='ignore'):    # what is not finite ends in one line, without warnings
+            if self._solver is None:
+                self._enter(self._begin, self._y)
+            self._reach(float(times.max()))
         write = self._equations.kernels.write
         for time, row in zip(times, out, strict=True):
             k = bisect.bisect_left(self._reached, time)

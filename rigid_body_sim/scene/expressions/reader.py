@@ -46,6 +46,9 @@ def read(text, names, where):
         return tree.number(text)
     if len(text) > LONGEST:
         raise BadInput(where, f'an expression of {len(text)} characters', f'at most {LONGEST}')
+    if '#' in text:    # a comment of Python: what comes after it would not count
+        raise BadInput(where, f'got {_brief(text)}: # is not part of the language',
+                       'a comment of the scene file, outside the quotes')
     spelled, meant = _without_keywords(text, names)
     try:
         with warnings.catch_warnings():
@@ -121,7 +124,7 @@ class _Reader:
             case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _ORDERS:
                 a, b = self.tree(left, depth + 1), self.tree(right, depth + 1)
                 return tree.term('less', *((a, b) if _ORDERS[type(op)] else (b, a)))
-            case ast.Call(func=ast.Name(id=name)):
+            case ast.Call(func=ast.Name(id=name)) if name not in tree.FUNCTIONS:
                 self._refuse(f'{name} is not a function here',
                              f'the functions are {", ".join(tree.FUNCTIONS)}')
         self._refuse(f'{ast.unparse(parsed)[:40]!r} is not part of the language',

@@ -34,7 +34,9 @@ def test_arithmetic_is_read_in_the_order_of_the_text(text, shown):
     ('(' * 300 + 'x' + ')' * 300, ''), ('True', 'True is not a number'), ('x y', 'invalid syntax'),
     ('"a"', "'a' is not a number"), ('x == 1', 'is not part'), ('é', 'é is not known here'),
     ('sin', 'sin is not known here'), ('\x00', ''), ('', ''), ('x=1', ''), ('f"{x}"', ''),
-    ('x' * (LONGEST + 1), f'an expression of {LONGEST + 1} characters'), ('sin(x=1)', ''),
+    ('x' * (LONGEST + 1), f'an expression of {LONGEST + 1} characters'),
+    ('sin(x=1)', "'sin(x=1)' is not part"), ('sin(*x)', 'is not part'),
+    ('-k*x # - 3', '# is not part'),
     ('1j', '1j is not a number'), ('x@k', 'is not part'), ('x//k', 'is not part'), ('...', '')])
 def test_what_is_no_expression_gets_one_line(text, problem):
     with pytest.raises(BadInput) as refusal:
