@@ -10,7 +10,7 @@ They show what `work_precision --suite --peers --output DIR` wrote.
 
 The table stands between ``<!-- work_precision -->`` and ``<!-- end -->``. `make study-full` does
 both. The arguments may be several files, studies of single problems for example; the last one with
-a problem counts.
+a problem counts. docs/work_precision.json may be one of them: what it has stands.
 """
 
 import json
@@ -60,8 +60,13 @@ def _study(one):
 
 def text(found):
     """Return the table, and the conditions of its measurement."""
-    studies = [_study(one) for one in found['studies']]
-    lines = [*dict.fromkeys(studies), '',
+    lines = []
+    for study in found['studies']:
+        if len(found['studies']) > 1:
+            names = ', '.join(name.replace('_', ' ') for name in study['problems'])
+            lines += ['', f'{names[0].upper()}{names[1:]}:']
+        lines.append(_study(study))
+    lines += ['',
              f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |',
              f'|---|{"---|" * len(table.LEVELS)}']
     for result in found['results']:
@@ -87,10 +92,20 @@ def text(found):
 def main(*paths):
     """Write the page, the pictures and the data."""
     read = [json.loads(pathlib.Path(path).read_text()) for path in paths]
-    measured = {result['problem']: result for one in read for result in one['results']}
-    results = [measured[name] for name in suite.NAMES if name in measured]
-    found = {'studies': [{key: value for key, value in one.items() if key != 'results'}
-                         for one in read], 'results': results}
+    measured, from_study, studies = {}, {}, []
+    for one in read:
+        # each study with the problems that it measured; a file of these pages has several
+        parts = one.get('studies') or [{key: one[key] for key in one if key != 'results'}]
+        for study in parts:
+            names = study.get('problems') or [result['problem'] for result in one['results']]
+            from_study |= dict.fromkeys(names, len(studies))
+            studies.append(study)
+        measured |= {result['problem']: result for result in one['results']}
+    names = [name for name in suite.NAMES if name in measured]
+    results = [measured[name] for name in names]
+    found = {'studies': [study | {'problems': of} for number, study in enumerate(studies)
+                         if (of := [name for name in names if from_study[name] == number])],
+             'results': results}
     page = DOCS / 'accuracy.md'
     page.write_text(MARK.sub(lambda match: f'{match[1]}{text(found)}{match[2]}', page.read_text()))
     DOCS.joinpath('work_precision.json').write_text(json.dumps(found) + '\n')

@@ -74,11 +74,43 @@ def test_a_torsion_spring_swings_as_its_formula_says():
                    - phi) < 1e-40
 
 
+def test_drag_by_squares_slows_a_spin_as_its_formula_says():
+    """I omega' = -(Q + D l^3) omega^2 about a principal axis, l the distance of the centre."""
+    scene = parse_scene('scene: vane\nbody: {mass: 1, inertia: [1, 2, 2.5], '
+                        'inertia_about: origin, center_of_mass: [0.5, 0, 0]}\n'
+                        'constraint: pivot\neffects: [drag: {quadratic: 2, '
+                        'angular_quadratic: 0.5}]\ninitial: {angular_velocity: [0, 0, 4]}\n')
+    with mp.workprec(BITS + 64):
+        _, omega = Turning(inputs.of(scene, inputs.exactly), BITS).go(1.5)
+        assert abs(omega[2] - 4 / (1 + mpf(3) / 4 * 4 * mpf(3) / 2 / mpf(2.5))) < 1e-40
+        assert omega[:2] == (0, 0)
+
+
+def test_a_tied_body_keeps_its_energy():
+    """That of the spring is k (d - l)^2/2; the reference forms its torque alone."""
+    scene = suite.problem('tied_top').scene
+    with mp.workprec(BITS + 64):
+        given = inputs.of(scene, inputs.exactly)
+        (at, anchor, stiffness, length), = given.ties
+
+        def energy(q, omega):
+            spin = inputs.turned_back(given.axes, omega)
+            far = [a - b for a, b in zip(inputs.turned(q, at), anchor)]
+            stretch = mp.sqrt(inputs.dot(far, far)) - length
+            return (inputs.dot(given.moments, [w * w for w in spin]) / 2
+                    + given.mass * given.g * inputs.turned(q, given.arm)[2]
+                    + stiffness * stretch ** 2 / 2)
+        moved = Turning(given, BITS).go(0.1)
+        assert abs(energy(*moved) - energy(given.orientation, given.omega)) < 1e-40
+
+
 @pytest.mark.parametrize(('constraint', 'effect'), [
     ('free', 'gravity_gradient: {mu: 3e14, position: [7e6, 0, 0]}'),
     ('free', 'gravity: {g: [0, 1, 9]}'), ('free', 'drag: {quadratic: 0.1}'),
     ('free', "torque: {value: ['-wx', 0, 0]}"), ('free', 'rotor: {axis: [0, 0, 1], momentum: 1}'),
-    ('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 0, 0], stiffness: 2}'),
+    ('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 0, 0], stiffness: 2, damping: 0.1}'),
+    ('free', 'spring: {at: [0, 0, 1], anchor: [1, 0, 0], stiffness: 2}'),
+    ('pivot', 'drag: {quadratic: [[1, 0, 0], [0, 2, 0], [0, 0, 2]]}'),
     ('pivot', 'internal_dissipation: {coefficient: 0.1}'),
     ("{pivot: {motion: [0, 0, '0.1*sin(t)']}}", 'gravity: {g: 9.81}')])
 def test_what_no_reference_knows_is_refused(constraint, effect):

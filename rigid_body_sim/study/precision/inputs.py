@@ -13,7 +13,7 @@ import yaml
 from mpmath import mp, mpf
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.effects.drag import Drag
+from rigid_body_sim.scene.effects.drag import KEYS, Drag, ShapedDrag
 from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.effects.internal_dissipation import InternalDissipation
 from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
@@ -22,7 +22,7 @@ from rigid_body_sim.scene.effects.strike import Strike
 from rigid_body_sim.scene.effects.torque import Torque
 
 KINDS = 'free', 'pivot', 'hinge', 'table'
-LAWS = Drag, Gravity, InternalDissipation, SlidingFriction, Spring, Strike, Torque
+LAWS = Drag, Gravity, InternalDissipation, ShapedDrag, SlidingFriction, Spring, Strike, Torque
 """Constraints, and kinds of effects, that references know."""
 ZERO = (mpf(0),) * 3
 
@@ -79,6 +79,11 @@ class Inputs:
     stiffness, slack : mpf
         Of a torsion spring at a hinge, N m/rad: the torque -stiffness (phi - slack), phi (rad)
         counted from the orientation at the start.
+    quadratic, angular_quadratic : mpf
+        Coefficients of drag by squares at a bearing, N s^2/m^2 and N m s^2.
+    ties : tuple
+        Springs at a pivot: (point (m, body axes), anchor from the pivot (m, world axes),
+        stiffness (N/m), length (m)).
     """
 
     kind: str
@@ -100,6 +105,9 @@ class Inputs:
     velocity: tuple
     stiffness: object
     slack: object
+    quadratic: object
+    angular_quadratic: object
+    ties: tuple
 
 
 def unit(vector):
@@ -121,8 +129,9 @@ def of(scene, move):
     arm = tuple(c - p for c, p in zip(center, through)) if held else ZERO
     refuse_unknown(scene)
     stiffness, slack, damping = torsion(scene, move)
-    gravity, drag, inner, friction = map(
-        scene.effect, ('gravity', 'drag', 'internal_dissipation', 'sliding_friction'))
+    gravity, inner, friction = map(
+        scene.effect, ('gravity', 'internal_dissipation', 'sliding_friction'))
+    drag = dict(zip(KEYS, map(move, drags(scene)), strict=True))
     couples = tuple((effect.times, tuple(tuple(map(move, value)) for value in effect.values),
                      effect.frame)
                     for effect in scene.effects if effect.name == 'torque')
@@ -139,11 +148,12 @@ def of(scene, move):
         unit(tuple(map(move, inertia.axes))), arm,
         unit(tuple(map(move, constraint.axis))) if kind == 'hinge' else None,
         move(gravity.g if gravity else friction.g if friction else 0.0),
-        move(drag.linear if drag else 0.0), move(drag.angular if drag else 0.0) + damping,
+        drag['linear'], drag['angular'] + damping,
         move(inner.coefficient if inner else 0.0), move(friction.mu if friction else 0.0),
         move(body.radius if kind == 'table' else 0.0), couples, tuple(strikes),
         unit(tuple(map(move, initial.orientation))), tuple(map(move, initial.angular_velocity)),
-        tuple(map(move, initial.velocity)), stiffness, slack)
+        tuple(map(move, initial.velocity)), stiffness, slack,
+        drag['quadratic'], drag['angular_quadratic'], ties(scene, move))
 
 
 def refuse_unknown(scene):
@@ -153,12 +163,54 @@ def refuse_unknown(scene):
         raise BadInput(f'{scene.name}: constraint', f'no reference is made for {held!r}',
                        ', '.join(KINDS))
     for effect in scene.effects:
-        if (not isinstance(effect, LAWS) or (isinstance(effect, Spring) and effect.at is not None)
+        if (not isinstance(effect, LAWS)
+                or (isinstance(effect, Spring) and effect.at is not None and held != 'pivot')
+                or (isinstance(effect, ShapedDrag) and held not in ('pivot', 'hinge'))
                 or (isinstance(effect, InternalDissipation) and held != 'free')):
-            raise BadInput(
-                f'{scene.name}: effects', f'no reference is made for {effect.name} as it is here',
-                'gravity downward, torques in numbers, strikes, drag by two numbers, internal '
-                'dissipation of a free body, a torsion spring, sliding friction')
+            raise _unknown(scene, effect.name)
+
+
+def _unknown(scene, name):
+    return BadInput(
+        f'{scene.name}: effects', f'no reference is made for {name} as it is here',
+        'gravity downward, torques in numbers, strikes, drag by numbers (by squares at a bearing '
+        'only), internal dissipation of a free body, a torsion spring, undamped springs at a '
+        'pivot, sliding friction')
+
+
+def drags(scene):
+    """Return the coefficients of drag, in the order of KEYS; those that a scene lacks are 0."""
+    effect = scene.effect('drag')
+    if not isinstance(effect, ShapedDrag):
+        return (effect.linear, effect.angular, 0.0, 0.0) if effect else (0.0,) * 4
+    found = [getattr(effect, key) for key in KEYS]
+    if any(matrix != tuple(tuple(matrix[0][0] if i == k else 0.0 for k in range(3))
+                           for i in range(3)) for matrix in found):
+        raise _unknown(scene, 'drag by matrices')
+    return tuple(matrix[0][0] for matrix in found)
+
+
+def ties(scene, move):
+    """Return the springs between a point of a body at a pivot and one of the world (Inputs).
+
+    The numbers are read from the scene's text, as those of a torsion spring.
+    """
+    found = []
+    for settings in _springs(scene):
+        if 'at' not in settings:
+            continue
+        if settings.get('damping'):
+            raise _unknown(scene, 'a spring with damping')
+        anchor = tuple(move(a) - move(b) for a, b in zip(
+            settings['anchor'], scene.initial.position, strict=True))
+        found.append((tuple(map(move, settings['at'])), anchor, move(settings['stiffness']),
+                      move(settings.get('length', 0.0))))
+    return tuple(found)
+
+
+def _springs(scene):
+    return [one['spring'] for one in yaml.safe_load(scene.text).get('effects', ())
+            if isinstance(one, dict) and 'spring' in one]
 
 
 def torsion(scene, move):
@@ -168,12 +220,11 @@ def torsion(scene, move):
     as trees, so the numbers are read from the scene's text.
     """
     read = yaml.safe_load(scene.text)
-    settings = [one['spring'] for one in read.get('effects', ())
-                if isinstance(one, dict) and 'spring' in one]
+    settings = [one for one in _springs(scene) if 'at' not in one]
     if not settings:
         return ZERO
     if len(settings) > 1:
-        raise BadInput(f'{scene.name}: effects', 'no reference is made for several springs', 'one')
+        raise _unknown(scene, 'several torsion springs')
     k, angle, c = (move(settings[0].get(key, 0.0)) for key in ('stiffness', 'angle', 'damping'))
     return k, angle - move((read.get('initial') or {}).get('angle', 0.0)), c
 

@@ -126,6 +126,29 @@ _PROBLEMS = {
             '{angle: -1.2, rate: 3.0}',
         ),
     ),
+    'top_in_air': (
+        'an asymmetric top that the air slows by the square of its velocity',
+        10.0,
+        _written(
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, '
+            'center_of_mass: [0.01, 0.005, 0.1]}',
+            'pivot',
+            '[gravity: {g: 9.81}, drag: {quadratic: 0.2, angular_quadratic: 1.0e-5}]',
+            '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
+        ),
+    ),
+    'tied_top': (
+        'an asymmetric top that a spring ties to a point beside it',
+        10.0,
+        _written(
+            '{mass: 1.0, inertia: [0.03, 0.022, 0.012], inertia_about: origin, '
+            'center_of_mass: [0.01, 0.005, 0.1]}',
+            'pivot',
+            '[gravity: {g: 9.81}, spring: {at: [0, 0, 0.15], anchor: [0.3, 0, 0.2], '
+            'stiffness: 30.0, length: 0.1}]',
+            '{euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}',
+        ),
+    ),
     'sleeping_top_unstable': (
         'P_gamma^2 at 0.999 of 4 I1 M g l, a seed of 1e-6 rad/s',
         20.0,

@@ -11,8 +11,10 @@ own):
 q is the attitude (x, y, z, w); g_j are the directions fixed in the world that a torque needs (the
 vertical; the direction of a torque given in world axes); u is internal dissipation;
 torque = K + D omega + sum of A_j g_j: couples in the body, drag, weight and couples in the world.
-At a hinge only n . torque acts, and a torsion spring pulls by the angle: phi' = n . omega. The
-motion of the centre of mass of a free body does not act back on its rotation. Nothing here uses a
+Drag by squares adds -c (omega . M omega)^(1/2) M omega; a spring of stiffness k and length l from
+a point a to an anchor b (in the body's axes) adds k (1 - l/d) a x b with d = |a - b|. At a hinge
+only n . torque acts, and a torsion spring pulls by the angle: phi' = n . omega. The motion of the
+centre of mass of a free body does not act back on its rotation. Nothing here uses a
 closed form.
 
 Numbers are integers in units of 2^-bits, so that a coefficient of the series, a convolution, is
@@ -152,6 +154,12 @@ class Turning:
         held = given.linear if given.kind in ('pivot', 'hinge') else mpf(0)
         damping = _matrix(lambda e: [-given.angular * a - held * b
                                      for a, b in zip(e, cross(self._arm, cross(e, self._arm)))])
+        ties = [tie for tie in given.ties if any(tie[1]) and any(tie[0])]
+        for at, anchor, stiffness, _ in ties:
+            at, far = turned_back(self._frame, at), mp.sqrt(dot(anchor, anchor))
+            self._directions.append(turned_back(self._q, unit(anchor)))
+            columns.append(_matrix(lambda e, at=at, size=stiffness * far: [
+                size * x for x in cross(at, e)]))
         weight = max((abs(x) for matrix in columns for row in matrix for x in row),
                      default=mpf(0)) + max(map(abs, constant)) + given.stiffness
         heavy = [i for i in ([self._moment] if self._hinged else given.moments) if i]
@@ -168,6 +176,20 @@ class Turning:
         self._axis = [fixed(x) for x in given.axis or ZERO]
         self._damping = answered(damping, U) if any(x for row in damping for x in row) else None
         self._pull = [answered(matrix, U * U) for matrix in columns]
+        # the square of d and the share l of each spring: its direction, numbers, and l
+        self._tied = []
+        for place, (at, anchor, _, length) in enumerate(ties, len(columns) - len(ties)):
+            if length:
+                at = turned_back(self._frame, at)
+                far = mp.sqrt(dot(anchor, anchor))
+                self._tied.append((place, [fixed(-2 * far * x) for x in at],
+                                   fixed(dot(at, at) + dot(anchor, anchor)), fixed(length)))
+        of_arm = _matrix(lambda e: cross(self._arm, cross(e, self._arm)))
+        self._squares = [
+            ([[fixed(x) for x in row] for row in form],
+             answered([[-c * x for x in row] for row in form], 1))
+            for c, form in ((given.quadratic, of_arm),
+                            (given.angular_quadratic, _matrix(lambda e: e))) if c]
         i1, i2, i3 = given.moments
         self._gyro = ([0, 0, 0] if self._hinged else [fixed(d / i) if i else 0 for d, i in zip(
             (i2 - i3, i3 - i1, i1 - i2), given.moments)])
@@ -189,6 +211,8 @@ class Turning:
         angle = series[-1]
         lag = [[], [], []]                          # u
         back, turn = [[], [], []], [[], [], []]     # omega and omega + u, newest coefficient first
+        speeds = [[] for _ in self._squares]        # (omega . M omega)^(1/2)
+        squares, inverses = [[] for _ in self._tied], [[] for _ in self._tied]    # d^2, 1/d
 
         def times(x, b):
             return sum(map(mul, x, b))
@@ -224,6 +248,22 @@ class Turning:
                              for rate, (a, b, c) in zip(rates, matrix)]
             if self._twist:
                 rates = [rate + a * angle[k] for rate, a in zip(rates, self._twist)]
+            for speed, (form, matrix) in zip(speeds, self._squares):
+                square = sum(form[i][j] * (times(omega[i], back[j]) >> bits)
+                             for i in range(3) for j in range(3)) >> bits
+                speed.append(_root(speed, square, bits))
+                x, y, z = (times(speed, b) >> bits for b in back)
+                rates = [rate + a * x + b * y + c * z for rate, (a, b, c) in zip(rates, matrix)]
+            for square, inverse, (place, arm, constant, length) in zip(
+                    squares, inverses, self._tied):
+                direction = directions[place]
+                square.append((sum(a * g[k] for a, g in zip(arm, direction)) >> bits)
+                              + (constant if k == 0 else 0))
+                inverse.append(_inverse_root(inverse, square, bits))
+                newest = inverse[::-1]
+                x, y, z = (-length * (times(g, newest) >> bits) >> bits for g in direction)
+                rates = [rate + a * x + b * y + c * z
+                         for rate, (a, b, c) in zip(rates, self._pull[place])]
             b1, b2, b3 = turn
             new = [(times(qw, b1) + times(qy, b3) - times(qz, b2)) // n >> half,
                    (times(qw, b2) + times(qz, b1) - times(qx, b3)) // n >> half,
@@ -258,6 +298,22 @@ class Turning:
         for c in reversed(coefficients):
             total = c + (total * step >> self.bits)
         return total
+
+
+def _root(root, square, bits):
+    """Return the next coefficient of the root of a series, from the same one of the square."""
+    if not root:
+        return math.isqrt(square << bits)
+    return ((square << bits) - sum(map(mul, root[1:], root[:0:-1]))) // (2 * root[0])
+
+
+def _inverse_root(root, square, bits):
+    """Return the next coefficient of 1/sqrt of a series: 2 r' s + r s' = 0."""
+    k = len(root)
+    if not root:
+        return (1 << 2 * bits) // math.isqrt(square[0] << bits)
+    total = sum((2 * k - j) * square[j] * root[k - j] for j in range(1, k + 1))
+    return -total // (2 * k * square[0])
 
 
 def _matrix(image):

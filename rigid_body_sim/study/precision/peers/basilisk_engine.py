@@ -29,7 +29,7 @@ def runners(problem, reference):
     if kind != 'free':
         raise RefusedError(f'{HELD[kind]}: its hub flies free')
     given = body.of(problem.scene)
-    if given.inner or np.any(given.damping) or np.any(given.push):
+    if given.inner or np.any(given.damping) or np.any(given.push) or given.angular_quadratic:
         raise RefusedError('drag, internal dissipation or a torque fixed in the world: '
                            'modules of its own would have to be written')
     steps = tuple(dict.fromkeys(_whole(problem.duration, step)

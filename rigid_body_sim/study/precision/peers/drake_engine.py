@@ -115,6 +115,7 @@ def _joined(plant, turning, scene, numbers):
     from pydrake.multibody.tree import (
         BallRpyJoint,
         FixedOffsetFrame,
+        LinearSpringDamper,
         QuaternionFloatingJoint,
         RevoluteJoint,
         RevoluteSpring,
@@ -139,6 +140,10 @@ def _joined(plant, turning, scene, numbers):
             turning, RigidTransform(), Sphere(numbers.radius), 'ball', friction)
         return plant.AddJoint(QuaternionFloatingJoint('flight', world, frame))
     damping = numbers.damping[0, 0]
+    if numbers.tie:
+        at, anchor, stiffness, length = numbers.tie
+        plant.AddForceElement(LinearSpringDamper(
+            plant.world_body(), anchor, turning, at, length, stiffness, 0.0))
     if scene.constraint.kind == 'free':
         return plant.AddJoint(QuaternionFloatingJoint('flight', world, frame, damping))
     return plant.AddJoint(BallRpyJoint('pivot', world, frame, damping))

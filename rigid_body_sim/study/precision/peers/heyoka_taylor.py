@@ -124,6 +124,7 @@ def turning(numbers, number, x, y, z, w, *omega):
     columns = [[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
                [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
                [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)]]
+    driven = [*_slowed(numbers, number, total, omega), *_tied(numbers, number, total, columns)]
     rates = []
     for k in range(3):
         j, l = (k + 1) % 3, (k + 2) % 3
@@ -134,7 +135,9 @@ def turning(numbers, number, x, y, z, w, *omega):
                        *((numbers.push[n] / i[k], columns[k][n]) for n in range(3)),
                        *((-numbers.damping[k, n] / i[k], omega[n]) for n in range(3)))
         constant = number(numbers.torque[k]) / i[k]
-        parts = (plus(inertia, couple) if inertia is not None or couple is not None
+        acting = [one[k] if one[k] is None else one[k] / i[k] for one in driven]
+        parts = (plus(inertia, couple, *acting)
+                 if any(one is not None for one in (inertia, couple, *acting))
                  else 0.0 * omega[k])
         rates.append(parts + constant if constant else parts)
     return [
@@ -144,3 +147,30 @@ def turning(numbers, number, x, y, z, w, *omega):
         -0.5 * (x * a[0] + y * a[1] + z * a[2]),
         *rates,
     ]
+
+
+def _slowed(numbers, number, total, omega):
+    """Return the torques of drag by squares, a list."""
+    import heyoka
+    found = []
+    for coefficient, form in ((numbers.quadratic, numbers.resisting),
+                              (numbers.angular_quadratic, np.eye(3))):
+        if coefficient:
+            slowed = [total(*zip(row, omega)) for row in form]
+            square = sum(w * s for w, s in zip(omega[1:], slowed[1:])) + omega[0] * slowed[0]
+            speed = number(-coefficient) * heyoka.sqrt(square)
+            found.append([speed * s for s in slowed])
+    return found
+
+
+def _tied(numbers, number, total, columns):
+    """Return the torque of a spring, a list of one or none."""
+    import heyoka
+    if not numbers.tie:
+        return []
+    at, anchor, stiffness, length = numbers.tie
+    at, anchor = at.astype(number), anchor.astype(number)
+    b = [total(*zip(anchor, column)) for column in columns]
+    square = total(*zip(-2 * at, b)) + number(at @ at + anchor @ anchor)
+    pull = number(stiffness) - number(stiffness * length) / heyoka.sqrt(square)
+    return [[pull * total((at[k - 2], b[k - 1]), (-at[k - 1], b[k - 2])) for k in range(3)]]

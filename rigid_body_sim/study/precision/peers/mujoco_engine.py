@@ -18,7 +18,10 @@ gravity="0 0 {gravity!r}" cone="elliptic">
 <flag contact="{contact}"/></option><worldbody>{table}
 <body pos="{origin}" quat="{attitude}">{joint}\
 <inertial pos="{place}" mass="{mass!r}" fullinertia="{inertia}"/>{shape}</body>
-</worldbody></mujoco>"""
+{anchor}</worldbody>{tendon}</mujoco>"""
+SITE = '<site name="{0}" pos="{1}"/>'
+TENDON = ('<tendon><spatial stiffness="{0!r}" springlength="{1!r}"><site site="at"/>'
+          '<site site="anchor"/></spatial></tendon>')
 TABLE = '<geom type="plane" size="0 0 1" friction="{0!r} 0 0"/>'
 BALL = '<geom type="sphere" size="{1!r}" friction="{0!r} 0 0"/>'
 
@@ -51,9 +54,14 @@ def _text(scene, numbers, integrator, step):
     g = (gravity.g if gravity and kind in ('pivot', 'hinge') else numbers.g if kind == 'table'
          else 0.0)
     attitude, origin, table, shape = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), '', ''
+    anchor, tendon = '', ''
     if isinstance(numbers, body.Body):
         inertia, arm = numbers.about_center(scene)
         joint = f'<joint type="{"free" if kind == "free" else "ball"}"/>'
+        if numbers.tie:
+            at, place, stiffness, length = numbers.tie
+            shape, anchor = SITE.format('at', _spaced(at)), SITE.format('anchor', _spaced(place))
+            tendon = TENDON.format(stiffness, length)
     else:
         inertia, arm = scene.body.about_center.matrix, np.array(scene.body.center_of_mass)
         joint = '<joint type="free"/>'
@@ -71,6 +79,7 @@ def _text(scene, numbers, integrator, step):
     return SCENE.format(
         integrator=integrator, step=step, gravity=-g,
         contact='enable' if kind == 'table' else 'disable', table=table, joint=joint, shape=shape,
+        anchor=anchor, tendon=tendon,
         mass=scene.body.mass, origin=_spaced(origin),
         attitude=_spaced((attitude[3], *attitude[:3])), place=_spaced(arm),
         inertia=_spaced(inertia[pair]

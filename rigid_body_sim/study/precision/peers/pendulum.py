@@ -13,6 +13,7 @@ import numpy as np
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.study.precision import inputs
 from rigid_body_sim.study.precision.peers import start
+from rigid_body_sim.study.precision.runner import RefusedError
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,13 @@ def of(scene):
     moment = axis @ body.about_center.matrix.astype(long) @ axis + body.mass * (out @ out)
     # vertical in the body at phi = 0; the weight's torque about the axis is M g n . (z x r)
     up = np.array(rotate_back(*q, 0.0, 0.0, 1.0), long)
-    gravity, drag = scene.effect('gravity'), scene.effect('drag')
+    gravity = scene.effect('gravity')
+    linear, angular, quadratic, angular_quadratic = inputs.drags(scene)
+    if quadratic or angular_quadratic:
+        raise RefusedError('drag by squares on a hinge: the harness gives peers smooth motions '
+                           'only')
     weight = body.mass * long(gravity.g if gravity else 0.0)
-    torque, friction = long(0), drag.angular + drag.linear * (out @ out) if drag else long(0)
+    torque, friction = long(0), angular + linear * (out @ out)
     for effect in scene.effects:
         if effect.name == 'torque':
             torque += (axis @ effect.values[0] if effect.frame == 'body'

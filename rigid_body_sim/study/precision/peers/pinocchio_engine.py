@@ -6,7 +6,6 @@ The methods are the semi-implicit Euler step of its users, and RK4 on the group.
 
 import numpy as np
 
-from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.study.precision.peers import body, given
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
@@ -50,12 +49,10 @@ def _turning(scene, numbers, step_of, step):
     inertia, arm = numbers.about_center(scene)
     pinocchio, model, data = _model(
         scene, pinocchio.JointModelSpherical(), pinocchio.SE3.Identity(), arm, inertia)
-    still = not (np.any(numbers.torque) or np.any(numbers.push) or np.any(numbers.damping))
-    nothing = np.zeros(3)
+    torques, nothing = numbers.torques(), np.zeros(3)
 
     def rate(q, v):
-        torque = (nothing if still
-                  else numbers.torque + rotate_back(*q, *numbers.push) - numbers.damping @ v)
+        torque = sum((one(q, v) for one in torques), nothing)
         return pinocchio.aba(model, data, q, v, torque)
     return _looped(pinocchio, model, rate, numbers.start[:4], numbers.start[4:], step_of, step,
                    lambda q, v: numbers.state((*q, *v)))

@@ -94,24 +94,22 @@ def _turning(scene, numbers, step):
                                 (-arm).tolist(), [0, 0, 0], **world)
     q, omega = numbers.start[:4], numbers.start[4:]
     spin, place = rotate(*q, *omega), np.array(rotate(*q, *arm))
+    torques = numbers.torques()
 
     def again():
         engine.resetBasePositionAndOrientation(one, place.tolist(), q.tolist(), **world)
         engine.resetBaseVelocity(one, np.cross(spin, place).tolist(), list(spin), **world)
 
     def push():
-        now, torque = engine.getBasePositionAndOrientation(one, **world)[1], numbers.torque
-        if np.any(numbers.damping):
-            torque = (torque - numbers.damping @ rotate_back(
-                *now, *engine.getBaseVelocity(one, **world)[1]))
-        engine.applyExternalTorque(one, -1, np.add(rotate(*now, *torque), numbers.push).tolist(),
-                                   engine.WORLD_FRAME, **world)
+        now = engine.getBasePositionAndOrientation(one, **world)[1]
+        omega = np.array(rotate_back(*now, *engine.getBaseVelocity(one, **world)[1]))
+        torque = rotate(*now, *sum(one(now, omega) for one in torques))
+        engine.applyExternalTorque(one, -1, torque, engine.WORLD_FRAME, **world)
 
     def state():
         q = engine.getBasePositionAndOrientation(one, **world)[1]
         return numbers.state((*q, *rotate_back(*q, *engine.getBaseVelocity(one, **world)[1])))
-    driven = np.any(numbers.torque) or np.any(numbers.push) or np.any(numbers.damping)
-    return _stepping(engine, world, step, again, push if driven else None, state)
+    return _stepping(engine, world, step, again, push if torques else None, state)
 
 
 def _swinging(scene, numbers, step):
