@@ -157,9 +157,9 @@ def _slowed(numbers, number, total, omega):
                               (numbers.angular_quadratic, np.eye(3))):
         if coefficient:
             slowed = [total(*zip(row, omega)) for row in form]
-            square = sum(w * s for w, s in zip(omega[1:], slowed[1:])) + omega[0] * slowed[0]
-            speed = number(-coefficient) * heyoka.sqrt(square)
-            found.append([speed * s for s in slowed])
+            first, *more = [w * s for w, s in zip(omega, slowed) if s is not None]
+            speed = number(-coefficient) * heyoka.sqrt(sum(more, first))
+            found.append([s if s is None else speed * s for s in slowed])
     return found
 
 
@@ -173,4 +173,5 @@ def _tied(numbers, number, total, columns):
     b = [total(*zip(anchor, column)) for column in columns]
     square = total(*zip(-2 * at, b)) + number(at @ at + anchor @ anchor)
     pull = number(stiffness) - number(stiffness * length) / heyoka.sqrt(square)
-    return [[pull * total((at[k - 2], b[k - 1]), (-at[k - 1], b[k - 2])) for k in range(3)]]
+    levers = [total((at[k - 2], b[k - 1]), (-at[k - 1], b[k - 2])) for k in range(3)]
+    return [[lever if lever is None else pull * lever for lever in levers]]
