@@ -60,12 +60,13 @@ def _study(one):
 
 def text(found):
     """Return the table, and the conditions of its measurement."""
-    lines = []
+    measured = {}    # conditions -> the problems that were measured in them
     for study in found['studies']:
-        if len(found['studies']) > 1:
-            names = ', '.join(name.replace('_', ' ') for name in study['problems'])
-            lines += ['', f'{names[0].upper()}{names[1:]}:']
-        lines.append(_study(study))
+        measured.setdefault(_study(study), []).extend(study['problems'])
+    lines = []
+    for said, problems in measured.items():
+        names = ', '.join(name.replace('_', ' ') for name in problems)
+        lines += [said if len(measured) == 1 else f'- {names}: {said}']
     lines += ['',
              f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |',
              f'|---|{"---|" * len(table.LEVELS)}']
@@ -74,7 +75,8 @@ def text(found):
     refusals = {}
     for result in found['results']:
         for name, reason in result['refused'].items():
-            refusals.setdefault((name, reason), []).append(result['problem'].replace('_', ' '))
+            refusals.setdefault((name, reason.split('. ')[0]), []).append(
+                result['problem'].replace('_', ' '))
     lines += ['', 'What was refused, and why:', '']
     lines += [f'- {name}: {reason} ({", ".join(problems)})'
               for (name, reason), problems in refusals.items()]
