@@ -92,7 +92,7 @@ def settled(y, c):
 
 @compiled
 def angle_between(first, second, n):
-    """Return the angle about n (body axes) from one attitude to another, within two turns."""
+    """Return the angle about n (body axes) from one attitude to another, from -2 pi to 2 pi."""
     x, y, z, w = first
     ux, uy, uz, uw = multiply(-x, -y, -z, w, *second)
     return 2.0 * atan2(dot(n, (ux, uy, uz)), uw)
@@ -100,7 +100,7 @@ def angle_between(first, second, n):
 
 @compiled
 def less_turns(turned, phi):
-    """Return an angle to which phi is added, less two turns if the sum is not within them."""
+    """Return an angle, less two turns if its sum with phi is not between -2 pi and 2 pi."""
     if turned + phi > TURN:
         return turned - TWO_TURNS - REST
     return turned + TWO_TURNS + REST if turned + phi <= -TURN else turned

@@ -18,7 +18,7 @@ HINGE = ('angle', 'rate')
 STATE_NAMES = (*TIME, *PLACE, *VELOCITY, *ATTITUDE, *RATES, *WORLD_RATES, *HINGE)
 """Names of the state in expressions: time (s); place (m) and velocity (m/s) of the body's origin,
 world axes; the quaternion body -> world; angular velocity (rad/s) in body and in world axes; the
-angle of a hinge (rad, within two turns) and its rate (rad/s)."""
+angle of a hinge (rad, from -2 pi to 2 pi) and its rate (rad/s)."""
 PLAIN = (0.0, 1.0, 2.0, 0.5)
 """Numbers that stay in the code, as they come from rules of calculus."""
 INTEGER_POWERS = range(2, 9)
