@@ -167,7 +167,10 @@ def of(scene):
 
 @numba.njit(cache=True)
 def rates(p, x, y, z, w, w1, w2, w3):
-    """Return the rates of q and omega for p = Body.numbers()."""
+    """Return the rates of q and omega for p = Body.numbers().
+
+    More than forty lines: each law once, in scalars, as a user writes it for speed.
+    """
     i1, i2, i3 = p[0], p[1], p[2]
     u1, u2, u3 = (
         p[24] * (i2 - i3) * w2 * w3,
