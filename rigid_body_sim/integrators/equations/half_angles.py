@@ -54,7 +54,7 @@ class Sums:
                     ONE if one.args[0].startswith(UNKNOWN) else one}
         if one in self._half:
             return {(one, ONE): ONE}
-        a, b = (*(sums[arg] for arg in one.args), {})[:2]
+        a, b, *_ = *(sums[arg] for arg in one.args), {}
         match one.op:
             case '+':
                 return _total(a, b)
