@@ -30,7 +30,7 @@ from rigid_body_sim.numerics.vectors import apply
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene
 
-STIFF = 10.0    # multiple of the rotation rate above which dissipation is stiff
+STIFF = 10.0    # multiple of the body's rate above which internal dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
 KEPT = 64       # choices
 HORIZON = 100.0
@@ -175,19 +175,29 @@ def _general(scene, tolerance, step=None, wrench=None, horizon=HORIZON, wanted=m
 
 
 def _stiff(scene):
-    """Return what is stiff in a scene, a set of the names in Method.STIFF.
-
-    The rate of internal dissipation, c L^2/I, is c L times that of the rotation, L/I.
-    """
+    """Return what is stiff in a scene, a set of the names in Method.STIFF."""
     found = set()
-    if scene.inner_dissipation != 0.0:
-        inertia = scene.body.about_center.matrix.tolist()
-        momentum = apply(inertia, scene.initial.angular_velocity.tolist())
-        if scene.inner_dissipation * hypot3(*momentum) > STIFF:
-            found.add('dissipation')
+    if max(_inner_rates(scene)) > STIFF:
+        found.add('dissipation')
     if measured.is_stiff(scene):
         found.add('drag')
     return found
+
+
+def _inner_rates(scene):
+    """Return the rates of internal dissipation relative to the rotation that it ends in.
+
+    The body ends up at L/I_max. The rate about an axis of the moment I is c L^2/I, so the
+    quotients are c L about the axis of the largest moment, and c L I_max/I_min, which is large for
+    a slim body.
+    """
+    if scene.inner_dissipation == 0.0:
+        return 0.0, 0.0
+    inertia = scene.constraint.inertia(scene.body)
+    momentum = apply(inertia.matrix.tolist(), scene.initial.angular_velocity.tolist())
+    least = min(moment for moment in inertia.moments if moment > 0.0)
+    rate = scene.inner_dissipation * hypot3(*momentum)
+    return rate, rate * (max(inertia.moments) / least)
 
 
 def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
@@ -255,11 +265,11 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
         raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
                        'leave it out, or name a method that does')
-    able, stiff = runnable(scene), _stiff(scene)
+    able, stiff, wobbles = runnable(scene), _stiff(scene), _inner_rates(scene)[0] > STIFF
     method, tolerance, prototype = integrator, accuracy, None
     if integrator == 'auto':
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
-        finer = min(accuracy, ENDING) if 'dissipation' in stiff else accuracy
+        finer = min(accuracy, ENDING) if wobbles else accuracy
         settled = settled or settling.settle(scene, fit, finer, horizon)
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:
@@ -268,7 +278,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
         possible = ', '.join(methods_for(scene)) or 'none'
         raise BadInput('integrator', f'{method!r} cannot run the scene {scene.name}',
                        f'those that can: {possible}')
-    if 'dissipation' in stiff and tolerance is not None:
+    if wobbles and tolerance is not None:
         tolerance = min(tolerance, ENDING)
     if prototype is not None and step is None:
         prototype = prototype.at(tolerance, wanted=accuracy)

@@ -25,7 +25,7 @@ from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import angles_between, normalised
+from rigid_body_sim.numerics.rotations import angles_between, matrix, normalised
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, VELOCITY
 
@@ -267,15 +267,25 @@ def _moved(scene, start, signs, many):
     """Return a start moved by so many half ulps of its numbers, with signs."""
     vector, by = start.copy(), HALF_ULP * many * np.array(signs, dtype=float)
     vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + by[OF_Q]).tolist())
-    size = np.abs(vector[ANGULAR_VELOCITY])
-    inertia = scene.constraint.inertia(scene.body)
-    if tuple(inertia.axes) != IDENTITY and min(inertia.moments) > 0.0:
-        size = np.full(3, hypot3(*size.tolist()))    # components along the principal axes mix
     if scene.constraint.axis is not None:
         vector[ANGULAR_VELOCITY] *= 1.0 + by[OF_OMEGA][0]    # the rotation stays along the hinge
     else:
-        vector[ANGULAR_VELOCITY] += by[OF_OMEGA] * size
+        vector[ANGULAR_VELOCITY] += _rounded(scene, vector[ANGULAR_VELOCITY], by[OF_OMEGA])
     return vector
+
+
+def _rounded(scene, omega, by):
+    """Return what relative errors `by` of components along the principal axes do to a rate, rad/s.
+
+    A component along a principal axis rounds with the products that it is the sum of. About an
+    axis of zero moment nothing turns.
+    """
+    inertia = scene.constraint.inertia(scene.body)
+    if tuple(inertia.axes) == IDENTITY:
+        return by * np.abs(omega)
+    axes = np.array(matrix(*inertia.axes))
+    sizes = (np.abs(axes.T) * np.abs(omega)).sum(axis=1)
+    return (axes * (by * sizes * (np.array(inertia.moments) > 0.0))).sum(axis=1)
 
 
 def forecast(errors, times, accuracy, horizon):

@@ -91,6 +91,26 @@ def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_
     assert 0.9 * error < choice.expected_error <= 1e-6
 
 
+@pytest.mark.parametrize(('constraint', 'moments', 'coefficient', 'stiff', 'tolerance'), [
+    ('free', [1.0, 1.000005, 1e-5], 0.02, True, 1e-6),    # the spin about the slim axis is
+    ('free', [1.0, 2.0, 3.0], 0.02, False, 1e-6), ('free', [1.0, 2.0, 3.0], 5.0, True, 1e-9),
+    ('pivot', [1.0, 1.1, 1.2], 0.02, False, 1e-6), ('pivot', [1.0, 1.1, 1.2], 5.0, True, 1e-9),
+    ('pivot', [1.0, 1.000005, 1e-5], 0.02, False, 1e-6)])    # the pivot is off the slim axis
+def test_dissipation_is_stiff_where_slim_axes_follow_faster_than_the_body_turns(
+        constraint, moments, coefficient, stiff, tolerance, monkeypatch):
+    fit = []
+    monkeypatch.setattr(settling, 'settle', lambda scene, able, *asked: (
+        fit.extend(able) or settling.Settled('dop8', asked[0])))
+    scene = parse_scene(
+        f'scene: s\nbody: {{mass: 1, inertia: {moments}, center_of_mass: [0, 1, 0]}}\n'
+        f'constraint: {constraint}\n'
+        f'effects: [internal_dissipation: {{coefficient: {coefficient}}}]\n'
+        'initial: {angular_velocity: [1, 2, 1e-3]}\n')
+    assert choose(scene, accuracy=1e-6).tolerance == tolerance
+    assert ('gauss16' not in fit) == stiff and 'dop8' in fit
+    assert choose(scene, 'dop8', 1e-6).tolerance == tolerance
+
+
 def test_closed_forms_cost_no_choice():
     choice = choose(load_scene('tennis_racket'), accuracy=1e-3)
     assert (choice.method, choice.expected_error < 1e-12) == ('exact', True)

@@ -149,3 +149,28 @@ def test_a_start_is_moved_by_half_ulps_of_its_numbers():
                          'initial: {rate: 3}\n')
     moved = forecasts._moved(hinged, hinged.initial.vector, (1,) * 7, 2.0 ** 20)
     assert moved[5:8] == pytest.approx(hinged.initial.vector[5:8] * (1.0 + by), rel=1e-15)
+
+
+@pytest.mark.parametrize('turn', [0.6, 1e-9])
+def test_on_skew_axes_a_rate_is_moved_by_half_ulps_of_the_products_that_mix(turn):
+    cos, sin = math.cos(turn), math.sin(turn)
+    axes = np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])    # body from principal
+    tensor = axes @ np.diag([1.0, 2.0, 2.5]) @ axes.T
+    moved = _rate_moved((0.5 * (tensor + tensor.T)).tolist(), [3.0, 2.0, 0.01])
+    expected = [3.0, cos * 2.0 + sin * 0.01, sin * 2.0 + cos * 0.01]
+    assert np.abs(axes.T @ moved) == pytest.approx(expected, rel=1e-6)
+
+
+def test_about_a_skew_axis_of_zero_moment_no_rate_is_moved():
+    moved = _rate_moved([[2, 0, 0], [0, 1, -1], [0, -1, 1]], [3.0, 2.0, -2.0])
+    assert moved[1] == pytest.approx(-moved[2]) and abs(moved[1]) == pytest.approx(2.0)
+
+
+def _rate_moved(inertia, rate):
+    """Return the move of a rate by half ulps with equal signs, in half ulps of 1 rad/s."""
+    one = parse_scene(f'scene: s\nbody: {{mass: 2, inertia: {inertia}}}\n'
+                      'constraint: free\neffects: []\n'
+                      f'initial: {{angular_velocity: {rate}}}\n')
+    many = 2.0 ** 30
+    moved = forecasts._moved(one, one.initial.vector, (1,) * 7, many)
+    return (moved - one.initial.vector)[5:8] / (HALF_ULP * many)
