@@ -23,7 +23,8 @@ their own: their kernels would take longer to compile than to run, and the bits 
     the expected error is within a factor of 3 of max(error, floor), or says that nothing is known
         of the attitude (above 1e-2 rad),
     the ledger's residuals are below max(asked, floor) times 10,
-    nothing hangs (120 s of the processor, 600 in plain Python) and nothing is raised.
+    nothing hangs (120 s of the processor, 600 in plain Python; the truth may take 1800) and
+    nothing is raised.
 """
 
 import argparse

@@ -20,6 +20,7 @@ ACCURACIES = 1e-6, 1e-11
 LOOKS = 64               # as often as a trial of `auto`: dense output errs between steps
 LONGEST = 120            # s of the processor, a scene with its compilation
 LONGEST_IN_PYTHON = 600  # without compilation
+LONGEST_TRUTH = 1800     # the truth of a scene
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 
 
@@ -58,7 +59,9 @@ def tried(number, seed, draw=drawn):
     """Yield (text of a line, met, foretold, balanced) for one scene at each accuracy."""
     text, duration = draw(number, seed)
     scene = parse_scene(text)
+    _within(LONGEST_TRUTH, 'the truth')
     times, attitudes, floor = known(scene, duration)
+    _within(LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON, 'the scene')
     what = ' '.join([scene.constraint.kind, *(effect.name for effect in scene.effects)])
     for accuracy in ACCURACIES:
         simulation = Simulation(scene, accuracy=accuracy, horizon=duration, rate=1.0 / duration)
@@ -82,18 +85,16 @@ def tried(number, seed, draw=drawn):
                f'{marks}'), *map(bool, verdicts)
 
 
-def _longest():
-    return LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON
-
-
-def _late(*_):
-    raise TimeoutError(f'it takes more than {_longest()} s')
+def _within(seconds, what):
+    """Raise TimeoutError if what begins takes more than so many seconds of the processor."""
+    def late(*_):
+        raise TimeoutError(f'{what} takes more than {seconds} s')
+    signal.signal(signal.SIGVTALRM, late)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
 
 
 def judged(number, seed, draw=drawn):
     """Return what `tried` yields, as a list; one line if something is raised or hangs."""
-    signal.signal(signal.SIGVTALRM, _late)
-    signal.setitimer(signal.ITIMER_VIRTUAL, _longest())
     try:
         return list(tried(number, seed, draw))
     except Exception as error:    # whatever a scene raises is a finding, and the next is tried

@@ -15,6 +15,7 @@ from random_scenes.wide import WIDE, angle, back, cross, inverse, rotated, times
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
 LINEAR = 0.1             # rad
 LEVELS = 9               # levels of the extrapolation
+WAITS = 8                # steps after one that was too long before a longer one is tried
 
 
 class Truth:
@@ -114,17 +115,18 @@ class Truth:
             self.struck.add(jump)
 
     def _march(self, end):
-        h = end - self.t
+        h, since = end - self.t, WAITS
         while self.t < end:
             y, k = self.y, self.rates(self.y, self.t)
             rate, growth = (float(np.sqrt((one[0, 4:7] ** 2).sum())) for one in (y, k))
             fastest = rate + math.sqrt(growth)
-            h = min(2 * h, WIDE(1 / max(fastest, 1e-3)), end - self.t)
+            since += 1
+            h = min(2 * h if since > WAITS else h, WIDE(1 / max(fastest, 1e-3)), end - self.t)
             while True:
                 after, error = self._extrapolated(y, k, h)
                 if error < 1e-17 or h < 1e-9:
                     break
-                h *= 0.5
+                h, since = h * 0.5, 0
             after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
             self.y = after
             self.t = WIDE(end) if h == end - self.t else self.t + h

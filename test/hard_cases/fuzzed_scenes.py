@@ -2,9 +2,12 @@
 """Random scenes of all constraints and effects, with extreme numbers, run in plain Python.
 
 ``python fuzzed_scenes.py FIRST END`` prints a line for each seed: refused, gave up, or runs and
-the method. Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to
-a hundredth of their work. Every scene is given SECONDS of the processor, after which an alarm
-interrupts it: a run that goes on ignores interrupts and has no bound.
+the method. Bodies, effects and starts are said in all ways of the scene language. Some scenes get
+commands, and some are interrupted at a random time and go on to the same bits.
+
+Plain Python compiles nothing; it is a hundred times slower, so marches are bounded to a hundredth
+of their work. Every scene is given SECONDS of the processor, after which an alarm interrupts it: a
+run that goes on ignores interrupts and has no bound.
 """
 
 import json
@@ -30,10 +33,15 @@ OUTSIDE = 1e-310, 1e-160, 1e160, 1e308    # most keys refuse them
 SHARE = 0.1      # share of the numbers that are extremes
 FAR = 0.003      # share of the numbers that are outside
 SECONDS = 30
+TICKS = 3
 
 
 class Slow(Exception):
     """A scene took longer than SECONDS."""
+
+
+class Interrupt(BaseException):
+    """What a KeyboardInterrupt would be."""
 
 
 def number(source, signed=True):
@@ -82,41 +90,76 @@ def expressions(source, texts=EXPRESSIONS):
 
 def torque(source, kind):
     """Return a torque that stays, comes in pieces, or is an expression."""
-    frame = source.choice(('body', 'world'))
+    more = {'frame': source.choice(('body', 'world'))}
+    if source.random() < 0.5:
+        more['books'] = source.choice(('work', 'heat'))
     texts = OF_HINGE if kind == 'hinge' else EXPRESSIONS
+    times = source.choice(([0.001, 0.5], sorted((positive(source), positive(source))), [0.0]))
     return {'torque': source.choice((
         {'value': vector(source)}, {'value': expressions(source, texts)},
-        {'times': [0.001, 0.5], 'values': [vector(source), vector(source)]})) | {'frame': frame}}
+        {'times': times, 'values': [vector(source) for _ in times]})) | more}
 
 
-def force(source):
+def force(source, kind):
     """Return a force, at the centre of mass or at a point."""
     at = {'at': vector(source)} if source.random() < 0.5 else {}
-    return {'force': {'value': expressions(source), 'frame': source.choice(('body', 'world')),
+    texts = OF_HINGE if kind == 'hinge' else EXPRESSIONS
+    return {'force': {'value': expressions(source, texts),
+                      'frame': source.choice(('body', 'world')),
                       'books': source.choice(('work', 'heat'))} | at}
 
 
-def spring(source):
+def potential(source, kind):
+    """Return a potential."""
+    texts = (*ENERGIES, 'k*angle^2') if kind == 'hinge' else ENERGIES
+    return {'potential': {'energy': source.choice(texts)}}
+
+
+def spring(source, _):
     """Return a spring with or without length and damping."""
     more = {key: positive(source) for key in ('damping', 'length') if source.random() < 0.5}
     return {'spring': {'at': vector(source), 'anchor': vector(source),
                        'stiffness': positive(source)} | more}
 
 
-def magnetic(source):
+def magnetic(source, _):
     """Return a moment in a field."""
-    field = source.choice((vector(source), [0, 'k*z', 'w0 - k*y^2']))
+    field = source.choice((vector(source), [0, 'k*z', 'w0 - k*y^2'], ['k*sin(w0*t)', 1.0, 0]))
     return {'magnetic': {'moment': vector(source), 'field': field}}
 
 
-def strike(source):
-    """Return a strike in the third tick."""
-    return {'strike': {'point': vector(source), 'impulse': vector(source), 'time': 0.002}}
+def strike(source, kind):
+    """Return a strike at the start, in the third tick, or at any time."""
+    found = {'impulse': vector(source), 'time': source.choice((0.0, 0.002, positive(source)))}
+    if kind == 'table':
+        found['impulse'][2] = 0.0
+        place = source.choice(({'height': number(source)}, {'point': vector(source)}, {}))
+        return {'strike': source.choice((found, {'speed': number(source)})) | place}
+    places = [{'point': vector(source)}, {'point': vector(source)}, {}]
+    if kind == 'hinge':
+        places.append({'distance': number(source)})
+    return {'strike': found | source.choice(places)
+            | {'frame': source.choice(('body', 'world'))}}
 
 
-def gravity(source):
-    """Return a weight, by its size or as a vector."""
-    return {'gravity': {'g': vector(source) if source.random() < 0.3 else positive(source)}}
+def gravity(source, kind):
+    """Return a weight, by its size or as a vector; above a plane a vector is refused."""
+    share = 0.05 if kind == 'plane' else 0.3
+    return {'gravity': {'g': vector(source) if source.random() < share else positive(source)}}
+
+
+def gravity_gradient(source, _):
+    """Return the pull of a distant body, at a place or on an orbit."""
+    if source.random() < 0.5:
+        return {'gravity_gradient': {'mu': positive(source), 'position': vector(source)}}
+    normal, toward = source.choice((([0, 0, 1], [1, 2, 0]), ([1, 1, 0], [1, -1, 3])))
+    return {'gravity_gradient': {'orbit': {'rate': number(source), 'normal': normal,
+                                           'toward': toward}}}
+
+
+def inner(source, _):
+    """Return internal dissipation."""
+    return {'internal_dissipation': {'coefficient': positive(source)}}
 
 
 def matrix(source):
@@ -128,55 +171,90 @@ def matrix(source):
     return [[a, share, 0.0], [share, b, 0.0], [0.0, 0.0, c]]
 
 
-def drag(source):
+def drag(source, _):
     """Return a drag of one to four coefficients."""
     keys = source.choice((('linear', 'angular'), ('linear', 'angular'), ('quadratic',),
                           ('linear', 'angular', 'quadratic', 'angular_quadratic')))
     return {'drag': {key: matrix(source) for key in keys}}
 
 
-def rotor(source):
+def rotor(source, _):
     """Return a flywheel whose motor keeps its speed, or that turns freely, or under a torque."""
     return {'rotor': {'axis': vector(source)} | source.choice((
         {'momentum': number(source)}, {'inertia': positive(source), 'rate': number(source)},
         {'inertia': positive(source), 'rate': number(source), 'torque': number(source)}))}
 
 
-def torsion(source):
+def torsion(source, _):
     """Return a torsion spring."""
     more = {key: make(source) for key, make in (('damping', positive), ('angle', number))
             if source.random() < 0.5}
     return {'spring': {'stiffness': positive(source)} | more}
 
 
-HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, rotor: 0.15, magnetic: 0.15,
-        lambda source: {'potential': {'energy': source.choice(ENERGIES)}}: 0.15}
-"""Effects under every constraint but the table: the function that makes each, and its weight."""
-HINGED = HELD | {torsion: 0.2, lambda source: {'dry_friction': {'torque': positive(source)}}: 0.2}
-PIVOTED = HELD | {spring: 0.15, force: 0.15}
-FREE = PIVOTED | {
-    lambda source: {'internal_dissipation': {'coefficient': positive(source)}}: 0.3,
-    lambda source: {'gravity_gradient': {'mu': positive(source),
-                                         'position': vector(source)}}: 0.15}
-ON_PLANE = {
-    gravity: 0.9, drag: 0.2, strike: 0.2,
-    lambda source: {'sliding_friction': {
-        'mu': source.choice((positive(source), math.inf))}}: 0.7,
-    lambda source: {'rolling_friction': {'dry': positive(source),
-                                         'viscous': positive(source)}}: 0.2,
-    lambda source: {'spinning_friction': {'radius': positive(source)}}: 0.2,
-    lambda source: {'air_film': {'viscosity': positive(source)}}: 0.1}
-ACTING = {'free': FREE, 'pivot': PIVOTED, 'hinge': HINGED, 'plane': ON_PLANE}
+HELD = {gravity: 0.5, drag: 0.3, strike: 0.3, rotor: 0.15, magnetic: 0.15, potential: 0.15,
+        spring: 0.15, force: 0.15}
+"""Effects under every constraint but the ball's table: what makes each, and its weight."""
+ACTING = {
+    'free': HELD | {inner: 0.3, gravity_gradient: 0.15},
+    'pivot': HELD | {inner: 0.15},
+    'hinge': HELD | {torsion: 0.2,
+                     lambda source, _: {'dry_friction': {'torque': positive(source)}}: 0.2},
+    'table': {
+        lambda source, _: {'sliding_friction': {'mu': positive(source), 'g': positive(source)}}: 1,
+        strike: 0.3},
+    'plane': {one: 0.4 * often for one, often in HELD.items()} | {
+        gravity: 0.9, gravity_gradient: 0.05,
+        lambda source, _: {'sliding_friction': {
+            'mu': source.choice((positive(source), math.inf))}}: 0.7,
+        lambda source, _: {'rolling_friction': {'dry': positive(source),
+                                                'viscous': positive(source)}}: 0.2,
+        lambda source, _: {'spinning_friction': {'radius': positive(source)}}: 0.2,
+        lambda source, _: {'air_film': {'viscosity': positive(source)}}: 0.1}}
 
 
 def effects(source, kind):
     """Return a list of effects that the constraint can have, several torques at once too."""
-    if kind == 'table':
-        return [{'sliding_friction': {'mu': positive(source), 'g': positive(source)}}]
-    found = [make(source) for make, often in ACTING[kind].items() if source.random() < often]
-    if kind == 'plane':
-        return found
-    return found + [torque(source, kind) for _ in range(source.choice((0, 0, 1, 2)))]
+    found = [make(source, kind) for make, often in ACTING[kind].items() if source.random() < often]
+    torques = {'table': (0,), 'plane': (0, 0, 0, 1)}.get(kind, (0, 0, 1, 2))
+    return found + [torque(source, kind) for _ in range(source.choice(torques))]
+
+
+SHAPES = {'rod': ('length',), 'lamina': ('width', 'height'), 'hoop': ('radius',),
+          'disk': ('radius',), 'spherical_shell': ('radius',), 'solid_sphere': ('radius',),
+          'cylinder': ('radius', 'length'), 'cone': ('radius', 'height'),
+          'torus': ('radius', 'tube')}
+
+
+def shape(source):
+    """Return a shape."""
+    name = source.choice((*SHAPES, 'box', 'ellipsoid'))
+    three = {'box': 'size', 'ellipsoid': 'semi_axes'}.get(name)
+    return {name: {three: [positive(source) for _ in range(3)]} if three else
+            {key: positive(source) for key in SHAPES[name]}}
+
+
+def body(source):
+    """Return a body by moments, a tensor, a shape or parts."""
+    center = source.choice(([0, 0, 0], [0, 0, number(source)], vector(source)))
+    given = {'mass': positive(source), 'center_of_mass': center}
+    a, b, c = moments(source)
+    turned = [[0.36 * a + 0.64 * b, 0.48 * (a - b), 0.0],
+              [0.48 * (a - b), 0.64 * a + 0.36 * b, 0.0], [0.0, 0.0, c]]
+    solid = {'shape': shape(source), source.choice(('mass', 'density')): positive(source)}
+    return source.choice((
+        given | {'inertia': [a, b, c]}, given | {'inertia': [a, b, c]},
+        given | {'inertia': turned},
+        given | {'inertia': [a, b, c], 'inertia_about': 'origin',
+                 'center_of_mass': [0, 0, 1e-3 * number(source)]},
+        solid | ({'center_of_mass': center} if source.random() < 0.5 else {}),
+        {'parts': [{'mass': positive(source), 'point': vector(source)},
+                   {'mass': positive(source), 'inertia': moments(source), 'at': vector(source)},
+                   {'density': positive(source), 'shape': {'box': {'size': [0.1, 1.0, 0.02]}},
+                    'orientation': [0.1, 0.2, 0.3, 1.0]}]},
+        {'parts': [{'mass': 2.0, 'shape': shape(source)},
+                   {'mass': -0.1 * positive(source), 'shape': shape(source),
+                    'at': [0.0, 0.0, 0.01]}]}))
 
 
 def surface(source):
@@ -234,46 +312,105 @@ def scene(seed):
                                 {'position': [0, 0, 10.0 * positive(source)]}))
         return found | {'constraint': {'table': plane}, 'body': surface(source),
                         'initial': start | moving}
-    center = source.choice(([0, 0, 0], [0, 0, number(source)], vector(source)))
-    found['body'] = source.choice((
-        {'mass': positive(source), 'inertia': moments(source), 'center_of_mass': center},
-        {'mass': positive(source), 'inertia': moments(source), 'center_of_mass': center},
-        {'parts': [{'mass': positive(source), 'point': vector(source)},
-                   {'mass': positive(source), 'inertia': moments(source), 'at': vector(source)},
-                   {'density': positive(source), 'shape': {'box': {'size': [0.1, 1.0, 0.02]}},
-                    'orientation': [0.1, 0.2, 0.3, 1.0]}]}))
+    found['body'] = body(source)
     if kind == 'hinge':
         axis = [source.uniform(-1.0, 1.0) for _ in range(3)]
-        return found | {'constraint': {'hinge': {'axis': axis, 'through': vector(source)}},
-                        'initial': {'rate': number(source), 'angle': number(source)}}
-    if kind == 'pivot' and source.random() < 0.2:
-        found['constraint'] = {'pivot': {'at': vector(source)}}
+        through = source.choice(({'through': vector(source)}, {'distance': number(source)}, {}))
+        turned = orientation(source)
+        return found | {'constraint': {'hinge': {'axis': axis} | through},
+                        'initial': ({} if 'tilt' in turned else turned)
+                        | {'rate': number(source), 'angle': number(source)}}
+    if kind == 'pivot' and source.random() < 0.3:
+        path = [source.choice((0, 'k*cos(w0*t)', '0.01*sin(300*t)', 'k*t', 'exp(-w0*t)'))
+                for _ in range(3)]
+        found['constraint'] = {'pivot': source.choice((
+            {'at': vector(source)}, {'motion': path}, {'motion': path, 'at': vector(source)}))}
     if kind == 'free':
         start |= {'velocity': vector(source), 'position': vector(source)}
+    elif source.random() < 0.2:
+        start |= {'position': vector(source)}
     return found | {'initial': start}
+
+
+def commands(source):
+    """Return the commands of a tick, as calls of a Simulation."""
+    def pushes():
+        return {key: vector(source) for key in ('force', 'torque') if source.random() < 0.6} | {
+            'frame': source.choice(('body', 'world'))}
+    return [source.choice((('impulse', pushes()), ('hold', pushes()), ('release', {})))
+            for _ in range(source.choice((1, 1, 2, 4)))]
+
+
+def commanded(simulation, given):
+    """Give a simulation the commands of a tick; one that is refused has no effect."""
+    for name, settings in given:
+        before = simulation.vector.copy()
+        try:
+            getattr(simulation, name)(**settings)
+        except BadInput as refusal:
+            in_one_line(refusal)
+            assert simulation.vector.tobytes() == before.tobytes()
+
+
+def interrupted(read, vector, seconds):
+    """Interrupt a scene after some seconds of the processor; it goes on to the same state."""
+    simulation = None
+    left, _ = signal.setitimer(signal.ITIMER_VIRTUAL, max(seconds, 1e-6))
+    signal.signal(signal.SIGVTALRM, interrupt)
+    try:
+        simulation = Simulation(read)
+        for _ in range(TICKS):
+            simulation.advance()
+    except Interrupt:
+        pass
+    finally:
+        signal.signal(signal.SIGVTALRM, alarm)
+        signal.setitimer(signal.ITIMER_VIRTUAL, left)
+    simulation = simulation or Simulation(read)
+    simulation.advance(TICKS - simulation.tick)
+    assert simulation.vector.tobytes() == vector.tobytes(), (simulation.vector, vector)
+
+
+def in_one_line(refusal):
+    """Return the text of a refusal, which is one line."""
+    text = str(refusal)
+    assert text.isprintable() and len(text) < 2000 and 'np.' not in text, text
+    return text
 
 
 def outcome(seed):
     """Return what becomes of a scene: refused, gave up, or runs and the method."""
-    read = None
+    read, source = None, random.Random(f'{seed} run')
+    does = source.choices(('nothing', 'commands', 'interrupt'), (6, 3, 2))[0]
     try:
-        read = parse_scene(json.dumps(scene(seed)).replace('Infinity', '.inf'))
+        text = json.dumps(scene(seed)).replace('Infinity', '.inf')
+        read, began = parse_scene(text), time.process_time()
         simulation = Simulation(read)
-        for _ in range(3):
+        for _ in range(TICKS):
+            if does == 'commands':
+                commanded(simulation, commands(source))
             simulation.advance()
             assert np.isfinite(simulation.vector).all(), simulation.vector
+        if does == 'interrupt':
+            seconds = source.random() * (time.process_time() - began)
+            interrupted(parse_scene(text), simulation.vector, seconds)
+        ledger = simulation.ledger()
+        assert np.isfinite([*ledger.values()]).all(), ledger
         states = simulation.states(np.linspace(0.0, 10.0, 5)).vector
         assert np.isfinite(states).all(), states
     except (BadInput, NotConverged) as refusal:
-        text = str(refusal)
-        assert text.isprintable() and len(text) < 2000 and 'np.' not in text, text
-        return f'{"refused" if read is None else "gave up"}: {text}'
+        return f'{"refused" if read is None else "gave up"}: {in_one_line(refusal)}'
     return f'runs: {simulation.choice.method}'
 
 
 def alarm(*_):
-    """Interrupt what runs."""
+    """End a scene that takes too long."""
     raise Slow
+
+
+def interrupt(*_):
+    """Interrupt what runs, as the keyboard does."""
+    raise Interrupt
 
 
 def main(first, end):

@@ -27,12 +27,14 @@ class Torque(Effect):
     ``torque: {times: [t0, t1, ...], values: [[x, y, z], ...], frame: world}`` acts in pieces.
     Values are in N m; values[i] acts from times[i] to times[i + 1], the last one stays, and before
     the first there is none. `frame` (body, the default, or world) names the axes of the
-    components. A `value` of expressions is an :class:`ExpressedTorque`. A scene may list several.
+    components. `books` says where the ledger writes its power. A `value` of expressions, or one
+    that is booked as heat, is an :class:`ExpressedTorque`. A scene may list several.
     """
 
     times: tuple[float, ...]
     values: tuple[tuple[float, ...], ...]
     frame: str
+    books: str = 'work'
     name: ClassVar[str] = 'torque'
     SCHEMA: ClassVar[dict] = described(mapping_of(
         value=described(EXPRESSIONS, 'N m, numbers or expressions'),
@@ -58,7 +60,8 @@ class Torque(Effect):
                 or ('values' in settings) != ('times' in settings)):
             raise BadInput(where, f'got the keys {", ".join(sorted(settings)) or "none"}',
                            'give value alone, or times with values')
-        if not is_constant(settings.get('value')) or settings.get('books') == 'heat':
+        books = settings.get('books', 'work')
+        if 'value' in settings and (books == 'heat' or not is_constant(settings['value'])):
             return ExpressedTorque.from_scene(settings, body, constraint, where)
         if 'value' in settings:
             return cls((0.0,), (as_floats(one.text for one in settings['value']),), frame)
@@ -70,7 +73,7 @@ class Torque(Effect):
         if any(later <= earlier for earlier, later in pairwise(times)):
             raise BadInput(f'{where}.times', f'got {list(times)}',
                            'times rise from one to the next')
-        return cls(times, values, frame)
+        return cls(times, values, frame, books)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -89,9 +92,9 @@ class Torque(Effect):
         value = self.value(time)
         if self.frame == 'world':
             return Acting('rigid_body_sim.scene.effects.elementary:to_frame', value, 'torque',
-                          'work'),
+                          self.books),
         return Acting('rigid_body_sim.scene.effects.elementary:constant', frame.from_body(value),
-                      'torque', 'work'),
+                      'torque', self.books),
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple."""

@@ -263,6 +263,15 @@ def test_a_torque_in_pieces_begins_at_its_times():
     assert torque.breakpoints == (1.0, 2.5)
 
 
+@pytest.mark.parametrize('frame', ['body', 'world'])
+def test_a_torque_in_pieces_may_be_booked_as_heat(frame):
+    text = ('scene: s\nbody: {{mass: 1, inertia: [1, 2, 3]}}\nconstraint: free\neffects: [torque: '
+            '{{times: [1], values: [[1, 2, 3]], frame: {}{}}}]\ninitial: {{}}\n')
+    for given, books in ((', books: heat', 'heat'), (', books: work', 'work'), ('', 'work')):
+        scene = parse_scene(text.format(frame, given))
+        assert [one.books for one in scene.effects[0].acting(scene.frame, 1.0)] == [books]
+
+
 @pytest.mark.parametrize('kind', CONSTRAINTS)
 @pytest.mark.parametrize('axes', ['world', 'body'])
 def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
