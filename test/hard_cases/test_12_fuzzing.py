@@ -135,7 +135,7 @@ def test_bytes_that_are_no_text_get_one_line(tmp_path):
         assert str(refused.value).isprintable()
 
 
-@pytest.mark.parametrize('first', range(0, 20_000, 5000) if SOAK else [16])
+@pytest.mark.parametrize('first', range(0, 20_000, 5000) if SOAK else [4114])
 def test_random_scenes_of_all_effects_run_ten_seconds_give_up_or_are_refused(first):
     test = pathlib.Path(__file__).resolve().parents[1]
     settings = os.environ | {'NUMBA_DISABLE_JIT': '1',
@@ -146,6 +146,5 @@ def test_random_scenes_of_all_effects_run_ten_seconds_give_up_or_are_refused(fir
                           timeout=7000 if SOAK else 280, check=False)
     lines = done.stdout.splitlines()
     assert done.returncode == 0 and len(lines) == scenes, (done.stdout[-3000:], done.stderr)
-    # the torque of 1e40 N m of the 26th was a minute of panels of the ledger
     # measured: a quarter runs, a half gives up
     assert sum(' runs: ' in line for line in lines) > scenes // 10
