@@ -26,6 +26,7 @@ from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import angles_between, matrix, normalised
+from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, VELOCITY
 
@@ -283,9 +284,12 @@ def _rounded(scene, omega, by):
     inertia = scene.constraint.inertia(scene.body)
     if tuple(inertia.axes) == IDENTITY:
         return by * np.abs(omega)
-    axes = np.array(matrix(*inertia.axes))
-    sizes = (np.abs(axes.T) * np.abs(omega)).sum(axis=1)
-    return (axes * (by * sizes * (np.array(inertia.moments) > 0.0))).sum(axis=1)
+    axes = matrix(*inertia.axes)
+    mixing = [[abs(entry) for entry in row] for row in transposed(axes)]
+    sizes = apply(mixing, np.abs(omega).tolist())
+    moved = [one * size if moment > 0.0 else 0.0
+             for one, size, moment in zip(by.tolist(), sizes, inertia.moments, strict=True)]
+    return np.array(apply(axes, moved))
 
 
 def forecast(errors, times, accuracy, horizon):
