@@ -127,7 +127,7 @@ def _draw(axes, panel):
             line.y,
             linewidth=0.7 if panel.band else 1.1,
             color=COLORS[k],
-            linestyle='-' if len(panel.lines) == 1 else DASHES[k],
+            linestyle=DASHES[k],
             label=line.name,
             drawstyle='steps-post' if panel.steps else 'default',
             marker='.' if len(line.x) < 100 else '',

@@ -111,6 +111,13 @@ def test_dissipation_is_stiff_where_slim_axes_follow_faster_than_the_body_turns(
     assert choose(scene, 'dop8', 1e-6).tolerance == tolerance
 
 
+def test_an_axis_of_zero_moment_does_not_dissipate():
+    rod = parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 1, 0]}\nconstraint: free\n'
+                      'effects: [internal_dissipation: {coefficient: 0.5}]\n'
+                      'initial: {angular_velocity: [3, 4, 0]}\n')
+    assert choose_module._inner_rates(rod) == (2.5, 2.5)
+
+
 def test_closed_forms_cost_no_choice():
     choice = choose(load_scene('tennis_racket'), accuracy=1e-3)
     assert (choice.method, choice.expected_error < 1e-12) == ('exact', True)

@@ -189,7 +189,9 @@ def test_commands_that_are_half_recorded_are_gone_on_with(tmp_path):
     process._buffer = commands(1, 3)
     process._take_packets()
     assert process.report.error
-    left[0], process.report.error = 10, ''
+    left[0], asked = 10, process.report.resend
+    process._flush(0.0)    # there is room again: what was dropped is asked for
+    assert (process.report.error, process.report.resend) == ('', asked + 1)
     process._buffer = commands(1, 3)
     process._take_packets()
     assert process._close() == 0

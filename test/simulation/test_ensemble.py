@@ -69,6 +69,12 @@ def test_wrong_starts_are_refused():
         ensemble('tennis_racket', np.zeros((2, 7)), [1.0])
     with pytest.raises(BadInput, match='finite'):
         ensemble('tennis_racket', np.full((2, 14), np.nan), [1.0])
+    starts = np.array([load_scene('tennis_racket').initial.vector] * 2)
+    with pytest.raises(BadInput, match='finite'):
+        ensemble('tennis_racket', starts, [1.0, np.inf])
+    starts[1, 5] = np.nan
+    with pytest.raises(BadInput, match='finite'):
+        ensemble('tennis_racket', starts, [1.0])
 
 
 def test_package_offers_what_it_says():
