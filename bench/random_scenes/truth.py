@@ -134,14 +134,15 @@ class Truth:
     def _extrapolated(self, y, k, h):
         """Return y after h, and an estimate of its relative error.
 
-        All levels of the extrapolation go side by side, the one with most steps first.
+        All levels of the extrapolation go side by side, the one with most steps first. They follow
+        the changes of y: extrapolation magnifies the rounding of what it is given a hundred times.
         """
         size, count = len(y), 2 * np.arange(LEVELS, 0, -1)
         s = np.repeat(h / count.astype(WIDE), size)[:, None]
-        before = np.tile(y, (LEVELS, 1))
-        now, rows = before + s * np.tile(k, (LEVELS, 1)), []
+        start, before = np.tile(y, (LEVELS, 1)), np.zeros((LEVELS * size, y.shape[1]), dtype=WIDE)
+        now, rows = s * np.tile(k, (LEVELS, 1)), []
         for j in range(1, 2 * LEVELS + 1):
-            rate = self.rates(now, self.t + j * s[:len(now), 0])
+            rate = self.rates(start[:len(now)] + now, self.t + j * s[:len(now), 0])
             if j % 2 == 0:    # the last level that is left has arrived
                 rows.append([(now[-size:] + before[-size:] + s[len(now) - size:len(now)]
                               * rate[-size:]) / 2])
@@ -152,7 +153,7 @@ class Truth:
             for j in range(1, level):
                 ratio = WIDE(level) ** 2 / WIDE(level - j) ** 2
                 row.append(row[-1] + (row[-1] - rows[level - 2][j - 1]) / (ratio - 1))
-        best, other = rows[-1][-1], rows[-1][-2]
+        best, other = y + rows[-1][-1], y + rows[-1][-2]
         size = 1 + np.abs(best[0, 4:7]).max()
         error = max(np.abs(best - other)[0, :4].max(), np.abs(best - other)[0, 4:7].max() / size)
         return best, float(error)

@@ -48,3 +48,16 @@ def test_a_wrong_law_is_seen(judge, monkeypatch):
     right = laws._dragged
     monkeypatch.setattr(laws, '_dragged', lambda *given: 1.001 * right(*given))
     assert not any(met for _, met, *_ in judge.judged(205, 11))
+
+
+@pytest.mark.without_numba
+def test_the_truth_does_not_depend_on_how_often_it_is_asked(judge):
+    from random_scenes.draw import drawn
+    scene, found = judge.parse_scene(drawn(282, 77)[0]), []
+    for times in ([1.6], np.linspace(0.05, 1.6, 32)):    # before its strikes
+        truth = judge.truth_of(scene)
+        for time in times:
+            truth.to(float(time))
+        found.append(truth.y[0])
+    # 2e-17; 2e-14 where the rounding of the unknowns themselves was extrapolated
+    assert np.abs(found[0] - found[1])[:7].max() < 3e-16
