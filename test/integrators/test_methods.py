@@ -12,7 +12,6 @@ from data import smooth_cases
 from integrators import slopes
 from integrators.order_conditions import largest_defect
 from numba_only import LONG_IN_PYTHON
-from scipy import integrate
 
 from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -182,14 +181,6 @@ def test_too_many_turns_to_count_end_with_one_error(name):
         '[0.1, 2.0, 0.3]', '[0.0, 0.0, 1.0e+75]'))
     with pytest.raises(NotConverged, match=r'at t = 0\.0 s the body turns with 1e\+75 rad/s'):
         state(scene, name, 1.0, accuracy=1e-6)
-
-
-def test_rates_that_are_not_finite_end_a_run_of_scipy_with_one_error(monkeypatch):
-    """SciPy refuses a Jacobian that is not finite with a ValueError, which was a traceback."""
-    monkeypatch.setattr(METHODS['radau'], 'SOLVER', lambda rate, *given, **more: integrate.Radau(
-        lambda time, y: np.nan * rate(time, y), *given, **more))
-    with pytest.raises(NotConverged, match=r'^radau on driven_body: after t = 0\.0 s: [^\n]+$'):
-        state(scene_of('driven_body'), 'radau', 1.0, accuracy=1e-6)
 
 
 # 4.9e-10; 5.4e-8
