@@ -154,8 +154,9 @@ class Truth:
                 ratio = WIDE(level) ** 2 / WIDE(level - j) ** 2
                 row.append(row[-1] + (row[-1] - rows[level - 2][j - 1]) / (ratio - 1))
         best, other = y + rows[-1][-1], y + rows[-1][-2]
-        size = 1 + np.abs(best[0, 4:7]).max()
-        error = max(np.abs(best - other)[0, :4].max(), np.abs(best - other)[0, 4:7].max() / size)
+        apart, sizes = np.abs(best - other)[0], 1 + np.abs(best[0])
+        error = max(apart[:4].max(), *(apart[part].max() / sizes[part].max()
+                                       for part in (slice(4, 7), slice(7, 10), slice(10, None))))
         return best, float(error)
 
     def _strike(self, one):
