@@ -397,7 +397,7 @@ def rate(p, y, k):
     rolled = (c.rolling_viscous * contact.speed * contact.speed
               + (c.rolling * contact.f[2] * contact.speed if c.rim != 0.0 else 0.0))
     entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
-                     heat, work, turn, contact.spun)
+                        heat, work, turn, contact.spun)
     x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
     rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), apply(c.inverse, torque),
                      contact.growth, (contact.v[0], contact.v[1]), gap, 1.0, entries)
