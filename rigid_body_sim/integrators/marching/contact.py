@@ -228,7 +228,7 @@ class PlaneCourse:
             along = row[ALONG]
             if not disk:
                 nudge(p, y, row, NUDGE * speed)
-        p[RIM] = math.copysign(1.0, along) if disk else FREE
+        p[RIM] = np.sign(along) if disk else FREE
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
