@@ -95,29 +95,25 @@ class Standing:
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
         acts, slip = (rotate_back(*c.plane, *force), free), (u, speed)
-        f, touch = self._touch(stands, acts, slip)
+        if c.rolling > 0.0:
+            along = dot(tangent(gamma), moved) if self._is_disk else hypot3(*moved)
+            if self._is_disk:
+                c = c._replace(rim=math.copysign(1.0, along))
+            if abs(along) <= TOUCHES * speed:
+                still = c._replace(rim=0.0)
+                inverse, shift = holding(c, gamma, omega)
+                held = stands._replace(inverse=inverse, shift=shift)
+                f, touch = self._exerted(still, held, acts, slip)
+                torque = plus(plus(free, touch), cross(r, apply(transposed(axes), f)))
+                holds, size = holding_couple(still, held, torque)
+                if abs(size) <= c.rolling * f[2]:
+                    return rotate(*c.plane, *f), plus(touch, holds), r
+                if self._is_disk:
+                    c = c._replace(rim=math.copysign(1.0, size))
+        f, touch = self._exerted(c, stands, acts, slip)
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r
         return rotate(*c.plane, *f), touch, r
-
-    def _touch(self, stands, acts, slip):
-        """Return what `_exerted` does, under dry rolling friction that may hold the body."""
-        c, gamma = self._c, stands.axes[2]
-        if not c.rolling > 0.0:
-            return self._exerted(c, stands, acts, slip)
-        along = dot(tangent(gamma), stands.moved) if self._is_disk else hypot3(*stands.moved)
-        if abs(along) <= TOUCHES * slip[1]:
-            still = c._replace(rim=0.0)
-            inverse, shift = holding(c, gamma, stands.omega)
-            held = stands._replace(inverse=inverse, shift=shift)
-            f, touch = self._exerted(still, held, acts, slip)
-            pushed = cross(stands.r, apply(transposed(stands.axes), f))
-            holds, along = holding_couple(still, held, plus(plus(acts[1], touch), pushed))
-            if abs(along) <= c.rolling * f[2]:
-                return f, plus(touch, holds)
-        if self._is_disk:
-            c = c._replace(rim=math.copysign(1.0, along))
-        return self._exerted(c, stands, acts, slip)
 
     def _exerted(self, c, stands, acts, slip):
         """Return the force (axes of the plane) and couple (body axes) of the contact.
