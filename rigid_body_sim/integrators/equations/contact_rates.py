@@ -17,9 +17,9 @@ along the axes of the plane.
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
               behind that direction is corrected to the first order in |u| |omega|/(mu g)
 
-Dry rolling friction may hold the lowest point where it is on the body (p.rim): a couple that takes
-no power keeps it there, as long as its force is at most C N. A held body spins about the normal,
-and slides; a held disk falls, too, since the lowest point of a disk moves along its rim only.
+The lowest point of a disk moves along its rim only, so dry rolling friction either has a known
+sign or holds that point where it is; p.rim says which. A held disk falls and spins: a couple that
+takes no power keeps the point there, as long as its force is at most C N.
 
 The height of the centre of mass is the gap less n . r, and in contact its velocity is u - omega x
 r: gap and normal velocity are zero to the last bit there, and small gaps are as exact as large
@@ -320,7 +320,7 @@ def _creeping(p, c, now, at, push, v, speed, film):
 def _motion(c, at, speed):
     """Return how far a body in contact is from lying flat, or from standing still (watched)."""
     flat = above_flat(c, at.axes[2])
-    if c.rolling > 0.0 and c.mode == ROLLING and c.rim == FREE:
+    if c.rolling > 0.0 and c.mode == ROLLING and not (c.kind == TORUS and c.size[1] == 0.0):
         return min(flat, speed - SLOW * c.swift)
     return flat
 
@@ -386,9 +386,6 @@ def rate(p, y, k):
         elif c.rim != FREE:
             rim = dot(tangent(e3), at.moved)
             rolling = c.rim * rim
-        elif c.rolling > 0.0:
-            rim = contact.speed
-            rolling = rim - SLOW * c.swift if c.mode != ROLLING else 1.0
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
     if c.rim == 0.0:
         touch = plus(touch, holds)

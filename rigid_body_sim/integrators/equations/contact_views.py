@@ -81,9 +81,9 @@ class Watched(NamedTuple):
     motion : float
         How far the body is from lying flat (rad), or from standing still (m/s).
     rolling : float
-        Under dry rolling friction: how fast the point of contact moves over the body, of a disk
-        the way it does (m/s), or, while friction holds it, what friction could hold less what it
-        holds (N).
+        Of a disk under dry rolling friction: how fast the point of contact moves along the rim
+        the way it does (m/s), or, while friction holds it there, what friction could hold less
+        what it holds (N).
     """
 
     normal: float
@@ -112,8 +112,8 @@ class Row(NamedTuple):
     pace : float
         Speed of the slip, with the spin of a patch of contact, m/s; in other phases 1.
     rim : float
-        Under dry rolling friction: the speed of the point of contact over the body, of a disk its
-        velocity along the rim (m/s), or, while friction holds it, the force against that (N).
+        Of a disk under dry rolling friction: the velocity of the point of contact along the rim
+        (m/s), or, while friction holds it there, the force against a rolling that way (N).
     """
 
     rates: Unknowns

@@ -20,7 +20,7 @@ from rigid_body_sim.integrators.equations.contact_impacts import (
     load_impact,
     velocity_of_lowest,
 )
-from rigid_body_sim.integrators.equations.contact_rest import halt, jams, nudge, pause, spins
+from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
 from rigid_body_sim.integrators.equations.contact_states import read
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
@@ -36,14 +36,13 @@ from rigid_body_sim.integrators.equations.contact_views import (
 from rigid_body_sim.integrators.marching import contact_march, contact_step
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FREE
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
-NUDGE = 4.0 * contact_rates.SLOW    # share of the speeds with which a rolling begins
 ROUNDING = 2.0 ** -47    # of gap, slip and normal velocity, relative to lengths and speeds
 CHATTER = 1e-13          # an impact rebounds no more below that share of the speeds
 HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
@@ -52,9 +51,9 @@ LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, RIM, MASS = (
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, RIM = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
-                                          'rolling', 'restitution', 'rim', 'mass'))
+                                          'rolling', 'restitution', 'rim'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
@@ -111,7 +110,6 @@ class OnPlane:
         self.kernels = specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
                                   first_zero=f'{step}:first_zero')
         self._fixed, self._held = contact_parameters(scene), {}
-        self.is_disk = scene.body.surface.kind == 'disk'
         self.heaviness = max(weight(scene), 1e-3)
 
     def _acting(self, time):
@@ -169,8 +167,8 @@ class PlaneCourse:
         y[GAP] = 0.0
         if normal > rounding:
             self._open(FLIGHT, p, y)
-        elif normal < -rounding or (p[MU] > IDEAL and hypot(ux, uy) > rounding):
-            self._impact(p, y)    # of a slip, too, that ideal rolling does not let be
+        elif normal < -rounding:
+            self._impact(p, y)
         else:
             self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
 
@@ -208,27 +206,22 @@ class PlaneCourse:
         self._begins.append(self._phases[-1].begin)
 
     def _roll(self, p, y, held):
-        """Note whether dry rolling friction holds the body from here on, or which way it rolls.
+        """Note which way a disk under dry rolling friction rolls from here on, if it does.
 
         `held` says that friction held it so far.
         """
-        if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
+        body = self._bound.scene.body.surface
+        if not (p[DRY] > 0.0 and body.kind == 'disk') or p[MODE] in (FLIGHT, RESTING):
             return
-        row, disk, speed = np.empty(ROW.size), self._bound.is_disk, self._speed(y)
-        p[RIM] = 1.0 if disk else FREE
+        row = np.empty(ROW.size)
+        p[RIM] = 1.0
         self._bound.rates.rate(p, y, row)
         along = row[ALONG]
-        if held or abs(along) <= (ROUNDING if disk else 2.0 * NUDGE) * speed:
-            if not disk:
-                pause(p, y)
+        if held or abs(along) <= ROUNDING * self._speed(y):
             p[RIM] = 0.0
             self._bound.rates.rate(p, y, row)
-            if row[ROLLS] >= 0.0:
-                return
-            along = row[ALONG]
-            if not disk:
-                nudge(p, y, row, NUDGE * speed)
-        p[RIM] = np.sign(along) if disk else FREE
+            along = row[ALONG] if row[ROLLS] < 0.0 else 0.0
+        p[RIM] = np.sign(along)
 
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
@@ -249,9 +242,6 @@ class PlaneCourse:
         if mode == ROLLING and not (row[MOTION] > 0.0 or any(y[OMEGA])) and rates.stays(p, y):
             self._open(RESTING, p, y)    # it does not begin to move
             return
-        if mode == ROLLING and p[RIM] == 0.0 and not self._bound.is_disk and rates.stays(p, y):
-            self._rest(p, y, self._begin + float(y[TIME]))
-            return
         if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]:
             self._creep_off(p, y)
             return
@@ -262,7 +252,6 @@ class PlaneCourse:
         p[MODE], row = CREEPING, np.empty(ROW.size)
         p[SWIFT] = self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
-        self._roll(p, y, p[RIM] == 0.0)
         self._bound.rates.rate(p, y, row)
         if not row[FIRMNESS] > 0.0:
             self._end(y)
@@ -322,9 +311,6 @@ class PlaneCourse:
         impact = load_impact(out.tolist())
         self._events.append((self._begin + float(y[TIME]), 'impact', {
             'normal_velocity': impact.before, 'impulse': impact.impulse}))
-        if impact.impulse < -CHATTER * self._speed(y) * p[MASS]:
-            self._end(y, PULLS)
-            return
         if rebounds:
             self._open(FLIGHT, p, y)
         else:
@@ -364,9 +350,6 @@ class PlaneCourse:
             self._creep_off(p, y)
         elif why == contact_march.STOPPED:
             self._stop(p, y, time)
-        elif why == contact_march.HELD and p[RIM] == FREE:
-            pause(p, y)
-            self._open(int(p[MODE]), p, y)
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
         elif why == contact_march.FASTER:

@@ -53,7 +53,7 @@ class Posture(NamedTuple):
     inverse : Matrix
         How a couple changes omega, I^-1; without what friction holds, 1/(kg m^2).
     shift : Vector
-        The omega' by which friction keeps the lowest point where it is on the body, rad/s^2.
+        The omega' by which friction keeps the lowest point where it is on a rim, rad/s^2.
     """
 
     q: Quaternion
@@ -102,17 +102,11 @@ def posture(c, q, omega):
 
 @inlined
 def holding(c, gamma, omega):
-    """Return inverse and shift of a Posture whose lowest point is held where it is on the body.
+    """Return inverse and shift of a Posture whose lowest point is held where it is on a rim.
 
-    The body then turns about the normal only: omega' is along gamma. The lowest point of a disk
-    is also held as the disk falls: with the tangent e of the rim and b = e x gamma, s' is along
-    b . omega, and its rate vanishes for b . omega' = -(e . omega)(gamma . omega). The couple that
-    does this is along b.
+    With the tangent e of the rim and b = e x gamma, s' is along b . omega, and its rate vanishes
+    for b . omega' = -(e . omega)(gamma . omega). The couple that does this is along b.
     """
-    if c.kind != TORUS or c.size[1] > 0.0:
-        share = 1.0 / dot(gamma, apply(c.inertia, gamma))
-        return ((scaled(share * gamma[0], gamma), scaled(share * gamma[1], gamma),
-                 scaled(share * gamma[2], gamma)), (0.0, 0.0, 0.0))
     along = tangent(gamma)
     b = cross(along, gamma)
     turned = apply(c.inverse, b)
@@ -133,7 +127,7 @@ def hastened(c, at, torque):
 
 @inlined
 def holding_couple(c, at, torque):
-    """Return the couple by which friction holds the lowest point where it is, and its force.
+    """Return the couple by which friction holds the lowest point on a rim, and its force.
 
     Parameters
     ----------
@@ -145,13 +139,9 @@ def holding_couple(c, at, torque):
     couple : Vector
         Body axes, N m.
     force : float
-        N; of a disk against a rolling along the tangent, else its size.
+        Against a rolling along the tangent, N.
     """
     gamma = at.axes[2]
-    if c.kind != TORUS or c.size[1] > 0.0:
-        needed = minus(apply(c.inertia, hastened(c, at, torque)), torque)
-        along, across = against(c, at, needed)
-        return needed, hypot(along, across)
     b = cross(tangent(gamma), gamma)
     held = dot(b, minus(apply(c.inertia, hastened(c, at, torque)), torque))
     return scaled(held, b), held * inclination(gamma) / c.size[0]
@@ -262,7 +252,7 @@ def holds_still(c, at, F, T):
     F, T : Vector
         What acts on the resting body: force (axes of the plane), couple (body axes).
     """
-    gamma = at.axes[2]
+    e1, e2, gamma = at.axes
     if c.kind == TORUS and (c.size[1] == 0.0 or above_flat(c, gamma) <= 0.0):
         return True
     held = scaled(-1.0, F)
@@ -274,16 +264,9 @@ def holds_still(c, at, F, T):
     couple = scaled(-1.0, plus(T, cross(at.r, along_body(at.axes, held))))
     if abs(dot(couple, gamma)) > 1e-12 * held[2] * far:
         return False
-    return hypot(*against(c, at, couple)) <= c.rolling * held[2]
-
-
-@inlined
-def against(c, at, couple):
-    """Return the force along the plane, N, of which a couple -(S h) x gamma is the friction."""
-    e1, e2, gamma = at.axes
     wanted = scaled(-1.0, cross(gamma, couple))    # S h
     first, second = shifted(c.kind, c.size, gamma, e1), shifted(c.kind, c.size, gamma, e2)
     a, b, d = dot(e1, first), dot(e1, second), dot(e2, second)
     x, z = dot(wanted, e1), dot(wanted, e2)
     share = 1.0 / (a * d - b * b)
-    return share * (d * x - b * z), share * (a * z - b * x)
+    return hypot(share * (d * x - b * z), share * (a * z - b * x)) <= c.rolling * held[2]

@@ -95,21 +95,19 @@ class Standing:
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
         acts, slip = (rotate_back(*c.plane, *force), free), (u, speed)
-        if c.rolling > 0.0:
-            along = dot(tangent(gamma), moved) if self._is_disk else hypot3(*moved)
-            if self._is_disk:
-                c = c._replace(rim=math.copysign(1.0, along))
+        if self._is_disk and c.rolling > 0.0:
+            along = dot(tangent(gamma), moved)
+            c = c._replace(rim=math.copysign(1.0, along))
             if abs(along) <= TOUCHES * speed:
-                still = c._replace(rim=0.0)
+                c = c._replace(rim=0.0)
                 inverse, shift = holding(c, gamma, omega)
                 held = stands._replace(inverse=inverse, shift=shift)
-                f, touch = self._exerted(still, held, acts, slip)
+                f, touch = self._exerted(c, held, acts, slip)
                 torque = plus(plus(free, touch), cross(r, apply(transposed(axes), f)))
-                holds, size = holding_couple(still, held, torque)
+                holds, size = holding_couple(c, held, torque)
                 if abs(size) <= c.rolling * f[2]:
                     return rotate(*c.plane, *f), plus(touch, holds), r
-                if self._is_disk:
-                    c = c._replace(rim=math.copysign(1.0, size))
+                c = c._replace(rim=math.copysign(1.0, size))
         f, touch = self._exerted(c, stands, acts, slip)
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A body that dry rolling friction holds: its lowest point stays where it is on the body."""
+"""A disk or hoop that dry rolling friction holds: its lowest point stays where it is on the rim."""
 
 import math
 
@@ -116,74 +116,3 @@ def test_what_holds_the_lowest_point_takes_no_power_and_leaves_it_where_it_is(mo
     assert max(map(abs, moved)) < 1e-9
     heat = row[UNKNOWNS.part('ledger').part('rolled').first]
     assert heat == pytest.approx(0.0, abs=1e-15)
-
-
-# -- a ball, whose lowest point may move in two directions -------------------------------------
-
-BALL = '{mass: 1.0, inertia: [0.001, 0.001, 0.001], surface: {sphere: {radius: 0.05}}}'
-INERTIA, RADIUS = 1e-3, 0.05
-
-
-def ball(mu, dry, initial, table='table', effects=''):
-    """Return a Simulation of a ball."""
-    return Simulation(parse_scene(
-        f'scene: ball\nbody: {BALL}\nconstraint: {table}\neffects: [gravity: {{g: {G}}}, '
-        f'sliding_friction: {{mu: {mu}}}, rolling_friction: {{dry: {dry}}}{effects}]\n'
-        f'initial: {initial}\n'), 'dop8', 1e-13)
-
-
-@pytest.mark.parametrize('mu', ['.inf', '0.3'])
-def test_a_held_ball_spins_on_about_the_normal(mu):
-    """Rounding turned the friction of a rolling that was none, in steps without end."""
-    sim = ball(mu, 0.01, '{euler_zyz: [0.3, 0.6, 0.2], angular_velocity_world: [0, 0, 2.0], '
-               'rolling: true}')
-    first, last = sim.states([0.0, 2.0])
-    assert last.angular_velocity == pytest.approx(first.angular_velocity, abs=1e-12)
-    assert last.position == pytest.approx(first.position, abs=1e-12)
-
-
-def test_a_held_ball_slides_without_rolling_and_rests_when_it_says():
-    sim = ball(0.1, 0.2, '{velocity: [0.5, 0, 0]}')
-    assert not sim.states([0.3])[0].angular_velocity.any()
-    rest = sim.at_event('rest', within=1.0)
-    assert rest.time == pytest.approx(0.5 / (0.1 * G), abs=1e-12)
-    assert rest.position[0] == pytest.approx(0.125 / (0.1 * G), abs=1e-12)
-    sim.advance(700)
-    ledger = sim.ledger()
-    assert ledger['dissipated_sliding'] == pytest.approx(0.125, abs=1e-12)
-    assert ledger['dissipated_rolling'] == pytest.approx(0.0, abs=1e-15)
-
-
-def test_a_ball_that_slides_back_spins_through_zero_under_the_friction_of_its_rolling():
-    """I w' = m g R (mu + C) against the backspin, then m g R (mu - C) until it rolls."""
-    mu, C, v, back = 0.3, 0.1, 2.0, 10.0
-    sim = ball(mu, C, f'{{velocity: [{v}, 0, 0], angular_velocity: [0, {-back}, 0]}}')
-    slow, fast = (M * G * RADIUS * (mu + sign * C) / INERTIA for sign in (-1.0, 1.0))
-    stops = back / fast
-    rolls = (v + RADIUS * slow * stops) / (mu * G + RADIUS * slow)
-    assert sim.states([stops / 2.0])[0].angular_velocity[1] == pytest.approx(-back / 2.0)
-    rolling = sim.at_event('rolling began', within=1.0)
-    assert rolling.time == pytest.approx(rolls, abs=1e-12)
-    assert rolling.velocity[0] == pytest.approx(v - mu * G * rolls, abs=5e-12)
-    sim.advance(800)
-    assert abs(sim.ledger()['energy_residual']) < 1e-13
-
-
-@pytest.mark.parametrize('dry', [0.1, 0.3])
-def test_a_ball_at_rest_on_a_slope_begins_to_slide_and_rolls_if_friction_lets_it(dry):
-    """The slope is 3/4, mu 1/5: it slides held where C > mu, and else rolls against C N."""
-    sim = ball(0.2, dry, '{}', '{table: {normal: [0, 0.6, 0.8]}}')
-    state = sim.states([0.1])[0]
-    down = 0.1 * G * (0.6 - 0.2 * 0.8)
-    turned = 0.1 * G * 0.8 * RADIUS * (0.2 - dry) / INERTIA
-    assert np.linalg.norm(state.velocity) == pytest.approx(down, rel=1e-9)
-    assert np.linalg.norm(state.angular_velocity) == pytest.approx(max(turned, 0.0), rel=1e-9)
-
-
-def test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off():
-    sim = ball(0.3, 0.1, '{velocity: [0.2, 0, 0]}')
-    sim.advance(400)
-    assert sim.events[-1].name == 'rest'
-    ledger = sim.ledger()
-    assert abs(ledger['energy_residual']) < 1e-13
-    assert ledger['momentum_residual'] < 1e-13
