@@ -17,10 +17,6 @@ along the axes of the plane.
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
               behind that direction is corrected to the first order in |u| |omega|/(mu g)
 
-The lowest point of a disk moves along its rim only, so dry rolling friction either has a known
-sign or holds that point where it is; p.rim says which. A held disk falls and spins: a couple that
-takes no power keeps the point there, as long as its force is at most C N.
-
 The height of the centre of mass is the gap less n . r, and in contact its velocity is u - omega x
 r: gap and normal velocity are zero to the last bit there, and small gaps are as exact as large
 ones.
@@ -48,9 +44,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
 from rigid_body_sim.mechanics.contact.forces import (
     Push,
     along_body,
-    hastened,
     held,
-    holding_couple,
     holds_still,
     leaving,
     patch_of,
@@ -70,8 +64,8 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
     turning,
 )
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FREE, LOW
-from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination, tangent
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
+from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -178,7 +172,7 @@ def _ahead(p, c, now, at, f, touch):
     """Return Posture and Push a short time later under a force and a couple of the contact."""
     acts = _applied(p, c, now, at, at.omega, scaled(-1.0, apply(at.axes, at.carried)), 0.0)
     torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
-    grown = hastened(c, at, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
+    grown = apply(c.inverse, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
     short = _short(c)
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
     half = 0.5 * short
@@ -343,8 +337,9 @@ def _resting(p, c, now, at):
     held_back = scaled(-1.0, apply(at.axes, acts.inner))
     nothing = Ledger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
     still = Unknowns((0.0, 0.0, 0.0, 0.0), ZERO, ZERO, (0.0, 0.0), 0.0, 1.0, nothing)
-    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0, 1.0),
-               scaled(-1.0, acts.force), ZERO, (0.0, 0.0), ZERO, apply(at.axes, at.r), 1.0, 0.0)
+    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0), scaled(-1.0, acts.force),
+               ZERO,
+               (0.0, 0.0), ZERO, apply(at.axes, at.r), 1.0)
 
 
 @compiled
@@ -363,7 +358,7 @@ def rate(p, y, k):
     v = _centre(c, now, at)
     F, T, work, heat, inner = _applied(p, c, now, at, at.omega, v, 0.0)
     torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
-    gap, motion, rolling, rim, holds = 0.0, 1.0, 1.0, 0.0, ZERO
+    gap, motion = 0.0, 1.0
     if c.mode == FLIGHT:
         contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))
         gap = v[2] + dot(e3, at.carried)
@@ -380,29 +375,20 @@ def rate(p, y, k):
         torque = plus(contact.push.torque,
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
-        if c.rim == 0.0:
-            holds, rim = holding_couple(c, at, torque)
-            torque, rolling = plus(torque, holds), c.rolling * contact.f[2] - abs(rim)
-        elif c.rim != FREE:
-            rim = dot(tangent(e3), at.moved)
-            rolling = c.rim * rim
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
-    if c.rim == 0.0:
-        touch = plus(touch, holds)
     turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch),
                                minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
-              + (c.rolling * contact.f[2] * contact.speed if c.rim != 0.0 else 0.0))
+              + c.rolling * contact.f[2] * contact.speed)
     entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
                         heat, work, turn, contact.spun)
     x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
     rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), apply(c.inverse, torque),
                      contact.growth, (contact.v[0], contact.v[1]), gap, 1.0, entries)
-    watched = Watched(contact.normal, contact.grip, contact.firmness, c.until - now.time, motion,
-                      rolling)
+    watched = Watched(contact.normal, contact.grip, contact.firmness, c.until - now.time, motion)
     store_row(k, Row(rates, watched, contact.f, apply(at.axes, touch),
                      (contact.slip[0], contact.slip[1]), contact.v, apply(at.axes, at.r),
-                     contact.pace, rim))
+                     contact.pace))
     if c.mode == SLIDING:
         for place in range(RATES):
             k[place] *= contact.pace

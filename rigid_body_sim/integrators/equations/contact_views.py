@@ -80,10 +80,6 @@ class Watched(NamedTuple):
         Time to where what acts jumps, s.
     motion : float
         How far the body is from lying flat (rad), or from standing still (m/s).
-    rolling : float
-        Of a disk under dry rolling friction: how fast the point of contact moves along the rim
-        the way it does (m/s), or, while friction holds it there, what friction could hold less
-        what it holds (N).
     """
 
     normal: float
@@ -91,7 +87,6 @@ class Watched(NamedTuple):
     firmness: float
     jump: float
     motion: float
-    rolling: float
 
 
 class Row(NamedTuple):
@@ -111,9 +106,6 @@ class Row(NamedTuple):
         From the centre of mass to the lowest point, m.
     pace : float
         Speed of the slip, with the spin of a patch of contact, m/s; in other phases 1.
-    rim : float
-        Of a disk under dry rolling friction: the velocity of the point of contact along the rim
-        (m/s), or, while friction holds it there, the force against a rolling that way (N).
     """
 
     rates: Unknowns
@@ -124,7 +116,6 @@ class Row(NamedTuple):
     velocity: Vector
     lever: Vector
     pace: float
-    rim: float
 
 
 UNKNOWNS, ROW = layout(Unknowns), layout(Row)

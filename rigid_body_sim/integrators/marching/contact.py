@@ -51,16 +51,15 @@ LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, RIM = (
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
-                                          'rolling', 'restitution', 'rim'))
+                                          'rolling', 'restitution'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
 VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
-NORMAL, GRIP, FIRMNESS, MOTION, ROLLS = (WATCHED.part(name).first for name in (
-    'normal', 'grip', 'firmness', 'motion', 'rolling'))
-ALONG = ROW.part('rim').first
+NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
+    'normal', 'grip', 'firmness', 'motion'))
 SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
@@ -187,14 +186,12 @@ class PlaneCourse:
     def _open(self, mode, p, y):
         """Begin a phase."""
         time = self._begin + float(y[TIME])
-        held = p[RIM] == 0.0
         p = self._parameters(time)
         k = bisect.bisect_right(self._bound.breakpoints, time)
         later = self._bound.breakpoints[k:]
         p[UNTIL] = later[0] - self._begin if later else math.inf
         p[MODE], p[SWIFT] = mode, self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
-        self._roll(p, y, held)
         short = AT_ONCE * self._length / p[SWIFT]
         if len(self._phases) >= MOST_PHASES and (
                 float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
@@ -205,24 +202,6 @@ class PlaneCourse:
         self._phases.append(_Phase(self._bound, p, y, tolerance, self._work, self._length))
         self._begins.append(self._phases[-1].begin)
 
-    def _roll(self, p, y, held):
-        """Note which way a disk under dry rolling friction rolls from here on, if it does.
-
-        `held` says that friction held it so far.
-        """
-        body = self._bound.scene.body.surface
-        if not (p[DRY] > 0.0 and body.kind == 'disk') or p[MODE] in (FLIGHT, RESTING):
-            return
-        row = np.empty(ROW.size)
-        p[RIM] = 1.0
-        self._bound.rates.rate(p, y, row)
-        along = row[ALONG]
-        if held or abs(along) <= ROUNDING * self._speed(y):
-            p[RIM] = 0.0
-            self._bound.rates.rate(p, y, row)
-            along = row[ALONG] if row[ROLLS] < 0.0 else 0.0
-        p[RIM] = np.sign(along)
-
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
         y[U] = *u, 0.0
@@ -230,7 +209,6 @@ class PlaneCourse:
         mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
         slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > ROUNDING * self._speed(y)
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
-        self._roll(p, y, p[RIM] == 0.0)
         rates.rate(p, y, row)
         if not row[FIRMNESS] > 0.0:
             self._end(y)

@@ -43,7 +43,7 @@ SIZE, ROW_SIZE, TIME = UNKNOWNS.size, ROW.size, UNKNOWNS.part('time').first
 PACE, WATCHED = ROW.part('pace').first, ROW.part('watched').first
 WATCHES = ROW.part('watched').size
 # which of the watched numbers falls below zero
-NORMAL, GRIP, FIRMNESS, JUMPS, STOPS, ROLLS = (
+NORMAL, GRIP, FIRMNESS, JUMPS, STOPS = (
     layout(Watched).part(name).first for name in Watched._fields)
 NOTHING = -1    # none does
 load_omega, load_u = UNKNOWNS.part('omega').load, UNKNOWNS.part('u').load
@@ -59,10 +59,10 @@ ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps mad
 the point at which the cursor stands, and how many of the last steps were all too short."""
 META = 12
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
- STOPPED, HELD) = range(11)
+ STOPPED) = range(10)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
 the body comes down; no step is small enough; a creep has become a slip; a ring lies flat or a body
-no longer rolls; dry friction holds a disk from rolling, or lets it."""
+no longer rolls."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
 FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely
@@ -209,8 +209,7 @@ def _named(mode, k):
         return TOUCHED if mode == FLIGHT else LOST_CONTACT
     if k == GRIP:
         return FASTER if mode == CREEPING else LET_GO
-    return (PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED if k == STOPS
-            else HELD)
+    return PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED
 
 
 @compiled

@@ -17,14 +17,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     patch_system,
     sticking,
 )
-from rigid_body_sim.mechanics.contact.touch import (
-    above_flat,
-    inclination,
-    lever,
-    response,
-    spinning,
-    tangent,
-)
+from rigid_body_sim.mechanics.contact.touch import above_flat, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -50,10 +43,6 @@ class Posture(NamedTuple):
         omega x r, m/s.
     moved : Vector
         r', the velocity at which the lowest point moves over the surface, m/s.
-    inverse : Matrix
-        How a couple changes omega, I^-1; without what friction holds, 1/(kg m^2).
-    shift : Vector
-        The omega' by which friction keeps the lowest point where it is on a rim, rad/s^2.
     """
 
     q: Quaternion
@@ -62,8 +51,6 @@ class Posture(NamedTuple):
     r: Vector
     carried: Vector
     moved: Vector
-    inverse: Matrix
-    shift: Vector
 
 
 class Push(NamedTuple):
@@ -93,58 +80,8 @@ def posture(c, q, omega):
     axes = matrix(*q)
     gamma = axes[2]
     r = lever(c, gamma)
-    inverse, shift = c.inverse, (0.0, 0.0, 0.0)
-    if c.rim == 0.0:
-        inverse, shift = holding(c, gamma, omega)
     return Posture(q, omega, axes, r, cross(omega, r),
-                   shifted(c.kind, c.size, gamma, cross(gamma, omega)), inverse, shift)
-
-
-@inlined
-def holding(c, gamma, omega):
-    """Return inverse and shift of a Posture whose lowest point is held where it is on a rim.
-
-    With the tangent e of the rim and b = e x gamma, s' is along b . omega, and its rate vanishes
-    for b . omega' = -(e . omega)(gamma . omega). The couple that does this is along b.
-    """
-    along = tangent(gamma)
-    b = cross(along, gamma)
-    turned = apply(c.inverse, b)
-    share = 1.0 / dot(b, turned)
-    rows = c.inverse
-    inverse = (minus(rows[0], scaled(share * turned[0], turned)),
-               minus(rows[1], scaled(share * turned[1], turned)),
-               minus(rows[2], scaled(share * turned[2], turned)))
-    return inverse, scaled(-share * dot(along, omega) * dot(gamma, omega), turned)
-
-
-@inlined
-def hastened(c, at, torque):
-    """Return omega' under a couple about the centre of mass, body axes, rad/s^2."""
-    grown = apply(at.inverse, torque)
-    return plus(grown, at.shift) if c.rim == 0.0 else grown
-
-
-@inlined
-def holding_couple(c, at, torque):
-    """Return the couple by which friction holds the lowest point on a rim, and its force.
-
-    Parameters
-    ----------
-    torque : Vector
-        All other couples about the centre of mass, body axes, N m.
-
-    Returns
-    -------
-    couple : Vector
-        Body axes, N m.
-    force : float
-        Against a rolling along the tangent, N.
-    """
-    gamma = at.axes[2]
-    b = cross(tangent(gamma), gamma)
-    held = dot(b, minus(apply(c.inertia, hastened(c, at, torque)), torque))
-    return scaled(held, b), held * inclination(gamma) / c.size[0]
+                   shifted(c.kind, c.size, gamma, cross(gamma, omega)))
 
 
 @inlined
@@ -162,7 +99,7 @@ def wrung_by(push, wrung):
 @inlined
 def driven(c, at, push):
     """Return b of the System."""
-    b = plus(cross(hastened(c, at, push.torque), at.r),
+    b = plus(cross(apply(c.inverse, push.torque), at.r),
              plus(cross(at.omega, at.carried), cross(at.omega, at.moved)))
     return plus(apply(at.axes, b), scaled(1.0 / c.mass, push.force))
 
@@ -170,15 +107,13 @@ def driven(c, at, push):
 @inlined
 def system_of(c, at, push):
     """Return the System."""
-    return System(response(c.mass, at.inverse, at.axes, at.r, push.wrung), driven(c, at, push))
+    return System(response(c, at.axes, at.r, push.wrung), driven(c, at, push))
 
 
 @inlined
 def patch_of(c, at, push):
     """Return the Patch of a body with a patch of contact."""
-    turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque, push.wrung)
-    if c.rim == 0.0:
-        spun = spun[0] + dot(at.axes[2], at.shift), spun[1]
+    turned, twisted, spun = spinning(c, at.axes, at.r, push.torque, push.wrung)
     return patch_system(system_of(c, at, push), turned, twisted, spun, c.patch)
 
 
@@ -215,7 +150,7 @@ def slipping_force(c, at, push, mu, dx, dy):
     b = driven(c, at, push)
     pressed = minus(e3, plus(scaled(mu * dx, e1), scaled(mu * dy, e2)))
     moved = plus(scaled(1.0 / c.mass, pressed),
-                 cross(apply(at.inverse, plus(cross(at.r, pressed), push.wrung)), at.r))
+                 cross(apply(c.inverse, plus(cross(at.r, pressed), push.wrung)), at.r))
     A = dot(e3, moved)
     N = -b[2] / A
     return ((-mu * N * dx, -mu * N * dy, N),

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FREE, ContactParameters
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, ContactParameters
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import IDENTITY
@@ -30,7 +30,7 @@ def contact_parameters(scene):
         inclined=float(plane.axes != IDENTITY), plane=plane.axes,
         mu=laws.mu, restitution=plane.restitution, rolling=laws.rolling,
         rolling_viscous=laws.rolling_viscous, film=laws.film, patch=laws.patch,
-        rim=FREE, swift=0.0, creep=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
+        swift=0.0, creep=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
     return p
 
 

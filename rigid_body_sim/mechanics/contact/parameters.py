@@ -8,7 +8,6 @@ from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, 
 FLAT = 1e-6              # rad: a ring that is inclined by less lies flat, where friction stops it
 FILMY = 1e-4             # rad: and where a film of air does
 FLATTER = 1e-10          # rad: and where neither does
-FREE = 2.0               # `rim` of what no dry friction can hold
 LOW = 1e-3               # rad: below it rolling friction jams a ring that no step can follow
 
 
@@ -40,9 +39,6 @@ class ContactParameters(NamedTuple):
         of a film of air (N s/m).
     patch : float
         Radius rho of the patch of contact, m; 0 for a point.
-    rim : float
-        Which way the point of contact of a disk under dry rolling friction moves along the rim, 1
-        or -1; 0 while friction holds it there, FREE of other bodies.
     swift : float
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
@@ -71,7 +67,6 @@ class ContactParameters(NamedTuple):
     rolling_viscous: float
     film: float
     patch: float
-    rim: float
     swift: float
     creep: float
     until: float

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The balance of forces of a body above, or in contact with, a plane at one instant."""
 
-import math
-
 from rigid_body_sim.mechanics.contact.forces import (
     Posture,
     Push,
-    holding,
-    holding_couple,
     holds_still,
     patch_of,
     system_of,
@@ -22,13 +18,7 @@ from rigid_body_sim.mechanics.contact.laws import (
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
-from rigid_body_sim.mechanics.contact.touch import (
-    above_flat,
-    couples,
-    inclination,
-    lever,
-    tangent,
-)
+from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination, lever
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
@@ -87,52 +77,23 @@ class Standing:
             return NOTHING, NOTHING, r
         moved = shifted(c.kind, c.size, gamma, cross(gamma, omega))
         pressed = rotate_back(*c.plane, *force)[2] < 0.0
-        stands = Posture(None, omega, axes, r, cross(omega, r), moved, c.inverse, NOTHING)
+        stands = Posture(None, omega, axes, r, cross(omega, r), moved)
         if pressed and not any(omega) and not any(velocity) and (
                 self._lies(gamma) or (c.rolling > 0.0 and not self._is_disk and holds_still(
                     c, stands, rotate_back(*c.plane, *force), couple))):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
-        free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
-        acts, slip = (rotate_back(*c.plane, *force), free), (u, speed)
-        if self._is_disk and c.rolling > 0.0:
-            along = dot(tangent(gamma), moved)
-            c = c._replace(rim=math.copysign(1.0, along))
-            if abs(along) <= TOUCHES * speed:
-                c = c._replace(rim=0.0)
-                inverse, shift = holding(c, gamma, omega)
-                held = stands._replace(inverse=inverse, shift=shift)
-                f, touch = self._exerted(c, held, acts, slip)
-                torque = plus(plus(free, touch), cross(r, apply(transposed(axes), f)))
-                holds, size = holding_couple(c, held, torque)
-                if abs(size) <= c.rolling * f[2]:
-                    return rotate(*c.plane, *f), plus(touch, holds), r
-                c = c._replace(rim=math.copysign(1.0, size))
-        f, touch = self._exerted(c, stands, acts, slip)
-        if not f[2] > 0.0:
-            return NOTHING, NOTHING, r
-        return rotate(*c.plane, *f), touch, r
-
-    def _exerted(self, c, stands, acts, slip):
-        """Return the force (axes of the plane) and couple (body axes) of the contact.
-
-        Parameters
-        ----------
-        acts : tuple of 2 tuples
-            Force (axes of the plane) and couple with the gyroscopic one (body axes) of all else.
-        slip : tuple of tuple and float
-            Velocity of the lowest point, and the speeds beside which it is rounding, m/s.
-        """
-        gamma, (u, speed) = stands.axes[2], slip
-        viscous, wrung, _, _ = couples(c, gamma, stands.moved)
-        push = Push(acts[0], plus(acts[1], viscous), viscous, wrung)
+        viscous, wrung, _, _ = couples(c, gamma, moved)
+        torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
+        push = Push(rotate_back(*c.plane, *force), torque, viscous, wrung)
         if c.patch > 0.0:
-            spin = dot(gamma, stands.omega)
-            f, twist = self._patch_force(patch_of(c, stands, push), u, spin, speed)
+            f, twist = self._patch_force(patch_of(c, stands, push), u, dot(gamma, omega), speed)
             viscous = plus(viscous, scaled(twist, gamma))
         else:
             f = self._force(system_of(c, stands, push), u, speed)
-        return f, plus(viscous, scaled(f[2], wrung))
+        if not f[2] > 0.0:
+            return NOTHING, NOTHING, r
+        return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
 
     def _lies(self, gamma):
         """Return whether the body is a ring that counts as flat once nothing moves.
