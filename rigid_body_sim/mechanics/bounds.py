@@ -7,6 +7,7 @@ from operator import add
 
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
 
 
@@ -28,8 +29,15 @@ def swing_rate(scene):
 
 
 def swing_momentum(scene):
-    """Return the largest angular momentum (kg m^2/s) that potentials can give a held body."""
+    """Return the largest angular momentum (kg m^2/s) that potentials can give a held body.
+
+    Of a body on a plane it is that of a fall by its own size: friction may turn one that did not
+    turn, and bring it to rest.
+    """
     body, constraint = scene.body, scene.constraint
+    if constraint.mechanism is Mechanism.PLANE:
+        far = max(body.surface.size)
+        return body.mass * far * math.sqrt(hypot3(*scene.field) * far)
     moment = (max(constraint.inertia(body).moments) if constraint.axis is None
               else moment_about_hinge(body, constraint))
     return swing_rate(scene) * moment

@@ -350,6 +350,30 @@ def test_impulse_into_the_plane_is_taken_by_the_plane():
     assert balanced(sim)
 
 
+def test_ideal_rolling_takes_the_slip_of_a_strike_and_of_a_start_by_an_impact():
+    """A horizontal impulse J moves a ball by J/(m + I/R^2), and it rolls at once."""
+    share = 1.0 / (1.0 + 0.001 / 0.05**2)
+    struck = simulation(BALL, 'sliding_friction: {mu: .inf}', '{}', accuracy=1e-9)
+    struck.advance(1)
+    struck.impulse((0.3, 0.0, 0.0))
+    started = simulation(BALL, 'sliding_friction: {mu: .inf}', '{velocity: [0.3, 0, 0]}',
+                         accuracy=1e-9)
+    for sim in (struck, started):
+        sim.advance(1)
+        assert sim.state.velocity == pytest.approx([0.3 * share, 0.0, 0.0], abs=1e-15)
+        assert sim.state.angular_velocity[1] == pytest.approx(6.0 * share)
+        assert sim.ledger()['dissipated_impacts'] == pytest.approx(0.045 * (1.0 - share))
+        assert balanced(sim)
+
+
+def test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off():
+    sim = simulation(BALL, 'sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.1}',
+                     '{velocity: [0.2, 0, 0]}')
+    sim.advance(1000)
+    assert sim.events[-1].name == 'rest'
+    assert balanced(sim)
+
+
 def test_ticks_any_way_give_the_same_bits():
     parts = EGG, 'sliding_friction: {mu: 0.15}', \
         '{euler_zyz: [0, 1.2, 0.3], angular_velocity: [1, 2, 60]}'

@@ -51,9 +51,9 @@ LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION = (
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
-                                          'rolling', 'restitution'))
+                                          'rolling', 'restitution', 'mass'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
@@ -166,8 +166,8 @@ class PlaneCourse:
         y[GAP] = 0.0
         if normal > rounding:
             self._open(FLIGHT, p, y)
-        elif normal < -rounding:
-            self._impact(p, y)
+        elif normal < -rounding or (p[MU] > IDEAL and hypot(ux, uy) > rounding):
+            self._impact(p, y)    # of a slip, too, that ideal rolling does not let be
         else:
             self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
 
@@ -289,6 +289,9 @@ class PlaneCourse:
         impact = load_impact(out.tolist())
         self._events.append((self._begin + float(y[TIME]), 'impact', {
             'normal_velocity': impact.before, 'impulse': impact.impulse}))
+        if impact.impulse < -CHATTER * self._speed(y) * p[MASS]:
+            self._end(y, PULLS)
+            return
         if rebounds:
             self._open(FLIGHT, p, y)
         else:
