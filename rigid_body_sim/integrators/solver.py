@@ -21,7 +21,7 @@ import numpy as np
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators import METHODS, runnable
+from rigid_body_sim.integrators import GENERAL, METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
@@ -32,6 +32,7 @@ from rigid_body_sim.mechanics.quadrature import Actors, Quadrature
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
+from rigid_body_sim.scene.winding import may_reach_ends
 
 FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
@@ -83,6 +84,8 @@ class Stepped:
 
     def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0,
                  most=None, wanted=math.inf):
+        if wrench:
+            scene = scene.wound
         self.scene, self.method, self.wrench = scene, METHODS[method], wrench
         _check_control(self.method, accuracy, step)
         self.accuracy, self.step, self.horizon, self.most = accuracy, step, horizon, most
@@ -94,6 +97,7 @@ class Stepped:
         self._bound = self.method.FAMILY.bind(self.method, self)
         self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
+        self._asks = scene.wound.constraint != scene.constraint
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -104,6 +108,7 @@ class Stepped:
         other = object.__new__(Stepped)
         other.__dict__ = self.__dict__ | {'accuracy': accuracy, 'most': most, 'wanted': wanted}
         other._bound = self._bound.at(other)
+        other.__dict__.pop('_wound', None)    # it has another accuracy
         return other
 
     @property
@@ -112,7 +117,13 @@ class Stepped:
         return self.method.NAME
 
     def start(self, vector):
-        """Return a solver from a state vector (14 doubles, its time included)."""
+        """Return a solver from a state vector (14 doubles, its time included).
+
+        From a state with more energy than the scene's start, where what acts jumps at an end of
+        a hinge's angle, the general method goes on if this one does not stop at kinks.
+        """
+        if self._asks and may_reach_ends(self.scene, vector):
+            return self._wound.start(vector)
         started = object.__new__(Stepped)
         started.__dict__ = self.__dict__.copy()
         started.vector = vector = np.array(vector, dtype=float)
@@ -126,13 +137,20 @@ class Stepped:
             started._course = Departing(near, started._march_from)
         return started
 
+    @functools.cached_property
+    def _wound(self):
+        """The Stepped of the scene with a kink at the ends of a hinge's angle."""
+        method = self.method if self.method.FAMILY.KINKS else GENERAL
+        return Stepped(self.scene.wound, method.NAME, self.accuracy, self.step, self.wrench,
+                       self.horizon, self.most, self.wanted)
+
     def runner(self):
         """Return ``run(start, time, out)``, which fills out with the state at a time from a start.
 
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        found = None if self._departs else self._bound.runner(self)
+        found = None if self._departs or self._asks else self._bound.runner(self)
         if found is None:
             return self._run
         final, room = found
@@ -203,7 +221,7 @@ class Stepped:
                     raise lost(self.method, self.scene, failed[1])
 
         batch = None
-        if self.method.FAMILY.LANES and len(times):
+        if self.method.FAMILY.LANES and len(times) and not self._asks:
             batch = self.method.FAMILY.batch(self._bound, self, times)
         if batch is None:
             on_all_cores(one_by_one, len(starts))

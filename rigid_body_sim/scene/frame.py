@@ -19,10 +19,14 @@ class Hinging(NamedTuple):
         Unit vector, body axes.
     zero : tuple of 4 floats
         The orientation of the body, body to world, at the angle 0.
+    winds : bool
+        Whether the body may turn to an end of the angle where what acts jumps: then the jump is a
+        kink.
     """
 
     axis: tuple[float, float, float]
     zero: tuple[float, float, float, float]
+    winds: bool = False
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ path, the value and what would be right.
 
 import dataclasses
 import functools
+import math
 import operator
 import pathlib
 from collections.abc import Mapping, Sequence
@@ -35,6 +36,7 @@ from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.schema import check, mapping_of
 from rigid_body_sim.scene.state import State
+from rigid_body_sim.scene.winding import energy_at_ends, may_reach_ends
 
 Overrides = Mapping[str, Any] | Sequence[str]
 
@@ -92,6 +94,21 @@ class Scene:
     def frame(self) -> Frame:
         """The frame in which the equations of motion of the body are written."""
         return self.constraint.frame(self.body)
+
+    @functools.cached_property
+    def energy_at_ends(self) -> float:
+        """The lower potential at the two ends of a hinge's angle, J: see winding.py."""
+        return energy_at_ends(self)
+
+    @functools.cached_property
+    def wound(self) -> 'Scene':
+        """The scene with a kink where what acts jumps at an end of a hinge's angle.
+
+        It is the scene itself unless its own start keeps the body from there.
+        """
+        if self.energy_at_ends == math.inf:
+            return self
+        return dataclasses.replace(self, constraint=self.constraint.wound())
 
     @property
     def notes(self) -> list[str]:
@@ -291,8 +308,9 @@ def _scene(mapping, where):
     initial = constraint.initial(start, body, f'{where}: initial')
     refuse_forbidden(initial, constraint, start, body, f'{where}: initial')
     about = printable(' '.join(mapping.get('about', '').split()))
-    return Scene(mapping['scene'], about, body, constraint, effects, initial,
-                 mapping.get('commands', 'accept') == 'accept', mapping)
+    scene = Scene(mapping['scene'], about, body, constraint, effects, initial,
+                  mapping.get('commands', 'accept') == 'accept', mapping)
+    return scene.wound if may_reach_ends(scene, initial.vector) else scene
 
 
 def _constraint(value, body, parameters, where):

@@ -33,7 +33,8 @@ from rigid_body_sim.integrators.marching.points import (
 from rigid_body_sim.integrators.marching.work import Work
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, VELOCITY
 
-LOOKS = 4                    # looks in one step
+LOOKS = 4                    # looks in one step, at least
+TURNED = 1.0                 # rad, at most between two looks at a body on a hinge that winds
 DEAR = 100                   # steps that cost as much as the looks of one
 STALLS = 4                   # marches that end where they begin: then a body slides along a kink
 SHORTEST, LONGEST = 2.0 ** -20, 2.0 ** -4    # s, between two looks at a body at rest
@@ -144,6 +145,7 @@ class Switched:
         self._kernels = specialise(sides, switching=equations.switching_source(),
                                    COUNT=f'COUNT = {len(equations.modes)}\n')
         self._stretches, self._begins, self._stalls = [], [], 0
+        self._winds = equations.frame.hinge is not None and equations.frame.hinge.winds
         self._courses = {}
         self._enter(np.array(stepped.vector, dtype=float), None)
 
@@ -255,8 +257,9 @@ class Switched:
         end = self._end_at_rest(stretch) if stretch.rests else course.step_end(self._seen)
         end = min(end, stretch.end)
         out, before = np.empty(STATE_SIZE), self._seen
-        for share in range(1, LOOKS + 1):
-            time = end if share == LOOKS else self._seen + (end - self._seen) * (share / LOOKS)
+        looks = self._looks(course, end)
+        for share in range(1, looks + 1):
+            time = end if share == looks else self._seen + (end - self._seen) * (share / looks)
             if not time > before:
                 continue
             if self._changed(course, stretch, time, out):
@@ -267,6 +270,16 @@ class Switched:
         if end == stretch.end < math.inf:
             course.state(end, out)
             self._enter(out, self._head(stretch, course, end))
+
+    def _looks(self, course, end):
+        """Return the number of looks until a time (s)."""
+        if not self._winds:
+            return LOOKS
+        ends = np.empty((2, STATE_SIZE))
+        course.states(np.array([self._seen, end]), ends)
+        rate = float(np.abs(ends[:, ANGULAR_VELOCITY]).sum(axis=1).max())
+        turned = rate * (end - self._seen)
+        return max(LOOKS, math.ceil(turned / TURNED)) if math.isfinite(turned) else LOOKS
 
     def _changed(self, course, stretch, time, out):
         """Return the switches that have left their sides at a time of a stretch."""

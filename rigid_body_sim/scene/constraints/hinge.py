@@ -26,12 +26,14 @@ class Hinge(Constraint):
     `axis` is a direction in body axes. `through` is a point of the axis in body axes (m, default
     the origin). Instead of it, `distance` hangs the body that far from its centre of mass along
     body axis z, measured across the axis. The reference point is `through`. `zero` is the
-    orientation at the angle 0, the one that `initial` gives beside `angle`.
+    orientation at the angle 0, the one that `initial` gives beside `angle`. `winds` says that the
+    body may turn to an end of the angle where what acts jumps.
     """
 
     axis: Vector = (0.0, 0.0, 1.0)    # overrides the view `axis` of Constraint
     through: Vector = (0.0, 0.0, 0.0)
     zero: tuple[float, float, float, float] = IDENTITY
+    winds: bool = False
     kind: ClassVar[str] = 'hinge'
     usage: ClassVar[str] = 'hinge: {axis: [x, y, z], through: [x, y, z]}'
     SCHEMA: ClassVar[dict | None] = described(mapping_of(
@@ -73,6 +75,10 @@ class Hinge(Constraint):
         x, y, z, w = start.orientation
         return dataclasses.replace(self, zero=(x, y, z, w))
 
+    def wound(self) -> Self:
+        """Return the hinge whose angle may come to its ends, where what acts jumps."""
+        return dataclasses.replace(self, winds=True)
+
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state at an angle (rad) and rate (rad/s) about the axis.
 
@@ -94,7 +100,7 @@ class Hinge(Constraint):
     def frame(self, body: Body) -> Frame:
         """Return the body's axes through the point `through`."""
         return Frame(False, body.mass, body.about_center.moments, IDENTITY, self.through,
-                     self.arm(body), Hinging(self.axis, self.zero))
+                     self.arm(body), Hinging(self.axis, self.zero, self.winds))
 
 
 def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) -> Vector:

@@ -94,6 +94,10 @@ class Constraint(Protocol):
         """Return the constraint with the numbers that it takes from the initial conditions."""
         return self
 
+    def wound(self) -> Self:
+        """Return the constraint of a body that may turn to where what acts jumps (frame.py)."""
+        return self
+
     def initial(self, start: Start, body: Body, where: str) -> State:
         """Return the state at time 0.
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Torques and potentials that a scene writes as expressions of time and state."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
@@ -28,6 +29,11 @@ def refuse_beside_hinge(trees: tuple[tree.Term, ...], constraint: Constraint,
         raise BadInput(where, f'depends on {", ".join(sorted(known))}',
                        f'on constraint {constraint.kind!r} there is no hinge: '
                        'write attitude and angular velocity')
+
+
+def as_written(acting: Iterable[Acting]) -> tuple[Acting, ...]:
+    """Return what acts by an expression; nobody knows the sign of the heat that it books."""
+    return tuple(replace(one, both_ways=True) if one.books == 'heat' else one for one in acting)
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,8 @@ class ExpressedTorque(Effect):
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the couple."""
-        return actions.torque(self.trees, self.frame, self.parameters, frame, self.books),
+        return as_written([actions.torque(self.trees, self.frame, self.parameters, frame,
+                                          self.books)])
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple."""

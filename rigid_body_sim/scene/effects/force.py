@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
+from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
@@ -55,7 +55,8 @@ class Force(Effect):
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the force and its moment."""
-        return actions.force(self.trees, self.frame, self.parameters, self.at, frame, self.books)
+        return as_written(actions.force(self.trees, self.frame, self.parameters, self.at, frame,
+                                        self.books))
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the force and its moment."""

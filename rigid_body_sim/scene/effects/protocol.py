@@ -69,6 +69,11 @@ class Acting:
     rooted : bool
         True if it takes a root or a fractional power of a quantity that changes: where that comes
         near zero, as |v| does, it is nearly a kink.
+    winding : bool
+        True if it jumps where the angle of a hinge goes on from its other end, two turns away. The
+        jump is a kink where ``frame.hinge.winds``.
+    both_ways : bool
+        True of what books heat and may add energy as well as take it: what a scene writes itself.
     """
 
     kernel: str
@@ -83,6 +88,8 @@ class Acting:
     grip: float = 0.0
     timed: bool = False
     rooted: bool = False
+    winding: bool = False
+    both_ways: bool = False
 
 
 @dataclass(frozen=True)

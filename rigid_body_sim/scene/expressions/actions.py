@@ -9,7 +9,7 @@ import functools
 
 from rigid_body_sim.numerics.vectors import minus, plus
 from rigid_body_sim.scene.effects.protocol import Acting, Potential
-from rigid_body_sim.scene.expressions import tree
+from rigid_body_sim.scene.expressions import tree, winding
 from rigid_body_sim.scene.expressions.source import (
     ATTITUDE,
     IDENTITY,
@@ -30,6 +30,16 @@ IN_FIELD = {*TIME, *PLACE, *VELOCITY}
 OF_MOTION = {*VELOCITY, *RATES, *WORLD_RATES, 'rate'}
 
 
+def _lines(trees, parameters, frame):
+    """Return the Lines of trees, not computed yet; a jump of the angle has a switch."""
+    lines = Lines(dict(parameters))
+    if frame.hinge is not None:
+        lines.jumps = winding.jumps(trees, parameters)
+        if lines.jumps and frame.hinge.winds:
+            lines.wind()
+    return lines
+
+
 def _acting(lines, trees, frame, result, gives, books):
     """Return the Acting whose kernel computes trees and returns a result."""
     used = tree.names(*trees)
@@ -45,7 +55,7 @@ def _acting(lines, trees, frame, result, gives, books):
     moving = books != 'heat' and bool(used & OF_MOTION)
     return Acting(made.name, made.values, gives, books, in_field, moving,
                   switching=switching, modes=modes, timed=bool(used & {*TIME}),
-                  rooted=_rooted(trees))
+                  rooted=_rooted(trees), winding=lines.jumps)
 
 
 def _rooted(trees):
@@ -78,7 +88,7 @@ def torque(trees, axes, parameters, frame, books):
     frame : Frame
     books : str
     """
-    lines = Lines(dict(parameters))
+    lines = _lines(trees, parameters, frame)
     components = ', '.join(lines.of(*trees))
     return _acting(lines, trees, frame, _to_frame(lines, components, axes, frame), 'torque', books)
 
@@ -97,12 +107,12 @@ def force(trees, axes, parameters, at, frame, books):
     arm = minus(frame.from_body(at), frame.from_body(frame.point))
     found = []
     if frame.pushed:
-        lines = Lines(dict(parameters))
+        lines = _lines(trees, parameters, frame)
         components = ', '.join(lines.of(*trees))
         found.append(_acting(lines, trees, frame, _to_world(lines, components, axes, frame),
                              'force', books))
     if any(arm):
-        lines = Lines(dict(parameters))
+        lines = _lines(trees, parameters, frame)
         components = ', '.join(lines.of(*trees))
         r = ', '.join(lines.value(f'arm{k}', part) for k, part in enumerate(arm))
         turned = _to_frame(lines, components, axes, frame)
@@ -169,15 +179,15 @@ def pulls(energy, parameters, frame, turn=None, books='potential'):
     place, turn = gradient(energy, frame, turn)
     found, moved = [], any(one is not tree.ZERO for one in place)
     if frame.pushed and moved:
-        lines = Lines(dict(parameters))
+        lines = _lines(place, parameters, frame)
         found.append(_acting(lines, place, frame, f'({", ".join(lines.of(*place))})', 'force',
                              books))
     if (moved and any(frame.point)) or any(one is not tree.ZERO for one in turn):
-        lines = Lines(dict(parameters))
+        lifted = moved and any(frame.point)
+        used = (*turn, *place) if lifted else tuple(turn)
+        lines = _lines(used, parameters, frame)
         about = _to_frame(lines, ', '.join(lines.of(*turn)), 'body', frame)
-        used = [*turn]
-        if moved and any(frame.point):
-            used += place
+        if lifted:
             at_origin = _to_frame(lines, ', '.join(lines.of(*place)), 'world', frame)
             r = ', '.join(lines.value(f'arm{k}', -part)
                           for k, part in enumerate(frame.from_body(frame.point)))

@@ -10,6 +10,10 @@ LEVELS = 11
 """Levels of the continued fraction of tanh, which reach round-off for |x| < 1."""
 EVEN = 2.0 ** 53
 """From here on every double is an even integer."""
+TWO_TURNS = 4.0 * math.pi
+"""rad."""
+HALF = 0.5
+"""The cosine of a sixth of a turn, half of 2 pi/3."""
 
 
 @compiled
@@ -89,6 +93,20 @@ def hyperbolic_tangent(x):
         return x / below
     small = functions.exp(-2.0 * abs(x))
     return math.copysign((1.0 - small) / (1.0 + small), x)
+
+
+@compiled
+def wound(mode, s, c):
+    """Return the angle (rad) with the half-angle's sine s and cosine c, and its switch.
+
+    It is from -2 pi to 2 pi. With the mode 1 it is continued: from -4 pi/3 to 8 pi/3, with -1 from
+    -8 pi/3 to 4 pi/3. The switch has the sign of the angle, but with a mode that of the mode up to
+    2 pi/3 beyond 0: so both places where it changes are 2 pi/3 from an end of what is continued.
+    """
+    angle = 2.0 * functions.atan2(s, c)
+    if c > HALF:
+        return angle, mode if mode != 0.0 else math.copysign(1.0, s)
+    return angle + mode * TWO_TURNS if c < -HALF and mode * s < 0.0 else angle, s
 
 
 @compiled

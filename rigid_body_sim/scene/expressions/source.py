@@ -33,7 +33,7 @@ from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, minus, plus
 from rigid_body_sim.scene.expressions.functions import (
     divided, divided_or_zero, hyperbolic_tangent, logarithm, raised, raised_beyond, root,
-    root_beyond, side, tangent)
+    root_beyond, side, tangent, wound)
 """
 
 
@@ -66,16 +66,26 @@ class Lines:
     switches : dict of str to str
         Name of the value that holds the side of a switch -> the quantity that changes its sign
         at the kink.
+    winding : str
+        Name of the value that holds the side of the jump of a hinge's angle; empty where that is
+        no kink.
+    jumps : bool
+        Whether the trees jump there.
     """
 
     def __init__(self, parameters):
         self._parameters, self._names = parameters, {}
         self.lines, self.values, self.switches = [], {}, {}
+        self.winding, self.jumps = '', False
 
     def value(self, name, number):
         """Return the name of a value of the kernel."""
         self.values[name] = float(number)
         return name
+
+    def wind(self):
+        """Make a switch of the jump of a hinge's angle; what `prelude` gives computes it."""
+        self.winding = self._mode('the_end')
 
     def of(self, *trees):
         """Add the lines that compute trees; return the names of the results.
@@ -124,10 +134,15 @@ class Lines:
         for mode, known in self.switches.items():
             if known == switch:
                 return f'side_{mode}'
-        mode = self.value(f'mode{len(self.switches)}', 0.0)
-        self.switches[mode] = switch
+        mode = self._mode(switch)
         self.lines.append(f'    side_{mode} = side({mode}, {switch})')
         return f'side_{mode}'
+
+    def _mode(self, switch):
+        """Return the name of the value that holds the side of a new switch."""
+        mode = self.value(f'mode{len(self.switches)}', 0.0)
+        self.switches[mode] = switch
+        return mode
 
     def _beyond(self):
         """Return the text that says whether the state is beyond a kink."""
@@ -215,8 +230,14 @@ def prelude(lines, used, frame):
     if 'angle' in used:
         zx, zy, zz, zw = (lines.value(f'zero{k}', part)
                           for k, part in enumerate(frame.hinge.zero))
-        found += [f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, {_names(ATTITUDE)})',
-                  f'    the_angle = 2.0 * atan2({n[0]} * ux + {n[1]} * uy + {n[2]} * uz, uw)']
+        sine = f'{n[0]} * ux + {n[1]} * uy + {n[2]} * uz'
+        found += [f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, {_names(ATTITUDE)})']
+        if lines.winding:
+            mode = lines.winding
+            found += [f'    the_angle, the_end = wound({mode}, {sine}, uw)',
+                      f'    side_{mode} = side({mode}, the_end)']
+        else:
+            found += [f'    the_angle = 2.0 * atan2({sine}, uw)']
     if used & {*WORLD_RATES}:
         found.append(f'    {_names(WORLD_RATES)} = rotate(qx, qy, qz, qw, wx, wy, wz)')
     if used & {*TIME}:
