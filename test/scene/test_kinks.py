@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kinks of expressions and dry friction: located to round-off, so methods keep their orders."""
 
+import cmath
 import math
 
 import mpmath
@@ -11,6 +12,7 @@ from soak import IN_SOAK, SOAK
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import runnable
 from rigid_body_sim.integrators.solver import Stepped
+from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
 HINGE = '{hinge: {axis: [0, 0, 1]}}'
@@ -230,3 +232,93 @@ def test_only_methods_that_stop_at_kinks_run_them():
 def test_what_does_not_fit_gets_one_line(effect, constraint, words):
     with pytest.raises(BadInput, match=words):
         scene_of(f'[{effect}]', '{}', constraint)
+
+
+def turned(out):
+    """Return the angle of a state about z, from -2 pi to 2 pi."""
+    return 2 * math.atan2(out[3], out[4])
+
+
+WOUND = '{angle: 0.5, rate: 14}'
+
+
+@pytest.mark.without_numba
+def test_a_torsion_spring_goes_on_from_the_other_end_beyond_a_turn():
+    """Between two jumps from 2 pi to -2 pi it is a harmonic oscillator."""
+    scene = scene_of('[spring: {stiffness: 2}]', WOUND, HINGE)
+    w = math.sqrt(2 / I)
+    # a + i v/w turns by -w t
+    after = complex(2 * math.pi, math.sqrt(14 ** 2 + (w * 0.5) ** 2 - (w * 2 * math.pi) ** 2) / w)
+    passage = (cmath.phase(complex(0.5, 14 / w)) - cmath.phase(after)) / w
+    period = (cmath.phase(complex(-after.real, after.imag)) - cmath.phase(after)) / w
+    jumps = [passage, passage + period]
+    time = passage + 1.25 * period
+    ends = []
+    for method in ('dop8', 'gauss16'):
+        solver, out = started(scene, time, method)
+        kinks = np.array(solver._course.kinks(time))
+        assert np.abs(kinks[:, np.newaxis] - jumps).min(axis=0).max() < 2e-15, method
+        ends.append(out)
+    exact = complex(-after.real, after.imag) * cmath.exp(-0.25j * w * period)
+    for out in ends:
+        assert turned(out) == pytest.approx(exact.real, abs=1e-14)
+        assert out[7] == pytest.approx(w * exact.imag, abs=2e-14)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('method', 'order'), [('rk4', 4), ('dop8', 8)])
+def test_the_order_survives_where_the_angle_jumps(method, order):
+    scene = scene_of("[torque: {value: [0, 0, '-2*angle - 0.3*angle*cos(angle)']}]", WOUND, HINGE)
+    solver, exact = started(scene, 1.3, 'gauss16', {'accuracy': 1e-12})
+    assert len(solver._course.kinks(1.3)) == 2
+    errors = [abs(started(scene, 1.3, method, {'step': step})[1][7] - exact[7])
+              for step in (0.1, 0.05)]
+    # measured: 4.1 and 8.3
+    assert math.log2(errors[0] / errors[1]) > order - 0.2, errors
+
+
+@pytest.mark.without_numba
+def test_only_what_jumps_where_the_body_gets_has_the_kink():
+    for effects, start, winds in (
+            ("torque: {value: [0, 0, '-sin(angle) + 0.1*cos(angle/2 - t)']}", WOUND, False),
+            ('gravity: {g: 9.81}', WOUND, False),
+            ("potential: {energy: '3*angle'}", WOUND, False),
+            ("torque: {value: [0, 0, 'cos(angle/3)']}", WOUND, True),
+            ("torque: {value: [0, 0, '-0.1*angle']}", '{}', True),    # no energy known
+            ('spring: {stiffness: 2, damping: 0.1}', WOUND, True),
+            ('spring: {stiffness: 2, damping: 0.1}', '{angle: 6, rate: 1}', False),
+            ("spring: {stiffness: 2}, torque: {value: [0, 0, '-rate'], books: heat}", '{}', True),
+            ('spring: {stiffness: 2}, strike: {impulse: [0, 30, 0], point: [1, 0, 0]}', '{}', True)):
+        scene = scene_of(f'[{effects}]', start, HINGE)
+        assert scene.constraint.winds == winds, effects
+        assert ('taylor' in runnable(scene)) != winds, effects
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('method', ['taylor', 'gauss16'])
+def test_a_start_with_more_energy_has_the_kink_of_its_scene(method):
+    """A command gives the body a rate that the start of the scene does not have."""
+    low, high = (scene_of('[spring: {stiffness: 2}]', start, HINGE)
+                 for start in ('{angle: 0.5}', WOUND))
+    assert not low.constraint.winds
+    solver = Stepped(low, method, accuracy=1e-9).start(high.initial.vector)
+    out, exact = np.empty(14), started(high, 0.6)[1]
+    solver.state(0.6, out)
+    assert len(solver._course.kinks(0.6)) == 1
+    assert np.abs(out - exact).max() < 1e-9
+
+
+@pytest.mark.without_numba
+def test_many_starts_and_a_held_wrench_have_the_kink():
+    scene = scene_of('[spring: {stiffness: 2}]', '{angle: 0.5}', HINGE)
+    starts = np.array([scene_of('[]', start, HINGE).initial.vector
+                       for start in ('{angle: 0.5}', WOUND)])
+    many, out = np.empty((2, 1, 14)), np.empty(14)
+    solver = Stepped(scene, 'taylor', accuracy=1e-9)
+    solver.many(starts, np.array([0.6]), many)
+    for start, found in zip(starts, many, strict=True):
+        solver.start(start).state(0.6, out)
+        assert np.array_equal(found[0], out)
+    assert turned(out) < -4.0
+    pushed = Stepped(scene, 'gauss16', accuracy=1e-9, wrench=Wrench(torque=(0.0, 0.0, 30.0)))
+    assert pushed.start(starts[0])._course.kinks(0.6)
