@@ -28,7 +28,7 @@ def truth_of(scene):
     """Return what follows a scene with 64-bit mantissas, at its start."""
     read = yaml.safe_load(scene.text)
     settings = [next(iter(one.items())) for one in read['effects']]
-    kinked = any(word in scene.text for word in WORDS)
+    kinked = any(word in scene.text for word in WORDS) or getattr(scene.constraint, 'winds', False)
     follow = BallTruth if scene.constraint.kind == 'table' else Kinked if kinked else Truth
     motion = next((one for one in MOTIONS if str(list(one[0])) == str(_motion(read))), None)
     return follow(scene, settings, read.get('parameters', {}), motion)

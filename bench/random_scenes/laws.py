@@ -16,6 +16,8 @@ Z = np.array([0, 0, 1], dtype=WIDE)
 SMOOTH = 'sin', 'cos', 'exp', 'log', 'sqrt', 'tanh'
 STEP = WIDE(1e-40)      # along the imaginary axis
 
+QUARTER = 2 * np.arctan(WIDE(1))    # of a turn, rad
+
 
 class Sides:
     """On which side of its kinks a body is.
@@ -37,8 +39,13 @@ class Sides:
 
     def side(self, switch):
         """Return the side of the next kink; at first the sign of its switch."""
-        k = len(self.found)
+        side = self.of_next(switch)
         self.found.append(switch[0].real)
+        return side
+
+    def of_next(self, switch):
+        """Return what `side` will return, of a switch that has the same sign at first."""
+        k = len(self.found)
         if k == len(self.modes):
             self.modes.append(1 if switch[0].real > 0 else -1)
         return self.modes[k]
@@ -192,8 +199,18 @@ class Laws:
         return -pull[:, None] * n
 
     def turned(self, q):
-        """Return the angle of a hinge, rad."""
-        return 2 * np.arctan2((q[:, :3] * self.held.axis).sum(1), q[:, 3])
+        """Return the angle of a hinge, rad.
+
+        Where a law jumps at its ends, -2 pi and 2 pi, each is a kink: the side 1 continues the
+        angle by 2 pi/3 beyond 2 pi, and up to there beyond -2 pi/3, where the side changes too.
+        """
+        s, c = (q[:, :3] * self.held.axis).sum(1), q[:, 3]
+        angle = 2 * np.arctan2(s, c)
+        if not self.held.winds:
+            return angle
+        side = self.sides.of_next(s)
+        self.sides.side(np.where(c < 0.5, s, side))
+        return angle + np.where((c < -0.5) & (side * s < 0), 8 * QUARTER * side, 0)
 
     def _known(self, q, w, v, c, t, moved):
         """Return what expressions know, by name; o and vo are place and velocity of the origin."""

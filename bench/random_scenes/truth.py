@@ -31,7 +31,7 @@ class Truth:
         tensor = np.array(body.about_center.matrix, dtype=float).astype(WIDE)
         self.about_center = tensor[None]
         vector = scene.initial.vector
-        self.axis = None
+        self.axis, self.winds = None, getattr(scene.constraint, 'winds', False)
         start = np.concatenate((vector[1:8], vector[11:14], vector[8:11])).astype(WIDE)
         copies = [start]
         for place in range(13 if kind == 'free' else 7):
