@@ -10,6 +10,7 @@ import importlib
 import math
 
 from rigid_body_sim.numerics import rotations
+from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import State
@@ -36,17 +37,19 @@ def energy_at_ends(scene):
     hinge = scene.frame.hinge
     ends = []
     for half in (END, -END):
-        rotation = (*scaled(math.sin(half), hinge.axis), math.cos(half))
+        rotation = (*scaled(sin(half), hinge.axis), cos(half))
         vector = State.of(orientation=rotations.multiply(*hinge.zero, *rotation),
                           position=scene.initial.position).vector
         ends.append(potential_energy(scene, vector))
-    return -math.inf if any(map(math.isnan, ends)) else min(ends)
+    first, last = ends
+    # not min(): of a potential that is no number nothing is known
+    return first if first <= last else last if last <= first else -math.inf
 
 
 def may_reach_ends(scene, vector):
     """Return whether a body may get from a state (14 doubles) to an end where what acts jumps."""
     barrier = scene.energy_at_ends
-    if math.isinf(barrier):
+    if barrier in (-math.inf, math.inf):
         return barrier < 0.0
     state = State(vector)
     axis, frame = scene.constraint.axis, scene.frame

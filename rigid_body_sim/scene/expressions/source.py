@@ -228,16 +228,7 @@ def prelude(lines, used, frame):
         terms = zip(n, RATES, strict=True)
         found.append(f'    the_rate = {" + ".join(f"{one} * the_{name}" for one, name in terms)}')
     if 'angle' in used:
-        zx, zy, zz, zw = (lines.value(f'zero{k}', part)
-                          for k, part in enumerate(frame.hinge.zero))
-        sine = f'{n[0]} * ux + {n[1]} * uy + {n[2]} * uz'
-        found += [f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, {_names(ATTITUDE)})']
-        if lines.winding:
-            mode = lines.winding
-            found += [f'    the_angle, the_end = wound({mode}, {sine}, uw)',
-                      f'    side_{mode} = side({mode}, the_end)']
-        else:
-            found += [f'    the_angle = 2.0 * atan2({sine}, uw)']
+        found += _angle(lines, frame, n)
     if used & {*WORLD_RATES}:
         found.append(f'    {_names(WORLD_RATES)} = rotate(qx, qy, qz, qw, wx, wy, wz)')
     if used & {*TIME}:
@@ -249,6 +240,17 @@ def prelude(lines, used, frame):
         found.append(f'    {_names(VELOCITY)} = minus({drift}, rotate(qx, qy, qz, qw, '
                      f'*cross((wx, wy, wz), ({point}))))')
     return found
+
+
+def _angle(lines, frame, n):
+    """Return the lines that compute the angle of a hinge about n, three names of values."""
+    zx, zy, zz, zw = (lines.value(f'zero{k}', part) for k, part in enumerate(frame.hinge.zero))
+    sine, mode = f'{n[0]} * ux + {n[1]} * uy + {n[2]} * uz', lines.winding
+    found = [f'    ux, uy, uz, uw = multiply(-{zx}, -{zy}, -{zz}, {zw}, {_names(ATTITUDE)})']
+    if not mode:
+        return [*found, f'    the_angle = 2.0 * atan2({sine}, uw)']
+    return [*found, f'    the_angle, the_end = wound({mode}, {sine}, uw)',
+            f'    side_{mode} = side({mode}, the_end)']
 
 
 def frame_matrix(lines, frame, back=False):
