@@ -23,7 +23,7 @@ COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels
-PYTEST = python -m pytest --numprocesses 4 --dist worksteal --timeout 300 --ignore test/test_installed.py
+PYTEST = python -m pytest --numprocesses 5 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
 .PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-target bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
 
@@ -41,8 +41,8 @@ sweep-demo: .venv/run.stamp ## a stability map on a Dask cluster of two worker p
 	@rm -rf .cache/sleeping_top.zarr
 	@.venv/bin/python examples/sweep_on_dask.py config/sweeps/sleeping_top.yaml .cache/sleeping_top.zarr
 
-test: lint ## everything: ruff, pytest, colcon build and test of the package, with the kernels that are compiled by then
-	@$(MAKE) --no-print-directory unit
+test: .venv/test.stamp ## everything: ruff, mypy, pytest, colcon build and test of the package, with the kernels that are compiled by then
+	@$(MAKE) --no-print-directory --jobs 2 lint unit
 	@$(MAKE) --no-print-directory package
 
 unit: .venv/test.stamp ## pytest
