@@ -91,6 +91,15 @@ def text(found):
     return '\n'.join(lines) + '\n'
 
 
+def _short(value):
+    """Return JSON whose numbers have six digits, more than are reproduced."""
+    if isinstance(value, dict):
+        return {key: _short(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_short(one) for one in value]
+    return float(f'{value:.6g}') if isinstance(value, float) else value
+
+
 def main(*paths):
     """Write the page, the pictures and the data."""
     read = [json.loads(pathlib.Path(path).read_text()) for path in paths]
@@ -110,7 +119,7 @@ def main(*paths):
              'results': results}
     page = DOCS / 'accuracy.md'
     page.write_text(MARK.sub(lambda match: f'{match[1]}{text(found)}{match[2]}', page.read_text()))
-    DOCS.joinpath('work_precision.json').write_text(json.dumps(found) + '\n')
+    DOCS.joinpath('work_precision.json').write_text(json.dumps(_short(found)) + '\n')
     for name, chosen in (('work_precision', True), ('work_precision_suite', False)):
         drawn = [result for result in results if (result['problem'] in suite.QUICK) == chosen]
         figure.draw(drawn).savefig(DOCS / 'images' / f'{name}.png', metadata={'Software': None})

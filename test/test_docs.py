@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.cli.subcommands import SUBCOMMANDS
 from rigid_body_sim.integrators.marching import contact
@@ -23,7 +24,6 @@ sys.path.insert(0, str(DOCS))
 import make_reference  # noqa: E402  (docs/ is no package)
 from figures import tables  # noqa: E402
 
-SOAK = os.environ.get('RIGID_BODY_SIM_SOAK')
 README = DOCS.parent / 'README.md'
 PAGES = sorted(DOCS.rglob('*.md'))
 HANDOUTS = [path for path in PAGES if path.parent.name == 'systems' and path.stem != 'index']
@@ -218,7 +218,7 @@ def test_every_symbol_of_the_steps_is_in_the_table():
         assert symbols(steps) <= symbols(table), (path.stem, symbols(steps) - symbols(table))
 
 
-@pytest.mark.skipif(not SOAK, reason='minutes: RIGID_BODY_SIM_SOAK=1')
+@IN_SOAK
 @pytest.mark.parametrize('path', HANDOUTS, ids=lambda path: path.stem)
 def test_what_a_handout_proposes_to_try_runs(path, tmp_path):
     for line in re.findall(r'^python -m rigid_body_sim (.*)$', path.read_text(), re.MULTILINE):

@@ -7,6 +7,9 @@ exact or rounded once everywhere (numerics/functions.py has the others); no divi
 Python would raise); no ``**`` (its rounding differs between the two).
 """
 
+import functools
+import importlib
+
 from rigid_body_sim.compilation.environment import HAVE_NUMBA, numba
 
 if HAVE_NUMBA:
@@ -46,3 +49,14 @@ def inlined(function):
 def compiled_inline(function):
     """Compile a short kernel that is copied into its callers."""
     return _jit(function, forceinline=True, _nrt=False)
+
+
+@functools.cache
+def in_python(name):
+    """Return the plain function of a kernel, 'module:function'.
+
+    It is for the few calls at the set-up of a scene: compiling would take longer than all of them.
+    """
+    module, _, function = name.partition(':')
+    kernel = getattr(importlib.import_module(module), function)
+    return getattr(kernel, 'py_func', kernel)

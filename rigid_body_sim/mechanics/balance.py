@@ -17,12 +17,11 @@ all couples about P (body axes), n unit vector along a hinge.
 """
 
 import dataclasses
-import functools
-import importlib
 from typing import NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.compilation.jit import in_python
 from rigid_body_sim.mechanics.contact.standing import Standing
 from rigid_body_sim.mechanics.parameters import scene_parameters
 from rigid_body_sim.numerics.functions import hypot, hypot3
@@ -179,7 +178,8 @@ class Dynamics:
                 if one.gives == 'turning':
                     continue
                 field = (time, *center) if one.in_field else ()
-                added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity, *field)
+                law = in_python(one.kernel)
+                added = law(*one.values, *q_frame, *omega_frame, *velocity, *field)
                 sums[one.gives] = plus(sums[one.gives], added)
         turning = self._turning(time, q, omega, velocity, center) if self._inner else NOTHING
         return Actions(sums['force'], rotate(*axes, *sums['torque']), turning)
@@ -195,7 +195,8 @@ class Dynamics:
                 if one.gives == 'force' or (one.gives == 'torque' and one.books != 'potential'):
                     continue
                 field = (time, *place) if one.in_field else ()
-                added = _kernel(one.kernel)(*one.values, *q_frame, *omega_frame, *velocity, *field)
+                law = in_python(one.kernel)
+                added = law(*one.values, *q_frame, *omega_frame, *velocity, *field)
                 share = 1.0 if one.gives == 'turning' else self._inner
                 turning = plus(turning, scaled(share, added))
         return rotate(*own.axes, *turning)
@@ -301,11 +302,3 @@ class Dynamics:
 def _carried(omega, growth, arm):
     """Return the acceleration at the end of an arm: omega' x r + omega x (omega x r)."""
     return plus(cross(growth, arm), cross(omega, cross(omega, arm)))
-
-
-@functools.cache
-def _kernel(name):
-    """Return the plain function of a kernel: compiling it would take longer than all calls."""
-    module, _, function = name.partition(':')
-    kernel = getattr(importlib.import_module(module), function)
-    return getattr(kernel, 'py_func', kernel)

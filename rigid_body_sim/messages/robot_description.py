@@ -65,10 +65,10 @@ def _solids(scene):
 
 def _hinge(robot, scene, frames):
     """Add the hinge: a joint at the held point, and the origin at a fixed place from there."""
+    from scipy.spatial.transform import Rotation  # here, as in _roll_pitch_yaw
     axis = np.array(scene.constraint.axis)
     through = np.array(scene.constraint.point(scene.body))
     start = yaml.safe_load(scene.text)['initial'].get('angle', 0.0)
-    from scipy.spatial.transform import Rotation  # see _roll_pitch_yaw
     attitude = Rotation.from_quat(scene.initial.orientation)
     place = scene.initial.position + attitude.apply(through)
     unturned = attitude * Rotation.from_rotvec(-start * axis)

@@ -6,9 +6,9 @@ potential, or takes energy only, a body with less energy than the potential has 
 not get there.
 """
 
-import importlib
 import math
 
+from rigid_body_sim.compilation.jit import in_python
 from rigid_body_sim.numerics import rotations
 from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
@@ -73,7 +73,5 @@ def potential_energy(scene, vector):
     for effect in scene.effects:
         if effect.potential is not None:
             found = effect.potential(frame)
-            module, _, name = found.kernel.partition(':')
-            function = getattr(importlib.import_module(module), name)
-            total += getattr(function, 'py_func', function)(*found.values, *q, *center)
+            total += in_python(found.kernel)(*found.values, *q, *center)
     return total

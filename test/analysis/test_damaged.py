@@ -6,8 +6,8 @@ import random
 import numpy as np
 import pytest
 from analysis import made
-from recording.conftest import SOAK
 from recording.damage import damaged_copy, without_checksums
+from soak import SOAK
 
 from rigid_body_sim.analysis.measure import measure
 from rigid_body_sim.analysis.resimulate import resimulate

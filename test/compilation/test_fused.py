@@ -8,11 +8,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from soak import SOAK
 
 from rigid_body_sim.compilation import fused
 from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
 
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 SEED = int(os.environ.get('RIGID_BODY_SIM_SEED', '1'))
 # their products and sums overflow, underflow, cancel and end halfway between two doubles
 CORNERS = [0.0, -0.0, 1.0, -1.0, 1.0 + 2.0 ** -52, 1.0 - 2.0 ** -53, 3.0, 2.0 ** -53, -2.0 ** -106,

@@ -16,6 +16,7 @@ from hard_cases.random_scenes import commands, run, scenes, stepped_scenes
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 from numba_only import LONG_IN_PYTHON
+from soak import SOAK
 
 from rigid_body_sim.cli import simulate
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
@@ -23,7 +24,6 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 CHECKS = settings(deadline=None, derandomize=True, phases=(Phase.generate, Phase.shrink),
                   database=None, suppress_health_check=list(HealthCheck))
 

@@ -12,13 +12,13 @@ import time
 import numpy as np
 import pytest
 from hard_cases.random_scenes import in_one_line
+from soak import SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.scene.scene import parse_scene, scene_folder
 from rigid_body_sim.simulation.simulation import Simulation
 
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 FILES = 100_000 if SOAK else 1000
 RUN_EVERY = 10
 NUMBERS = [

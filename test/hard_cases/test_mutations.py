@@ -5,12 +5,9 @@ That the tests pass on the original is shown by themselves here, and in the same
 `make soak`.
 """
 
-import os
-
 import pytest
 from hard_cases import mutations
-
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
+from soak import SOAK
 
 
 @pytest.mark.parametrize('name', mutations.MUTANTS if SOAK else mutations.QUICK)

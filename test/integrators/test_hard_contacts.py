@@ -8,12 +8,12 @@ one compilation.
 """
 
 import math
-import os
 
 import mpmath as mp
 import numpy as np
 import pytest
 from numba_only import LONG_IN_PYTHON
+from soak import SOAK
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate_back
@@ -23,7 +23,6 @@ from rigid_body_sim.simulation.simulation import Simulation
 FINEST = 1e-15
 G = 9.81
 HALF_ULP = 2.0 ** -53
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 mp.mp.dps = 40
 
 

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
@@ -63,8 +64,7 @@ def test_cold_starts_do_nothing_for_the_first_time_once_the_clock_runs(
     assert min(start['ticks'] for start in found) > 100
 
 
-@pytest.mark.skipif(
-    not os.environ.get('RIGID_BODY_SIM_SOAK'), reason='takes ten minutes: make soak')
+@IN_SOAK
 @pytest.mark.skipif(not HAVE_NUMBA, reason='nothing is compiled: numba is not installed')
 @pytest.mark.parametrize('case', CASES, ids=lambda case: ' '.join(case)[:60])
 def test_cold_start_with_an_empty_cache(ros_domain, tmp_path, case):

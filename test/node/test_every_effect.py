@@ -5,8 +5,8 @@ A node runs exactly this before its clock starts; what is left is the wire, whic
 """
 
 import pytest
-from recording.conftest import SOAK
 from scene import effect_cases
+from soak import IN_SOAK
 
 from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
 from rigid_body_sim.node.rehearsal import rehearse
@@ -15,7 +15,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 
 @pytest.mark.without_numba
-@pytest.mark.skipif(not SOAK, reason='a minute: RIGID_BODY_SIM_SOAK=1')
+@IN_SOAK
 def test_a_session_runs_a_scene_of_every_effect():
     for name, number in effect_cases.ALL:
         if number:

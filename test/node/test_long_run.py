@@ -18,12 +18,12 @@ from node.test_load import diagnosis
 from notices import without_notices
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
+from soak import SOAK
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from rigid_body_sim.analysis.resimulate import resimulate
 
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 SECONDS = float(os.environ.get('RIGID_BODY_SIM_SOAK_SECONDS', '7200')) if SOAK else 3.0
 RATE = 1000.0 if SOAK else 200.0
 DISK_FULL = 60.0 if SOAK else 1.5

@@ -12,12 +12,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 from numerics.arguments import SPECIAL, arguments
+from soak import SOAK
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.numerics import functions, make_functions
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 COUNT = 250_000 if SOAK else 60         # arguments of each of 4 to 8 kinds
 SEED = int(os.environ.get('RIGID_BODY_SIM_SEED', '1'))
 

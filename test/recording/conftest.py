@@ -2,7 +2,6 @@
 """A small recording that every test knows to the bit: 4 topics at 1 kHz, varying numbers."""
 
 import dataclasses
-import os
 
 import numpy as np
 import pytest
@@ -30,7 +29,6 @@ ABOUT = {
     'version': '0.1.0',
     'machine': 'x86 ⟳',
 }
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 
 
 @dataclasses.dataclass

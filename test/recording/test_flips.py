@@ -17,7 +17,8 @@ from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType
 from mcap.writer import Writer as TheirWriter
-from recording.conftest import SOAK, write
+from recording.conftest import write
+from soak import SOAK
 
 from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.errors import BadInput

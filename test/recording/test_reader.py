@@ -20,7 +20,6 @@ from recording.conftest import (
     JOURNAL,
     PACKERS,
     SCENE,
-    SOAK,
     START,
     TICKING,
     Ticks,
@@ -31,6 +30,7 @@ from recording.damage import damaged_copy, without_checksums
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
+from soak import SOAK
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr

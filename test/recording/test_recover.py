@@ -18,8 +18,9 @@ from mcap.records import Chunk, Header
 from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC, CompressionType
 from mcap.writer import Writer as TheirWriter
-from recording.conftest import ABOUT, SOAK, START, write
+from recording.conftest import ABOUT, START, write
 from rosbags.rosbag2 import Reader
+from soak import SOAK
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.mcap import mending

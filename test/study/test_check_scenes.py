@@ -2,13 +2,13 @@
 """check_scenes: its output for scenes and overrides; a wrong formula does not pass."""
 
 import json
-import os
 
 import kept
 import numpy as np
 import pytest
 from notices import without_notices
 from numba_only import LONG_IN_PYTHON
+from soak import IN_SOAK
 
 from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.study import check_scenes
@@ -174,7 +174,7 @@ def test_billiard_height_decides_the_formula():
         7.0 * right)
 
 
-@pytest.mark.skipif('RIGID_BODY_SIM_SOAK' not in os.environ, reason='compiles for long: make soak')
+@IN_SOAK
 def test_two_processes_share_several_scenes(capsys):
     """Held bodies run in one process and the others in another.
 

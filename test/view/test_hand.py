@@ -2,11 +2,11 @@
 """The hand: springs and strikes as commands, worked out by hand for bodies where that is easy."""
 
 import math
-import os
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from soak import SOAK
 
 from rigid_body_sim import Simulation, load_scene
 from rigid_body_sim.drawing.body import drawing_of
@@ -17,7 +17,6 @@ from rigid_body_sim.view.hand import PULL, Hand, pace_of, together
 from rigid_body_sim.view.mouse import hit
 from rigid_body_sim.view.snapshots import Mechanics
 
-SOAK = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 SLIM = """
 scene: slim
 body: {{mass: 1.0, inertia: [1.0, 1.0, {:g}]}}

@@ -16,6 +16,7 @@ import types
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 pytest.importorskip('rclpy')
 
@@ -24,8 +25,6 @@ from rigid_body_sim.simulation.command_rows import HOLD, row_of
 from rigid_body_sim.view import node_source
 from rigid_body_sim.view.node_source import NodeSource
 
-LONG = pytest.mark.skipif(not os.environ.get('RIGID_BODY_SIM_SOAK'),
-                          reason='RIGID_BODY_SIM_SOAK is not set')
 START = 200.0
 """Time for a process that imports rclpy and numba on a loaded machine, s."""
 SCENE = """
@@ -82,7 +81,7 @@ def pulled(tab, scene, wanted):
         time.sleep(2.0)
 
 
-@pytest.mark.parametrize('scene', ['still_ball', pytest.param('rolling_disk', marks=LONG)])
+@pytest.mark.parametrize('scene', ['still_ball', pytest.param('rolling_disk', marks=IN_SOAK)])
 def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
         scene, ros_domain, tmp_path, other_chromium, open_tab, address_of):
     """One page drags and lets go, a browser is killed while it drags, and then the page itself."""

@@ -2,9 +2,9 @@
 """The path of a point that moves as a scene says: its place, velocity and acceleration."""
 
 import functools
-import importlib
 from dataclasses import dataclass
 
+from rigid_body_sim.compilation.jit import in_python
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.source import KINKED, TIME, Kernel, Lines, kernel, prelude
 
@@ -53,7 +53,5 @@ def path(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float], ...]
 
 def along(found: Kernel, time: float) -> tuple[tuple[float, ...], ...]:
     """Return place, velocity and acceleration of a path at a time (s), in plain Python."""
-    module, _, name = found.name.partition(':')
-    function = getattr(importlib.import_module(module), name)
-    nine = getattr(function, 'py_func', function)(*found.values, time)
+    nine = in_python(found.name)(*found.values, time)
     return nine[:3], nine[3:6], nine[6:]

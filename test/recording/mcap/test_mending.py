@@ -19,7 +19,7 @@ from mcap.reader import make_reader
 from mcap.records import Channel, Message
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
-from recording.conftest import SOAK
+from soak import SOAK
 
 from rigid_body_sim.recording.mcap.compression import compressor, zstd_length
 from rigid_body_sim.recording.mcap.mending import Losses, mend

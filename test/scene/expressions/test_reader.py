@@ -2,11 +2,11 @@
 """Expressions are read by a whitelist: arithmetic is understood, all else gets one line."""
 
 import keyword
-import os
 import random
 import time
 
 import pytest
+from soak import SOAK
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.expressions.reader import DEEPEST, LARGEST_POWER, LONGEST, read
@@ -98,7 +98,7 @@ def evaluated(text, draw):
 
 def test_mutated_expressions_are_read_and_computed_or_refused_in_bounded_time():
     """In `make soak` 100,000: none ends in a traceback, wherever it is computed."""
-    count = 100_000 if os.environ.get('RIGID_BODY_SIM_SOAK') else 300
+    count = 100_000 if SOAK else 300
     draw, begin, taken = random.Random(5), time.process_time(), 0
     for _ in range(count):
         line = ''
