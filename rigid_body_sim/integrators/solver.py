@@ -97,7 +97,7 @@ class Stepped:
         self._bound = self.method.FAMILY.bind(self.method, self)
         self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
-        self._asks = scene.wound.constraint != scene.constraint
+        self._may_wind = scene.wound.constraint != scene.constraint
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -122,7 +122,7 @@ class Stepped:
         From a state with more energy than the scene's start, where what acts jumps at an end of
         a hinge's angle, the general method goes on if this one does not stop at kinks.
         """
-        if self._asks and may_reach_ends(self.scene, vector):
+        if self._may_wind and may_reach_ends(self.scene, vector):
             return self._wound.start(vector)
         started = object.__new__(Stepped)
         started.__dict__ = self.__dict__.copy()
@@ -150,7 +150,7 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        found = None if self._departs or self._asks else self._bound.runner(self)
+        found = None if self._departs or self._may_wind else self._bound.runner(self)
         if found is None:
             return self._run
         final, room = found
@@ -221,7 +221,7 @@ class Stepped:
                     raise lost(self.method, self.scene, failed[1])
 
         batch = None
-        if self.method.FAMILY.LANES and len(times) and not self._asks:
+        if self.method.FAMILY.LANES and len(times) and not self._may_wind:
             batch = self.method.FAMILY.batch(self._bound, self, times)
         if batch is None:
             on_all_cores(one_by_one, len(starts))

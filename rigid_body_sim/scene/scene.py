@@ -104,7 +104,7 @@ class Scene:
     def wound(self) -> 'Scene':
         """The scene with a kink where what acts jumps at an end of a hinge's angle.
 
-        It is the scene itself unless its own start keeps the body from there.
+        It is the scene itself where nothing that acts jumps there.
         """
         if self.energy_at_ends == math.inf:
             return self
