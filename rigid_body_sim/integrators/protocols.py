@@ -258,12 +258,12 @@ class Batch(Protocol):
 
 
 class MarchingFamily(Family, Protocol):
-    """A family whose methods march in compiled code; marching/course.py binds them.
+    """A family whose methods march in compiled code; marching/bound.py binds them.
 
     Attributes
     ----------
     bind : callable
-        ``marching.course.Bound``.
+        ``marching.bound.Bound``.
     """
 
     def equations_of(self, scene: Any, wrench: Any) -> Any:

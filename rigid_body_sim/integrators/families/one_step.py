@@ -8,7 +8,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.equations import Equations
-from rigid_body_sim.integrators.marching import adaptive, course, fixed, unroll
+from rigid_body_sim.integrators.marching import adaptive, bound, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES, Control
 from rigid_body_sim.mechanics.bounds import borne, swing_rate
 
@@ -22,7 +22,7 @@ def equations_of(scene, wrench):
 
 def bind(method, stepped):
     """Return the method's kernels on the equations of a scene."""
-    return course.Bound(method, stepped)
+    return bound.Bound(method, stepped)
 
 
 def march(method, equations, adapts):

@@ -23,7 +23,7 @@ def bind(method, stepped):
     if stepped.scene.constraint.mechanism is Mechanism.TABLE:
         return table.OnTable(stepped.scene, method, stepped.wrench, stepped.step)
     if stepped.scene.constraint.mechanism is Mechanism.PLANE:
-        # only now: its march is made of a method's table, and methods import their family
+        # only now: a dozen modules of contact, which no other scene needs
         from rigid_body_sim.integrators.marching import contact
         return contact.OnPlane(stepped.scene, method, stepped.wrench, stepped.step)
     return one_step.bind(method, stepped)

@@ -26,8 +26,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     UNKNOWNS,
     Watched,
 )
-from rigid_body_sim.integrators.marching import contact_step
-from rigid_body_sim.integrators.methods import dop8
+from rigid_body_sim.integrators.marching import contact_step, dormand_prince
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
 from rigid_body_sim.numerics.functions import hypot, power
 from rigid_body_sim.numerics.vectors import dot
@@ -86,7 +85,7 @@ def begin(p, row, front, meta, y):
     fastest = meta[RATE] * pace + math.sqrt(dot(grown, grown)) / meta[RATE]
     if p[MODE] == SLIDING:
         fastest += hypot(slip[0], slip[1]) / pace
-    meta[PLANNED] = power(meta[TOLERANCE], 1.0 / dop8.ORDER) / fastest
+    meta[PLANNED] = power(meta[TOLERANCE], 1.0 / dormand_prince.ORDER) / fastest
     meta[COUNT], meta[STRIDE], meta[STORED], meta[STATUS] = 0.0, 1.0, 0.0, RUNNING
     meta[STEPS], meta[PLACED], meta[CROWDED] = 0.0, -1.0, 0.0
 
@@ -164,7 +163,7 @@ def _factor(error, allowed):
     if not error < math.inf:
         return SHRINK
     return min(GROWTH, max(SHRINK, SAFETY * power(
-        allowed / max(error, 1e-9 * allowed), 1.0 / (dop8.ORDER - 1))))
+        allowed / max(error, 1e-9 * allowed), 1.0 / (dormand_prince.ORDER - 1))))
 
 
 @compiled_inline

@@ -15,19 +15,19 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.contact_views import ROW, UNKNOWNS
-from rigid_body_sim.integrators.methods import dop8
+from rigid_body_sim.integrators.marching import dormand_prince
 from rigid_body_sim.numerics.rotations import normalised
 
 rate = UNBOUND
 
-STAGES = len(dop8.A)
+STAGES = len(dormand_prince.A)
 A = np.zeros((STAGES, STAGES))
 B, E5, E3 = np.zeros(STAGES), np.zeros(STAGES), np.zeros(STAGES)
-WEIGHED = tuple(dop8.B)        # stages that a step adds up, and its errors
-for _i, _row in enumerate(dop8.A):
+WEIGHED = tuple(dormand_prince.B)        # stages that a step adds up, and its errors
+for _i, _row in enumerate(dormand_prince.A):
     for _j, _a in _row.items():
         A[_i, _j] = _a
-for _table, _values in ((B, dop8.B), (E5, dop8.E5), (E3, dop8.E3)):
+for _table, _values in ((B, dormand_prince.B), (E5, dormand_prince.E5), (E3, dormand_prince.E3)):
     for _j, _b in _values.items():
         _table[_j] = _b
 

@@ -132,7 +132,7 @@ class Switched:
     ----------
     stepped : Stepped
         Started.
-    bound : marching.course.Bound
+    bound : marching.bound.Bound
         Its equations have switches.
     """
 
