@@ -59,7 +59,7 @@ fi
 echo "Setting up $folder with $("$folder/bin/python" -V) from $pins (the first time some 500 MB, about a minute) ..."
 "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-compile --no-deps -r "$pins" ||
     fail "pip could not install $pins into $folder (its message is above); what is there stays, try again"
-# as pip would, on all cores; templates of other packages are no Python
-"$folder/bin/python" -m compileall -qq -j 0 "$folder"/lib/python3.*/site-packages || :
+# as pip would, on all cores, and without the tests of other packages; their templates are no Python
+"$folder/bin/python" -m compileall -qq -j 0 -x '/tests?/' "$folder"/lib/python3.*/site-packages || :
 
 (cd "$(dirname "$0")/.." && pwd) > "$(echo "$folder"/lib/python3.*/site-packages)/this_tree.pth"

@@ -16,6 +16,8 @@ from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.simulation.simulation import Simulation
 
+pytestmark = pytest.mark.without_numba
+
 PAGE = ['report.html'] if page.available() else []
 FIGURES = ('overview', 'motion', 'ledger', 'spectrum', 'polhode', 'axis')
 LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)

@@ -97,8 +97,12 @@ WORDS = {
                                   "'0.3*sign(qz)']}"}
 
 
+LIKE_OTHERS = 'min', 'a comparison', 'pieces of time'
+
+
 @pytest.mark.without_numba
-@pytest.mark.parametrize('word', WORDS)
+@pytest.mark.parametrize('word', [
+    pytest.param(word, marks=IN_SOAK if word in LIKE_OTHERS else ()) for word in WORDS])
 def test_every_word_is_located_and_keeps_the_order(word):
     free = 'free' in word or 'both' in word
     scene = scene_of(f'[{WORDS[word]}]', FREE_START if free else '{angle: 0.5, rate: 0.4}',

@@ -22,6 +22,7 @@ def test_none_is_missing():
     assert set(NOTES) <= set(scene_names())
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', NOTES)
 def test_scene(name):
     """A scene has the name of its file, names its section of the notes, runs, and balances."""

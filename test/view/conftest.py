@@ -15,12 +15,13 @@ FLAGS = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disa
          '--no-first-run', '--disable-background-networking', '--disable-component-update',
          '--disable-sync']
 SLOWLY = """
-window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 100);
+window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 200);
 window.cancelAnimationFrame = clearTimeout;
 """
-"""Ten pictures a second: software that draws sixty of them leaves no time for the mouse."""
+"""Five pictures a second: software that draws sixty of them leaves no time for the mouse."""
 WIDTH, HEIGHT = 800, 400
-"""A small window: it may be drawn by software. The panel is docked on its right half."""
+"""A small window of large pixels: it may be drawn by software. The panel is docked on its right
+half."""
 
 
 @pytest.fixture(scope='session')
@@ -54,7 +55,8 @@ class Tab:
 
     def __init__(self, browser, address):
         self.requests = []
-        self.page = browser.new_page(viewport={'width': WIDTH, 'height': HEIGHT})
+        self.page = browser.new_page(
+            viewport={'width': WIDTH, 'height': HEIGHT}, device_scale_factor=0.5)
         self.page.on('request', lambda request: self.requests.append(request.url))
         self.page.on('websocket', lambda socket: self.requests.append(socket.url))
         self.page.add_init_script(SLOWLY)
