@@ -290,6 +290,7 @@ def test_methods_that_are_listed_but_need_a_step_can_be_taken(capsys):
         assert (told['method'], told['step']) == (method, 1e-3)
 
 
+@pytest.mark.without_numba
 def test_a_run_in_fixed_steps_runs_again_to_the_same_bits(tmp_path, capsys):
     given = ['--duration', '0.2', '--integrator', 'rk4', '--step', '2e-3']
     assert main([*given, '--output', str(tmp_path / 'run')]) == 0

@@ -281,6 +281,7 @@ def test_ball_bounces_down_an_inclined_plane():
     assert np.allclose(acceleration, share * down, atol=1e-12)
 
 
+@pytest.mark.without_numba
 def test_free_flight_of_a_tossed_body_is_that_of_a_free_one():
     start = '{position: [0, 0, 3.0], velocity: [1, 2, 3], angular_velocity: [5, 6, 7]}'
     over = simulation(EGG, 'sliding_friction: {mu: 0.3}', start)

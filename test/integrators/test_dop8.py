@@ -45,6 +45,7 @@ def test_error_estimates_compare_with_methods_of_lower_order(estimate, order):
     assert largest_defect(order + 1, dop8.A, lower) > 1e-4
 
 
+@pytest.mark.without_numba
 def test_slope_of_the_error_is_the_order(top):
     exact = state(top, 0.4, accuracy=1e-14)
     errors = [angle_between(*state(top, 0.4, step=0.4 / steps)[1:5], *exact[1:5])
@@ -95,6 +96,7 @@ def test_the_norm_of_the_quaternion_stays():
     assert abs(out[1:5] @ out[1:5] - 1.0) < 5e-16
 
 
+@pytest.mark.without_numba
 def test_a_start_between_breakpoints_keeps_the_time():
     scene = parse_scene(smooth_cases.text('driven_in_pieces'))
     through, middle, on = np.empty(14), np.empty(14), np.empty(14)

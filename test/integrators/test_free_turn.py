@@ -52,6 +52,7 @@ def cases():
     return found
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('record', 'states'), cases())
 def test_against_digits(record, states):
     moments, omega = record['moments'], record['angular_velocity']

@@ -129,6 +129,7 @@ def test_slope_of_the_error_is_the_order(name, measured_slopes):
     assert measured_slopes[name] == pytest.approx(order, abs=max(0.35, order / 16.0))
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', ['split4', 'split8'])
 def test_reversed_motion_comes_back(name):
     scene = scene_of('asymmetric_heavy_top')
@@ -139,6 +140,7 @@ def test_reversed_motion_comes_back(name):
     assert slopes.error(back, scene.initial.vector) < 1e-12
 
 
+@pytest.mark.without_numba
 def test_runge_kutta_does_not_come_back():
     scene = scene_of('asymmetric_heavy_top')
     there = state(scene, 'rk4', 2.0, step=0.01)

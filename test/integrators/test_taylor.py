@@ -115,6 +115,7 @@ def test_a_body_that_hardly_turns_is_set_turning():
     assert angle_between(*found[1:5], 0.0, 0.0, np.sin(0.1), np.cos(0.1)) < 5e-16
 
 
+@pytest.mark.without_numba
 def test_a_thrown_body_turns_as_if_it_did_not_fall_and_falls_in_a_parabola():
     """Centre of mass off the body's origin; torque in the body."""
     def scene(effects):
@@ -133,6 +134,7 @@ def test_a_thrown_body_turns_as_if_it_did_not_fall_and_falls_in_a_parabola():
     assert fallen[11:] == near(np.add(still[11:], (0.0, 0.0, -9.81 * 5.0)), 4.0 * ULP)
 
 
+@pytest.mark.without_numba
 def test_a_hinge_of_any_axis_is_a_body_that_takes_no_torque_across_it():
     """An oblique hinge beside the origin under gravity alone, against the closed form."""
     scene = parse_scene(smooth_cases.text('held_hinge_body'))
@@ -143,6 +145,7 @@ def test_a_hinge_of_any_axis_is_a_body_that_takes_no_torque_across_it():
     assert np.abs(found - exact).max() < 40 * ULP * np.abs(exact).max()
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', ['driven_pendulum', 'damped_pendulum'])
 def test_a_driven_and_a_damped_pendulum_reach_the_reference(name):
     problem = suite.problem(name)

@@ -214,6 +214,7 @@ def test_edges_do_not_depend_on_where_a_call_begins():
     assert _edges(9.95, 10.0, np.inf, 0.1, 8).tolist() == [9.95]
 
 
+@pytest.mark.without_numba
 def test_a_kink_of_what_acts_is_resolved_however_small_it_is():
     """Drag by squares of a body that turns back: c |omega| omega has a kink there.
 

@@ -16,6 +16,7 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE
 
 
+@pytest.mark.without_numba
 def test_rod_in_a_plane_moves_as_the_hinged_one():
     rod = {'moments': [1.0, 1.0, 0.0], 'mass': 3.0, 'center': [0.0, 0.0, 0.5], 'g': 9.81}
     hinge = parse_scene(json.dumps({

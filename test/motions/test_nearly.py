@@ -35,6 +35,7 @@ def error_of(simulation, times):
                for time, q in zip(times, simulation.states(times).orientation, strict=True))
 
 
+@pytest.mark.without_numba
 def test_moments_that_differ_in_the_last_digit_take_the_closed_form():
     """One part in 1e15, at default settings: the error over 100 s stays below what is asked."""
     simulation = Simulation(top(1e-15))

@@ -121,6 +121,7 @@ def test_no_turning_point_is_lost_in_a_long_jump():
     assert steps.events == simulation.events
 
 
+@pytest.mark.without_numba
 def test_turning_points_agree_with_a_stepped_method():
     exact, stepped = (Simulation('kater_pendulum_from_p', integrator=name)
                       for name in ('exact', 'dop8'))

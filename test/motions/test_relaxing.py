@@ -65,6 +65,7 @@ def at(solver, time):
     return out
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', CASES)
 def test_reference(name):
     """Times of both signs, drag rates from 1e-300 to 1e3 per second, torque through zero."""

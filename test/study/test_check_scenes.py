@@ -106,6 +106,7 @@ def test_own_file_is_checked_by_the_name_in_it(tmp_path, capsys):
     assert "beta'' at 3 times" in table('--scene', str(path), capsys=capsys)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('arguments', 'line'), [
     (['--scene', 'heavy_topp'], "scene: no scene 'heavy_topp'; did you mean heavy_top?"),
     (['--set', 'initial.spin=3'], "--set: got 'initial.spin=3'; name the scene it changes"),

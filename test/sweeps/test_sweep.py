@@ -12,6 +12,7 @@ import threading
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 pytest.importorskip('xarray')
 
@@ -179,6 +180,7 @@ def test_function_of_the_users_own(tmp_path):
     assert sweep(tmp_path / 'spec.yaml')['speed'].values[1].tolist() == [0.4, 5.0, 0.01]
 
 
+@pytest.mark.without_numba
 def test_strikes_are_simulated():
     heights = [-0.01, 0.02]
     keep = ['states', {'first': 'rolling began'}, 'residuals']
@@ -336,8 +338,9 @@ def test_plan_finds_a_run_that_is_valid():
     assert plan.template.body.about_center.moments[1] >= 2.0
 
 
-@pytest.mark.parametrize('path', sorted((ROOT / 'config' / 'sweeps').glob('*.yaml')),
-                         ids=lambda path: path.stem)
+@pytest.mark.parametrize('path', [
+    pytest.param(path, id=path.stem, marks=IN_SOAK if path.stem == 'rattleback' else ())
+    for path in sorted((ROOT / 'config' / 'sweeps').glob('*.yaml'))])
 def test_shipped_specs_are_good(path):
     plan = prepared(path)
     first = plan.template_run
