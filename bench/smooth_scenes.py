@@ -11,7 +11,8 @@ numbers). heyoka, a compiled Taylor method, gets the same equations. A state eve
 timed too. Ratios are reproducible, single times depend on the machine.
 
 Bodies on a plane are shipped scenes, beside the final states of 34 digits in
-test/data/plane_scenes.json: `auto` and `dop8` asked for accuracies, without heyoka.
+test/data/plane_scenes.json: `auto` and the methods that run them asked for accuracies, without
+heyoka.
 """
 
 import argparse
@@ -221,7 +222,7 @@ def measure_on_a_plane(name):
     """
     case, scene, table = PLANES[name], load_scene(name), {}
     duration, true = case['times'][-1], [float(x) for x in case['orientations'][-1]]
-    for method in ('auto', 'dop8'):
+    for method in ('auto', *runnable(scene)):
         for goal in GOALS:
             act, attitude = our_run(scene, duration, method, goal)
             error = angle_between(*attitude(), *true)

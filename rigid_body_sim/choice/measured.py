@@ -68,7 +68,7 @@ def rows(scene):
     """Return the measurements for a scene's kind.
 
     A dict: method -> list of dicts with tolerance, error (rad) and cost (s), from coarse to fine.
-    On a plane one method runs, and nothing was measured: it promises the accuracy it is given.
+    On a plane nothing was measured: the general method promises the accuracy it is given.
     """
     kinds = table()['kinds']
     return kinds.get(kind(scene)) or kinds.get(_free_directions(scene)) or PROMISED
@@ -77,13 +77,15 @@ def rows(scene):
 def on_such(scene, method):
     """Return whether a method was measured on scenes of this kind.
 
-    Power series were measured where what acts is given in numbers; formulas of a scene have a
-    series of their own, which takes seconds to compile. Collocation was measured where what acts
+    Power series were measured where what acts is given in numbers; formulas of a scene, and the
+    phases of a body on a plane, have series of their own, which take seconds to compile.
+    Collocation was measured where what acts
     is smooth: its error estimate assumes that. Where |v| of quadratic drag nearly passes zero it
     errs by thousands of times what is asked and does not say so. Stiff drag lets nothing swing
     through zero; few methods are left there, and it is the only one of high order.
     """
-    if METHODS[method].NEEDS == 'series' and has_formulas(scene):
+    by_series = METHODS[method].NEEDS == 'series'
+    if by_series and (has_formulas(scene) or scene.constraint.mechanism is Mechanism.PLANE):
         return False
     if _rooted(scene) and not METHODS[method].FAMILY.ROOTS and not is_stiff(scene):
         return False

@@ -7,6 +7,7 @@ these declarations and from the views of its effects, never listed by hand.
 It may import ``motions`` and what lies below.
 """
 
+from rigid_body_sim.integrators.equations.series import has_phases
 from rigid_body_sim.integrators.methods import (
     dop8,
     gauss16,
@@ -39,10 +40,10 @@ def runnable(scene):
     They find the view that they need in every effect, allow the heat that the effects make, know
     the time and place of their stages if an effect depends on them, and stop at kinks if an effect
     has some. No method sees an effect that is only an impulse. On the table only methods that
-    declare TABLE run, and on a plane the general method alone, of which its step is made.
+    declare TABLE run; on a plane the general method, and taylor where it has series of the phases.
     """
     if scene.constraint.mechanism is Mechanism.PLANE:
-        return [GENERAL.NAME]
+        return [GENERAL.NAME, taylor.NAME] if has_phases(scene) else [GENERAL.NAME]
     if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects

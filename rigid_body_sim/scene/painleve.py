@@ -6,12 +6,14 @@ Source: F. Genot and B. Brogliato, Eur. J. Mech. A 18 (1999) 653.
 
 import math
 
+from rigid_body_sim.compilation.jit import inlined
 from rigid_body_sim.numerics.functions import cos, sin
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 
 LATITUDES, LONGITUDES = 64, 64    # attitudes at which the bound is looked for
 
 
+@inlined
 def inverse_of(matrix):
     """Return the inverse of a symmetric 3 x 3 matrix, by its cofactors."""
     a, b, c = matrix

@@ -21,7 +21,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     SLIDING,
     UNKNOWNS,
 )
-from rigid_body_sim.integrators.marching import contact_march, contact_step
+from rigid_body_sim.integrators.marching import contact_march, contact_step, contact_zero
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
@@ -48,9 +48,13 @@ def rate(p, y, row):
         row[{ROW.part('watched').first} + k] = a + y[{TIME}] * (b + y[{TIME}] * c)
 """
 STEP = specialise(contact_step, rate=RATES)
+ZERO = specialise(contact_zero, rate=f'{STEP.__name__}:rate',
+                  step_from=f'{STEP.__name__}:step_from')
 KERNELS = specialise(contact_march, rate=f'{STEP.__name__}:rate',
                      step_from=f'{STEP.__name__}:step_from',
-                     first_zero=f'{STEP.__name__}:first_zero')
+                     error_of=f'{STEP.__name__}:error_of',
+                     ORDER=f'from {STEP.__name__} import ORDER\n',
+                     first_zero=f'{ZERO.__name__}:first_zero')
 ACCURACY = 1e-12
 
 
@@ -137,11 +141,11 @@ def test_a_dip_is_found_between_the_parts_of_a_step_to_round_off(place, depth, w
                 -2.0 * c * place, c)
     phase = Phase(watch0=parabola)
     y, lost = phase.front[:SIZE], phase.front[SIZE:]
-    found = STEP.first_zero(phase.p, phase.w, y, lost, 1.0, 0, parabola[0])
+    found = ZERO.first_zero(phase.p, phase.w, y, lost, 1.0, 0, parabola[0])
     assert found == (pytest.approx(place - width, rel=1e-13) if depth else -1.0)
     if depth:
-        assert STEP.look(phase.p, phase.w, y, lost, found, 0) < 0.0
-        before = STEP.look(phase.p, phase.w, y, lost, found * (1.0 - 1e-15), 0)
+        assert ZERO.look(phase.p, phase.w, y, lost, found, 0) < 0.0
+        before = ZERO.look(phase.p, phase.w, y, lost, found * (1.0 - 1e-15), 0)
         assert before >= -1e-15 * parabola[0]    # rounding of the parabola
 
 

@@ -59,6 +59,17 @@ def refusal(scene):
                     'bodies under gravity, torques, drag and formulas without kinks only')
 
 
+def has_phases(scene):
+    """Return whether the phases of a body on a plane have series (contact_series.py).
+
+    All that acts besides the contact is uniform fields, and the contact holds no couple.
+    """
+    laws = scene.contact
+    return (all(effect.uniform_field is not None or effect.contact is not None
+                for effect in scene.acting)
+            and laws.rolling == laws.rolling_viscous == laws.film == laws.patch == 0.0)
+
+
 def has_formulas(scene):
     """Return whether any effect has formulas in its view `series`."""
     return any(effect.series(scene.frame, -np.inf).formulas for effect in scene.effects

@@ -2,7 +2,8 @@
 """Family of the methods by power series: taylor.
 
 Where what acts is in numbers, the equations (equations/series.py) are of a few kinds; where an
-effect gives formulas, they are the scene's own (equations/expanded.py). They take no held wrench.
+effect gives formulas, they are the scene's own (equations/expanded.py), and on a plane those of
+the phases (equations/contact_series.py). They take no held wrench.
 """
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations import euler, series
 from rigid_body_sim.integrators.equations.expanded import Expanded
-from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
+from rigid_body_sim.integrators.families import one_step
 from rigid_body_sim.integrators.marching import batch as batches
 from rigid_body_sim.integrators.marching import (
     expanded_march,
@@ -20,6 +21,7 @@ from rigid_body_sim.integrators.marching import (
     unroll,
 )
 from rigid_body_sim.integrators.marching.points import CONTROL, Control
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ASKS = {'accuracy': (), 'step': ()}
 TABLE = False
@@ -29,6 +31,15 @@ KINKS = False
 ROOTS = True
 LEAST = unroll.NOTHING * unroll.NOTHING    # squared scale of what does not move yet
 SAFETY = 0.25    # steps planned a point earlier err by up to four times the allowed
+
+
+def bind(method, stepped):
+    """Return the method's kernels on the equations of a scene."""
+    if stepped.scene.constraint.mechanism is Mechanism.PLANE:
+        # only now: a dozen modules of contact, which no other scene needs
+        from rigid_body_sim.integrators.marching import contact_series
+        return contact_series.OnPlaneBySeries(stepped.scene, method, stepped.step)
+    return one_step.bind(method, stepped)
 
 
 def equations_of(scene, wrench):
@@ -44,7 +55,8 @@ def equations_of(scene, wrench):
 
 def batch(bound, stepped, times):
     """Return the Batch for a scene at n times (s), None for fixed steps."""
-    if stepped.step is not None or isinstance(bound.equations, Expanded):
+    if (stepped.step is not None or stepped.scene.constraint.mechanism is Mechanism.PLANE
+            or isinstance(bound.equations, Expanded)):
         return None
     return batches.Batch(bound.equations, stepped.accuracy / stepped.horizon, times)
 

@@ -33,7 +33,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     UNKNOWNS,
     WATCHED,
 )
-from rigid_body_sim.integrators.marching import contact_march, contact_step
+from rigid_body_sim.integrators.marching import contact_march, contact_step, contact_zero
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
@@ -76,6 +76,14 @@ ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
 
 
+def march_of(rate, step):
+    """Return contact_march.py bound to rates, 'module:rate', and to a module of steps."""
+    zero = specialise(contact_zero, rate=rate, step_from=f'{step}:step_from').__name__
+    return specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
+                      error_of=f'{step}:error_of', ORDER=f'from {step} import ORDER\n',
+                      first_zero=f'{zero}:first_zero')
+
+
 class OnPlane:
     """The kernels and the numbers of one scene and wrench.
 
@@ -105,9 +113,8 @@ class OnPlane:
         source = equations.applied_source(acting, CONTACT.size)
         self.rates = specialise(contact_rates, applied=source)
         rate = f'{self.rates.__name__}:rate'
-        step = specialise(contact_step, rate=rate).__name__
-        self.kernels = specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
-                                  first_zero=f'{step}:first_zero')
+        self.kernels = march_of(rate, specialise(contact_step, rate=rate).__name__)
+        self.work_shape = contact_step.WORK_ROWS, ROW.size
         self._fixed, self._held = contact_parameters(scene), {}
         self.heaviness = max(weight(scene), 1e-3)
 
@@ -122,6 +129,10 @@ class OnPlane:
             values = [value for one in self._acting(time) for value in one.values]
             self._held[k] = np.array([*self._fixed, *values])
         return self._held[k].copy()
+
+    def kernels_of(self, mode):
+        """Return the module that marches through a phase (contact_march.py)."""
+        return self.kernels
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: this one."""
@@ -144,7 +155,7 @@ class PlaneCourse:
         self._bound, self._start = bound, np.array(stepped.vector)
         self._begin = float(self._start[STATE_TIME])
         self._tolerance = stepped.accuracy / stepped.horizon
-        self._work = np.zeros((contact_step.WORK_ROWS, ROW.size))
+        self._work = np.zeros(bound.work_shape)
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
                            comes_to_rest=True)
         self._phases, self._begins = [], []
@@ -412,7 +423,7 @@ class _Phase:
     """
 
     def __init__(self, bound, p, y, tolerance, work, length):
-        self._bound, self.p, self._work = bound, p, work
+        self._kernels, self.p, self._work = bound.kernels_of(int(p[MODE])), p, work
         self.begin = float(y[TIME])
         self._meta = np.zeros(contact_march.META)
         self._meta[contact_march.TOLERANCE] = tolerance
@@ -423,7 +434,7 @@ class _Phase:
         self._store, self._sizes = np.empty((8, contact_march.POINT)), np.empty(64)
         self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
         bound.rates.rate(p, y, work[0])
-        bound.kernels.begin(p, work[0], self.front, self._meta, y)
+        self._kernels.begin(p, work[0], self.front, self._meta, y)
 
     @property
     def status(self):
@@ -460,7 +471,7 @@ class _Phase:
             while not arrived() and meta[contact_march.STEPS] < end:
                 if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
                     self._store = np.concatenate((self._store, np.empty_like(self._store)))
-                self._bound.kernels.march(self.p, self._work, self._store, self._sizes[:end],
+                self._kernels.march(self.p, self._work, self._store, self._sizes[:end],
                                           self.front, meta, elapsed)
             return arrived()
 
@@ -476,7 +487,7 @@ class _Phase:
 
     def write(self, start, begin, times, order, out):
         """Fill rows of `out` with states at times that the march has passed (contact_march.py)."""
-        self._bound.kernels.states(self.p, self._work, self._store, self._sizes, self.front,
+        self._kernels.states(self.p, self._work, self._store, self._sizes, self.front,
                                    self._meta, self._cursor, self._y, start, begin, times, order,
                                    out)
 

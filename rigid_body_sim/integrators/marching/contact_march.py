@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march a convex body on a plane through one phase, to the event that ends it.
 
-It is bound to the rates of equations/contact_rates.py and to the steps of contact_step.py.
+It is bound to the rates of equations/contact_rates.py, to steps (contact_step.py, or
+contact_series_step.py) and to their order, and to contact_zero.py.
 
 A phase is an array of points: the unknowns, and what their sums have lost. The sizes of all steps
 are kept beside it, so that a step is made again with the same bits. The front is the last point of
@@ -26,17 +27,19 @@ from rigid_body_sim.integrators.equations.contact_views import (
     UNKNOWNS,
     Watched,
 )
-from rigid_body_sim.integrators.marching import contact_step, dormand_prince
+from rigid_body_sim.integrators.marching import contact_step
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
 from rigid_body_sim.numerics.functions import hypot, power
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.surfaces import TORUS
 
 rate = UNBOUND           # contact_rates.py
-step_from = UNBOUND      # contact_step.py
-first_zero = UNBOUND
+step_from = UNBOUND      # contact_step.py, contact_series_step.py
+error_of = UNBOUND
+ORDER = UNBOUND
+first_zero = UNBOUND     # contact_zero.py
 
-error_of, STAGES = contact_step.error_of, contact_step.STAGES
+STAGES = contact_step.STAGES
 END, FRESH, TRIED = contact_step.END, contact_step.FRESH, contact_step.TRIED
 SIZE, ROW_SIZE, TIME = UNKNOWNS.size, ROW.size, UNKNOWNS.part('time').first
 PACE, WATCHED = ROW.part('pace').first, ROW.part('watched').first
@@ -85,7 +88,7 @@ def begin(p, row, front, meta, y):
     fastest = meta[RATE] * pace + math.sqrt(dot(grown, grown)) / meta[RATE]
     if p[MODE] == SLIDING:
         fastest += hypot(slip[0], slip[1]) / pace
-    meta[PLANNED] = power(meta[TOLERANCE], 1.0 / dormand_prince.ORDER) / fastest
+    meta[PLANNED] = power(meta[TOLERANCE], 1.0 / ORDER) / fastest
     meta[COUNT], meta[STRIDE], meta[STORED], meta[STATUS] = 0.0, 1.0, 0.0, RUNNING
     meta[STEPS], meta[PLACED], meta[CROWDED] = 0.0, -1.0, 0.0
 
@@ -163,7 +166,7 @@ def _factor(error, allowed):
     if not error < math.inf:
         return SHRINK
     return min(GROWTH, max(SHRINK, SAFETY * power(
-        allowed / max(error, 1e-9 * allowed), 1.0 / (dormand_prince.ORDER - 1))))
+        allowed / max(error, 1e-9 * allowed), 1.0 / (ORDER - 1))))
 
 
 @compiled_inline

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Template: one step of a convex body on a plane, its error, and what falls below zero within it.
+"""Template: one step of a convex body on a plane, and its error.
 
 It is bound to the rates of equations/contact_rates.py, and uses the coefficients of a Runge-Kutta
 method that estimates its error (dop8). Loops over tables keep the compilation short.
@@ -14,12 +14,13 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.contact_views import ROW, UNKNOWNS
+from rigid_body_sim.integrators.equations.contact_views import UNKNOWNS
 from rigid_body_sim.integrators.marching import dormand_prince
 from rigid_body_sim.numerics.rotations import normalised
 
 rate = UNBOUND
 
+ORDER = dormand_prince.ORDER
 STAGES = len(dormand_prince.A)
 A = np.zeros((STAGES, STAGES))
 B, E5, E3 = np.zeros(STAGES), np.zeros(STAGES), np.zeros(STAGES)
@@ -33,16 +34,12 @@ for _table, _values in ((B, dormand_prince.B), (E5, dormand_prince.E5), (E3, dor
 
 END, FRESH, TRIED = STAGES, STAGES + 1, STAGES + 2    # rows of the work space beside the stages
 WORK_ROWS = STAGES + 3
-SIZE, WATCHED = UNKNOWNS.size, ROW.part('watched').first
+SIZE = UNKNOWNS.size
 COUPLED = UNKNOWNS.part('ledger').first    # unknowns that the rates depend on
 OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
                               for name in ('omega', 'u', 'place', 'gap', 'time'))
 load_q, store_q = UNKNOWNS.part('q').load, UNKNOWNS.part('q').store
 ROUNDING = 2.0 ** -49
-PARTS = 16                   # parts of a step that is looked through
-SEARCHES = 24                # golden sections for a dip
-GOLDEN = 0.6180339887498949
-BISECTIONS = 120
 
 
 @compiled
@@ -69,6 +66,13 @@ def step_from(p, w, y, lost, h):
         w[TRIED, n] = d - (s - y[n])
         if not abs(s) < math.inf:
             bad = math.inf
+    normalise(w)
+    return bad
+
+
+@compiled_inline
+def normalise(w):
+    """Give the attitude in row FRESH the norm 1, and row TRIED what it loses by that."""
     summed = load_q(w[FRESH])
     q = normalised(*summed)
     short = load_q(w[TRIED])
@@ -78,7 +82,6 @@ def step_from(p, w, y, lost, h):
     along = x * q[0] + yy * q[1] + z * q[2] + v * q[3]
     store_q(w[TRIED], (x - along * q[0], yy - along * q[1], z - along * q[2], v - along * q[3]))
     store_q(w[FRESH], q)
-    return bad
 
 
 @compiled_inline
@@ -141,81 +144,3 @@ def error_of(w, h, scales):
     if not fifth > ROUNDING * ROUNDING * moved:
         return 0.0 if fifth >= 0.0 and moved < math.inf else math.inf
     return fifth / math.sqrt(fifth + 0.01 * third)
-
-
-@compiled
-def look(p, w, y, lost, h, k):
-    """Return the watched number k after a step h from y, whose rates are in row 0."""
-    step_from(p, w, y, lost, h)
-    rate(p, w[FRESH], w[END])
-    return w[END, WATCHED + k]
-
-
-@compiled
-def first_zero(p, w, y, lost, h, k, begin):
-    """Return the part of the step h at which a watched number first falls below zero.
-
-    More than forty lines: each function that calls a step compiles it once more, half a second.
-
-    Parameters
-    ----------
-    begin : float
-        The watched number k at y.
-
-    Returns
-    -------
-    float
-        The first part (same unit as h) for which it is negative, to round-off; -1 if it stays
-        above.
-    """
-    low, value_low = 0.0, begin
-    least, at = math.inf, 0.0
-    high, value_high = -1.0, 0.0
-    for n in range(1, PARTS + 1):
-        part = h * n / PARTS
-        value = look(p, w, y, lost, part, k)
-        if value < 0.0:
-            high, value_high = part, value
-            break
-        if value < least:
-            least, at = value, part
-        low, value_low = part, value
-    if high < 0.0:
-        # the least of the values may hide a dip: golden section around it
-        left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
-        for _ in range(SEARCHES):
-            first = right - GOLDEN * (right - left)
-            second = left + GOLDEN * (right - left)
-            one, other = (look(p, w, y, lost, first, k), look(p, w, y, lost, second, k))
-            if one < 0.0 or other < 0.0:
-                high, value_high = (first, one) if one < 0.0 else (second, other)
-                low, value_low = max(0.0, at - h / PARTS), least
-                break
-            if one < other:
-                right = second
-            else:
-                left = first
-        if high < 0.0:
-            return -1.0
-    # Illinois, kept within the bracket, until no double lies between
-    side = 0
-    for n in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if n % 3 != 2 and value_low > value_high and math.isfinite(value_low):
-            middle = (low * value_high - high * value_low) / (value_high - value_low)
-        if not low < middle < high:
-            middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        value = look(p, w, y, lost, middle, k)
-        if value < 0.0:
-            high, value_high = middle, value
-            if side == 1:
-                value_low *= 0.5
-            side = 1
-        else:
-            low, value_low = middle, value
-            if side == -1:
-                value_high *= 0.5
-            side = -1
-    return high

@@ -11,11 +11,14 @@ unit (taylor_series.py); a step, as long as the last two coefficients allow, is 
 cheaper than one of dop8 and twice to thrice as long. The series of a step are also its dense
 output.
 
+A body on a plane has a series for each phase (equations/contact_series.py) under uniform fields
+and sliding friction; what is watched there is looked at along the sum of the series.
+
 Ensembles have a mode of their own: eight bodies at once (batch.py).
 
 Caveat: no internal dissipation, nothing with kinks. Energy and momentum are kept to the
-accuracy of the method; the norm of the quaternion is restored after each step. The ledger's sums,
-and spans under a held wrench, are made by dop8.
+accuracy of the method; the norm of the quaternion is restored after each step. Spans under a held
+wrench are made by dop8, and the ledger's sums, but for those on a plane.
 """
 
 from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: F401, N812

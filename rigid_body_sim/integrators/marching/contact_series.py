@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A convex body on a plane by Taylor series, phase by phase; contact.py has the events.
+
+A slip that has just begun, whose direction is a finite difference, and rest are those of dop8.
+"""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.templates import module_of, specialise
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators.equations import contact_series
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, GLIDING, ROLLING, SLIDING
+from rigid_body_sim.integrators.marching import contact_series_step
+from rigid_body_sim.integrators.marching.contact import OnPlane, march_of
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.vectors import scaled
+from rigid_body_sim.scene.painleve import painleve_bound
+from rigid_body_sim.scene.surfaces import KINDS
+
+SERIES_OF = {FLIGHT: FLIGHT, ROLLING: ROLLING, SLIDING: SLIDING, GLIDING: SLIDING}
+"""Phases that have series: those of which phase."""
+
+
+class OnPlaneBySeries(OnPlane):
+    """The kernels and the numbers of one scene.
+
+    Raises
+    ------
+    BadInput
+        Where Painleve's paradox may be met: the force of a slip has a pole there, at which no
+        series arrives.
+    """
+
+    def __init__(self, scene, method, step):
+        super().__init__(scene, method, None, step)
+        mu = scene.contact.mu
+        if mu < math.inf and mu >= (bound := painleve_bound(scene.body)):
+            raise BadInput('integrator', f'taylor cannot run the scene {scene.name}: with '
+                           f"mu = {mu!r} it may meet Painleve's paradox",
+                           f'mu below {bound:.4g}, or dop8')
+        self._kind = KINDS[scene.body.surface.kind]
+        self._marches = {}
+        self.work_shape = contact_series_step.WORK_ROWS, contact_series.MOST
+        x, y, z = rotate_back(*scene.constraint.axes, *scene.field)
+        self._weight = np.array(scaled(scene.body.mass, (x, y, z)))
+
+    def parameters(self, time):
+        """Return the parameters that hold just after a time (s); the last three are the weight."""
+        return np.concatenate((super().parameters(time), self._weight))
+
+    def kernels_of(self, mode):
+        """Return the module that marches through a phase (contact_march.py)."""
+        if mode not in SERIES_OF:
+            return self.kernels
+        phase = SERIES_OF[mode]
+        if phase not in self._marches:
+            source = contact_series.SOURCES[phase](self._kind)
+            expand = module_of(source, 'contact_expansion').__name__
+            step = specialise(contact_series_step, expand=f'{expand}:expand').__name__
+            self._marches[phase] = march_of(f'{self.rates.__name__}:rate', step)
+        return self._marches[phase]

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Template: one step of a convex body on a plane by its Taylor series, and its error.
+
+It is bound to an expansion (equations/contact_series.py). It takes the place of contact_step.py,
+whose rows it fills: END, FRESH, TRIED, and in those of stages the watched numbers at equal parts
+of the step. After them the work space keeps the series of the last point, so that steps of any
+length from there cost no other expansion.
+"""
+
+import math
+
+from rigid_body_sim.compilation.jit import compiled, compiled_inline
+from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.contact_series import (
+    FRICTION,
+    INCLINED,
+    NORMAL,
+    WIDTH,
+)
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, ROLLING, ROW, UNKNOWNS
+from rigid_body_sim.integrators.marching import contact_step, taylor_series
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, FLATTER
+from rigid_body_sim.numerics.functions import power
+from rigid_body_sim.scene.surfaces import TORUS
+
+expand = UNBOUND
+
+ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
+normalise, COUPLED = contact_step.normalise, contact_step.COUPLED
+FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
+KEY, TOTALS, SERIES = range(contact_step.WORK_ROWS, contact_step.WORK_ROWS + 3)
+LEFT, RIGHT = SERIES + ORDER + 1, SERIES + 2 * (ORDER + 1)
+WORK_ROWS = SERIES + 3 * (ORDER + 1)
+"""Rows of the work space: the point and the phase of the series, sums of products, the series, and
+the factors of products."""
+WATCHED, WATCHES = ROW.part('watched').first, ROW.part('watched').size
+PRESSING, GRIPPING, MOTION = (ROW.part('watched').part(name).first
+                              for name in ('normal', 'grip', 'motion'))
+OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
+                              for name in ('omega', 'u', 'place', 'gap', 'time'))
+MODE, MU, KIND = (CONTACT.part(name).first for name in ('mode', 'mu', 'kind'))
+BEFORE = 0.25    # share of the last term but one that the last one has at least
+SAFETY = 4.0     # times the rest of the series that the error may be
+
+
+@compiled
+def step_from(p, w, y, lost, h):
+    """Fill row FRESH with the unknowns after a step h from y.
+
+    Returns
+    -------
+    float
+        0 if the numbers stayed finite, else infinite.
+    """
+    key, S = w[KEY], w[SERIES:LEFT]
+    known = key[SIZE] == p[MODE] + 1.0
+    for n in range(SIZE):
+        known = known and key[n] == y[n]
+    if not known:
+        expand(p, w[LEFT:RIGHT], w[RIGHT:], w[TOTALS], S, y)
+        for n in range(SIZE):
+            key[n] = y[n]
+        key[SIZE] = p[MODE] + 1.0
+    for n in range(WIDTH):
+        w[TRIED, n] = h * S[ORDER, n]
+    for k in range(1, ORDER):
+        for n in range(WIDTH):
+            w[TRIED, n] = h * (w[TRIED, n] + S[ORDER - k, n])
+    bad = 0.0
+    for n in range(SIZE):
+        d = lost[n] + w[TRIED, n]
+        s = y[n] + d
+        w[FRESH, n] = s
+        w[TRIED, n] = d - (s - y[n])
+        if not abs(s) < math.inf:
+            bad = math.inf
+    normalise(w)
+    _sample(p, w, y, S, h)
+    return bad
+
+
+@compiled_inline
+def _sample(p, w, y, S, h):
+    """Fill the rows of stages with the watched numbers at equal parts of a step."""
+    mode, mu = p[MODE], p[MU]
+    for i in range(1, STAGES):
+        t = h * i / STAGES
+        first = FRICTION if mode == ROLLING and mu < 1e300 else NORMAL
+        normal = second = inclined = gap = 0.0
+        if mode == FLIGHT:
+            for k in range(ORDER):
+                gap = t * (gap + S[ORDER - k, GAP])
+            normal = y[GAP] + gap
+        else:
+            for k in range(ORDER + 1):
+                normal = t * normal + S[ORDER - k, NORMAL]
+                second = t * second + S[ORDER - k, first]
+        grip = motion = 1.0
+        if first == FRICTION:
+            grip = mu * normal - math.sqrt(max(0.0, second))
+        if p[KIND] == TORUS and mode != FLIGHT:
+            for k in range(ORDER + 1):
+                inclined = t * inclined + S[ORDER - k, INCLINED]
+            motion = inclined - FLATTER
+        for n in range(WATCHED, WATCHED + WATCHES):
+            w[i, n] = w[0, n]
+        w[i, PRESSING], w[i, GRIPPING], w[i, MOTION] = normal, grip, motion
+
+
+@compiled
+def error_of(w, h, scales):
+    """Return the estimated error of the step in the rows, as an angle (rad).
+
+    It is the rest of the series, whose terms are taken to fall as they do from 1 rad to the last.
+
+    Parameters
+    ----------
+    scales : tuple of 3 floats
+        What counts as one radian: of angular velocity (rad/s), of velocity (m/s), of length (m).
+    """
+    turning, speed, length = scales
+    last = before = 0.0
+    for n in range(COUPLED):
+        weight = 1.0
+        if OMEGA <= n < U:
+            weight = 1.0 / turning
+        elif U <= n < PLACE:
+            weight = 1.0 / speed
+        elif PLACE <= n <= GAP:
+            weight = 1.0 / length
+        elif n == TIME:
+            weight = turning
+        one, other = weight * w[SERIES + ORDER, n], weight * w[SERIES + ORDER - 1, n]
+        last += one * one
+        before += other * other
+    factor = h
+    for _ in range(ORDER - 2):
+        factor *= h
+    term = factor * max(h * math.sqrt(last), BEFORE * math.sqrt(before))
+    if not term < 0.5:
+        return term
+    # a geometric series that begins with 1 rad
+    quotient = power(term, 1.0 / ORDER)
+    return SAFETY * term * quotient / (1.0 - quotient)
