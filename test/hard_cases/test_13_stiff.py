@@ -184,9 +184,9 @@ def test_what_python_does_between_marches_counts_as_work(method, parts, monkeypa
         simulation.states([1e7])
 
 
-def steps_of(march, most=None):
+def steps_of(march, most=None, doublings=None):
     """Return the steps after which a march to 1 s gives up; march(n) is the time after n, s."""
-    done, limited = 0, work.Work('a march', most)
+    done, limited = 0, work.Work('a march', most, doublings=doublings)
 
     def follow(limit):
         nonlocal done
@@ -214,6 +214,61 @@ def test_what_explodes_ends_soon_in_a_trial_and_without_numba(monkeypatch):
     assert steps_of(lambda n: 1e-90 * 4.0 ** (n / 30), 5000) == math.inf
     assert steps_of(lambda n: 1e-7 * n + (n / 4000.0) ** 3, 5000) == math.inf
     assert steps_of(lambda n: n / 4900.0, 5000) == steps_of(lambda n: n / 2e6) == math.inf
+
+
+@pytest.mark.parametrize(('march', 'hopeless'), [
+    (lambda n: math.log1p(n) / 70.0, True),
+    (lambda n: (n / 1e4 if n < 100 else 0.01 + math.log(n / 100.0) / 70.0), True),
+    (lambda n: 0.9 - 0.9 / (1.0 + n / 10.0), True),
+    # 1e10 steps would do, and 3e10 are allowed
+    (lambda n: math.log1p(n) / 23.0, False),
+    (lambda n: n / 1e7, False),
+    (lambda n: (n / 1e7) ** 0.12, False),
+    (lambda n: (n / 1e5) ** 2.0, False),
+    (lambda n: 1e-90 * 4.0 ** (n / 30), False)],
+    ids=['geometric', 'geometric later', 'pole', 'not far', 'even', 'power', 'growing', 'stiff'])
+def test_steps_that_shrink_geometrically_are_seen_to_lead_nowhere(march, hopeless, monkeypatch):
+    monkeypatch.setattr(work, 'MOST', 3e8)
+    monkeypatch.setattr(work, 'SLOWER', 1)
+    made = steps_of(march, doublings=work.Doublings(1.0, 1))
+    assert made <= 1 << 12 if hopeless else made > 1 << 14
+
+
+def counted(monkeypatch):
+    """Return a list whose sum is the number of steps that marches are about to count."""
+    made, count = [], work.Work.count
+
+    def noting(self, steps, *rest):
+        made.append(steps)
+        count(self, steps, *rest)
+    monkeypatch.setattr(work.Work, 'count', noting)
+    return made
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('held', 'formula'), [
+    ('free', 'exp(500*t)'), ('pivot', 'exp(20*t)'), ('free', 'exp(t^3)')])
+def test_a_torque_that_explodes_is_given_up_after_a_thousand_steps(held, formula, monkeypatch):
+    """The march may take 100,000 steps to each of the times."""
+    body = scene(held, body=BODY, effects=[{'torque': {'value': [formula, 0, 0]}}],
+                 initial={'angular_velocity': [1, 2, 3]})
+    solver = Stepped(body, 'dop8', 1e-9, horizon=10.0, most=100_000).start(body.initial.vector)
+    made = counted(monkeypatch)
+    with pytest.raises(TooMuchWork, match='too many'):
+        solver.states(np.linspace(0.0, 10.0, 65)[1:], np.empty((64, 14)))
+    assert 32 < sum(made) < 5000
+
+
+@pytest.mark.without_numba
+def test_a_torque_that_grows_no_further_than_it_can_be_followed_is_followed(monkeypatch):
+    body = scene('free', body=BODY, effects=[{'torque': {'value': ['exp(3*t)', 0, 0]}}],
+                 initial={'angular_velocity': [1, 2, 3]})
+    states = np.empty((64, 14))
+    solver = Stepped(body, 'dop8', 1e-6, horizon=3.0, most=5000).start(body.initial.vector)
+    made = counted(monkeypatch)
+    solver.states(np.linspace(0.0, 3.0, 65)[1:], states)
+    assert np.isfinite(states).all()
+    assert sum(made) > 500
 
 
 def test_a_march_that_gives_up_says_times_as_a_person_writes_them():

@@ -92,6 +92,10 @@ class Bound:
         control, point, following, counts = self._places
         return piece[control:point], piece[point:following], piece[following:counts]
 
+    def steps_of(self, piece):
+        """Return the number of steps made in a piece."""
+        return int(piece[self._places[-1] + track.COUNT])
+
     def prototype(self, time):
         """Return the beginning of a piece that starts at a time (s): parameters, control, point.
 

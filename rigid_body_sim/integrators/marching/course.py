@@ -12,7 +12,7 @@ import numpy as np
 from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.points import LOST, REACHED, TIME, VALUES
-from rigid_body_sim.integrators.marching.work import Work
+from rigid_body_sim.integrators.marching.work import Doublings, Work
 
 FOR_EVER = (math.inf,)
 AT_ONCE = 4096    # states of one call of a kernel
@@ -75,10 +75,10 @@ class Course:
 
     def _go_on(self, piece, time, out):
         """Fill `out` with the state of the first piece at a time far ahead."""
-        self._reach(piece, time, self._ends[0])
+        self._reach(piece, time, self._ends[0], Doublings(time, 1))
         self._bound.track.state(piece, time, self._ends[0], out)
 
-    def _reach(self, piece, target, end):
+    def _reach(self, piece, target, end, doublings):
         """March until the step from the point holds a time, in slices (work.py)."""
         follow, place = self._bound.track.follow, self._bound.point + TIME
 
@@ -88,7 +88,8 @@ class Course:
                 raise lost(self._method, self._scene, piece[place])
             return status == REACHED
 
-        work = Work(f'{self._method.NAME} on {self._scene.name}', self._most)
+        work = Work(f'{self._method.NAME} on {self._scene.name}', self._most,
+                    made=self._bound.steps_of(piece), doublings=doublings)
         work.go(arrived, lambda: float(piece[place]), min(float(target), end))
 
     def states(self, times, out):
@@ -101,15 +102,15 @@ class Course:
             end, until = self._ends[k], len(order)
             if not last < end:
                 until = int(np.searchsorted(times[order], end, side='left'))
-            piece = self._pieces[k]
+            piece, doublings = self._pieces[k], Doublings(float(min(last, end)), len(order))
             while done < until:
                 look()
                 part = order[done:min(until, done + AT_ONCE)]
                 filled = track.states(piece, times, part, end, out)
                 done += filled
                 if filled < len(part):
-                    self._reach(piece, times[order[done]], end)
+                    self._reach(piece, times[order[done]], end, doublings)
             k += 1
             if done < len(order) and k == len(self._pieces):
-                self._reach(piece, end, end)
+                self._reach(piece, end, end, doublings)
                 self._pieces.append(self._next_piece(end))

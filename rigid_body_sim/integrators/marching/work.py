@@ -8,6 +8,10 @@ that they cost. So do the steps of an uncompiled march when the steps ahead are 
 with its own bound, such as a trial, gives up after the same steps with numba and without; it looks
 ahead early, since it is one of many. An early look lets a march go on if its steps grow: it may
 begin with a stiff part.
+
+A march also gives up where its steps shrink geometrically, as under a torque of exp(500 t): the
+number of steps doubles again and again in the same time, or in less, and would do so until there
+are far more than it may take.
 """
 
 import math
@@ -15,6 +19,7 @@ import math
 from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.numerics.functions import log
 
 SLICE = 32              # steps of the first slice
 FIRST_LOOK = 1 << 17    # steps before the first look at what lies ahead; then at each doubling
@@ -24,10 +29,51 @@ SLOWER = 1 if HAVE_NUMBA else 100    # steps that one costs which is not compile
 EARLY = 1 << 9          # steps before the first look of a run under a bound of its own
 HOPELESS = 100.0        # times its bound: where as many steps lie ahead, it gives up
 GROWING = 2.0           # steps that are so many times longer than those up to the look before
+DOUBLED = 1 << 5        # steps from which on doublings of their number are timed
+EVEN = 1.05             # times the doubling before: one that takes up to that is no slower
+AGAIN = 4               # doublings in succession that are no slower than the one before
 
 
 class TooMuchWork(NotConverged):
     """A march would exceed the bound on its work."""
+
+
+class Doublings:
+    """The times in which the number of steps of a march doubles.
+
+    Parameters
+    ----------
+    last : float
+        The time up to which the march is to go, s.
+    times : int
+        The number of times that are asked for.
+
+    Attributes
+    ----------
+    next : int
+        The number of steps to see next.
+    """
+
+    def __init__(self, last, times):
+        self.next, self._last, self._times = DOUBLED, last, times
+        self._seen, self._took, self._again = None, 0.0, 0
+
+    def see(self, steps, time, most):
+        """Take down that a march has reached a time (s); return whether it is hopeless to go on.
+
+        So it is where the number of steps, if it goes on to double as it did, would be HOPELESS
+        times `most` for each time that is asked for.
+        """
+        if self._seen:
+            before, then = self._seen
+            took = (time - then) / log(steps / before)    # for e times as many
+            self._again = self._again + 1 if took <= EVEN * self._took else 0
+            self._took = took
+        self.next, self._seen = 2 * steps, (steps, time)
+        if self._again < AGAIN:
+            return False
+        folds = log(max(HOPELESS * self._times * most / steps, 1.0))
+        return time + folds * self._took < self._last
 
 
 class Work:
@@ -45,9 +91,13 @@ class Work:
     dear : int
         Compiled steps that one step costs, for judging the steps that lie ahead; at least SLOWER,
         but for runs under a bound of their own and bodies that may come to rest.
+    made : int
+        Steps that the march made before.
+    doublings : Doublings, optional
+        Of the march.
     """
 
-    def __init__(self, name, most, dear=1, comes_to_rest=False):
+    def __init__(self, name, most, dear=1, comes_to_rest=False, made=0, doublings=None):
         self._name, self._most, self.done = name, most, 0
         self._dear = max(dear, SLOWER) if most is None and not comes_to_rest else dear
         self._sure, first = FIRST_LOOK // dear, max(1, FIRST_LOOK // self._dear)
@@ -55,6 +105,7 @@ class Work:
         self._look, self._target = min(first, EARLY) if self._early else first, None
         self._begin = self._seen = (0, math.nan)
         self._pace = 0.0    # s a step, up to the look before
+        self._made, self._doublings = made, doublings
 
     def go(self, follow, now, target):
         """Call follow(limit), which returns whether it has arrived, until it has.
@@ -103,6 +154,10 @@ class Work:
         self.done += steps
         if self._most is not None and self.done >= self._most:
             raise self._given_up(time, target)
+        made = self._made + self.done
+        if self._doublings and made >= self._doublings.next and self._doublings.see(
+                made, time, MOST if self._most is None else self._most):
+            raise self._given_up(time, target)
         if self.done >= self._look:
             self._look_ahead(time, target)
 
@@ -110,6 +165,8 @@ class Work:
         most = (
             self._look if self._most is None else min(self._look, max(self._most, self.done + 1))
         )
+        if self._doublings:
+            most = min(most, max(self._doublings.next - self._made, self.done + 1))
         return most - self.done
 
     def _look_ahead(self, time, target):
