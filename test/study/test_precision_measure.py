@@ -2,6 +2,7 @@
 """The harness: errors that it must find, refusals that it must keep, table, figure and command."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -153,6 +154,17 @@ def test_peers_solve_the_same_equations(name):
     angles, omegas = truth_then.errors(np.array(states))
     assert angles.max() < 1e-10
     assert omegas.max() < 1e-10
+
+
+@pytest.mark.parametrize(('name', 'package'), [
+    ('heyoka', 'heyoka'), ('MuJoCo', 'mujoco'), ('Drake', 'pydrake'), ('Exudyn', 'exudyn'),
+    ('PyBullet', 'pybullet'), ('Pinocchio', 'pinocchio'), ('Basilisk', 'Basilisk')])
+def test_a_peer_that_is_not_installed_is_named(name, package, monkeypatch):
+    for module in [one for one in sys.modules if one.partition('.')[0] == package]:
+        monkeypatch.delitem(sys.modules, module)
+    monkeypatch.setitem(sys.modules, package, None)
+    assert name in peers.missing()
+    assert name not in {module.NAME for module in peers.installed()}
 
 
 def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, monkeypatch):

@@ -20,6 +20,7 @@ MODULES = (
     'scipy_dop853',
     'mujoco_engine',
     'drake_engine',
+    'exudyn_engine',
     'pybullet_engine',
     'pinocchio_engine',
     'basilisk_engine',
