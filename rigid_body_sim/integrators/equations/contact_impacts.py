@@ -68,7 +68,7 @@ def collide(p, y, restitution, out):
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
     before = plus(now.u, apply(at.axes, at.carried))
-    G = response(c, at.axes, at.r, (0.0, 0.0, 0.0))
+    G = response(c.mass, c.inverse, at.axes, at.r, (0.0, 0.0, 0.0))
     given = impulse(G, before, restitution, c.mu)
     after = plus(before, apply(G, given))
     loss = -0.5 * dot(given, plus(before, after))

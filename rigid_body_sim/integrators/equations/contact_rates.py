@@ -17,6 +17,11 @@ along the axes of the plane.
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
               behind that direction is corrected to the first order in |u| |omega|/(mu g)
 
+In each phase of contact dry rolling friction may hold the lowest point where it is on the body
+(p.way): a couple without power keeps it there, as long as its force is at most C N. Such a body
+spins about the normal, and slides. A disk falls, too, since its lowest point moves along the rim
+only.
+
 The height of the centre of mass is the gap less n . r, and in contact its velocity is u - omega x
 r: gap and normal velocity are zero to the last bit there, and small gaps are as exact as large
 ones.
@@ -45,7 +50,6 @@ from rigid_body_sim.mechanics.contact.forces import (
     Push,
     along_body,
     held,
-    holds_still,
     leaving,
     patch_of,
     posture,
@@ -53,6 +57,12 @@ from rigid_body_sim.mechanics.contact.forces import (
     slipping_force,
     system_of,
     wrung_by,
+)
+from rigid_body_sim.mechanics.contact.holding import (
+    gripped,
+    gripping,
+    holds_still,
+    rolling_couples,
 )
 from rigid_body_sim.mechanics.contact.laws import (
     departure,
@@ -64,8 +74,14 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
     turning,
 )
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
-from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, SLOW
+from rigid_body_sim.mechanics.contact.touch import (
+    above_flat,
+    couples,
+    inclination,
+    is_disk,
+    tangent,
+)
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -74,9 +90,10 @@ from rigid_body_sim.scene.surfaces import TORUS
 # (p, q, omega, v of the centre of mass, time and place of it) -> force (world), couple (body),
 # power of work and heat, and the part of the couple from within the body
 applied = UNBOUND
+# a line HOLDS = True for a scene with dry rolling friction, else HOLDS = False
+HOLDS = UNBOUND
 
 ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
-SLOW = 1e-13             # share of the speeds below which a body does not roll
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
 SHORT = 1e-6             # time of a difference, over the time in which the body moves by its size
 ZERO = (0.0, 0.0, 0.0)
@@ -162,6 +179,30 @@ def _applied(p, c, now, at, omega, v, ahead):
 
 
 @compiled_inline
+def _posture(c, q, omega):
+    """Return the Posture, of a body whose rolling friction may hold."""
+    at = posture(c, q, omega)
+    if HOLDS and c.way == HELD:
+        at = gripped(c, at)
+    return at
+
+
+@compiled_inline
+def _couples(c, at):
+    """Return the couples of rolling friction, as touch.couples does."""
+    return rolling_couples(c, at) if HOLDS else couples(c, at.axes[2], at.moved)
+
+
+@compiled_inline
+def _hastened(c, at, torque):
+    """Return omega' under a couple about the centre of mass, body axes, rad/s^2."""
+    grown = apply(at.inverse, torque)
+    if HOLDS and c.way == HELD:
+        grown = plus(grown, at.shift)
+    return grown
+
+
+@compiled_inline
 def _short(c):
     """Return the time step of a finite difference, s."""
     return SHORT * c.size[0] / c.swift
@@ -172,16 +213,16 @@ def _ahead(p, c, now, at, f, touch):
     """Return Posture and Push a short time later under a force and a couple of the contact."""
     acts = _applied(p, c, now, at, at.omega, scaled(-1.0, apply(at.axes, at.carried)), 0.0)
     torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
-    grown = apply(c.inverse, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
+    grown = _hastened(c, at, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
     short = _short(c)
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
     half = 0.5 * short
     q = normalised(at.q[0] + half * x, at.q[1] + half * y, at.q[2] + half * z,
                    at.q[3] + half * w)
     omega = plus(at.omega, scaled(short, grown))
-    later = posture(c, q, omega)
+    later = _posture(c, q, omega)
     acts = _applied(p, c, now, later, omega, scaled(-1.0, apply(later.axes, later.carried)), short)
-    viscous, wrung, _, _ = couples(c, later.axes[2], later.moved)
+    viscous, wrung, _, _ = _couples(c, later)
     torque = minus(plus(acts.couple, viscous), cross(omega, apply(c.inertia, omega)))
     return later, Push(acts.force, torque, viscous, wrung)
 
@@ -314,7 +355,7 @@ def _creeping(p, c, now, at, push, v, speed, film):
 def _motion(c, at, speed):
     """Return how far a body in contact is from lying flat, or from standing still (watched)."""
     flat = above_flat(c, at.axes[2])
-    if c.rolling > 0.0 and c.mode == ROLLING and not (c.kind == TORUS and c.size[1] == 0.0):
+    if HOLDS and c.way != HELD and not is_disk(c):
         return min(flat, speed - SLOW * c.swift)
     return flat
 
@@ -337,9 +378,19 @@ def _resting(p, c, now, at):
     held_back = scaled(-1.0, apply(at.axes, acts.inner))
     nothing = Ledger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
     still = Unknowns((0.0, 0.0, 0.0, 0.0), ZERO, ZERO, (0.0, 0.0), 0.0, 1.0, nothing)
-    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0), scaled(-1.0, acts.force),
-               ZERO,
-               (0.0, 0.0), ZERO, apply(at.axes, at.r), 1.0)
+    return Row(still, Watched(1.0, 1.0, 1.0, c.until - now.time, 1.0, 1.0),
+               scaled(-1.0, acts.force), ZERO, (0.0, 0.0), ZERO, apply(at.axes, at.r), 1.0)
+
+
+@compiled_inline
+def _gripped(c, at, torque, grown, N):
+    """Return the couple by which friction holds the rolling, and the watched number for it."""
+    if HOLDS and c.way == HELD:
+        couple, force = gripping(c, at, torque, grown)
+        return couple, c.rolling * N - hypot(*force)
+    if HOLDS and is_disk(c):
+        return ZERO, c.way[0] * dot(tangent(at.axes[2]), at.moved)
+    return ZERO, 1.0
 
 
 @compiled
@@ -350,7 +401,7 @@ def rate(p, y, k):
     once more, half a second.
     """
     c, now = load_contact(p), load_unknowns(y)
-    at = posture(c, now.q, now.omega)
+    at = _posture(c, now.q, now.omega)
     e3 = at.axes[2]
     if c.mode == RESTING:
         store_row(k, _resting(p, c, now, at))
@@ -358,12 +409,12 @@ def rate(p, y, k):
     v = _centre(c, now, at)
     F, T, work, heat, inner = _applied(p, c, now, at, at.omega, v, 0.0)
     torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
-    gap, motion = 0.0, 1.0
+    gap, motion, rolling = 0.0, 1.0, 1.0
     if c.mode == FLIGHT:
         contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))
         gap = v[2] + dot(e3, at.carried)
     else:
-        viscous, wrung, speed, film = couples(c, e3, at.moved)
+        viscous, wrung, speed, film = _couples(c, at)
         push = Push(F, plus(torque, viscous), viscous, wrung)
         if c.mode == ROLLING:
             contact = _rolling(c, at, push, v, speed, film)
@@ -375,7 +426,11 @@ def rate(p, y, k):
         torque = plus(contact.push.torque,
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
+    grown = _hastened(c, at, torque)
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
+    if HOLDS and c.mode != FLIGHT:
+        holds, rolling = _gripped(c, at, torque, grown, contact.f[2])
+        touch = plus(touch, holds)
     turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch),
                                minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
@@ -383,9 +438,10 @@ def rate(p, y, k):
     entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
                         heat, work, turn, contact.spun)
     x, yy, z, w = multiply(*at.q, *at.omega, 0.0)
-    rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), apply(c.inverse, torque),
-                     contact.growth, (contact.v[0], contact.v[1]), gap, 1.0, entries)
-    watched = Watched(contact.normal, contact.grip, contact.firmness, c.until - now.time, motion)
+    rates = Unknowns((0.5 * x, 0.5 * yy, 0.5 * z, 0.5 * w), grown, contact.growth,
+                     (contact.v[0], contact.v[1]), gap, 1.0, entries)
+    watched = Watched(contact.normal, contact.grip, contact.firmness, c.until - now.time, motion,
+                      rolling)
     store_row(k, Row(rates, watched, contact.f, apply(at.axes, touch),
                      (contact.slip[0], contact.slip[1]), contact.v, apply(at.axes, at.r),
                      contact.pace))

@@ -1,14 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The end of the motion of a convex body on a plane: it jams, halts, or rolls back.
+"""The end of the motion of a convex body on a plane: it jams, halts, rolls back, or is held.
 
 Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 """
 
+import math
+
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.integrators.equations.contact_views import LEDGER, ROLLING, UNKNOWNS
-from rigid_body_sim.mechanics.contact.forces import posture
+from rigid_body_sim.integrators.equations.contact_views import (
+    GLIDING,
+    LEDGER,
+    ROLLING,
+    ROW,
+    SLIDING,
+    UNKNOWNS,
+)
+from rigid_body_sim.mechanics.contact.forces import along_body, posture
+from rigid_body_sim.mechanics.contact.holding import across_rim, against, growing
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
-from rigid_body_sim.mechanics.contact.touch import inclination
+from rigid_body_sim.mechanics.contact.touch import (
+    above_flat,
+    inclination,
+    is_disk,
+    tangent,
+)
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.surfaces import TORUS
@@ -16,6 +31,8 @@ from rigid_body_sim.scene.surfaces import TORUS
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
+load_couple = ROW.part('couple').load
+load_omega = UNKNOWNS.part('omega').load
 store_omega, store_u = UNKNOWNS.part('omega').store, UNKNOWNS.part('u').store
 store_impulse, STRUCK = LEDGER.part('impulse').store, LEDGER.part('struck').first
 
@@ -51,8 +68,56 @@ def halt(p, y):
 
 
 @compiled
+def lies(p, y):
+    """Return whether a body is a ring that lies flat."""
+    c, now = load_contact(p), load_unknowns(y)
+    return c.kind == TORUS and above_flat(c, matrix(*now.q)[2]) <= 0.0
+
+
+@compiled
+def rolls(p, y):
+    """Return the velocity of the lowest point over the body, m/s: of a disk along its rim."""
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    speed = math.sqrt(dot(at.moved, at.moved))
+    return math.copysign(speed, dot(tangent(at.axes[2]), at.moved)) if is_disk(c) else speed
+
+
+@compiled
 def pause(p, y):
-    """Take the last bits of the rolling from a body that is about to roll back."""
-    now = load_unknowns(y)
-    gamma = matrix(*now.q)[2]
-    store_omega(y, scaled(dot(gamma, now.omega), gamma))
+    """Take the last bits of the rolling from a body that is about to roll back, or is held.
+
+    Friction takes them, and its angular impulse is in the ledger. The centre of mass of a body
+    that slides keeps its velocity.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    gamma = at.axes[2]
+    if is_disk(c):
+        b = across_rim(gamma)
+        change = scaled(-dot(b, now.omega), b)
+    else:
+        change = minus(scaled(dot(gamma, now.omega), gamma), now.omega)
+    store_impulse(y, plus(now.ledger.impulse, apply(at.axes, apply(c.inertia, change))))
+    store_omega(y, plus(now.omega, change))
+    if c.mode == SLIDING or c.mode == GLIDING:
+        carried = apply(at.axes, cross(change, at.r))
+        store_u(y, (now.u[0] + carried[0], now.u[1] + carried[1], 0.0))
+
+
+@compiled
+def withheld(p, y, row):
+    """Return the force h, N, by which friction holds the rolling (holding.py: against).
+
+    `row` holds the rates while it is held.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    return against(c, at, along_body(at.axes, load_couple(row)))
+
+
+@compiled
+def grows(p, y, row):
+    """Return how a rolling grows from 0 along the plane, in any unit; `row` holds the rates."""
+    c, now = load_contact(p), load_unknowns(y)
+    return growing(c, posture(c, now.q, now.omega), load_omega(row))

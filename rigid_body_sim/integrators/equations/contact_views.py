@@ -80,6 +80,9 @@ class Watched(NamedTuple):
         Time to where what acts jumps, s.
     motion : float
         How far the body is from lying flat (rad), or from standing still (m/s).
+    rolling : float
+        Under dry rolling friction: what it could hold less what it holds (N), or the speed at
+        which a disk rolls the way it does (m/s).
     """
 
     normal: float
@@ -87,6 +90,7 @@ class Watched(NamedTuple):
     firmness: float
     jump: float
     motion: float
+    rolling: float
 
 
 class Row(NamedTuple):

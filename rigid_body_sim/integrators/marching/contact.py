@@ -20,7 +20,16 @@ from rigid_body_sim.integrators.equations.contact_impacts import (
     load_impact,
     velocity_of_lowest,
 )
-from rigid_body_sim.integrators.equations.contact_rest import halt, jams, pause, spins
+from rigid_body_sim.integrators.equations.contact_rest import (
+    grows,
+    halt,
+    jams,
+    lies,
+    pause,
+    rolls,
+    spins,
+    withheld,
+)
 from rigid_body_sim.integrators.equations.contact_states import read
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
@@ -34,9 +43,10 @@ from rigid_body_sim.integrators.equations.contact_views import (
     WATCHED,
 )
 from rigid_body_sim.integrators.marching import contact_march, contact_step, contact_zero
-from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
+from rigid_body_sim.integrators.marching.work import Work
+from rigid_body_sim.mechanics.contact.holding import way_out
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -55,11 +65,12 @@ MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
                                           'rolling', 'restitution', 'mass'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
+WAY = CONTACT.part('way').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
 VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
-NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
-    'normal', 'grip', 'firmness', 'motion'))
+NORMAL, GRIP, FIRMNESS, MOTION, ROLLS = (WATCHED.part(name).first for name in (
+    'normal', 'grip', 'firmness', 'motion', 'rolling'))
 SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
@@ -69,8 +80,6 @@ PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without fric
 SLIDES = ('at t = {} s the body lies flat and goes on sliding on its face or rim, which is not '
           'solved: it may touch the plane at one point; more friction or a level plane lets it '
           'rest')
-HELD = (': dry rolling friction holds a body there that still slides or spins, which is not '
-        'solved; viscous rolling friction is')
 IDEAL = 1e300            # a larger mu is infinite
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
@@ -111,11 +120,13 @@ class OnPlane:
                            'that dry rolling friction may bring to rest',
                            'pieces in time, or viscous rolling friction')
         source = equations.applied_source(acting, CONTACT.size)
-        self.rates = specialise(contact_rates, applied=source)
+        holds = f'HOLDS = {scene.contact.rolling > 0.0}\n'
+        self.rates = specialise(contact_rates, applied=source, HOLDS=holds)
         rate = f'{self.rates.__name__}:rate'
         self.kernels = march_of(rate, specialise(contact_step, rate=rate).__name__)
         self.work_shape = contact_step.WORK_ROWS, ROW.size
         self._fixed, self._held = contact_parameters(scene), {}
+        self.is_disk = scene.body.surface.kind == 'disk'
         self.heaviness = max(weight(scene), 1e-3)
 
     def _acting(self, time):
@@ -194,15 +205,17 @@ class PlaneCourse:
         return (hypot3(*y[U].tolist()) + rate * self._length
                 + math.sqrt(self._heaviness * self._length))
 
-    def _open(self, mode, p, y):
-        """Begin a phase."""
+    def _open(self, mode, p, y, stopped=False):
+        """Begin a phase; `stopped` says that the body no longer rolls."""
         time = self._begin + float(y[TIME])
+        stopped = stopped or _held(p)
         p = self._parameters(time)
         k = bisect.bisect_right(self._bound.breakpoints, time)
         later = self._bound.breakpoints[k:]
         p[UNTIL] = later[0] - self._begin if later else math.inf
         p[MODE], p[SWIFT] = mode, self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
+        self._hold(p, y, stopped)
         short = AT_ONCE * self._length / p[SWIFT]
         if len(self._phases) >= MOST_PHASES and (
                 float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
@@ -213,6 +226,35 @@ class PlaneCourse:
         self._phases.append(_Phase(self._bound, p, y, tolerance, self._work, self._length))
         self._begins.append(self._phases[-1].begin)
 
+    def _hold(self, p, y, stopped):
+        """Note whether dry rolling friction holds the body from here on, or which way it rolls.
+
+        A rolling that ends does so at a time rounded to doubles: `stopped` says that what is left
+        of it is rounding, however large.
+        """
+        p[WAY] = 1.0, 0.0
+        if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
+            return
+        p[SWIFT] = swift = self._speed(y)
+        disk, speed = self._bound.is_disk, rolls(p, y)
+        if stopped or abs(speed) <= (ROUNDING if disk else 2.0 * SLOW) * swift:
+            pause(p, y)
+            p[WAY], row = HELD, np.empty(ROW.size)
+            self._bound.rates.rate(p, y, row)
+            if row[ROLLS] >= 0.0:
+                return
+            speed, across = withheld(p, y, row)
+            if not disk:
+                p[WAY] = way_out(lambda x, z: self._growth(p, y, x, z), speed, across)
+        if disk:
+            p[WAY] = math.copysign(1.0, speed), 0.0
+
+    def _growth(self, p, y, x, z):
+        """Return how a rolling grows from 0 under the friction against a direction."""
+        p[WAY], row = (x, z), np.empty(ROW.size)
+        self._bound.rates.rate(p, y, row)
+        return grows(p, y, row)
+
     def _land(self, p, y, u):
         """Begin the phase of contact with the slip u that the laws of contact say."""
         y[U] = *u, 0.0
@@ -220,6 +262,7 @@ class PlaneCourse:
         mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
         slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > ROUNDING * self._speed(y)
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
+        self._hold(p, y, _held(p))
         rates.rate(p, y, row)
         if not row[FIRMNESS] > 0.0:
             self._end(y)
@@ -228,8 +271,11 @@ class PlaneCourse:
             self._fly(p, y)
             return
         mode = p[MODE]
-        if mode == ROLLING and not (row[MOTION] > 0.0 or any(y[OMEGA])) and rates.stays(p, y):
-            self._open(RESTING, p, y)    # it does not begin to move
+        held = _held(p) and not self._bound.is_disk
+        if mode == ROLLING and (held or not (row[MOTION] > 0.0 or any(y[OMEGA]))) and (
+                rates.stays(p, y)):
+            halt(p, y)
+            self._open(RESTING, p, y)
             return
         if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]:
             self._creep_off(p, y)
@@ -241,6 +287,7 @@ class PlaneCourse:
         p[MODE], row = CREEPING, np.empty(ROW.size)
         p[SWIFT] = self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
+        self._hold(p, y, _held(p))
         self._bound.rates.rate(p, y, row)
         if not row[FIRMNESS] > 0.0:
             self._end(y)
@@ -271,11 +318,10 @@ class PlaneCourse:
 
     def _stop(self, p, y, time):
         """Let a body rest that lies flat or is held by friction, else let it roll on."""
-        if self._bound.rates.stays(p, y):
+        if lies(p, y) or (p[MODE] == ROLLING and self._bound.rates.stays(p, y)):
             self._rest(p, y, time)
         else:
-            pause(p, y)
-            self._open(int(p[MODE]), p, y)
+            self._open(int(p[MODE]), p, y, stopped=True)
 
     def _rest(self, p, y, time):
         """Let a body rest, or end the course of one that lies flat and slides on."""
@@ -321,9 +367,8 @@ class PlaneCourse:
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
         if why == contact_march.FAILED:
-            held = p[DRY] > 0.0
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
-                               f't = {time!r} s{HELD if held else ""}')
+                               f't = {time!r} s')
         if why == contact_march.PARADOX:
             self._end(y)
             return
@@ -342,8 +387,12 @@ class PlaneCourse:
             self._creep_off(p, y)
         elif why == contact_march.STOPPED:
             self._stop(p, y, time)
+        elif why == contact_march.HELD:
+            self._open(int(p[MODE]), p, y, stopped=True)
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
+            if self._phases[-1].p[MODE] == RESTING:
+                self._events.append((time, 'rest', {}))
         elif why == contact_march.FASTER:
             row = np.empty(ROW.size)
             self._bound.rates.rate(p, y, row)
@@ -476,10 +525,7 @@ class _Phase:
             return arrived()
 
         before, steps = work.done, int(meta[contact_march.STEPS])
-        try:
-            work.go(follow, lambda: float(self.front[TIME]), elapsed)
-        except TooMuchWork as error:
-            raise TooMuchWork(f'{error}{HELD}' if self.p[DRY] > 0.0 else str(error)) from None
+        work.go(follow, lambda: float(self.front[TIME]), elapsed)
         # `go` leaves out the last slice, whose size depends on the clock
         made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
         work.count(made, float(self.front[TIME]), elapsed)
@@ -490,6 +536,11 @@ class _Phase:
         self._kernels.states(self.p, self._work, self._store, self._sizes, self.front,
                                    self._meta, self._cursor, self._y, start, begin, times, order,
                                    out)
+
+
+def _held(p):
+    """Return whether dry friction holds the rolling of a body."""
+    return tuple(p[WAY].tolist()) == HELD
 
 
 def _died(p, y):

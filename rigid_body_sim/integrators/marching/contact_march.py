@@ -45,11 +45,12 @@ SIZE, ROW_SIZE, TIME = UNKNOWNS.size, ROW.size, UNKNOWNS.part('time').first
 PACE, WATCHED = ROW.part('pace').first, ROW.part('watched').first
 WATCHES = ROW.part('watched').size
 # which of the watched numbers falls below zero
-NORMAL, GRIP, FIRMNESS, JUMPS, STOPS = (
+NORMAL, GRIP, FIRMNESS, JUMPS, STOPS, ROLLS = (
     layout(Watched).part(name).first for name in Watched._fields)
 NOTHING = -1    # none does
 load_omega, load_u = UNKNOWNS.part('omega').load, UNKNOWNS.part('u').load
-MODE, SWIFT, KIND = (CONTACT.part(name).first for name in ('mode', 'swift', 'kind'))
+MODE, SWIFT, KIND, DRY = (
+    CONTACT.part(name).first for name in ('mode', 'swift', 'kind', 'rolling'))
 
 LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
@@ -61,10 +62,10 @@ ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps mad
 the point at which the cursor stands, and how many of the last steps were all too short."""
 META = 12
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
- STOPPED) = range(10)
+ STOPPED, HELD) = range(11)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
 the body comes down; no step is small enough; a creep has become a slip; a ring lies flat or a body
-no longer rolls."""
+no longer rolls; dry friction holds the rolling of a disk, or lets a body roll."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
 FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely
@@ -101,6 +102,7 @@ def march(p, w, phase, sizes, front, meta, target):
     """
     y, lost = front[:LOST], front[LOST:]
     mode = p[MODE]
+    watches = WATCHES if p[DRY] > 0.0 else ROLLS    # only dry friction holds a rolling
     rate(p, y, w[0])
     while (meta[STATUS] == RUNNING and y[TIME] <= target and meta[STEPS] < len(sizes)
            and (meta[STORED] < len(phase) or len(phase) == KEPT)):
@@ -121,7 +123,7 @@ def march(p, w, phase, sizes, front, meta, target):
             break
         rate(p, w[FRESH], w[END])
         ends, part = NOTHING, h
-        for k in range(WATCHES):
+        for k in range(watches):
             if _falls(w, k):
                 at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
                 # the rows are those of the last look: put them back
@@ -211,7 +213,8 @@ def _named(mode, k):
         return TOUCHED if mode == FLIGHT else LOST_CONTACT
     if k == GRIP:
         return FASTER if mode == CREEPING else LET_GO
-    return PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED
+    return (PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED if k == STOPS
+            else HELD)
 
 
 @compiled

@@ -17,13 +17,12 @@ from rigid_body_sim.mechanics.contact.laws import (
     patch_system,
     sticking,
 )
-from rigid_body_sim.mechanics.contact.touch import above_flat, lever, response, spinning
+from rigid_body_sim.mechanics.contact.parameters import HELD
+from rigid_body_sim.mechanics.contact.touch import lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
-from rigid_body_sim.scene.surfaces import TORUS, shifted
-
-SPINLESS = 1e-9    # share of the speeds below which a body that rests does not spin
+from rigid_body_sim.scene.surfaces import shifted
 
 
 class Posture(NamedTuple):
@@ -43,6 +42,12 @@ class Posture(NamedTuple):
         omega x r, m/s.
     moved : Vector
         r', the velocity at which the lowest point moves over the surface, m/s.
+    drawn : Vector
+        u' without forces and couples, m/s^2.
+    inverse : Matrix
+        How a couple changes omega, I^-1; less if friction holds the rolling, 1/(kg m^2).
+    shift : Vector
+        omega' without a couple, where friction holds the rolling, rad/s^2.
     """
 
     q: Quaternion
@@ -51,6 +56,9 @@ class Posture(NamedTuple):
     r: Vector
     carried: Vector
     moved: Vector
+    drawn: Vector
+    inverse: Matrix
+    shift: Vector
 
 
 class Push(NamedTuple):
@@ -79,9 +87,16 @@ def posture(c, q, omega):
     """Return the Posture of a body with an attitude and an angular velocity."""
     axes = matrix(*q)
     gamma = axes[2]
-    r = lever(c, gamma)
-    return Posture(q, omega, axes, r, cross(omega, r),
-                   shifted(c.kind, c.size, gamma, cross(gamma, omega)))
+    return standing(c, q, omega, axes, lever(c, gamma))
+
+
+@inlined
+def standing(c, q, omega, axes, r):
+    """Return the Posture of a body whose lowest point is at r."""
+    carried = cross(omega, r)
+    moved = shifted(c.kind, c.size, axes[2], cross(axes[2], omega))
+    drawn = plus(cross(omega, carried), cross(omega, moved))
+    return Posture(q, omega, axes, r, carried, moved, drawn, c.inverse, (0.0, 0.0, 0.0))
 
 
 @inlined
@@ -99,21 +114,22 @@ def wrung_by(push, wrung):
 @inlined
 def driven(c, at, push):
     """Return b of the System."""
-    b = plus(cross(apply(c.inverse, push.torque), at.r),
-             plus(cross(at.omega, at.carried), cross(at.omega, at.moved)))
+    b = plus(cross(apply(at.inverse, push.torque), at.r), at.drawn)
     return plus(apply(at.axes, b), scaled(1.0 / c.mass, push.force))
 
 
 @inlined
 def system_of(c, at, push):
     """Return the System."""
-    return System(response(c, at.axes, at.r, push.wrung), driven(c, at, push))
+    return System(response(c.mass, at.inverse, at.axes, at.r, push.wrung), driven(c, at, push))
 
 
 @inlined
 def patch_of(c, at, push):
     """Return the Patch of a body with a patch of contact."""
-    turned, twisted, spun = spinning(c, at.axes, at.r, push.torque, push.wrung)
+    turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque, push.wrung)
+    if c.way == HELD:
+        spun = spun[0] + dot(at.axes[2], at.shift), spun[1]
     return patch_system(system_of(c, at, push), turned, twisted, spun, c.patch)
 
 
@@ -150,7 +166,7 @@ def slipping_force(c, at, push, mu, dx, dy):
     b = driven(c, at, push)
     pressed = minus(e3, plus(scaled(mu * dx, e1), scaled(mu * dy, e2)))
     moved = plus(scaled(1.0 / c.mass, pressed),
-                 cross(apply(c.inverse, plus(cross(at.r, pressed), push.wrung)), at.r))
+                 cross(apply(at.inverse, plus(cross(at.r, pressed), push.wrung)), at.r))
     A = dot(e3, moved)
     N = -b[2] / A
     return ((-mu * N * dx, -mu * N * dy, N),
@@ -173,35 +189,3 @@ def leaving(system, mu):
     guess = (-stuck[0] / size, -stuck[1] / size) if size > 0.0 else (1.0, 0.0)
     dx, dy, _ = departure(system, mu, *guess)
     return dx, dy
-
-
-@compiled
-def holds_still(c, at, F, T):
-    """Return whether a body that has almost stopped is at rest: a flat ring, or dry friction.
-
-    Dry rolling friction holds the couple -(S h) x n of a force |h| <= C N, Coulomb's friction the
-    force that balances the others. A spin about the normal is not held.
-
-    Parameters
-    ----------
-    F, T : Vector
-        What acts on the resting body: force (axes of the plane), couple (body axes).
-    """
-    e1, e2, gamma = at.axes
-    if c.kind == TORUS and (c.size[1] == 0.0 or above_flat(c, gamma) <= 0.0):
-        return True
-    held = scaled(-1.0, F)
-    if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:
-        return False
-    far = math.sqrt(dot(at.r, at.r))
-    if abs(dot(at.omega, gamma)) * far > SPINLESS * c.swift:
-        return False
-    couple = scaled(-1.0, plus(T, cross(at.r, along_body(at.axes, held))))
-    if abs(dot(couple, gamma)) > 1e-12 * held[2] * far:
-        return False
-    wanted = scaled(-1.0, cross(gamma, couple))    # S h
-    first, second = shifted(c.kind, c.size, gamma, e1), shifted(c.kind, c.size, gamma, e2)
-    a, b, d = dot(e1, first), dot(e1, second), dot(e2, second)
-    x, z = dot(wanted, e1), dot(wanted, e2)
-    share = 1.0 / (a * d - b * b)
-    return hypot(share * (d * x - b * z), share * (a * z - b * x)) <= c.rolling * held[2]

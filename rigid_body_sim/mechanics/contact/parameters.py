@@ -8,6 +8,8 @@ from rigid_body_sim.compilation.layout import Matrix, Pair, Quaternion, Vector, 
 FLAT = 1e-6              # rad: a ring that is inclined by less lies flat, where friction stops it
 FILMY = 1e-4             # rad: and where a film of air does
 FLATTER = 1e-10          # rad: and where neither does
+HELD = (0.0, 0.0)        # `way` of what does not roll
+SLOW = 1e-13             # share of the speeds below which a body does not roll
 LOW = 1e-3               # rad: below it rolling friction jams a ring that no step can follow
 
 
@@ -39,6 +41,10 @@ class ContactParameters(NamedTuple):
         of a film of air (N s/m).
     patch : float
         Radius rho of the patch of contact, m; 0 for a point.
+    way : Pair
+        HELD while dry rolling friction holds the point of contact where it is on the body; else
+        the direction in which it begins to move, along the plane, or (1, 0) or (-1, 0) for a disk,
+        along its rim (touch.py: tangent).
     swift : float
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
@@ -67,6 +73,7 @@ class ContactParameters(NamedTuple):
     rolling_viscous: float
     film: float
     patch: float
+    way: Pair
     swift: float
     creep: float
     until: float

@@ -1,12 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The balance of forces of a body above, or in contact with, a plane at one instant."""
 
+import math
+
 from rigid_body_sim.mechanics.contact.forces import (
-    Posture,
     Push,
-    holds_still,
+    along_body,
     patch_of,
+    standing,
     system_of,
+)
+from rigid_body_sim.mechanics.contact.holding import (
+    gripped,
+    gripping,
+    growing,
+    holds_still,
+    rolling_couples,
+    way_out,
 )
 from rigid_body_sim.mechanics.contact.laws import (
     departure,
@@ -17,12 +27,18 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
-from rigid_body_sim.mechanics.contact.touch import above_flat, couples, inclination, lever
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW
+from rigid_body_sim.mechanics.contact.touch import (
+    above_flat,
+    couples,
+    inclination,
+    lever,
+    tangent,
+)
 from rigid_body_sim.numerics.functions import hypot, hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, transposed
-from rigid_body_sim.scene.surfaces import TORUS, shifted
+from rigid_body_sim.scene.surfaces import TORUS
 
 TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
 NOTHING = (0.0, 0.0, 0.0)
@@ -75,25 +91,69 @@ class Standing:
         speed = hypot3(*velocity) + hypot3(*omega) * hypot3(*r)
         if height + below > TOUCHES * (abs(height) + abs(below)) or u[2] > TOUCHES * speed:
             return NOTHING, NOTHING, r
-        moved = shifted(c.kind, c.size, gamma, cross(gamma, omega))
         pressed = rotate_back(*c.plane, *force)[2] < 0.0
-        stands = Posture(None, omega, axes, r, cross(omega, r), moved)
+        stands = standing(c, None, omega, axes, r)
         if pressed and not any(omega) and not any(velocity) and (
                 self._lies(gamma) or (c.rolling > 0.0 and not self._is_disk and holds_still(
                     c, stands, rotate_back(*c.plane, *force), couple))):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
-        viscous, wrung, _, _ = couples(c, gamma, moved)
-        torque = plus(plus(couple, viscous), scaled(-1.0, cross(omega, apply(c.inertia, omega))))
-        push = Push(rotate_back(*c.plane, *force), torque, viscous, wrung)
+        free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
+        f, touch = self._touch(stands, (rotate_back(*c.plane, *force), free), (u, speed))
+        if not f[2] > 0.0:
+            return NOTHING, NOTHING, r
+        return rotate(*c.plane, *f), touch, r
+
+    def _touch(self, stands, acts, slip):
+        """Return what `_exerted` does, for the same arguments; dry rolling friction may hold."""
+        c, gamma = self._c, stands.axes[2]
+        if not c.rolling > 0.0:
+            return self._exerted(c, stands, acts, slip)
+        along, across = dot(tangent(gamma), stands.moved), 0.0
+        c = c._replace(swift=slip[1] or 1.0)    # beside which no rolling is none
+        if (abs(along) if self._is_disk else hypot3(*stands.moved)) <= TOUCHES * slip[1]:
+            still, held = c._replace(way=HELD), gripped(c, stands)
+            f, touch = self._exerted(still, held, acts, slip)
+            holds, (along, across) = gripping(c, held, *self._turned(held, acts, f, touch))
+            if hypot(along, across) <= c.rolling * f[2]:
+                return f, plus(touch, holds)
+
+            def growth(x, z):
+                one = c._replace(way=(x, z))
+                f, touch = self._exerted(one, stands, acts, slip)
+                return growing(one, stands, self._turned(stands, acts, f, touch)[1])
+            if not self._is_disk:
+                way = way_out(growth, along, across)
+                return self._exerted(c._replace(way=way), stands, acts, slip)
+        way = math.copysign(1.0, along), 0.0
+        return self._exerted(c._replace(way=way), stands, acts, slip)
+
+    def _turned(self, stands, acts, f, touch):
+        """Return the couple about the centre of mass, and omega'."""
+        torque = plus(plus(acts[1], touch), cross(stands.r, along_body(stands.axes, f)))
+        return torque, plus(apply(stands.inverse, torque), stands.shift)
+
+    def _exerted(self, c, stands, acts, slip):
+        """Return the force (axes of the plane) and couple (body axes) of the contact.
+
+        Parameters
+        ----------
+        acts : tuple of 2 tuples
+            Force (axes of the plane) and couple with the gyroscopic one (body axes) of all else.
+        slip : tuple of tuple and float
+            Velocity of the lowest point, and the speeds beside which it is rounding, m/s.
+        """
+        gamma, (u, speed) = stands.axes[2], slip
+        viscous, wrung, _, _ = (rolling_couples(c, stands) if c.rolling > 0.0
+                                else couples(c, gamma, stands.moved))
+        push = Push(acts[0], plus(acts[1], viscous), viscous, wrung)
         if c.patch > 0.0:
-            f, twist = self._patch_force(patch_of(c, stands, push), u, dot(gamma, omega), speed)
+            spin = dot(gamma, stands.omega)
+            f, twist = self._patch_force(patch_of(c, stands, push), u, spin, speed)
             viscous = plus(viscous, scaled(twist, gamma))
         else:
             f = self._force(system_of(c, stands, push), u, speed)
-        if not f[2] > 0.0:
-            return NOTHING, NOTHING, r
-        return rotate(*c.plane, *f), plus(viscous, scaled(f[2], wrung)), r
+        return f, plus(viscous, scaled(f[2], wrung))
 
     def _lies(self, gamma):
         """Return whether the body is a ring that counts as flat once nothing moves.

@@ -12,7 +12,7 @@ import math
 from rigid_body_sim.compilation.jit import inlined
 from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
-from rigid_body_sim.scene.surfaces import TORUS, lowest, shifted
+from rigid_body_sim.scene.surfaces import TINY, TORUS, lowest, shifted
 
 
 @inlined
@@ -44,24 +44,46 @@ def above_flat(c, gamma):
 
 
 @inlined
-def response(c, axes, r, wrung):
-    """Return the matrix of a System; `wrung` is the couple that goes with N, body axes."""
+def is_disk(c):
+    """Return whether the surface is the sharp edge of a disk."""
+    return c.kind == TORUS and c.size[1] == 0.0
+
+
+@inlined
+def tangent(gamma):
+    """Return the unit vector along the rim of a ring at the lowest point, body axes."""
+    across = inclination(gamma) + TINY
+    return -gamma[1] / across, gamma[0] / across, 0.0
+
+
+@inlined
+def response(mass, inverse, axes, r, wrung):
+    """Return the matrix of a System.
+
+    Parameters
+    ----------
+    inverse : Matrix
+        How a couple changes omega, body axes, 1/(kg m^2).
+    wrung : Vector
+        The couple that goes with N, over N, body axes, m.
+    """
     e1, e2, e3 = axes
-    g1 = plus(scaled(1.0 / c.mass, e1), cross(apply(c.inverse, cross(r, e1)), r))
-    g2 = plus(scaled(1.0 / c.mass, e2), cross(apply(c.inverse, cross(r, e2)), r))
-    g3 = plus(scaled(1.0 / c.mass, e3), cross(apply(c.inverse, plus(cross(r, e3), wrung)), r))
+    g1 = plus(scaled(1.0 / mass, e1), cross(apply(inverse, cross(r, e1)), r))
+    g2 = plus(scaled(1.0 / mass, e2), cross(apply(inverse, cross(r, e2)), r))
+    g3 = plus(scaled(1.0 / mass, e3), cross(apply(inverse, plus(cross(r, e3), wrung)), r))
     return ((dot(e1, g1), dot(e1, g2), dot(e1, g3)), (dot(e1, g2), dot(e2, g2), dot(e2, g3)),
             (dot(e3, g1), dot(e3, g2), dot(e3, g3)))
 
 
 @inlined
-def spinning(c, axes, r, torque, wrung):
+def spinning(inverse, axes, r, torque, wrung):
     """Return arguments of `patch_system`: how forces and couples about the normal spin a body.
 
-    `torque` is without that of the contact, body axes.
+    `inverse` and `wrung` are those of `response`; `torque` is without that of the contact, body
+    axes.
     """
     e1, e2, e3 = axes
-    along = apply(c.inverse, e3)
+    along = apply(inverse, e3)
     turned = (dot(along, cross(r, e1)), dot(along, cross(r, e2)),
               dot(along, plus(cross(r, e3), wrung)))
     return turned, apply(axes, cross(along, r)), (dot(along, torque), dot(along, e3))

@@ -20,7 +20,7 @@ class RollingFriction(Effect):
     With s' the velocity of the point of contact over the surface of the body, the force
     C N + c |s'| acts against s' (N the normal force, c in N s/m). On a sphere of radius R this is
     the couple R (C N + c R |omega_t|) against the rolling, on a disk the friction of its contour
-    (R. Leine, Arch. Appl. Mech. 79 (2009) 1063).
+    (R. Leine, Arch. Appl. Mech. 79 (2009) 1063). At s' = 0 dry friction holds with up to C N.
     """
 
     dry: float

@@ -64,7 +64,7 @@ def test_the_response_is_how_a_force_accelerates_the_point(seed):
     """G f = f/m + (I^-1 (r x f)) x r, along the axes of the plane; with N goes a couple."""
     c, rows = parameters('ellipsoid'), axes(seed)
     r, wrung = lever(c, rows[2]), (0.01, -0.02, 0.03)
-    G = np.array(response(c, rows, r, wrung))
+    G = np.array(response(c.mass, c.inverse, rows, r, wrung))
     E, inverse = np.array(rows), np.linalg.inv(np.array(c.inertia))
     for k in range(3):
         torque = np.cross(r, E[k]) + (np.array(wrung) if k == 2 else 0.0)
