@@ -57,9 +57,18 @@ if ! right_version "$folder/bin/python"; then
 fi
 
 echo "Setting up $folder with $("$folder/bin/python" -V) from $pins (the first time some 500 MB, about a minute) ..."
-"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-compile --no-deps -r "$pins" ||
-    fail "pip could not install $pins into $folder (its message is above); what is there stays, try again"
-# as pip would, on all cores, and without the tests of other packages; their templates are no Python
-"$folder/bin/python" -m compileall -qq -j 0 -x '/tests?/' "$folder"/lib/python3.*/site-packages || :
+# two at a time: pip unpacks one package after the other
+install() {
+    "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-compile --no-deps -r "$1"
+}
+sed -n 'p;n' "$pins" > "$folder/pins.odd"
+sed -n 'n;p' "$pins" > "$folder/pins.even"
+install "$folder/pins.odd" & odd=$!
+good=yes
+install "$folder/pins.even" || good=no
+wait $odd || good=no
+[ $good = yes ] || fail "pip could not install $pins into $folder (its message is above); what is there stays, try again"
+# as pip would, on all cores, without what hardly runs; templates of other packages are no Python
+"$folder/bin/python" -m compileall -qq -j 0 -x '/(tests?|pip|setuptools)/' "$folder"/lib/python3.*/site-packages || :
 
 (cd "$(dirname "$0")/.." && pwd) > "$(echo "$folder"/lib/python3.*/site-packages)/this_tree.pth"

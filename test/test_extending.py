@@ -15,6 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.analysis.lines import predicted_lines
 from rigid_body_sim.choice.choose import methods_for
@@ -92,6 +93,7 @@ def test_the_page_has_every_kind_of_file():
         'compass', 'paddle', 'ball_joint', 'slowing_sphere', 'ralston3', 'compass_needle'}
 
 
+@IN_SOAK
 def test_an_effect_of_another_package_passes_the_check_compiled(package):
     energy, momentum = check_effect(of('compass').Compass((0.0, 0.1, 0.3), (0.0, 0.2, 1.0)))
     assert abs(energy) < 1e-14 and abs(momentum) < 1e-13    # measured 2e-16, 4e-15

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `analyze` on recordings whose content is known, of ours and of strangers."""
 
+import functools
 import json
 import os
 import shutil
@@ -25,8 +26,15 @@ LATE = np.random.default_rng(2).integers(30_000, 90_000, 3001)
 
 @pytest.fixture(scope='module')
 def eventful(tmp_path_factory):
-    """Return the path of 3 s with an impulse, a wrench held 0.5 s, a reset, a gap, lateness."""
-    path = tmp_path_factory.mktemp('analyze') / 'eventful'
+    """Return what returns the path of 3 s with all that can befall a run.
+
+    There are an impulse, a wrench held for 0.5 s, a reset, a gap and lateness. It is made when it
+    is called, for a test without numba has its fixtures in two processes.
+    """
+    return functools.cache(lambda: _eventful(tmp_path_factory.mktemp('analyze') / 'eventful'))
+
+
+def _eventful(path):
     acts = {500: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')],
             1000: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), 'body')],
             1500: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 'body')],
@@ -36,7 +44,7 @@ def eventful(tmp_path_factory):
 
 
 def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
-    assert main([str(eventful), '--output', str(tmp_path)]) == 0
+    assert main([str(eventful()), '--output', str(tmp_path)]) == 0
     printed = capsys.readouterr().out.splitlines()
     text = (tmp_path / 'report.txt').read_text().splitlines()
     assert printed[:len(text)] == text
@@ -65,7 +73,7 @@ def test_the_report_says_what_was_done(eventful, tmp_path, capsys):
 
 
 def test_the_figure_shows_what_was_recorded(eventful):
-    recording = Recording(eventful)
+    recording = Recording(eventful())
     [one] = measure(recording, sources(recording))
     figure = plots.stack(panels.overview(one), 'title', one.source)
     omega, energy, momentum, late = figure.axes
@@ -183,7 +191,7 @@ def test_bad_input_is_one_line(tmp_path, capsys):
 
 def test_a_folder_of_recordings_stands_for_the_newest(eventful, tmp_path, capsys):
     for number, name in enumerate(('b', 'a')):
-        shutil.copytree(eventful, tmp_path / name)
+        shutil.copytree(eventful(), tmp_path / name)
         for file in (tmp_path / name).iterdir():
             os.utime(file, (number, number))
     assert main([str(tmp_path)]) == 0

@@ -158,6 +158,7 @@ def test_a_recording_written_again_by_others_is_reproduced(commanded, tmp_path, 
     assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
 
 
+@pytest.mark.without_numba
 def test_another_method_shows_what_it_would_have_changed(commanded, tmp_path, capsys):
     status, found = outcome(
         capsys, commanded, '--integrator', 'dop8', '--accuracy', '1e-6', '--output', tmp_path)

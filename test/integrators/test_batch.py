@@ -6,6 +6,7 @@ import pathlib
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 from data import smooth_cases
 from near import near
 from scipy.spatial.transform import Rotation
@@ -78,7 +79,8 @@ DAMPED = {
               'initial: {angle: 0.5, rate: 2.0}\n')}
 
 
-@pytest.mark.parametrize('name', DAMPED)
+@pytest.mark.parametrize('name', [
+    pytest.param(name, marks=IN_SOAK if name != 'top' else ()) for name in DAMPED])
 def test_bodies_with_drag_and_on_a_hinge_go_side_by_side(name):
     """Eleven bodies against one by one, positions and the times between included."""
     scene = parse_scene(f'scene: damped\n{DAMPED[name]}')

@@ -193,6 +193,7 @@ def test_a_ball_at_rest_on_a_slope_begins_to_slide_and_rolls_if_friction_lets_it
     assert np.linalg.norm(state.angular_velocity) == pytest.approx(max(turned, 0.0), rel=1e-9)
 
 
+@pytest.mark.without_numba
 def test_the_reactions_of_a_ball_that_begins_to_roll_have_its_friction():
     """A couple of 9e-3 N m against C m g R = 4.9e-3 N m turns m R^2 + I."""
     sim = ball(0.9, 0.01, '{}', effects=', torque: {value: [0, 9.0e-3, 0]}')
@@ -214,6 +215,7 @@ def test_an_ellipsoid_that_begins_to_roll_grows_along_the_friction_that_is_again
     assert later.angular_velocity / 1e-4 == pytest.approx(turns, rel=1e-6)
 
 
+@pytest.mark.without_numba
 def test_a_ball_that_is_lifted_off_is_not_held():
     sim = ball(0.3, 0.1, '{}', effects=', force: {value: [0, 0, 20.0], frame: world}')
     assert sim.states([0.1])[0].position[2] == pytest.approx(RADIUS + 0.005 * (20.0 - G))

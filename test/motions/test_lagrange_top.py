@@ -51,6 +51,7 @@ def invariants(body, states):
             np.array([kinetic.max() + abs(k), size, size]))
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('name', 'k'), MOMENTS)
 def test_states_agree_with_34_digits(name, k):
     case = CASES[name]

@@ -41,6 +41,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 EPSILON = np.finfo(float).eps
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', RECORDS)
 def test_reference(name):
     """No error grows with time: the rates of the phases carry more digits than a double."""

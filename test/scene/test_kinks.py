@@ -66,7 +66,7 @@ def test_a_well_with_a_sharp_bottom_has_the_period_of_its_parabolas():
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('method', 'order', 'steps'), [
-    ('rk4', 4, (0.04, 0.02)), ('dop8', 8, (0.2, 0.1))])
+    pytest.param('rk4', 4, (0.04, 0.02), marks=IN_SOAK), ('dop8', 8, (0.2, 0.1))])
 def test_the_order_survives(method, order, steps):
     scene = scene_of("[potential: {energy: '2*abs(angle) + 5*angle^4'}, "
                      "torque: {value: [0, 0, '-0.1*wz*abs(wz) + max(sin(t), 0.2)']}]",
@@ -97,7 +97,7 @@ WORDS = {
                                   "'0.3*sign(qz)']}"}
 
 
-LIKE_OTHERS = 'min', 'a comparison', 'pieces of time'
+LIKE_OTHERS = 'min', 'max', 'where', 'a comparison', 'pieces of time'
 
 
 @pytest.mark.without_numba
@@ -127,7 +127,7 @@ def period(power):
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('power', 'method', 'accuracies'), [
-    (0.5, 'dop8', [1e-9]), (1.5, 'dop8', [1e-5, 1e-11]),
+    pytest.param(0.5, 'dop8', [1e-9], marks=IN_SOAK), (1.5, 'dop8', [1e-5, 1e-11]),
     pytest.param(1.5, 'gauss16', [1e-8], marks=IN_SOAK)])
 def test_a_power_that_is_not_whole_has_its_kink_where_its_base_is_zero(power, method, accuracies):
     """A step looks beyond the kink in which it ends, where |x|^1.5 as it stands is not real."""
@@ -163,6 +163,7 @@ def test_a_root_that_is_not_real_on_its_own_side_is_still_refused():
         followed(scene, 1.0)
 
 
+@IN_SOAK
 @pytest.mark.without_numba
 def test_after_such_a_kink_fixed_steps_have_the_order_of_the_power():
     """The step behind the kink errs by h^(p + 2): what it takes is not smooth there."""
@@ -270,7 +271,8 @@ def test_a_torsion_spring_goes_on_from_the_other_end_beyond_a_turn():
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize(('method', 'order'), [('rk4', 4), ('dop8', 8)])
+@pytest.mark.parametrize(('method', 'order'), [
+    pytest.param('rk4', 4, marks=IN_SOAK), ('dop8', 8)])
 def test_the_order_survives_where_the_angle_jumps(method, order):
     scene = scene_of("[torque: {value: [0, 0, '-2*angle - 0.3*angle*cos(angle)']}]", WOUND, HINGE)
     solver, exact = started(scene, 1.3, 'gauss16', {'accuracy': 1e-12})

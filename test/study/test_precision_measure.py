@@ -111,6 +111,7 @@ def test_what_fails_in_a_later_run_is_recorded_and_ends_nothing(racket):
     assert found['refused'] == {'weak': 'at 0.25, in a later run: a singularity'}
 
 
+@pytest.mark.without_numba
 def test_exact_is_at_the_floor_of_the_racket(racket):
     lines = [one for one in runner.ours(*racket) if one.control == 'none']
     found = measure.measure(*racket, lines, 1.0, 5)
@@ -167,6 +168,7 @@ def test_a_peer_that_is_not_installed_is_named(name, package, monkeypatch):
     assert name not in {module.NAME for module in peers.installed()}
 
 
+@pytest.mark.without_numba
 def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(runner, 'methods_for', lambda scene: ['exact'])
     monkeypatch.chdir(tmp_path)

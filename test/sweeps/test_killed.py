@@ -12,6 +12,7 @@ import time
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 pytest.importorskip('xarray')
 zarr = pytest.importorskip('zarr', minversion='3.1')
@@ -96,6 +97,7 @@ def finish_and_compare(folder, blocks_in_flight, starts):
     assert not list(store.rglob('*.partial'))
 
 
+@IN_SOAK
 @pytest.mark.timeout(300)
 def test_killed_worker_client_and_scheduler_of_dask(folder):
     pytest.importorskip('distributed')

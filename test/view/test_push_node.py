@@ -81,7 +81,8 @@ def pulled(tab, scene, wanted):
         time.sleep(2.0)
 
 
-@pytest.mark.parametrize('scene', ['still_ball', pytest.param('rolling_disk', marks=IN_SOAK)])
+@IN_SOAK
+@pytest.mark.parametrize('scene', ['still_ball', 'rolling_disk'])
 def test_a_push_through_a_node_is_recorded_and_runs_again_to_the_same_bits(
         scene, ros_domain, tmp_path, other_chromium, open_tab, address_of):
     """One page drags and lets go, a browser is killed while it drags, and then the page itself."""

@@ -28,6 +28,7 @@ CASES = {
     'hinge': ('{hinge: {axis: [1, 2, 2], through: [0.1, 0, 0.2]}}', f'{START}, rate: 3')}
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', CASES)
 def test_arrows_are_the_slopes_of_momentum(name):
     """Force = m dv/dt of the centre of mass, torque = dL/dt, by differences of the states."""
