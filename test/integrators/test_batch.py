@@ -6,10 +6,10 @@ import pathlib
 
 import numpy as np
 import pytest
-from soak import IN_SOAK
 from data import smooth_cases
 from near import near
 from scipy.spatial.transform import Rotation
+from soak import IN_SOAK
 
 from rigid_body_sim import BadInput, NotConverged, ensemble
 from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
