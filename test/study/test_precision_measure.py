@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 
+from rigid_body_sim import integrators
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.study.precision import (
@@ -126,7 +127,9 @@ def test_exact_is_at_the_floor_of_the_racket(racket):
 def test_methods_come_from_the_table(racket, monkeypatch):
     names = {one.name for one in runner.ours(*racket)}
     assert {'exact', 'dop8', 'rk4'} <= names
-    monkeypatch.delitem(runner.METHODS, 'rk4')
+    # the table of all tests keeps its order
+    monkeypatch.setattr(integrators, 'METHODS', {
+        name: method for name, method in integrators.METHODS.items() if name != 'rk4'})
     assert 'rk4' not in {one.name for one in runner.ours(*racket)}
 
 
