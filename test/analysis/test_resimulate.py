@@ -216,6 +216,7 @@ def test_scipys_methods_promise_their_bits_on_the_same_machine_only(tmp_path, mo
                                                       'differ: numpy']
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('scene', ['skew_top', 'heavy_top'])
 def test_recordings_of_version_0_1_0_are_reproduced_within_the_tolerance_they_state(
         scene, tmp_path, capsys):

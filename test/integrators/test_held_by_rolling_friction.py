@@ -6,6 +6,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.integrators.equations.contact_views import ROLLING, ROW, SLIDING, UNKNOWNS
 from rigid_body_sim.integrators.marching.contact import MODE, SWIFT, WAY, OnPlane
@@ -57,6 +58,7 @@ def fall(end):
         return float(mpmath.quad(slowness, [0, mpmath.sqrt(start - mpmath.mpf(end))]))
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('dry', [1e-5, 0.002, 0.3])
 def test_a_hoop_falls_straight_when_its_quadrature_says(dry):
     """It turns about the tangent at its lowest point: no friction acts, and no energy is lost.
@@ -79,6 +81,7 @@ def test_a_hoop_falls_straight_when_its_quadrature_says(dry):
     assert pytest.approx(M * (G - R * (falls * math.cos(tilt) + square * math.sin(tilt)))) == N
 
 
+@pytest.mark.without_numba
 def test_friction_lets_go_where_it_could_hold_no_more_and_every_event_is_in_the_ledger():
     sim = Simulation(scene(0.05, 2.0), 'dop8', 1e-13)
     held, rolls = sim.states([0.04, 0.2])
@@ -93,6 +96,7 @@ def test_friction_lets_go_where_it_could_hold_no_more_and_every_event_is_in_the_
     assert ledger['momentum_residual'] < 2e-13
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('time', [0.02, 0.2])
 @pytest.mark.parametrize('mu', ['.inf', '0.05'])
 def test_reactions_are_those_under_which_it_moves(time, mu):
@@ -145,6 +149,7 @@ def ball(mu, dry, initial, table='table', effects=''):
         f'initial: {initial}\n'), 'dop8', 1e-13)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('mu', ['.inf', '0.3'])
 def test_a_held_ball_spins_on_about_the_normal(mu):
     """Rounding turned the friction of a rolling that was none, in steps without end."""
@@ -155,6 +160,7 @@ def test_a_held_ball_spins_on_about_the_normal(mu):
     assert last.position == pytest.approx(first.position, abs=1e-12)
 
 
+@pytest.mark.without_numba
 def test_a_held_ball_slides_without_rolling_and_rests_when_it_says():
     sim = ball(0.1, 0.2, '{velocity: [0.5, 0, 0]}')
     assert not sim.states([0.3])[0].angular_velocity.any()
@@ -167,6 +173,7 @@ def test_a_held_ball_slides_without_rolling_and_rests_when_it_says():
     assert ledger['dissipated_rolling'] == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.without_numba
 def test_a_ball_that_slides_back_spins_through_zero_under_the_friction_of_its_rolling():
     """I w' = m g R (mu + C) against the backspin, then m g R (mu - C) until it rolls."""
     mu, C, v, back = 0.3, 0.1, 2.0, 10.0
@@ -182,6 +189,7 @@ def test_a_ball_that_slides_back_spins_through_zero_under_the_friction_of_its_ro
     assert abs(sim.ledger()['energy_residual']) < 1e-13
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('dry', [0.1, 0.3])
 def test_a_ball_at_rest_on_a_slope_begins_to_slide_and_rolls_if_friction_lets_it(dry):
     """The slope is 3/4, mu 1/5: it slides held where C > mu, and else rolls against C N."""
@@ -203,6 +211,7 @@ def test_the_reactions_of_a_ball_that_begins_to_roll_have_its_friction():
     assert sim.states([0.5])[0].angular_velocity[1] == pytest.approx(0.5 * gained, rel=1e-12)
 
 
+@pytest.mark.without_numba
 def test_an_ellipsoid_that_begins_to_roll_grows_along_the_friction_that_is_against_it():
     """From rest omega' is constant at first, and the balance of forces has the same."""
     sim = Simulation(parse_scene(
@@ -221,6 +230,7 @@ def test_a_ball_that_is_lifted_off_is_not_held():
     assert sim.states([0.1])[0].position[2] == pytest.approx(RADIUS + 0.005 * (20.0 - G))
 
 
+@pytest.mark.without_numba
 def test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off():
     sim = ball(0.3, 0.1, '{velocity: [0.2, 0, 0]}')
     sim.advance(400)
@@ -242,6 +252,7 @@ LET_GO, SPINS = '{euler_zyz: [0.3, 1.1, 0.2]}', \
 TILTED, PATCH = '{euler_zyz: [0, 1.1, 0]}', ', spinning_friction: {radius: 0.003}'
 
 
+@IN_SOAK
 @pytest.mark.parametrize(('body', 'mu', 'dry', 'effects', 'initial', 'time', 'last'), [
     (HOOP, '.inf', 0.05, '', SPINS, 2.0, 'rest'), (DISK, '0.3', 0.002, '', SPINS, 1.0, 'rest'),
     (TORUS, '.inf', 0.05, '', TILTED, 1.0, 'rest'), (ROCKER, '0.0', 0.05, '', TILTED, 2.5, None),
@@ -264,6 +275,7 @@ def test_what_is_let_go_or_spins_is_in_the_ledger_to_its_end(body, mu, dry, effe
     assert 'rest' not in names if last is None else names[-1] == last
 
 
+@pytest.mark.without_numba
 def test_a_hoop_that_rolls_straight_stops_where_it_says_and_stands():
     """It rolls upright: v' = -C g/2, for friction takes C N v of the energy m v^2."""
     v, C = 0.5, 0.05

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 from scene import language_cases
+from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import runnable
@@ -315,6 +316,7 @@ def test_a_rotor_beside_what_only_an_even_kick_solves_runs_by_few_methods():
             if 'split' in name] == ['split2']
 
 
+@IN_SOAK
 def test_compiled_it_has_the_same_bits(found):
     assert language_cases.run('four at once')['state'] == found['four at once']['state']
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -115,6 +116,7 @@ def test_a_driven_spin_turns_omega_to_and_fro():
     assert abs(found['relative_difference']) < 1e-11
 
 
+@IN_SOAK
 def test_heat_ends_at_the_least_energy():
     early, late = (compared('major_axis_relaxation', [], seconds) for seconds in (20.0, 200.0))
     assert set(early) == {'quantity', 'predicted_energy'}
