@@ -290,3 +290,28 @@ def test_a_hoop_that_rolls_straight_stops_where_it_says_and_stands():
     # the fall grows out of rounding: 7e-11 rad/s after 2 s; measured along the axis: 7e-25
     assert np.abs(end.angular_velocity).max() < 1e-9
     assert end.angular_velocity[2] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('body', 'table', 'laws', 'initial', 'let_go'), [
+    ('{mass: 0.01, shape: {ellipsoid: {semi_axes: [0.02, 0.014, 0.01]}}}',
+     '{table: {normal: [0, 0.6, 0.8]}}', '0.6}, rolling_friction: {dry: 0.5}',
+     '{euler_zyz: [1.818, 1.178, 2.147]}', 0.269919979704),
+    ('{mass: 0.3, inertia: [3.6e-5, 4.2e-5, 4.8e-5], center_of_mass: [0.003, 0.0051, -0.0057], '
+     'surface: {sphere: {radius: 0.02}}}', '{table: {normal: [0.1, -0.05, 1.0]}}',
+     '0.05}, rolling_friction: {dry: 0.01, viscous: 0.001}', '{euler_zyz: [0, 0.001, 0]}',
+     1.720821703158)])
+def test_a_body_that_slides_held_begins_to_roll(body, table, laws, initial, let_go):
+    """The force that holds it reaches C N while it slides: s' grows from 0 with no rate.
+
+    The direction of so slow a rolling relaxes at once, in steps without end.
+    """
+    scene = parse_scene(f'scene: begins\nbody: {body}\nconstraint: {table}\neffects: [gravity: '
+                        f'{{g: {G}}}, sliding_friction: {{mu: {laws}]\ninitial: {initial}\n')
+    times, found = [let_go - 1e-6, let_go + 0.02], []
+    for accuracy in (1e-6, 1e-12):
+        sim = Simulation(scene, 'dop8', accuracy, horizon=let_go + 0.02)
+        found.append(sim.states(times).vector)
+        sim.advance(math.floor(1000.0 * times[1]))
+        assert abs(sim.ledger()['energy_residual']) < accuracy
+    assert found[0] == pytest.approx(found[1], abs=1e-6)

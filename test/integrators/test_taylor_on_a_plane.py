@@ -232,3 +232,33 @@ def test_auto_leaves_taylor_to_those_who_name_it():
     assert runnable(scene) == ['dop8', 'taylor']
     assert not measured.on_such(scene, 'taylor')
     assert measured.on_such(scene, 'dop8')
+
+
+@IN_PYTHON
+@pytest.mark.parametrize(('body', 'effects', 'initial', 'table'), [
+    ('disk', 'sliding_friction: {mu: 0.6}', '{euler_zyz: [0, 0.05, 0]}', 'table'),
+    ('{mass: 1.0, shape: {torus: {radius: 0.05, tube: 0.01}}}', IDEAL, '{}',
+     '{table: {normal: [0.1, -0.05, 1.0]}}')])
+def test_a_ring_that_falls_flat_rests(body, effects, initial, table):
+    """A step of its series went through the plane, with energy from nowhere."""
+    scene, found = scene_of(body, effects, initial, table), []
+    for method in ('dop8', 'taylor'):
+        sim = Simulation(scene, method, 1e-9, horizon=1.0)
+        found.append(sim.at_event('rest', within=1.0).time)
+        sim.advance(200)
+        assert abs(sim.ledger()['energy_residual']) < 1e-10
+    assert found[1] == pytest.approx(found[0], abs=1e-11)
+
+
+@IN_PYTHON
+def test_a_ring_that_lies_flat_is_struck():
+    """Its edge lifts: the series of a ring that is almost flat has a pole close by."""
+    body = '{mass: 1.0, shape: {torus: {radius: 0.3, tube: 0.06}}}'
+    scene, found = scene_of(body, initial='{}'), []
+    for method in ('dop8', 'taylor'):
+        sim = Simulation(scene, method, 1e-9, horizon=1.0)
+        sim.advance(22)
+        sim.impulse(torque=[0.001, 0.002, 0.0])
+        sim.advance(5)
+        found.append(sim.vector)
+    assert found[1] == pytest.approx(found[0], abs=1e-9)

@@ -59,10 +59,12 @@ from rigid_body_sim.mechanics.contact.forces import (
     wrung_by,
 )
 from rigid_body_sim.mechanics.contact.holding import (
+    along_way,
     gripped,
     gripping,
     holds_still,
     rolling_couples,
+    way_at,
 )
 from rigid_body_sim.mechanics.contact.laws import (
     departure,
@@ -188,9 +190,9 @@ def _posture(c, q, omega):
 
 
 @compiled_inline
-def _couples(c, at):
+def _couples(c, at, time):
     """Return the couples of rolling friction, as touch.couples does."""
-    return rolling_couples(c, at) if HOLDS else couples(c, at.axes[2], at.moved)
+    return rolling_couples(c, at, way_at(c, time)) if HOLDS else couples(c, at.axes[2], at.moved)
 
 
 @compiled_inline
@@ -222,7 +224,7 @@ def _ahead(p, c, now, at, f, touch):
     omega = plus(at.omega, scaled(short, grown))
     later = _posture(c, q, omega)
     acts = _applied(p, c, now, later, omega, scaled(-1.0, apply(later.axes, later.carried)), short)
-    viscous, wrung, _, _ = _couples(c, later)
+    viscous, wrung, _, _ = _couples(c, later, now.time + short)
     torque = minus(plus(acts.couple, viscous), cross(omega, apply(c.inertia, omega)))
     return later, Push(acts.force, torque, viscous, wrung)
 
@@ -352,11 +354,14 @@ def _creeping(p, c, now, at, push, v, speed, film):
 
 
 @compiled_inline
-def _motion(c, at, speed):
-    """Return how far a body in contact is from lying flat, or from standing still (watched)."""
+def _motion(c, at, speed, along):
+    """Return how far a body in contact is from lying flat, or from standing still (watched).
+
+    A rolling that has just begun stands still where it goes back.
+    """
     flat = above_flat(c, at.axes[2])
     if HOLDS and c.way != HELD and not is_disk(c):
-        return min(flat, speed - SLOW * c.swift)
+        return min(flat, along + SLOW * c.swift if c.onset > 0.0 else speed - SLOW * c.swift)
     return flat
 
 
@@ -390,6 +395,8 @@ def _gripped(c, at, torque, grown, N):
         return couple, c.rolling * N - hypot(*force)
     if HOLDS and is_disk(c):
         return ZERO, c.way[0] * dot(tangent(at.axes[2]), at.moved)
+    if HOLDS and c.onset > 0.0:
+        return ZERO, c.onset - math.sqrt(dot(at.moved, at.moved))
     return ZERO, 1.0
 
 
@@ -409,12 +416,12 @@ def rate(p, y, k):
     v = _centre(c, now, at)
     F, T, work, heat, inner = _applied(p, c, now, at, at.omega, v, 0.0)
     torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
-    gap, motion, rolling = 0.0, 1.0, 1.0
+    gap, motion, rolling, along = 0.0, 1.0, 1.0, 0.0
     if c.mode == FLIGHT:
         contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))
         gap = v[2] + dot(e3, at.carried)
     else:
-        viscous, wrung, speed, film = _couples(c, at)
+        viscous, wrung, speed, film = _couples(c, at, now.time)
         push = Push(F, plus(torque, viscous), viscous, wrung)
         if c.mode == ROLLING:
             contact = _rolling(c, at, push, v, speed, film)
@@ -422,7 +429,8 @@ def rate(p, y, k):
             contact = _creeping(p, c, now, at, push, v, speed, film)
         else:
             contact = _slipping(c, now, at, push, v, speed, film)
-        motion = _motion(c, at, speed)
+        along = along_way(c, at, way_at(c, now.time), speed) if HOLDS else speed
+        motion = _motion(c, at, speed, along)
         torque = plus(contact.push.torque,
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
@@ -434,7 +442,7 @@ def rate(p, y, k):
     turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch),
                                minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
-              + c.rolling * contact.f[2] * contact.speed)
+              + c.rolling * contact.f[2] * along)
     entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,
                         heat, work, turn, contact.spun)
     x, yy, z, w = multiply(*at.q, *at.omega, 0.0)

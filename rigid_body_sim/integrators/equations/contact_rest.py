@@ -45,11 +45,17 @@ def spins(p, y):
 
 
 @compiled
+def lies_low(p, y):
+    """Return whether a body is a ring that is almost flat."""
+    c, now = load_contact(p), load_unknowns(y)
+    return c.kind == TORUS and inclination(matrix(*now.q)[2]) < LOW
+
+
+@compiled
 def jams(p, y):
     """Return whether a ring lies so low that rolling friction leaves it no motion."""
-    c, now = load_contact(p), load_unknowns(y)
-    return (c.kind == TORUS and c.rolling + c.rolling_viscous + c.film > 0.0
-            and inclination(matrix(*now.q)[2]) < LOW)
+    c = load_contact(p)
+    return c.rolling + c.rolling_viscous + c.film > 0.0 and lies_low(p, y)
 
 
 @compiled

@@ -25,6 +25,7 @@ from rigid_body_sim.integrators.equations.contact_rest import (
     halt,
     jams,
     lies,
+    lies_low,
     pause,
     rolls,
     spins,
@@ -49,6 +50,7 @@ from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
+from rigid_body_sim.numerics.rotations import normalised
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.scene.state import TIME as STATE_TIME
@@ -56,6 +58,7 @@ from rigid_body_sim.scene.state import TIME as STATE_TIME
 ROUNDING = 2.0 ** -47    # of gap, slip and normal velocity, relative to lengths and speeds
 CHATTER = 1e-13          # an impact rebounds no more below that share of the speeds
 HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
+SHORT = 1e-6             # time of a difference, over that in which a body moves by its length
 CREEPS = 1e-4            # share of the speeds, times the cube root of the accuracy
 LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
@@ -66,8 +69,10 @@ MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
                                           'rolling', 'restitution', 'mass'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 WAY = CONTACT.part('way').places
+ONSET, TURN, SINCE = (CONTACT.part(name).first for name in ('onset', 'turn', 'since'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
-OMEGA, U = UNKNOWNS.part('omega').places, UNKNOWNS.part('u').places
+Q, OMEGA, U = (UNKNOWNS.part(name).places for name in ('q', 'omega', 'u'))
+PACE = ROW.part('pace').first
 VELOCITY, LEVER = ROW.part('velocity').places, ROW.part('lever').places
 NORMAL, GRIP, FIRMNESS, MOTION, ROLLS = (WATCHED.part(name).first for name in (
     'normal', 'grip', 'firmness', 'motion', 'rolling'))
@@ -141,8 +146,11 @@ class OnPlane:
             self._held[k] = np.array([*self._fixed, *values])
         return self._held[k].copy()
 
-    def kernels_of(self, mode):
-        """Return the module that marches through a phase (contact_march.py)."""
+    def kernels_of(self, mode, low=False):
+        """Return the module that marches through a phase (contact_march.py).
+
+        `low` says that the body is a ring that is almost flat.
+        """
         return self.kernels
 
     def at(self, stepped):
@@ -232,7 +240,7 @@ class PlaneCourse:
         A rolling that ends does so at a time rounded to doubles: `stopped` says that what is left
         of it is rounding, however large.
         """
-        p[WAY] = 1.0, 0.0
+        p[WAY], p[ONSET], p[TURN] = (1.0, 0.0), 0.0, 0.0
         if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
             return
         p[SWIFT] = swift = self._speed(y)
@@ -245,9 +253,29 @@ class PlaneCourse:
                 return
             speed, across = withheld(p, y, row)
             if not disk:
-                p[WAY] = way_out(lambda x, z: self._growth(p, y, x, z), speed, across)
+                self._begin_to_roll(p, y, speed, across)
         if disk:
             p[WAY] = math.copysign(1.0, speed), 0.0
+
+    def _begin_to_roll(self, p, y, x, z):
+        """Set the way in which a body begins to roll that a force (x, z) would hold.
+
+        How it turns is a finite difference.
+        """
+        p[ONSET], p[SINCE] = self._creep * p[SWIFT], y[TIME]
+
+        def way_from(y, x, z):
+            return way_out(lambda x, z: self._growth(p, y, x, z), x, z)
+
+        x, z = way = way_from(y, x, z)
+        row = np.empty(ROW.size)
+        p[WAY] = way
+        self._bound.rates.rate(p, y, row)
+        short = SHORT * self._length / p[SWIFT]
+        later = y + short / row[PACE] * row[:SIZE]
+        later[Q] = normalised(*later[Q].tolist())
+        a, b = way_from(later, x, z)
+        p[WAY], p[TURN] = way, (x * b - z * a) / short
 
     def _growth(self, p, y, x, z):
         """Return how a rolling grows from 0 under the friction against a direction."""
@@ -366,6 +394,10 @@ class PlaneCourse:
             return
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
+        if why == contact_march.FAILED and lies_low(p, y) and (
+                phase.kernels is not self._bound.kernels):
+            self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
+            return
         if why == contact_march.FAILED:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
                                f't = {time!r} s')
@@ -388,7 +420,7 @@ class PlaneCourse:
         elif why == contact_march.STOPPED:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
-            self._open(int(p[MODE]), p, y, stopped=True)
+            self._open(int(p[MODE]), p, y, stopped=not p[ONSET] > 0.0)
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
             if self._phases[-1].p[MODE] == RESTING:
@@ -467,12 +499,15 @@ class _Phase:
     ----------
     begin : float
         Time since the start of the course, s.
+    kernels : module
+        contact_march.py as it is bound.
     front : array
         The last point of the march, and where the phase ended.
     """
 
     def __init__(self, bound, p, y, tolerance, work, length):
-        self._kernels, self.p, self._work = bound.kernels_of(int(p[MODE])), p, work
+        self.kernels = bound.kernels_of(int(p[MODE]), lies_low(p, y))
+        self.p, self._work = p, work
         self.begin = float(y[TIME])
         self._meta = np.zeros(contact_march.META)
         self._meta[contact_march.TOLERANCE] = tolerance
@@ -483,7 +518,7 @@ class _Phase:
         self._store, self._sizes = np.empty((8, contact_march.POINT)), np.empty(64)
         self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
         bound.rates.rate(p, y, work[0])
-        self._kernels.begin(p, work[0], self.front, self._meta, y)
+        self.kernels.begin(p, work[0], self.front, self._meta, y)
 
     @property
     def status(self):
@@ -520,8 +555,8 @@ class _Phase:
             while not arrived() and meta[contact_march.STEPS] < end:
                 if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
                     self._store = np.concatenate((self._store, np.empty_like(self._store)))
-                self._kernels.march(self.p, self._work, self._store, self._sizes[:end],
-                                          self.front, meta, elapsed)
+                self.kernels.march(self.p, self._work, self._store, self._sizes[:end],
+                                   self.front, meta, elapsed)
             return arrived()
 
         before, steps = work.done, int(meta[contact_march.STEPS])
@@ -533,9 +568,8 @@ class _Phase:
 
     def write(self, start, begin, times, order, out):
         """Fill rows of `out` with states at times that the march has passed (contact_march.py)."""
-        self._kernels.states(self.p, self._work, self._store, self._sizes, self.front,
-                                   self._meta, self._cursor, self._y, start, begin, times, order,
-                                   out)
+        self.kernels.states(self.p, self._work, self._store, self._sizes, self.front, self._meta,
+                            self._cursor, self._y, start, begin, times, order, out)
 
 
 def _held(p):

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A convex body on a plane by Taylor series, phase by phase; contact.py has the events.
 
-A slip that has just begun, whose direction is a finite difference, and rest are those of dop8.
+A slip that has just begun, whose direction is a finite difference, a ring that is almost flat, and
+rest are those of dop8.
 """
 
 import math
@@ -50,9 +51,12 @@ class OnPlaneBySeries(OnPlane):
         """Return the parameters that hold just after a time (s); the last three are the weight."""
         return np.concatenate((super().parameters(time), self._weight))
 
-    def kernels_of(self, mode):
-        """Return the module that marches through a phase (contact_march.py)."""
-        if mode not in SERIES_OF:
+    def kernels_of(self, mode, low=False):
+        """Return the module that marches through a phase (contact_march.py).
+
+        `low` says that the body is a ring that is almost flat.
+        """
+        if mode not in SERIES_OF or (low and mode != FLIGHT):
             return self.kernels
         phase = SERIES_OF[mode]
         if phase not in self._marches:

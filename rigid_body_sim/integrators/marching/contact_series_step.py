@@ -50,7 +50,7 @@ def step_from(p, w, y, lost, h):
     Returns
     -------
     float
-        0 if the numbers stayed finite, else infinite.
+        0, or infinite: numbers did not stay finite, or a ring would turn through the plane.
     """
     key, S = w[KEY], w[SERIES:LEFT]
     known = key[SIZE] == p[MODE] + 1.0
@@ -75,14 +75,25 @@ def step_from(p, w, y, lost, h):
         if not abs(s) < math.inf:
             bad = math.inf
     normalise(w)
-    _sample(p, w, y, S, h)
+    if not _sample(p, w, y, S, h) >= 0.0:
+        bad = math.inf
     return bad
 
 
 @compiled_inline
 def _sample(p, w, y, S, h):
-    """Fill the rows of stages with the watched numbers at equal parts of a step."""
-    mode, mu = p[MODE], p[MU]
+    """Fill the rows of stages with the watched numbers at equal parts of a step.
+
+    Returns
+    -------
+    float
+        The inclination of a ring at the end, rad. It is negative past lying flat: no rate is.
+    """
+    mode, mu, inclined = p[MODE], p[MU], 0.0
+    if p[KIND] == TORUS and mode != FLIGHT:
+        for k in range(ORDER + 1):
+            inclined = h * inclined + S[ORDER - k, INCLINED]
+    ends = inclined
     for i in range(1, STAGES):
         t = h * i / STAGES
         first = FRICTION if mode == ROLLING and mu < 1e300 else NORMAL
@@ -105,6 +116,7 @@ def _sample(p, w, y, S, h):
         for n in range(WATCHED, WATCHED + WATCHES):
             w[i, n] = w[0, n]
         w[i, PRESSING], w[i, GRIPPING], w[i, MOTION] = normal, grip, motion
+    return ends
 
 
 @compiled

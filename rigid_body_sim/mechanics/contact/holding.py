@@ -94,22 +94,41 @@ def against(c, at, couple):
 
 
 @inlined
-def rolling_couples(c, at):
+def way_at(c, time):
+    """Return the direction in which a body begins to roll, at a time of the unknowns, s."""
+    if not c.onset > 0.0:
+        return c.way
+    angle = c.turn * (time - c.since)
+    size = hypot(1.0, angle)
+    return (c.way[0] - angle * c.way[1]) / size, (c.way[1] + angle * c.way[0]) / size
+
+
+@inlined
+def rolling_couples(c, at, way):
     """Return what `couples` (touch.py) does, under dry friction that may hold.
 
-    Friction goes by the way of the phase where s' is too small to have a direction, and for a
-    disk: the sign of its velocity may change within a step.
+    Friction goes by the way of the phase (`way_at`) where s' is too small to have a direction, in
+    a rolling that has just begun, and for a disk: the sign of its velocity may change within a
+    step.
     """
     viscous, wrung, speed, film = couples(c, at.axes[2], at.moved)
     if c.way == HELD:
         return viscous, (0.0, 0.0, 0.0), 0.0, film    # what is left of s' takes no power
-    if is_disk(c) or speed < SLOW * c.swift:
+    if is_disk(c) or c.onset > 0.0 or speed < SLOW * c.swift:
         e1, e2, gamma = at.axes
         along = tangent(gamma)
-        way = scaled(c.way[0], along) if is_disk(c) else plus(scaled(c.way[0], e1),
-                                                              scaled(c.way[1], e2))
-        wrung = scaled(-c.rolling, cross(shifted(c.kind, c.size, gamma, way), gamma))
+        ahead = scaled(way[0], along) if is_disk(c) else plus(scaled(way[0], e1),
+                                                              scaled(way[1], e2))
+        wrung = scaled(-c.rolling, cross(shifted(c.kind, c.size, gamma, ahead), gamma))
     return viscous, wrung, speed, film
+
+
+@inlined
+def along_way(c, at, way, speed):
+    """Return the part of the velocity s' against which dry friction acts, m/s."""
+    if not c.onset > 0.0:
+        return speed
+    return way[0] * dot(at.axes[0], at.moved) + way[1] * dot(at.axes[1], at.moved)
 
 
 @inlined

@@ -49,6 +49,11 @@ class ContactParameters(NamedTuple):
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
         Largest speed of a slip that has just begun and follows its direction, m/s.
+    onset : float
+        Speed up to which the friction against a rolling that has just begun is along `way`, which
+        turns, m/s; 0 in other phases.
+    turn, since : float
+        The rate at which it turns, rad/s, and the time of the unknowns from which on, s.
     until : float
         Time at which what acts jumps, since the start of the course, s; infinite if never.
     began : float
@@ -76,6 +81,9 @@ class ContactParameters(NamedTuple):
     way: Pair
     swift: float
     creep: float
+    onset: float
+    turn: float
+    since: float
     until: float
     began: float
     origin: Pair

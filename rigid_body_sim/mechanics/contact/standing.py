@@ -144,7 +144,7 @@ class Standing:
             Velocity of the lowest point, and the speeds beside which it is rounding, m/s.
         """
         gamma, (u, speed) = stands.axes[2], slip
-        viscous, wrung, _, _ = (rolling_couples(c, stands) if c.rolling > 0.0
+        viscous, wrung, _, _ = (rolling_couples(c, stands, c.way) if c.rolling > 0.0
                                 else couples(c, gamma, stands.moved))
         push = Push(acts[0], plus(acts[1], viscous), viscous, wrung)
         if c.patch > 0.0:
