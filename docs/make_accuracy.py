@@ -122,7 +122,8 @@ def main(*paths):
     DOCS.joinpath('work_precision.json').write_text(json.dumps(_short(found)) + '\n')
     for name, chosen in (('work_precision', True), ('work_precision_suite', False)):
         drawn = [result for result in results if (result['problem'] in suite.QUICK) == chosen]
-        figure.draw(drawn).savefig(DOCS / 'images' / f'{name}.png', metadata={'Software': None})
+        figure.draw(drawn).savefig(
+            DOCS / 'images' / f'{name}.png', dpi=150, metadata={'Software': None})
 
 
 if __name__ == '__main__':

@@ -26,7 +26,8 @@ from rigid_body_sim.scene.surfaces import TORUS
 expand = UNBOUND
 
 ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
-normalise, COUPLED = contact_step.normalise, contact_step.COUPLED
+normalise, weight_of, COUPLED = (
+    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED)
 FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
 KEY, TOTALS, SERIES = range(contact_step.WORK_ROWS, contact_step.WORK_ROWS + 3)
 LEFT, RIGHT = SERIES + ORDER + 1, SERIES + 2 * (ORDER + 1)
@@ -36,8 +37,7 @@ the factors of products."""
 WATCHED, WATCHES = ROW.part('watched').first, ROW.part('watched').size
 PRESSING, GRIPPING, MOTION = (ROW.part('watched').part(name).first
                               for name in ('normal', 'grip', 'motion'))
-OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
-                              for name in ('omega', 'u', 'place', 'gap', 'time'))
+GAP = UNKNOWNS.part('gap').first
 MODE, MU, KIND = (CONTACT.part(name).first for name in ('mode', 'mu', 'kind'))
 BEFORE = 0.25    # share of the last term but one that the last one has at least
 SAFETY = 4.0     # times the rest of the series that the error may be
@@ -121,27 +121,13 @@ def _sample(p, w, y, S, h):
 
 @compiled
 def error_of(w, h, scales):
-    """Return the estimated error of the step in the rows, as an angle (rad).
+    """Return the estimated error of the step in the rows, as contact_step.error_of does.
 
     It is the rest of the series, whose terms are taken to fall as they do from 1 rad to the last.
-
-    Parameters
-    ----------
-    scales : tuple of 3 floats
-        What counts as one radian: of angular velocity (rad/s), of velocity (m/s), of length (m).
     """
-    turning, speed, length = scales
     last = before = 0.0
     for n in range(COUPLED):
-        weight = 1.0
-        if OMEGA <= n < U:
-            weight = 1.0 / turning
-        elif U <= n < PLACE:
-            weight = 1.0 / speed
-        elif PLACE <= n <= GAP:
-            weight = 1.0 / length
-        elif n == TIME:
-            weight = turning
+        weight = weight_of(n, scales)
         one, other = weight * w[SERIES + ORDER, n], weight * w[SERIES + ORDER - 1, n]
         last += one * one
         before += other * other

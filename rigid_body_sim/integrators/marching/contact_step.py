@@ -111,6 +111,19 @@ def _stage(w, y, h, i):
         w[TRIED, n] = sums[n] + y[n]
 
 
+@compiled_inline
+def weight_of(n, scales):
+    """Return how many radians the unknown n counts; `scales` are those of `error_of`."""
+    turning, speed, length = scales
+    if OMEGA <= n < U:
+        return 1.0 / turning
+    if U <= n < PLACE:
+        return 1.0 / speed
+    if PLACE <= n <= GAP:
+        return 1.0 / length
+    return turning if n == TIME else 1.0
+
+
 @compiled
 def error_of(w, h, scales):
     """Return the estimated error of the step in the rows, as an angle (rad).
@@ -120,7 +133,6 @@ def error_of(w, h, scales):
     scales : tuple of 3 floats
         What counts as one radian: of angular velocity (rad/s), of velocity (m/s), of length (m).
     """
-    turning, speed, length = scales
     fifth = third = moved = 0.0
     for n in range(COUPLED):
         e5 = e3 = d = 0.0
@@ -128,15 +140,7 @@ def error_of(w, h, scales):
             e5 += E5[j] * w[j, n]
             e3 += E3[j] * w[j, n]
             d += B[j] * w[j, n]
-        weight = 1.0
-        if OMEGA <= n < U:
-            weight = 1.0 / turning
-        elif U <= n < PLACE:
-            weight = 1.0 / speed
-        elif PLACE <= n <= GAP:
-            weight = 1.0 / length
-        elif n == TIME:
-            weight = turning
+        weight = weight_of(n, scales)
         fifth += weight * weight * e5 * e5
         third += weight * weight * e3 * e3
         moved += weight * weight * d * d
