@@ -42,9 +42,8 @@ sweep-demo: .venv/run.stamp ## a stability map on a Dask cluster of two worker p
 	@rm -rf .cache/sleeping_top.zarr
 	@.venv/bin/python examples/sweep_on_dask.py config/sweeps/sleeping_top.yaml .cache/sleeping_top.zarr
 
-test: .venv/test.stamp ## everything: ruff, mypy, pytest, colcon build and test of the package, with the kernels that are compiled by then
-	@$(MAKE) --no-print-directory --jobs 2 lint unit
-	@$(MAKE) --no-print-directory package
+test: .venv/test.stamp ## everything, side by side: ruff, mypy, pytest, colcon build and test of the package
+	@$(MAKE) --no-print-directory --jobs 3 lint unit package
 
 unit: .venv/test.stamp ## pytest
 	.venv/bin/$(PYTEST)

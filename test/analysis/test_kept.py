@@ -2,6 +2,7 @@
 """The figures and pages of two short recordings are those that were looked at (kept.py)."""
 
 import base64
+import functools
 
 import kept
 import numpy as np
@@ -17,6 +18,8 @@ from rigid_body_sim.analysis.spectrum import Spectrum
 from rigid_body_sim.analysis.summary import lines, summary
 from rigid_body_sim.recording.reader import Recording
 
+pytestmark = pytest.mark.without_numba
+
 LATE = np.random.default_rng(2).integers(30_000, 90_000, 201)
 ACTS = {50: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')],
         75: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), 'body')],
@@ -28,13 +31,19 @@ RECORDINGS = {
 
 @pytest.fixture(scope='module', params=RECORDINGS)
 def analysed(request, tmp_path_factory):
-    """Return (name, Measured, summary, Spectrum, ledger) of 4 s at 50 Hz."""
-    path = tmp_path_factory.mktemp('kept') / request.param
-    made.record(path, ticks=200, rate=50.0, **RECORDINGS[request.param])
-    with Recording(path) as recording:
+    """Return what returns (name, Measured, summary, Spectrum, ledger) of 4 s at 50 Hz.
+
+    They are made when it is called, for a test without numba has its fixtures in two processes.
+    """
+    return functools.cache(lambda: _analysed(request.param, tmp_path_factory.mktemp('kept')))
+
+
+def _analysed(name, folder):
+    made.record(folder / name, ticks=200, rate=50.0, **RECORDINGS[name])
+    with Recording(folder / name) as recording:
         [one] = measure(recording, sources(recording))
         spectrum = Spectrum(one)
-        return request.param, one, summary(one, spectrum), spectrum, _ledger(one.source)
+        return name, one, summary(one, spectrum), spectrum, _ledger(one.source)
 
 
 def plain(figure):
@@ -52,7 +61,7 @@ def plain(figure):
 
 
 def test_figures_for_print(analysed):
-    name, one, _, spectrum, balance = analysed
+    name, one, _, spectrum, balance = analysed()
     figures = {'overview': plots.stack(panels.overview(one), 'title', one.source),
                'motion': plots.stack(panels.motion(one), 'title', one.source),
                **{space.name: plots.space(space) for space in spaces(one)}}
@@ -65,7 +74,7 @@ def test_figures_for_print(analysed):
 
 @pytest.mark.skipif(not page.available(), reason='needs plotly')
 def test_the_interactive_page(analysed, monkeypatch):
-    name, *others = analysed
+    name, *others = analysed()
     packed = {'figures': {}, 'bodies': {}}
     monkeypatch.setattr(page, '_plain', plain)
     text = list(page._section(3, packed, name, *others))
@@ -73,5 +82,5 @@ def test_the_interactive_page(analysed, monkeypatch):
 
 
 def test_the_numbers(analysed):
-    name, _, found, *_ = analysed
+    name, _, found, *_ = analysed()
     kept.check(f'numbers_{name}', {'found': found, 'lines': len(lines(found))})

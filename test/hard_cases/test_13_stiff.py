@@ -298,7 +298,7 @@ SWIFT = {
 @pytest.mark.without_numba
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize('parts', [
-    pytest.param(parts, id=name, marks=[IN_SOAK] * (name in ('damped body', 'pendulum')))
+    pytest.param(parts, id=name, marks=[IN_SOAK] * (name != 'free body'))
     for name, parts in SWIFT.items()])
 def test_events_that_doubles_do_not_tell_apart_are_not_looked_for(parts):
     simulation = Simulation(scene(**parts))

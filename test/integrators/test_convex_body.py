@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from numba_only import LONG_IN_PYTHON
 from scipy.optimize import brentq
+from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.marching.contact import CHATTER
@@ -367,6 +368,7 @@ def test_ideal_rolling_takes_the_slip_of_a_strike_and_of_a_start_by_an_impact():
         assert balanced(sim)
 
 
+@pytest.mark.without_numba
 def test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off():
     sim = simulation(BALL, 'sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.1}',
                      '{velocity: [0.2, 0, 0]}')
@@ -389,6 +391,7 @@ def test_ticks_any_way_give_the_same_bits():
 # -- friction of rolling ----------------------------------------------------------------------
 
 
+@pytest.mark.without_numba
 def test_dry_rolling_friction_stops_a_ball_where_it_says():
     sim = simulation(BALL, 'sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.01}',
                      '{angular_velocity: [0, 10, 0], rolling: true}')
@@ -411,7 +414,8 @@ def test_viscous_rolling_friction_slows_a_ball_exponentially():
 
 
 @pytest.mark.parametrize(('effect', 'a', 'left'), [
-    ('rolling_friction: {dry: 1.0e-4}', 0.02, lambda a, m, R: a**1.5 / (2e-4 * math.sqrt(G / R))),
+    pytest.param('rolling_friction: {dry: 1.0e-4}', 0.02,
+                 lambda a, m, R: a**1.5 / (2e-4 * math.sqrt(G / R)), marks=IN_SOAK),
     ('rolling_friction: {viscous: 1.0e-5}', 0.02, lambda a, m, R: 3.0 * m * a**2 / 16e-5),
     ('air_film: {viscosity: 1.8e-5}', 0.05,
      lambda a, m, R: m * a**3 / (2.0 * math.pi * 1.8e-5 * R))])

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -36,6 +37,7 @@ def test_after_an_impulse_off_its_axis_the_method_is_the_one_that_goes_on():
     assert simulation.method == 'exact'
 
 
+@IN_SOAK
 def test_the_momentum_residual_of_a_body_at_rest_is_relative_to_its_swing():
     """Let go at rest it comes back to rest: beside the present momentum all is rounding."""
     simulation = Simulation(parse_scene(LET_GO), rate=1000.0, horizon=10.0)
