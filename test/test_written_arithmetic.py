@@ -55,10 +55,6 @@ SUMS = {
     'integrators/marching/gauss_nodes.py: '
     'sum((coefficient * comb(k, m) for k, coefficient in enumerate(polynomial) if k >= m))',
     'mechanics/potential.py: sum((size for _, size in parts))',
-    'motions/fixed_axis.py: sum((x * y for x, y in zip(a, b, strict=True)))',
-    'motions/axle.py: sum((x * y for x, y in zip(a, b, strict=True)))',
-    'motions/axle.py: '
-    'sum((a * column[k] for a, column in zip(along, columns, strict=True)))',
     'numerics/functions.py: sum(((-u * u) ** n * u / (2 * n + 1) for n in range(12)))',
     'simulation/ensemble.py: sum(map(_width, names))'}
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A body on a hinge in exact numbers: the rationals that the doubles of a scene are."""
+"""A body on a hinge in exact numbers: the rationals that the doubles of a scene are.
+
+They are kept as integers over a common one, which cost a tenth of fractions.
+"""
 
 import functools
 import math
@@ -7,20 +10,36 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.pairs import in_integers
+from rigid_body_sim.numerics.vectors import cross, dot, minus, scaled
 from rigid_body_sim.scene import principal_axes
 from rigid_body_sim.scene.bodies import IDENTITY
 
 KEPT = 64    # hinges whose exact numbers are kept for bodies that differ in other things
 
+Integers = tuple[int, int, int]
+
+
+class Exact(NamedTuple):
+    """A vector of rationals: integers over another one, which is positive."""
+
+    integers: Integers
+    over: int
+
+    def rounded(self):
+        """Return the nearest doubles."""
+        x, y, z = self.integers
+        return x / self.over, y / self.over, z / self.over
+
 
 class Axle(NamedTuple):
     """A body on a hinge, in exact numbers; vectors in body axes."""
 
-    axis: list[Fraction]       # n
-    arm: list[Fraction]        # r, m
+    axis: Exact                # n
+    arm: Exact                 # r, m
     distance: Fraction         # centre of mass to axis, m; 0 to rounding of the scene
-    momentum: list[Fraction]   # the tensor about `through` times n, kg m^2
-    moment: Fraction           # about n, kg m^2
+    momentum: Exact            # the tensor about `through` times n, kg m^2
+    moment: tuple[int, int]    # about n, kg m^2: the quotient of two integers
 
 
 def axle(scene):
@@ -39,44 +58,34 @@ def held_of(scene):
 def axle_of(axis, center, point, mass, inertia):
     """Return the Axle of what :func:`held_of` returns; it is kept."""
     n, r, d, across = swung(axis, center, point)
-    spun, mass = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis), Fraction(mass)
-    momentum = [a - mass * b for a, b in zip(spun, across, strict=True)]
-    return Axle(n, r, d, momentum, dot_exactly(n, momentum))
+    spun = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis)
+    mass, unit = mass.as_integer_ratio()
+    momentum = Exact(minus(scaled(across.over * unit, spun.integers),
+                           scaled(spun.over * mass, across.integers)),
+                     spun.over * across.over * unit)
+    moment = dot(n.integers, momentum.integers), n.over * momentum.over
+    return Axle(n, r, d, momentum, moment)
 
 
 @functools.lru_cache(maxsize=KEPT)
 def _unit(axis):
     """Return the unit vector along an axis, exactly."""
-    axis = exact(axis)
-    size = _root(dot_exactly(axis, axis))
-    return tuple(component / size for component in axis)
+    along, one = in_integers(axis)
+    size = _root(Fraction(dot(along, along), one * one))
+    return Exact(scaled(size.denominator, along), one * size.numerator)
 
 
 @functools.lru_cache(maxsize=KEPT)
 def swung(axis, center, point):
     """Return the unit vector n of an axis, r from a point to the centre, d, and r x (r x n)."""
     n = _unit(axis)
-    r = tuple(c - t for c, t in zip(exact(center), exact(point), strict=True))
-    side = cross_exactly(n, r)
-    d = _root(dot_exactly(side, side))
+    numbers, one = in_integers((*center, *point))
+    r = Exact(minus(numbers[:3], numbers[3:]), one)
+    side, over = cross(n.integers, r.integers), n.over * r.over
+    d = _root(Fraction(dot(side, side), over * over))
     if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
-    return n, r, d, cross_exactly(r, cross_exactly(r, n))
-
-
-def exact(numbers):
-    """Return numbers as Fractions, a list."""
-    return [Fraction(number) for number in numbers]
-
-
-def dot_exactly(a, b):
-    """Return the scalar product of vectors of Fractions."""
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def cross_exactly(a, b):
-    """Return the vector product of vectors of Fractions, a list."""
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    return n, r, d, Exact(cross(side, r.integers), over * r.over)
 
 
 def _root(number):
@@ -90,15 +99,16 @@ def _root(number):
 @functools.lru_cache(maxsize=KEPT)
 def _tensor_times(moments, axes, axis):
     """Return I n for principal moments and axes, n the unit vector along an axis."""
-    n = _unit(axis)
+    n, (moments, unit) = _unit(axis), in_integers(moments)
     if axes == IDENTITY:
-        return tuple(Fraction(moment) * along for moment, along in zip(moments, n, strict=True))
-    x, y, z, w = exact(axes)
+        along = [moment * x for moment, x in zip(moments, n.integers, strict=True)]
+        return Exact(tuple(along), unit * n.over)
+    (x, y, z, w), _ = in_integers(axes)
     norm = x * x + y * y + z * z + w * w
     columns = ((w * w + x * x - y * y - z * z, 2 * (x * y + z * w), 2 * (x * z - y * w)),
                (2 * (x * y - z * w), w * w + y * y - z * z - x * x, 2 * (y * z + x * w)),
                (2 * (x * z + y * w), 2 * (y * z - x * w), w * w + z * z - x * x - y * y))
-    along = [Fraction(moment) * dot_exactly(column, n) / norm
+    along = [moment * dot(column, n.integers)
              for moment, column in zip(moments, columns, strict=True)]
-    return tuple(sum(a * column[k] for a, column in zip(along, columns, strict=True)) / norm
-                 for k in range(3))
+    rows = zip(*columns, strict=True)
+    return Exact(tuple(dot(row, along) for row in rows), unit * n.over * norm * norm)

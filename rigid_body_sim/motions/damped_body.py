@@ -47,6 +47,7 @@ from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.principal_axes import ULPS
+from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE
 
 EVENTS = ('flip',)
@@ -85,12 +86,18 @@ def absorbs(scene):
     total = total_pull(scene)
     return (total is not None and not any(total.torque) and not any(total.couple)
             and (scene.constraint.mechanism is Mechanism.FREE or not any(total.force))
-            and damping(scene, total) is not None)
+            and damping(scene) is not None)
 
 
-def damping(scene, total):
-    """Return r (1/s, exact) if the angular drag of a Total is r times the inertia, else None."""
-    moments = scene.constraint.inertia(scene.body).moments
+@kept
+def damping(scene):
+    """Return r (1/s, exact) if the angular drag of a scene is r times the inertia, else None.
+
+    The scene has a Total (mechanics/pulls.py).
+    """
+    moments, total = scene.constraint.inertia(scene.body).moments, total_pull(scene)
+    if not any(map(any, total.drag)):
+        return Fraction(0)
     drag = [[-entry for entry in row] for row in total.drag]
     slack = ULPS * max(abs(entry) for row in drag for entry in row)
     turning = [k for k in range(3) if moments[k] > 0.0]    # about the others nothing turns
@@ -105,7 +112,7 @@ def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
     inertia = rotation_parameters(scene.constraint.inertia(scene.body))
-    return np.concatenate([inertia, pair_of(damping(scene, total)), field_of(scene, total)])
+    return np.concatenate([inertia, pair_of(damping(scene)), field_of(scene, total)])
 
 
 @compiled

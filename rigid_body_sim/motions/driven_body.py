@@ -18,7 +18,6 @@ angle. Under a torque fixed in the world omega of a sphere changes linearly in w
 """
 
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +28,14 @@ from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
 from rigid_body_sim.numerics.double_double import two_sum
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.pairs import TURN, pair_of, scaled, times
+from rigid_body_sim.numerics.pairs import (
+    TURN,
+    in_integers,
+    quotient,
+    quotient_of,
+    scaled,
+    times,
+)
 from rigid_body_sim.numerics.phase import fraction, sin_cos
 from rigid_body_sim.numerics.ramped_rotation import ramped_rotation
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
@@ -112,9 +118,8 @@ def drive(scene):
     if len(set(moments)) == 1:
         direction = [component / size for component in torque]
         a = direction if in_world else rotate(*inertia.axes, *direction)
-        growth = Fraction(size) / Fraction(moments[0])
-        return Drive(IN_WORLD if in_world else IN_BODY, a, pair_of(growth), (1.0, 0.0),
-                     (0.0, 0.0))
+        return Drive(IN_WORLD if in_world else IN_BODY, a, quotient_of(size, moments[0]),
+                     (1.0, 0.0), (0.0, 0.0))
     if in_world:
         return None
     for k in range(3):
@@ -122,10 +127,10 @@ def drive(scene):
         if moments[i] == moments[j] and max(abs(torque[i]), abs(torque[j])) <= ULPS * size:
             unit = [0.0, 0.0, 0.0]
             unit[k] = math.copysign(1.0, torque[k])
-            I, I1 = Fraction(moments[k]), Fraction(moments[i])
+            (I, I1), _ = in_integers((moments[k], moments[i]))
             return Drive(IN_BODY, rotate(*inertia.axes, *unit),
-                         pair_of(Fraction(abs(torque[k])) / I), pair_of(I / I1),
-                         pair_of((I - I1) / I1))
+                         quotient_of(abs(torque[k]), moments[k]), quotient(I, I1),
+                         quotient(I - I1, I1))
     return None
 
 

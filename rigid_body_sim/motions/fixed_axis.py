@@ -17,7 +17,6 @@ The event is a `turning point`: phi' changes its sign.
 """
 
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -25,16 +24,16 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
-from rigid_body_sim.motions.axle import axle
+from rigid_body_sim.motions.axle import Exact, axle
 from rigid_body_sim.motions.flight import Field, Flight, field_of, flight_from, flown
 from rigid_body_sim.motions.pendulum.anchor import Pairs
 from rigid_body_sim.numerics.double_double import add, two_sum
 from rigid_body_sim.numerics.functions import exp, hypot3
-from rigid_body_sim.numerics.pairs import TURN, pair_of, times
+from rigid_body_sim.numerics.pairs import TURN, in_integers, quotient, times
 from rigid_body_sim.numerics.phase import fraction, sin_cos
 from rigid_body_sim.numerics.relaxation import relaxation_pairs, relaxed_time
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
-from rigid_body_sim.numerics.vectors import cross, scaled
+from rigid_body_sim.numerics.vectors import apply, cross, dot, scaled
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE
@@ -123,31 +122,28 @@ def _stays(scene, total, k, start):
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
-    torque, drag = _exact(total.torque), [_exact(row) for row in total.drag]
+    (torque, of_torque), (couple, of_couple) = in_integers(total.torque), in_integers(total.couple)
+    drag, of_drag = in_integers([entry for row in total.drag for entry in row])
+    drag = drag[:3], drag[3:6], drag[6:]
     if scene.constraint.mechanism is Mechanism.AXIS:
         held = axle(scene)
-        n, moment, unit = held.axis, held.moment, scene.constraint.axis
-        growth, k = _dot(n, torque), -_dot(n, [_dot(n, row) for row in drag])
+        n, (moment, of_moment), unit = held.axis, held.moment, scene.constraint.axis
+        growth, of_growth = dot(n.integers, torque), n.over * of_torque
+        k, of_k = -dot(n.integers, apply(drag, n.integers)), n.over * n.over * of_drag
     else:
         place, inertia = _axis_of(scene, total), scene.body.about_center
         unit = rotate(*inertia.axes, *np.eye(3)[place])
-        n, moment = _exact(unit), Fraction(inertia.moments[place])
-        growth, k = torque[place], -drag[place][place]
+        n, moment = Exact(*in_integers(unit)), inertia.moments[place]
+        moment, of_moment = moment.as_integer_ratio()
+        growth, of_growth, k, of_k = torque[place], of_torque, -drag[place][place], of_drag
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        [pair_of(component) for component in n], unit, pair_of(growth / moment),
-        [float(Fraction(component) / moment) for component in total.couple],
-        pair_of(k / moment), PARAMETERS.part('field').load(numbers)))
+        [quotient(component, n.over) for component in n.integers], unit,
+        quotient(growth * of_moment, of_growth * moment),
+        [component * of_moment / (of_couple * moment) for component in couple],
+        quotient(k * of_moment, of_k * moment), PARAMETERS.part('field').load(numbers)))
     numbers[PARAMETERS.part('field').places] = field_of(scene, total)
     return numbers
-
-
-def _exact(numbers):
-    return [Fraction(float(number)) for number in numbers]
-
-
-def _dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 @compiled_inline

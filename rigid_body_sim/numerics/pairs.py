@@ -22,6 +22,19 @@ def quotient(a, b):
     return high, (a * under - over * b) / (b * under)
 
 
+def quotient_of(a, b):
+    """Return a/b of two doubles, b > 0, as a pair: each part is rounded once."""
+    (over, of_a), (under, of_b) = a.as_integer_ratio(), b.as_integer_ratio()
+    return quotient(over * of_b, of_a * under)
+
+
+def in_integers(numbers):
+    """Return doubles as integers over a common one: a list of integers, and the one."""
+    ratios = [number.as_integer_ratio() for number in numbers]
+    one = max(under for _, under in ratios)    # powers of two
+    return [over * (one // under) for over, under in ratios], one
+
+
 @compiled
 def plus(p, q):
     """Return the sum of two pairs."""

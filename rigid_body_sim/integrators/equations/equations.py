@@ -5,6 +5,8 @@ Effects that the scene does not list are not in the code.
 """
 
 import bisect
+import functools
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +27,7 @@ from rigid_body_sim.scene.state import TIME
 STATE = 'qx, qy, qz, qw, wx, wy, wz, vx, vy, vz'
 FIELD = ', t, x, y, z'
 OMEGA = 'wx', 'wy', 'wz'
+KEPT = 64    # sources that are kept for scenes that differ in numbers only
 
 
 class Equations:
@@ -54,7 +57,7 @@ class Equations:
         Where the last of them is: for :func:`rigid_body_sim.compilation.templates.specialise`.
     breakpoints : tuple of floats
         Times (s) at which the parameters jump.
-    calls : list
+    calls : tuple
         What acts, as text for the ..._source functions.
     parameter_count, fixed_count : int
         Of the parameters, and of those at their beginning that do not change at breakpoints.
@@ -106,10 +109,7 @@ class Equations:
         self.groups = self.kind.GROUPS
         if self.kind is turning and any(one.gives == 'turning' for one in acting):
             self.groups = turning.APART
-        self.calls = calls = list(_calls(acting, fixed))
-        for call in calls:
-            if call.gives == 'turning':
-                call.fall([one for one in calls if one.pulls])
+        self.calls = calls = _calls(acting, fixed)
         count = fixed + sum(len(one.values) for one in acting)
         self.parameter_count = count + (len(path.values) if path is not None else 0)
         self.in_field = in_field
@@ -220,22 +220,40 @@ def refuse_no_moment(scene, body):
         )
 
 
+class _Form(NamedTuple):
+    """An Acting without its numbers: what the source of the equations depends on."""
+
+    name: str        # of its kernel in that source
+    imported: str    # the line that imports it
+    gives: str
+    books: str
+    in_field: bool
+    inner: bool
+    count: int       # of its values
+
+    @classmethod
+    def of(cls, acting):
+        """Return the form of an Acting."""
+        module, _, function = acting.kernel.partition(':')
+        name = f'{function}_{module.rpartition(".")[2]}'
+        return cls(name, imported(acting.kernel, name), acting.gives, acting.books,
+                   acting.in_field, acting.inner, len(acting.values))
+
+
 class _Call:
     """One Acting, as text.
 
     The line that calls its kernel, and the names of its three components.
     """
 
-    def __init__(self, acting, number, at):
-        module, _, self.function = acting.kernel.partition(':')
-        self.gives, self._first = acting.gives, at
-        self.pulls = acting.gives == 'torque' and acting.books == 'potential'
-        self.name = f'{self.function}_{module.rpartition(".")[2]}'
-        self.imported = imported(acting.kernel, self.name)
-        values = ''.join(f'p[{at + k}], ' for k in range(len(acting.values)))
+    def __init__(self, form, number, at):
+        self.gives, self.books, self.inner, self._first = form.gives, form.books, form.inner, at
+        self.pulls = form.gives == 'torque' and form.books == 'potential'
+        self.imported = form.imported
+        values = ''.join(f'p[{at + k}], ' for k in range(form.count))
         self.x, self.y, self.z = (f'{self.gives}{number}_{axis}' for axis in 'xyz')
-        state = STATE + FIELD * acting.in_field
-        self.lines = [f'    {self.x}, {self.y}, {self.z} = {self.name}({values}{state})']
+        state = STATE + FIELD * form.in_field
+        self.lines = [f'    {self.x}, {self.y}, {self.z} = {form.name}({values}{state})']
         if self.gives == 'turning':    # what keeps L = R m: the torque m x u
             m = euler.MOMENTS
             self.turns = ux, uy, uz = self.x, self.y, self.z
@@ -261,9 +279,23 @@ class _Call:
 
 
 def _calls(acting, at):
-    for number, one in enumerate(acting):
-        yield _Call(one, number, at)
-        at += len(one.values)
+    """Return the calls of Actings, whose values stand in p from the place `at` on, a tuple.
+
+    Actings that differ in numbers only get the same tuple, and with it the same sources.
+    """
+    return _calls_of(tuple(map(_Form.of, acting)), at)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _calls_of(forms, at):
+    calls = []
+    for number, form in enumerate(forms):
+        calls.append(_Call(form, number, at))
+        at += form.count
+    for call in calls:
+        if call.gives == 'turning':
+            call.fall([one for one in calls if one.pulls])
+    return tuple(calls)
 
 
 def _kernel(name, calls, results, state=STATE):
@@ -293,12 +325,14 @@ def path_source(path, at):
                       f'    return along_path({values}t)', ''])
 
 
+@functools.lru_cache(maxsize=KEPT)
 def torque_source(calls, state=STATE):
     """Return the source of ``torque(p, q, omega, v)``, the sum of all torques."""
     calls = [call for call in calls if call.gives != 'force']
     return _kernel('torque', calls, _sums(calls), state)
 
 
+@functools.lru_cache(maxsize=KEPT)
 def force_source(calls, state=STATE):
     """Return the source of ``force(p, q, omega, v)``, the sum of all forces."""
     calls = [call for call in calls if call.gives == 'force']
@@ -312,26 +346,32 @@ def applied_source(acting, at):
     the part of the couple that acts against parts inside the body. The values of the Actings stand
     in p from the place `at` on.
     """
-    calls = list(_calls(acting, at))
+    return _applied_source(_calls(acting, at))
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _applied_source(calls):
     power = {'work': [], 'heat': [], 'potential': []}
-    for one, call in zip(acting, calls, strict=True):
+    for call in calls:
         rates = ('vx', 'vy', 'vz') if call.gives == 'force' else OMEGA
         components = zip((call.x, call.y, call.z), rates, strict=True)
-        power[one.books] += [f'{component} * {rate}' for component, rate in components]
+        power[call.books] += [f'{component} * {rate}' for component, rate in components]
     forces = _sums([call for call in calls if call.gives == 'force'])
     couples = _sums([call for call in calls if call.gives == 'torque'])
     heat = f'-({" + ".join(power["heat"])})' if power['heat'] else '0.0'
     work = ' + '.join(power['work']) or '0.0'
-    inner = _sums([call for one, call in zip(acting, calls, strict=True) if one.inner])
+    inner = _sums([call for call in calls if call.inner])
     return _kernel('applied', calls, (*forces, *couples, work, heat, *inner), STATE + FIELD)
 
 
+@functools.lru_cache(maxsize=KEPT)
 def turning_source(calls):
     """Return the source of ``turning(p, q, omega, v)``, the extra rate at which the axes turn."""
     calls = [call for call in calls if call.gives == 'turning']
     return _kernel('turning', calls, _turning_rates(calls) if calls else ('0.0',) * 3)
 
 
+@functools.lru_cache(maxsize=KEPT)
 def _omega_rate(calls, state):
     """Euler's terms, with the torques' where there are any."""
     calls = [call for call in calls if call.gives != 'force']
@@ -347,6 +387,7 @@ def _omega_rate(calls, state):
     return _kernel('omega_rate', calls, terms, state)
 
 
+@functools.lru_cache(maxsize=KEPT)
 def _axes_rate(calls, state):
     """omega, with the extra turning rate of internal dissipation where there is one."""
     calls = [call for call in calls if call.gives == 'turning']

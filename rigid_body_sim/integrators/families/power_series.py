@@ -6,6 +6,8 @@ effect gives formulas, they are the scene's own (equations/expanded.py), and on 
 the phases (equations/contact_series.py). They take no held wrench.
 """
 
+import functools
+
 import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
@@ -144,6 +146,7 @@ def begin(stepped, march):
     return control, np.zeros(march.VALUES + 2 * march.SIZE)
 
 
+@functools.cache
 def _expand(pushed, coupled, dragged, hinged):
     """Return the source of ``expand(p, S, y)``: the series of y."""
     def numbers(first, count):

@@ -5,6 +5,7 @@ The contract `Bound` is in integrators/protocols.py.
 """
 
 import bisect
+import functools
 import itertools
 import math
 
@@ -15,6 +16,8 @@ from rigid_body_sim.integrators.marching import track
 from rigid_body_sim.integrators.marching.course import Course
 from rigid_body_sim.integrators.marching.points import STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.switched import Switched
+
+KEPT = 64    # tracks that are kept for scenes that differ in numbers only
 
 
 class Bound:
@@ -37,10 +40,11 @@ class Bound:
         self._family, self._prototypes = family, {}
         self._beginning = np.concatenate((control, point))
         sizes = [equations.parameter_count, len(control), len(point), len(point)]
-        places = list(itertools.accumulate(sizes))
+        places = tuple(itertools.accumulate(sizes))
         self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
-        self.track = self._track(places)
+        self.track = _track(self.march.__name__, equations.kernels.__name__, equations.write,
+                            places)
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: it shares the kernels."""
@@ -49,16 +53,6 @@ class Bound:
         other._beginning = np.concatenate(self._family.begin(stepped, self.march))
         other._prototypes = {}
         return other
-
-    def _track(self, places):
-        """Return the template track.py bound to the march; `places` are those in a piece."""
-        bindings = {name: f'{self.march.__name__}:{name}'
-                    for name in ('begin', 'march', 'between', 'VALUES')}
-        bindings['start'] = f'{self.equations.kernels.__name__}:start'
-        bindings['write'] = self.equations.write
-        for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):
-            bindings[name] = f'{name} = {place}\n'
-        return specialise(track, **bindings)
 
     def runner(self, stepped):
         """Return (kernel, room) of ``kernel(room, vector, time, out)``, or None.
@@ -106,3 +100,16 @@ class Bound:
             held = self.equations.held(time)
             self._prototypes[k] = np.concatenate((held, self._beginning))
         return self._prototypes[k]
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _track(march, kernels, write, places):
+    """Return the template track.py bound to a march, whose `places` are those in a piece.
+
+    The march and the kernels of the equations are given by the names of their modules.
+    """
+    bindings = {name: f'{march}:{name}' for name in ('begin', 'march', 'between', 'VALUES')}
+    bindings['start'], bindings['write'] = f'{kernels}:start', write
+    for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):
+        bindings[name] = f'{name} = {place}\n'
+    return specialise(track, **bindings)

@@ -18,6 +18,7 @@ agm(1, k') = pi/(2 K), and chi' = (2 E + L omega_3)/(L + m3) where omega_3 is gr
 
 import functools
 import math
+import struct
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +41,16 @@ from rigid_body_sim.motions.free_body.rotation import (
 )
 from rigid_body_sim.numerics.double_double import add, multiply_double, two_product
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete_k
-from rigid_body_sim.numerics.pairs import TURN, over, plus, quotient, root_of, scaled, times
+from rigid_body_sim.numerics.pairs import (
+    TURN,
+    in_integers,
+    over,
+    plus,
+    quotient,
+    root_of,
+    scaled,
+    times,
+)
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import apply, minus, product, transposed
 from rigid_body_sim.numerics.vectors import plus as plus_vectors
@@ -118,12 +128,16 @@ def rotation_parameters(inertia):
     BadInput
         A moment that is not zero but so small beside the others that its square would underflow.
     """
-    return _numbers(inertia, np.array((*inertia.moments, *inertia.axes)).tobytes()).copy()
+    bits = struct.pack('7d', *inertia.moments, *inertia.axes)
+    return _numbers(inertia, bits).copy()
 
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(inertia, bits):
-    """Return the array of `rotation_parameters`, which is cached; `bits` tell -0 from 0."""
+    """Return the array of `rotation_parameters`, which is cached; `bits` tell -0 from 0.
+
+    Integers keep the moments exact, as fractions would at ten times the cost.
+    """
     small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
     if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
         raise BadInput(
@@ -131,41 +145,27 @@ def _numbers(inertia, bits):
             f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
             f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
     unit = math.frexp(inertia.moments[large])[1]
-    one, moments = _in_integers([math.ldexp(inertia.moments[k], -unit) for k in order])
-    a, b, c = moments
-    axes = [rotate(*inertia.axes, *unit_vector) for unit_vector in UNIT_VECTORS]
+    moments, one = in_integers([math.ldexp(inertia.moments[k], -unit) for k in order])
+    (a, b, c), square = moments, one * one
+    to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
+    ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),
+                  _quotient(to_c * to_a, c * a))
+    a_by_b, c_by_b = _quotient(to_a * b, a * to_b), _quotient(to_c * b, c * to_b)
+    sizes, squares = [moment / one for moment in moments], [
+        quotient(moment * moment, square) for moment in moments]
+    toward_a, toward_c = a * to_a / square, c * to_c / square
+    axes = [rotate(*inertia.axes, *UNIT_VECTORS[k]) for k in order]
     upward = 1.0 if (middle - small) % 3 == 1 else -1.0
     downward = 1.0 if (middle - large) % 3 == 1 else -1.0
     parameters = np.zeros(INERTIA.size)
     INERTIA.store(parameters, Inertia(
-        quotient(c * (c - b), one * one), quotient(a * (b - a), one * one),
-        _quotient((c - a) * one * one, a * b * c),
-        _axes(one, moments, [axes[k] for k in order], -1.0, upward),
-        _axes(one, moments[::-1], [axes[k] for k in order[::-1]], 1.0, downward)))
+        quotient(c * to_a, square), quotient(a * to_c, square),
+        _quotient(to_b * square, a * b * c),
+        Axes(sizes, axes, -1.0, upward, ab, ca, bc[0], c_by_b, math.sqrt(a_by_b[0]), squares,
+             toward_a, toward_c),
+        Axes(sizes[::-1], axes[::-1], 1.0, downward, bc, ca, ab[0], a_by_b,
+             math.sqrt(c_by_b[0]), squares[::-1], toward_c, toward_a)))
     return parameters
-
-
-def _in_integers(numbers):
-    """Return an integer and doubles times it, which are integers too."""
-    ratios = [number.as_integer_ratio() for number in numbers]
-    one = max(under for _, under in ratios)
-    return one, [over * (one // under) for over, under in ratios]
-
-
-def _axes(one, moments, to_frame, side, hand):
-    """Return the :class:`Axes` for moments (integers, unit 1/one) and directions of the axes.
-
-    Integers keep them exact, as fractions would at ten times the cost.
-    """
-    I1, I2, I3 = moments
-    d1, d2, d3 = abs(I2 - I3), abs(I3 - I1), abs(I1 - I2)
-    # Euler's coefficients are d1/I1, d2/I2, d3/I3
-    return Axes(
-        (I1 / one, I2 / one, I3 / one), to_frame, side, hand,
-        _quotient(d1 * d2, I1 * I2), _quotient(d1 * d3, I1 * I3), _quotient(d2 * d3, I2 * I3)[0],
-        _quotient(d3 * I2, I3 * d2), math.sqrt(_quotient(d1 * I2, I1 * d2)[0]),
-        [quotient(moment * moment, one * one) for moment in moments],
-        I1 * d1 / (one * one), I3 * d3 / (one * one))
 
 
 def _quotient(a, b):

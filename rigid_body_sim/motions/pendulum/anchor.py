@@ -7,7 +7,6 @@ the motion or grow with time, so they are formed with 32 digits from the doubles
 
 import functools
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +16,6 @@ from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.motions.axle import (
     KEPT,
     axle_of,
-    cross_exactly,
-    dot_exactly,
     held_of,
     swung,
 )
@@ -45,7 +42,6 @@ from rigid_body_sim.numerics.pairs import (
     TURN,
     minus,
     over,
-    pair_of,
     plus,
     products,
     quotient,
@@ -55,7 +51,7 @@ from rigid_body_sim.numerics.pairs import (
 )
 from rigid_body_sim.numerics.phase import phase, sin_cos
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
-from rigid_body_sim.numerics.vectors import cross
+from rigid_body_sim.numerics.vectors import cross, dot
 from rigid_body_sim.scene import principal_axes
 from rigid_body_sim.scene.state import STATE
 
@@ -118,12 +114,15 @@ load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').st
 def _directions(axis, center, point):
     """Return n, (n x r)/d and (n (n . r) - r)/d as pairs, the last two 0 where d is."""
     n, r, d, _ = swung(axis, center, point)
-    along = dot_exactly(n, r)
-    down = [along * a - b for a, b in zip(n, r, strict=True)]
+    along = dot(n.integers, r.integers)
+    down = vectors.minus(vectors.scaled(along, n.integers),
+                         vectors.scaled(n.over * n.over, r.integers))
 
-    def over_d(vector):
-        return [_pair_of_ratio(component, d) if d else NOTHING for component in vector]
-    return [pair_of(component) for component in n], over_d(cross_exactly(n, r)), over_d(down)
+    def over_d(vector, one):
+        return [quotient(component * d.denominator, one * d.numerator) if d else NOTHING
+                for component in vector]
+    side, one = cross(n.integers, r.integers), n.over * r.over
+    return [quotient(x, n.over) for x in n.integers], over_d(side, one), over_d(down, one * n.over)
 
 
 def parameters(scene):
@@ -138,17 +137,16 @@ def parameters(scene):
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(bits, weight, axis, center, point, mass, inertia):
     """Return the array of `parameters`, which is cached; `bits` tell -0 from 0 in `point`."""
-    held, force = axle_of(axis, center, point, mass, inertia), Fraction(mass) * Fraction(weight)
+    held = axle_of(axis, center, point, mass, inertia)
+    (M, of_M), (g, of_g) = mass.as_integer_ratio(), weight.as_integer_ratio()
+    weighs, over = M * g * held.moment[1], of_M * of_g * held.moment[0]    # M g/I
+    d = held.distance
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        *_directions(axis, center, point), _pair_of_ratio(force * held.distance, held.moment),
-        held.axis, point, mass, weight, held.arm, held.momentum, force / held.moment))
+        *_directions(axis, center, point), quotient(weighs * d.numerator, over * d.denominator),
+        held.axis.rounded(), point, mass, weight, held.arm.rounded(), held.momentum.rounded(),
+        weighs / over))
     return numbers
-
-
-def _pair_of_ratio(a, b):
-    """Return a/b of two Fractions, b > 0, as a pair."""
-    return quotient(a.numerator * b.denominator, a.denominator * b.numerator)
 
 
 @compiled

@@ -10,7 +10,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.numerics.vectors import apply, cross, plus, scaled, transposed
+from rigid_body_sim.numerics.vectors import apply, cross, minus, plus, scaled, transposed
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Formulas, Pull
@@ -21,6 +21,7 @@ from rigid_body_sim.scene.schema import MATRIX, described, mapping_of
 
 COEFFICIENT = {**MATRIX, 'type': ['number', 'array'], 'minimum': 0}
 KEYS = 'linear', 'angular', 'quadratic', 'angular_quadratic'
+UNIT = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SHAPED = 'a number or a symmetric matrix in body axes'
 SYMMETRY = 1e-12    # asymmetry, relative to the size of a matrix, that counts as rounding
 
@@ -84,11 +85,11 @@ class Drag(Effect):
             return self._shaped.series(frame, time)
         x, y, z = frame.arm
         # the matrices of the kernels `couple` and `moment`, without the difference r^2 - z^2
-        of_arm = np.array(((y * y + z * z, -x * y, -x * z), (-x * y, z * z + x * x, -y * z),
-                           (-x * z, -y * z, x * x + y * y)))
-        matrix = -self.angular * np.eye(3) - self.linear * of_arm
-        first, second, third = matrix.tolist()
-        return Pull(drag=(tuple(first), tuple(second), tuple(third)) if matrix.any() else None,
+        of_arm = ((y * y + z * z, -x * y, -x * z), (-x * y, z * z + x * x, -y * z),
+                  (-x * z, -y * z, x * x + y * y))
+        drag = tuple(minus(scaled(-self.angular, unit), scaled(self.linear, row))
+                     for unit, row in zip(UNIT, of_arm, strict=True))
+        return Pull(drag=drag if any(map(any, drag)) else None,
                     slowing=self.linear if frame.moves else 0.0)
 
     def damping(self, frame: Frame) -> Pull:
