@@ -265,9 +265,10 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
         raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
                        'leave it out, or name a method that does')
-    able, stiff, wobbles = runnable(scene), _stiff(scene), _inner_rates(scene)[0] > STIFF
+    able, wobbles = runnable(scene), _inner_rates(scene)[0] > STIFF
     method, tolerance, prototype = integrator, accuracy, None
     if integrator == 'auto':
+        stiff = _stiff(scene)
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         finer = min(accuracy, ENDING) if wobbles else accuracy
         settled = settled or settling.settle(scene, fit, finer, horizon)

@@ -59,6 +59,11 @@ def total_pull(scene):
         if {one.books for one in effect.acting(frame, 0.0)} != _expected(pull):
             return None
         pulls.append(pull)
+    return total_of(pulls)
+
+
+def total_of(pulls):
+    """Return the Total of Pulls (effects/protocol.py), their formulas left out."""
     torque = couple = force = NOTHING
     drag, slowing = (NOTHING, NOTHING, NOTHING), 0.0
     for pull in pulls:

@@ -154,7 +154,7 @@ class Scene:
         total, = _summed((0.0,), [(effect.inner_dissipation,) for effect in self.effects])
         return total
 
-    @property
+    @functools.cached_property
     def contact(self) -> Contact:
         """How body and table touch: the sums of what the effects declare."""
         return Contact(*_summed(Contact(), [

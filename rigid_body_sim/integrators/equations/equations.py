@@ -206,8 +206,8 @@ class Equations:
 
         The fixed ones, then the values of all that acts, then those of a pivot's path.
         """
-        acting = (value for one in self._acting(time) for value in one.values)
-        return np.array([*fixed, *acting, *(self.frame.path.values if self.frame.path else ())])
+        acting = [value for one in self._acting(time) for value in one.values]
+        return np.concatenate((fixed, acting, self.frame.path.values if self.frame.path else ()))
 
 
 def refuse_no_moment(scene, body):

@@ -17,8 +17,11 @@ from rigid_body_sim.integrators.equations import euler, falling, turning
 from rigid_body_sim.integrators.equations.equations import Equations, refuse_no_moment
 from rigid_body_sim.integrators.equations.falling import FallingParameters
 from rigid_body_sim.mechanics.parameters import scene_parameters
+from rigid_body_sim.mechanics.pulls import total_of
 from rigid_body_sim.numerics.rotations import normalised
+from rigid_body_sim.numerics.vectors import product, scaled
 from rigid_body_sim.scene.frame import turned_back
+from rigid_body_sim.scene.scene import kept
 
 
 class SeriesParameters(NamedTuple):
@@ -59,6 +62,7 @@ def refusal(scene):
                     'bodies under gravity, torques, drag and formulas without kinks only')
 
 
+@kept
 def has_phases(scene):
     """Return whether the phases of a body on a plane have series (contact_series.py).
 
@@ -116,21 +120,19 @@ class Series(Equations):
         """Return the parameters that hold just after a time."""
         p = np.zeros(COUNT)
         p[:len(fixed)] = fixed
-        inverse, (rx, ry, rz) = p[euler.EQUATION.part('inverse').places], self.frame.arm
-        (constant, force, couple), drag, slowing = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
-        for pull in (actor.series(self.frame, time) for actor in self._actors):
-            constant += pull.constant
-            force += pull.force or 0.0
-            couple += pull.couple or 0.0
-            drag += pull.drag or 0.0
-            slowing += pull.slowing
+        inverse, (rx, ry, rz) = euler.load_inverse(p), self.frame.arm
+        ix, iy, iz = inverse
+        total = total_of(actor.series(self.frame, time) for actor in self._actors)
         if self.falls:
-            fall = falling.Fall(force / self.frame.mass, slowing / self.frame.mass)
+            x, y, z = total.force
+            M = self.frame.mass
+            fall = falling.Fall((x / M, y / M, z / M), total.slowing / M)
             falling.FALLING.part('fall').store(p, fall)
         for name, value in (
-                ('constant', inverse * constant), ('force', force), ('couple', couple),
-                ('pull', np.repeat(inverse, 2) * (-rz, ry, -rx, rz, -ry, rx)),
-                ('drag', inverse[:, np.newaxis] * drag)):
+                ('constant', product(inverse, total.torque)), ('force', total.force),
+                ('couple', total.couple),
+                ('pull', (ix * -rz, ix * ry, iy * -rx, iy * rz, iz * -ry, iz * rx)),
+                ('drag', tuple(map(scaled, inverse, total.drag)))):
             SERIES.part(name).store(p, value)
         return p
 

@@ -143,7 +143,7 @@ class OnPlane:
         k = bisect.bisect_right(self.breakpoints, time)
         if k not in self._held:
             values = [value for one in self._acting(time) for value in one.values]
-            self._held[k] = np.array([*self._fixed, *values])
+            self._held[k] = np.concatenate((self._fixed, values))
         return self._held[k].copy()
 
     def kernels_of(self, mode, low=False):
