@@ -65,6 +65,7 @@ class SceneParameters(NamedTuple):
 SCENE = layout(SceneParameters)
 
 
+@kept
 def scene_parameters(scene):
     """Return the SceneParameters of a scene."""
     body, constraint = scene.body, scene.constraint

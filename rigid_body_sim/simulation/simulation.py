@@ -190,7 +190,7 @@ class Simulation:
     def _choice_from(self, start):
         """Return the Choice for the scene from a state (14 doubles) on."""
         first = self._chosen
-        if not first.rests_on_start or np.array_equal(start, self.scene.initial.vector):
+        if not first.rests_on_start or start.tolist() == self.scene.initial.vector.tolist():
             return first
         scene = dataclasses.replace(self.scene, initial=State(start.copy()))
         return choose(scene, self.integrator, self.accuracy, first.step, first.horizon)
@@ -434,7 +434,10 @@ class Simulation:
         times = np.ascontiguousarray(times, dtype=float).reshape(-1)
         if not len(times):
             return States(np.empty((0, STATE_SIZE)))
-        first, last = times.min(), times.max()    # NaN if one is
+        if len(times) == 1:    # reductions take longer than a short run
+            first = last = times.item()
+        else:
+            first, last = times.min(), times.max()    # NaN if one is
         if not (first >= self._spans[0].time and last < math.inf):
             raise BadInput(
                 'states',
