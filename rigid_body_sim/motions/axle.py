@@ -79,8 +79,8 @@ def _unit(axis):
 def swung(axis, center, point):
     """Return the unit vector n of an axis, r from a point to the centre, d, and r x (r x n)."""
     n = _unit(axis)
-    numbers, one = in_integers((*center, *point))
-    r = Exact(minus(numbers[:3], numbers[3:]), one)
+    (x, y, z, *held), one = in_integers((*center, *point))
+    r = Exact(minus((x, y, z), held), one)
     side, over = cross(n.integers, r.integers), n.over * r.over
     d = _root(Fraction(dot(side, side), over * over))
     if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):

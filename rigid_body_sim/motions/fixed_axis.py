@@ -123,8 +123,9 @@ def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
     (torque, of_torque), (couple, of_couple) = in_integers(total.torque), in_integers(total.couple)
-    drag, of_drag = in_integers([entry for row in total.drag for entry in row])
-    drag = drag[:3], drag[3:6], drag[6:]
+    entries, of_drag = in_integers([entry for row in total.drag for entry in row])
+    three = iter(entries)
+    drag = list(zip(three, three, three, strict=True))
     if scene.constraint.mechanism is Mechanism.AXIS:
         held = axle(scene)
         n, (moment, of_moment), unit = held.axis, held.moment, scene.constraint.axis
