@@ -26,6 +26,16 @@ def test_source_made_for_a_scene_names_its_effects_and_no_other(case, listed):
     assert {name for name, kernel in KERNELS.items() if kernel in source} == listed
 
 
+def test_scenes_that_differ_in_numbers_share_their_sources_and_nothing_else():
+    text = smooth_cases.text('damped_top')
+    first, same = Equations(parse_scene(text)), Equations(parse_scene(text, {'body.mass': 1.5}))
+    other = Equations(parse_scene(text, {'effects': [{'gravity': {'g': 9.81}}]}))
+    assert same.calls is first.calls
+    assert same.kernels is first.kernels
+    assert not np.array_equal(same.held(0.0), first.held(0.0))
+    assert other.kernels is not first.kernels
+
+
 def entered(*arguments):
     raise AssertionError('an effect that the scene does not list was entered')
 
