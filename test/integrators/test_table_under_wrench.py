@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.motions.solver import Exact
@@ -152,3 +153,13 @@ def test_states_do_not_depend_on_what_else_was_asked():
 def test_a_fixed_step_is_refused():
     with pytest.raises(BadInput, match='give an accuracy'):
         Stepped(ball('{}'), 'dop8', step=0.01, wrench=Wrench((1.0, 0.0, 0.0)))
+
+
+@pytest.mark.without_numba
+@pytest.mark.timeout(30)
+def test_a_ball_that_turns_too_often_gives_up_in_one_line():
+    """Under a couple that turns with it a ball takes a step every few radians."""
+    spun = ball('{angular_velocity: [0, 1.0e6, 0], velocity: [1, 0, 0]}')
+    solver = held(spun, (0.0, 0.0, 0.0), (0.0, 1.0, 0.3), 'body')
+    with pytest.raises(TooMuchWork, match='dop8 on ball: 2620 steps'):
+        states(solver, [1.0])

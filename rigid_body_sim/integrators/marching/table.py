@@ -31,6 +31,7 @@ from rigid_body_sim.integrators.equations.table_rates import (
 )
 from rigid_body_sim.integrators.marching import steps, unroll
 from rigid_body_sim.integrators.marching.adaptive import GROWTH, SAFETY, SHRINK, TRIALS
+from rigid_body_sim.integrators.marching.work import Work
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
@@ -51,6 +52,7 @@ CREEP = 1e-4
 DEAD = 2.0 ** -56        # share of the speeds: a smaller slip counts as none
 FLAT = slice(0, 2)       # the components of a vector along the table
 FLOOR = 1e-17            # smallest error that is asked for
+DEAR = 50                # steps of a compiled march that a step costs, which Python makes
 
 
 class OnTable:
@@ -99,7 +101,8 @@ class TableCourse:
     TELLS_EVENTS = True
 
     def __init__(self, stepped, bound):
-        self._bound, self._scene, vector = bound, stepped.scene, stepped.vector
+        self._bound, vector = bound, stepped.vector
+        self._name, self._most = f'{stepped.method.NAME} on {stepped.scene.name}', stepped.most
         self._tolerance = stepped.accuracy / stepped.horizon
         p = bound.parameters
         q = normalised(*vector[ORIENTATION])
@@ -158,8 +161,22 @@ class TableCourse:
         return [change for change in changes if after < change[0] <= until]
 
     def _reach(self, elapsed):
-        while self._phases[-1].reach(elapsed):
-            self._phases.append(self._phase_from(self._phases[-1].last))
+        """March until a time since the start is passed."""
+        def arrived(limit):
+            for _ in range(limit):
+                phase = self._phases[-1]
+                if phase.passes(elapsed):
+                    return True
+                if phase.last is None:
+                    phase.go_on()
+                else:
+                    self._phases.append(self._phase_from(phase.last))
+            return False
+
+        if not self._phases[-1].passes(elapsed):
+            work = Work(self._name, self._most, DEAR)
+            work.go(arrived, lambda: self._begin + self._phases[-1].reached,
+                    float(self._begin + elapsed))
 
     def _at(self, elapsed):
         self._reach(elapsed)
@@ -230,18 +247,22 @@ class _Phase:
         self._front = Point(y, (0.0,) * len(y), (0.0,) * 4, h, 0.0)
         self._keep()
 
-    def reach(self, elapsed):
-        """March until the time is passed or the phase ends.
+    @property
+    def reached(self):
+        """The time that the march has reached, since the start of the course, s."""
+        return self._front.y[CLOCK]
 
-        Return whether it ends not later than that.
-        """
-        while self.last is None and self._front.y[CLOCK] <= elapsed:
-            following = self._next(self._front)
-            self.last = self._end(self._front, following)
-            self._front = following
-            self._count += 1
-            self._keep()
-        return self.last is not None and self.last[CLOCK] <= elapsed
+    def passes(self, elapsed):
+        """Return whether the march has passed a time (s), at which the phase has not ended."""
+        return (self.reached if self.last is None else self.last[CLOCK]) > elapsed
+
+    def go_on(self):
+        """March by one step, at most to the end of the phase."""
+        following = self._next(self._front)
+        self.last = self._end(self._front, following)
+        self._front = following
+        self._count += 1
+        self._keep()
 
     def at(self, elapsed):
         """Return the unknowns and ledger entries at a time that the march has passed."""
