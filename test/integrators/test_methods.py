@@ -89,8 +89,8 @@ def test_what_takes_a_step_needs_one(name):
 def test_a_convex_body_is_followed_by_the_general_method_and_taylor_alone(monkeypatch):
     """Its step is written for dop8's coefficients: another method would run under a false name.
 
-    taylor has series of the phases of a top that slides and rolls, but not of a disk that rolling
-    friction slows.
+    taylor has series of the phases of a top that slides and rolls and of a disk that viscous
+    rolling friction slows, but not of one that dry rolling friction does.
     """
     other = types.ModuleType('other')
     other.__dict__.update(vars(dop8) | {'NAME': 'other'})
@@ -98,7 +98,9 @@ def test_a_convex_body_is_followed_by_the_general_method_and_taylor_alone(monkey
     ball, top, disk = map(load_scene, ('billiard_center', 'tippe_top', 'euler_disk'))
     assert runnable(ball) == ['dop8', 'other']
     assert runnable(top) == ['dop8', 'taylor']
-    assert runnable(disk) == ['dop8']
+    assert runnable(disk) == ['dop8', 'taylor']
+    assert runnable(load_scene('euler_disk', {
+        'effects.rolling_friction': {'dry': 1e-4}})) == ['dop8']
     with pytest.raises(BadInput,
                        match=r"'other' cannot run a body on the table; .* can: dop8, taylor"):
         Stepped(top, 'other', accuracy=1e-9)

@@ -13,6 +13,14 @@ the variable of the phase: the time t, or where the body slides s with dt = P ds
               I omega' = r x R^T g + h x w,  V = u - R c,  m V' = g + P F
     GLIDING   SLIDING with P = 1 and mu = 0
 
+Viscous rolling friction and a film of air add a couple to I omega'. In each phase of contact, with
+S = dr/dgamma (scene/surfaces.py), it and its heat are
+
+    -(c + c_film/sin a) d,   (c + c_film/sin a) d . omega,   d = (S r') x gamma
+
+The coefficient k - 1 of r' is k times that of r, which is known without the coefficient k of
+omega.
+
 A pass of the loop makes the coefficients k of q, omega, u and of what follows from them without a
 derivative, and the coefficients k - 1 of rates and forces. Of these the coefficient k of omega in
 c', and N in g, are found last: what is known without them leaves a linear equation, whose matrix
@@ -30,11 +38,12 @@ from rigid_body_sim.integrators.equations.contact_views import FLIGHT, ROLLING, 
 from rigid_body_sim.integrators.marching.taylor_series import ORDER
 from rigid_body_sim.scene.surfaces import ELLIPSOID, TORUS
 
-MOST = 96                   # columns of a work space
+MOST, MORE = 96, 112        # columns of a work space; of one with couples of friction
 CYCLE = (1, 2), (2, 0), (0, 1)
 Q, OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first for name in (
     'q', 'omega', 'u', 'place', 'gap', 'time'))
-SLID = UNKNOWNS.part('ledger').first
+SLID, ROLLED, FILMED = (UNKNOWNS.part('ledger').part(name).first
+                        for name in ('slid', 'rolled', 'filmed'))
 IMPULSE = UNKNOWNS.part('ledger').part('impulse').first
 NORMAL, FRICTION, INCLINED = range(UNKNOWNS.size, UNKNOWNS.size + 3)
 """Watched series: N, the square of the rest of f, and the sine of the inclination of a ring."""
@@ -116,6 +125,25 @@ yielding = 1.0 / (lightness * pace + rolled[2])
 """What the coefficients of order 0 give, once in a step."""
 
 
+class Friction(NamedTuple):
+    """The couples of friction on a body in contact, and what they need to know of its surface.
+
+    Attributes
+    ----------
+    viscous, film : bool
+        Whether viscous rolling friction and a film of air act.
+    sharp : bool
+        Whether a ring is a disk: its tube has the radius 0.
+    """
+
+    viscous: bool
+    film: bool
+    sharp: bool
+
+
+NO_FRICTION = Friction(False, False, False)
+
+
 class Part(NamedTuple):
     """A series in the source: the texts of its first coefficient and of the one that a pass has.
 
@@ -195,6 +223,13 @@ class Recurrences:
         inner, place = self.column()
         found = Part(first, self.let(f'({a.now} - {inner} - {b.now} * {first}) * {inverse}'))
         self.fill(place, b.now, found.now)
+        return found
+
+    def quotient_before(self, text, b, inverse):
+        """Return the name of the coefficient k - 1 of a/b, given the text of that of a."""
+        inner, place = self.column()
+        found = self.let(f'({text} - ({inner})) * {inverse}')
+        self.fill(place, b.now, found)
         return found
 
     def replace(self, found):
@@ -279,14 +314,18 @@ def _axes(made, q, rows):
 
 
 def _lever(made, kind, gamma):
-    """Return the Parts of r, and that of the sine of the inclination of a ring, else None."""
+    """Return the Parts of r, and those that its derivative is made of.
+
+    The latter are a vector and its divisor: over and sigma of an ellipsoid, along and across of a
+    ring. The divisor of a ring is the sine of its inclination.
+    """
     if kind == ELLIPSOID:
         pulled = made.vector('pulled', [f'squares[{i}] * {one.now}'
                                         for i, one in enumerate(gamma)])
         sigma = made.root(made.summed(gamma, pulled, made.product), 'sigma', 'half_sigma')
         over = [made.quotient(one, sigma, f'over[{i}]', 'inverse_sigma')
                 for i, one in enumerate(pulled)]
-        return made.vector('r', [f'-{one.now}' for one in over]), None
+        return made.vector('r', [f'-{one.now}' for one in over]), (over, sigma)
     if kind == TORUS:
         level = gamma[:-1]
         across = made.root(made.summed(level, level, made.product), 'across', 'half_across')
@@ -294,8 +333,58 @@ def _lever(made, kind, gamma):
                  for i, one in enumerate(level)]
         texts = [f'-c.size[1] * {one.now} - c.size[0] * {other.now}'
                  for one, other in zip(level, along, strict=True)]
-        return made.vector('r', [*texts, f'-c.size[1] * {gamma[2].now}']), across
+        return made.vector('r', [*texts, f'-c.size[1] * {gamma[2].now}']), (along, across)
     return made.vector('r', [f'-c.size[0] * {one.now}' for one in gamma]), None
+
+
+def _dual(made, kind, sharp, gamma, moved, outline):
+    """Return the names of d, in the order k - 1; `moved` are those of r'."""
+    if kind == ELLIPSOID:
+        over, sigma = outline
+        along = made.let(made.summed(over, moved, made.before))
+        moved = [made.quotient_before(f'squares[{i}] * {one} - ({made.before(over[i], along)})',
+                                      sigma, 'inverse_sigma') for i, one in enumerate(moved)]
+        return [made.let(text) for text in made.crossed(gamma, moved)]
+    if kind != TORUS:
+        return [made.let(f'c.size[0] * ({text})') for text in made.crossed(gamma, moved)]
+    # S r' = -b r' - n t,  n = (a/sin a) t . r',  t = (-along_2, along_1, 0)
+    along, across = outline
+    rim = made.let(f'c.size[0] * ({made.before(along[0], moved[1])} - '
+                   f'({made.before(along[1], moved[0])}))')
+    bent = made.let(made.before(gamma[2], made.quotient_before(rim, across, 'inverse_across')))
+    texts = [*(f'-({made.before(one, bent)})' for one in along), rim]
+    if not sharp:
+        texts = [f'{one} + c.size[1] * ({other})'
+                 for one, other in zip(texts, made.crossed(gamma, moved), strict=True)]
+    return [made.let(text) for text in texts]
+
+
+def _couples(made, kind, friction, gamma, r, outline):
+    """Let a pass make the couples of friction.
+
+    Returns
+    -------
+    couple : list of str
+        What they add to a sum of couples: texts of the coefficients k - 1, or empty.
+    heats : dict
+        Place in the ledger -> text of the coefficient k.
+    """
+    couple, heats = ['', '', ''], {}
+    if not (friction.viscous or friction.film):
+        return couple, heats
+    dual = _dual(made, kind, friction.sharp, gamma, [made.let(f'k * {one.now}') for one in r],
+                 outline)
+    parts = []
+    if friction.viscous:
+        parts.append(('c.rolling_viscous', ROLLED, dual))
+    if friction.film:
+        parts.append(('c.film', FILMED, [made.quotient_before(one, outline[1], 'inverse_across')
+                                         for one in dual]))
+    for coefficient, place, names in parts:
+        couple = [f'{text} - {coefficient} * {one}'
+                  for text, one in zip(couple, names, strict=True)]
+        heats[place] = f'share * {coefficient} * ({made.summed(SPIN, names, made.before)})'
+    return couple, heats
 
 
 def _carried(made, r):
@@ -313,17 +402,17 @@ def _grown(names):
     return [f'{names[i]} * r[{j}] - {names[j]} * r[{i}]' for i, j in CYCLE]
 
 
-def _watch(made, normal, square, inclined):
+def _watch(made, kind, normal, square, outline):
     """Let a pass store the watched series: N and the square at the orders that it has of them."""
     made.lines.append(f'S[k - 1, {NORMAL}] = {normal}')
     if square:
         made.lines.append(f'S[max(k - 2, 0), {FRICTION}] = {square}')
-    if inclined:
-        made.lines += [f'S[0, {INCLINED}] = across', f'S[k, {INCLINED}] = {inclined.now}']
+    if kind == TORUS:
+        made.lines += [f'S[0, {INCLINED}] = across', f'S[k, {INCLINED}] = {outline[1].now}']
 
 
-def flight(kind):
-    """Return the source for a FLIGHT."""
+def flight(kind, friction):
+    """Return the source for a FLIGHT: nothing rubs."""
     made = Recurrences()
     w = made.late(SPIN)
     q = _turned(made, w)
@@ -341,13 +430,14 @@ def flight(kind):
         **_places(PLACE, (x, y)), GAP: height, TIME: '1.0 if k == 1 else 0.0'})
 
 
-def rolling(kind):
+def rolling(kind, friction):
     """Return the source for ROLLING."""
     made = Recurrences()
     w = made.late(SPIN)
     q = _turned(made, w)
     axes = _axes(made, q, 3)
-    r, inclined = _lever(made, kind, axes[2])
+    r, outline = _lever(made, kind, axes[2])
+    couple, heats = _couples(made, kind, friction, axes[2], r, outline)
     part = [made.let(text) for text in _carried(made, r)]
     carried = [Part(f'carried[{i}]', f'c{i}') for i in range(3)]
     before = made.late(carried)
@@ -357,7 +447,8 @@ def rolling(kind):
     # f without what the coefficient k of omega does, then with it
     known = [made.let(f'-(c.mass * (k * {one} + {other}) + {down})')
              for one, other, down in zip(part, turned, weight, strict=True)]
-    torque = [made.let(text) for text in made.crossed(r, known)]
+    torque = [made.let(text + more)
+              for text, more in zip(made.crossed(r, known), couple, strict=True)]
     gyro = [made.let(text) for text in made.crossed(MOMENTUM, w)]
     omega = made.put('omega', _halved(_transformed(
         'solved', [f'({one} + {other})' for one, other in zip(torque, gyro, strict=True)])))
@@ -371,15 +462,15 @@ def rolling(kind):
              for n, (i, j) in enumerate(CYCLE)]
     normal = made.let(made.summed(axes[2], force, made.before))
     square = ' + '.join(made.column(one, one)[0] for one in force)
-    _watch(made, normal, f'{square} - {made.column(normal, normal)[0]}', inclined)
+    _watch(made, kind, normal, f'{square} - {made.column(normal, normal)[0]}', outline)
     moved = [f'-share * ({made.summed(row, before, made.before)})' for row in axes[:-1]]
     impulse = _halved(made.summed(row, whole, made.before) for row in axes)
     return made.source(STARTS + OF_SURFACE.get(kind, '') + OF_ROLLING, {
         **_places(Q, [one.now for one in q]), **_places(OMEGA, omega), **_places(PLACE, moved),
-        TIME: '1.0 if k == 1 else 0.0', **_places(IMPULSE, impulse)})
+        TIME: '1.0 if k == 1 else 0.0', **heats, **_places(IMPULSE, impulse)})
 
 
-def sliding(kind):
+def sliding(kind, friction):
     """Return the source for SLIDING and GLIDING.
 
     More than forty lines: N stands in most of them.
@@ -390,13 +481,15 @@ def sliding(kind):
     w = [made.let(made.before(pace, one)) for one in made.late(SPIN)]
     q = _turned(made, w)
     axes = _axes(made, q, 3)
-    r, inclined = _lever(made, kind, axes[2])
+    r, outline = _lever(made, kind, axes[2])
+    couple, heats = _couples(made, kind, friction, axes[2], r, outline)
     part = [made.let(text) for text in _carried(made, r)]
     # all that follows from g without the coefficient of N, then with it
     pressed = [made.column(one.now, 'normal')[0] for one in (*u, pace)]
     g = [made.let(text) for text in (f'-mu * {pressed[0]}', f'-mu * {pressed[1]}', pressed[2])]
     force = [made.let(made.summed(column, g, made.before)) for column in zip(*axes, strict=True)]
-    torque = [made.let(text) for text in made.crossed(r, force)]
+    torque = [made.let(text + more)
+              for text, more in zip(made.crossed(r, force), couple, strict=True)]
     gyro = made.crossed(MOMENTUM, w)
     spun = [made.let(text) for text in _halved(_transformed('c.inverse', [
         made.let(f'{one} + {other}') for one, other in zip(torque, gyro, strict=True)]))]
@@ -424,12 +517,12 @@ def sliding(kind):
     heat = f'share * mu * ({made.before(pace, found[g[2]])})'
     impulse = _halved(made.summed(row, [found[one] for one in torque], made.before)
                       for row in axes)
-    _watch(made, 'normal', None, inclined)
+    _watch(made, kind, 'normal', None, outline)
     return made.source(STARTS + OF_SURFACE.get(kind, '') + OF_SLIDING, {
         **_places(Q, [one.now for one in q]), **_places(OMEGA, omega),
         **_places(U, [one.now for one in u]), **_places(PLACE, moved),
-        TIME: f'share * {late_pace}', SLID: heat, **_places(IMPULSE, impulse)})
+        TIME: f'share * {late_pace}', SLID: heat, **heats, **_places(IMPULSE, impulse)})
 
 
 SOURCES = {FLIGHT: flight, ROLLING: rolling, SLIDING: sliding}
-"""Phase -> the function that writes its source for a kind of surface."""
+"""Phase -> the function that writes its source, for a kind of surface and a Friction."""

@@ -66,12 +66,13 @@ def refusal(scene):
 def has_phases(scene):
     """Return whether the phases of a body on a plane have series (contact_series.py).
 
-    All that acts besides the contact is uniform fields, and the contact holds no couple.
+    All that acts besides the contact is uniform fields, and no friction of the contact is dry but
+    that of its slip.
     """
     laws = scene.contact
     return (all(effect.uniform_field is not None or effect.contact is not None
                 for effect in scene.acting)
-            and laws.rolling == laws.rolling_viscous == laws.film == laws.patch == 0.0)
+            and laws.rolling == laws.patch == 0.0)
 
 
 def has_formulas(scene):

@@ -389,15 +389,15 @@ class PlaneCourse:
         """
         p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
         time = self._begin + float(y[TIME])
+        if why == contact_march.FAILED and lies_low(p, y) and (
+                phase.kernels is not self._bound.kernels):
+            self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
+            return
         if why == contact_march.FAILED and jams(p, y):
             self._rest(p, y, time)
             return
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
-        if why == contact_march.FAILED and lies_low(p, y) and (
-                phase.kernels is not self._bound.kernels):
-            self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
-            return
         if why == contact_march.FAILED:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
                                f't = {time!r} s')

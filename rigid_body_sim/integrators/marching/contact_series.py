@@ -15,6 +15,7 @@ from rigid_body_sim.integrators.equations import contact_series
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT, GLIDING, ROLLING, SLIDING
 from rigid_body_sim.integrators.marching import contact_series_step
 from rigid_body_sim.integrators.marching.contact import OnPlane, march_of
+from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.painleve import painleve_bound
@@ -41,9 +42,14 @@ class OnPlaneBySeries(OnPlane):
             raise BadInput('integrator', f'taylor cannot run the scene {scene.name}: with '
                            f"mu = {mu!r} it may meet Painleve's paradox",
                            f'mu below {bound:.4g}, or dop8')
-        self._kind = KINDS[scene.body.surface.kind]
-        self._marches = {}
-        self.work_shape = contact_series_step.WORK_ROWS, contact_series.MOST
+        laws, surface = scene.contact, scene.body.surface
+        self._kind, self._marches = KINDS[surface.kind], {}
+        self._friction = contact_series.Friction(
+            laws.rolling_viscous > 0.0, laws.film > 0.0, surface.kind == 'disk')
+        rubs = self._friction.viscous or self._friction.film
+        self._flat = FILMY if self._friction.film else FLAT if rubs else FLATTER
+        self.work_shape = (contact_series_step.WORK_ROWS,
+                           contact_series.MORE if rubs else contact_series.MOST)
         x, y, z = rotate_back(*scene.constraint.axes, *scene.field)
         self._weight = np.array(scaled(scene.body.mass, (x, y, z)))
 
@@ -60,8 +66,9 @@ class OnPlaneBySeries(OnPlane):
             return self.kernels
         phase = SERIES_OF[mode]
         if phase not in self._marches:
-            source = contact_series.SOURCES[phase](self._kind)
+            source = contact_series.SOURCES[phase](self._kind, self._friction)
             expand = module_of(source, 'contact_expansion').__name__
-            step = specialise(contact_series_step, expand=f'{expand}:expand').__name__
+            step = specialise(contact_series_step, expand=f'{expand}:expand',
+                              FLAT=f'FLAT = {self._flat!r}\n').__name__
             self._marches[phase] = march_of(f'{self.rates.__name__}:rate', step)
         return self._marches[phase]

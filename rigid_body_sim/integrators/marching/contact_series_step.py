@@ -19,11 +19,13 @@ from rigid_body_sim.integrators.equations.contact_series import (
 )
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT, ROLLING, ROW, UNKNOWNS
 from rigid_body_sim.integrators.marching import contact_step, taylor_series
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, FLATTER
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.numerics.functions import power
 from rigid_body_sim.scene.surfaces import TORUS
 
 expand = UNBOUND
+# a line FLAT = the inclination below which a ring counts as flat, rad
+FLAT = UNBOUND
 
 ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
 normalise, weight_of, COUPLED = (
@@ -112,7 +114,7 @@ def _sample(p, w, y, S, h):
         if p[KIND] == TORUS and mode != FLIGHT:
             for k in range(ORDER + 1):
                 inclined = t * inclined + S[ORDER - k, INCLINED]
-            motion = inclined - FLATTER
+            motion = inclined - FLAT
         for n in range(WATCHED, WATCHED + WATCHES):
             w[i, n] = w[0, n]
         w[i, PRESSING], w[i, GRIPPING], w[i, MOTION] = normal, grip, motion
