@@ -66,8 +66,8 @@ def refusal(scene):
 def has_phases(scene):
     """Return whether the phases of a body on a plane have series (contact_series.py).
 
-    All that acts besides the contact is uniform fields, and no friction of the contact is dry but
-    that of its slip.
+    All that acts besides the contact is uniform fields, and the contact has neither dry rolling
+    friction nor a patch.
     """
     laws = scene.contact
     return (all(effect.uniform_field is not None or effect.contact is not None

@@ -11,8 +11,9 @@ unit (taylor_series.py); a step, as long as the last two coefficients allow, is 
 cheaper than one of dop8 and twice to thrice as long. The series of a step are also its dense
 output.
 
-A body on a plane has a series for each phase (equations/contact_series.py) under uniform fields
-and sliding friction; what is watched there is looked at along the sum of the series.
+A body on a plane has a series for each phase (equations/contact_series.py) under uniform fields,
+sliding friction, viscous rolling friction and a film of air; what is watched there is looked at
+along the sum of the series.
 
 Ensembles have a mode of their own: eight bodies at once (batch.py).
 
