@@ -62,8 +62,10 @@ from rigid_body_sim.mechanics.contact.holding import (
     along_way,
     gripped,
     gripping,
+    grips,
     holds_still,
     rolling_couples,
+    tips,
     way_at,
 )
 from rigid_body_sim.mechanics.contact.laws import (
@@ -184,7 +186,7 @@ def _applied(p, c, now, at, omega, v, ahead):
 def _posture(c, q, omega):
     """Return the Posture, of a body whose rolling friction may hold."""
     at = posture(c, q, omega)
-    if HOLDS and c.way == HELD:
+    if HOLDS and grips(c):
         at = gripped(c, at)
     return at
 
@@ -199,7 +201,7 @@ def _couples(c, at, time):
 def _hastened(c, at, torque):
     """Return omega' under a couple about the centre of mass, body axes, rad/s^2."""
     grown = apply(at.inverse, torque)
-    if HOLDS and c.way == HELD:
+    if HOLDS and grips(c):
         grown = plus(grown, at.shift)
     return grown
 
@@ -357,9 +359,13 @@ def _creeping(p, c, now, at, push, v, speed, film):
 def _motion(c, at, speed, along):
     """Return how far a body in contact is from lying flat, or from standing still (watched).
 
-    A rolling that has just begun stands still where it goes back.
+    A rolling that has just begun stands still where it goes back. A torus that tips up from lying
+    flat may come down again before it is inclined by more.
     """
     flat = above_flat(c, at.axes[2])
+    if HOLDS and c.rim > 0.0:
+        goes = c.way[0] * tips(c, at)
+        return goes if c.way[0] * at.axes[2][2] < 0.0 else min(flat, goes)
     if HOLDS and c.way != HELD and not is_disk(c):
         return min(flat, along + SLOW * c.swift if c.onset > 0.0 else speed - SLOW * c.swift)
     return flat
@@ -393,6 +399,9 @@ def _gripped(c, at, torque, grown, N):
     if HOLDS and c.way == HELD:
         couple, force = gripping(c, at, torque, grown)
         return couple, c.rolling * N - hypot(*force)
+    if HOLDS and c.rim > 0.0:
+        couple, (along, _) = gripping(c, at, torque, grown)
+        return couple, c.rim * c.rolling * N - abs(along) * inclination(at.axes[2])
     if HOLDS and is_disk(c):
         return ZERO, c.way[0] * dot(tangent(at.axes[2]), at.moved)
     if HOLDS and c.onset > 0.0:

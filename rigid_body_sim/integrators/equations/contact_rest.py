@@ -16,7 +16,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     UNKNOWNS,
 )
 from rigid_body_sim.mechanics.contact.forces import along_body, posture
-from rigid_body_sim.mechanics.contact.holding import across_rim, against, growing
+from rigid_body_sim.mechanics.contact.holding import across_rim, against, growing, tips
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
@@ -24,16 +24,21 @@ from rigid_body_sim.mechanics.contact.touch import (
     is_disk,
     tangent,
 )
-from rigid_body_sim.numerics.rotations import matrix
+from rigid_body_sim.numerics.functions import hypot
+from rigid_body_sim.numerics.rotations import matrix, multiply, normalised
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.surfaces import TORUS
 
+TIPPED = 2.0 ** -56    # rad: the inclination of a ring that has lain flat and begins to tip
+LEVEL = 2.0 ** -49     # rad: the inclination of one that lies flat but for rounding
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
 load_couple = ROW.part('couple').load
 load_omega = UNKNOWNS.part('omega').load
+store_q = UNKNOWNS.part('q').store
 store_omega, store_u = UNKNOWNS.part('omega').store, UNKNOWNS.part('u').store
+PACE = ROW.part('pace').first
 store_impulse, STRUCK = LEDGER.part('impulse').store, LEDGER.part('struck').first
 
 
@@ -81,6 +86,90 @@ def lies(p, y):
 
 
 @compiled
+def tip(p, y, slow):
+    """Incline a ring that lies flat the way in which it begins to tip, or level one that does not.
+
+    All of the ring touches the plane, and its lowest point is the one that goes down first: with
+    the axis of the ring turning at omega, gamma' = gamma x omega.
+
+    Parameters
+    ----------
+    slow : float
+        Rate below which the ring does not tip, rad/s.
+
+    Returns
+    -------
+    bool
+        Whether it lies flat and tips.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    gamma, rate = matrix(*now.q)[2], hypot(now.omega[0], now.omega[1])
+    if c.kind != TORUS or above_flat(c, gamma) > 0.0:
+        return False
+    a, b, d, e = now.q
+    level = normalised(0.0, 0.0, d, e) if gamma[2] > 0.0 else normalised(a, b, 0.0, 0.0)
+    inclined = inclination(gamma)
+    if not rate > slow:
+        spin = now.omega[2] if abs(now.omega[2]) > slow else 0.0
+        store_omega(y, (0.0, 0.0, spin))
+        if inclined <= LEVEL:
+            store_q(y, level)
+        return False
+    inclined = max(inclined, TIPPED)
+    half = 0.5 * inclined / rate
+    # the spin turns the axis of the ring, too
+    off = max(-1.0, min(1.0, -inclined * now.omega[2] / rate))
+    on = math.sqrt(1.0 - off * off)
+    store_q(y, normalised(*multiply(
+        *level, half * (on * now.omega[0] - off * now.omega[1]),
+        half * (off * now.omega[0] + on * now.omega[1]), 0.0, 1.0)))
+    return True
+
+
+@compiled
+def stays_flat(p, y, row, slow):
+    """Return whether a ring that lies flat and moves tips by no more than what counts as flat.
+
+    It may slide, or turn a little and come down at once.
+
+    Parameters
+    ----------
+    row : array
+        The rates.
+    slow : float
+        As `tip` has it.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    flat = above_flat(c, matrix(*now.q)[2])
+    if flat > 0.0:
+        return False
+    rate, grown = hypot(now.omega[0], now.omega[1]), load_omega(row)
+    if not rate > slow:
+        # friction at one point would turn a torus about its tube, or keep the spin of a disk
+        return (now.u[0] != 0.0 or now.u[1] != 0.0) and c.mu > 0.0 and (
+            c.size[1] > 0.0 or c.mode != SLIDING or now.omega[2] != 0.0)
+    pace = row[PACE] if c.mode == SLIDING else 1.0
+    slows = -(now.omega[0] * grown[0] + now.omega[1] * grown[1]) / (rate * pace)
+    return rate * rate < -2.0 * flat * slows
+
+
+@compiled
+def tipping(p, y):
+    """Return how a low torus rolls: about its tube (m/s), and its axis along the ring (rad/s)."""
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    return tips(c, at), dot(across_rim(at.axes[2]), now.omega)
+
+
+@compiled
+def about_tube(p, y, x, z):
+    """Return the part about the tube of a torus of a vector (x, z) along the plane."""
+    axes = matrix(*load_unknowns(y).q)
+    b = across_rim(axes[2])
+    return x * dot(axes[0], b) + z * dot(axes[1], b)
+
+
+@compiled
 def rolls(p, y):
     """Return the velocity of the lowest point over the body, m/s: of a disk along its rim."""
     c, now = load_contact(p), load_unknowns(y)
@@ -99,7 +188,7 @@ def pause(p, y):
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
     gamma = at.axes[2]
-    if is_disk(c):
+    if is_disk(c) or c.rim > 0.0:
         b = across_rim(gamma)
         change = scaled(-dot(b, now.omega), b)
     else:

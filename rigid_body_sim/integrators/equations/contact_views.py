@@ -82,7 +82,8 @@ class Watched(NamedTuple):
         How far the body is from lying flat (rad), or from standing still (m/s).
     rolling : float
         Under dry rolling friction: what it could hold less what it holds (N), or the speed at
-        which a disk rolls the way it does (m/s).
+        which a disk rolls the way it does (m/s). Of a torus that tips: the error that it may have
+        less the one that it has, N rad.
     """
 
     normal: float

@@ -21,6 +21,7 @@ from rigid_body_sim.integrators.equations.contact_impacts import (
     velocity_of_lowest,
 )
 from rigid_body_sim.integrators.equations.contact_rest import (
+    about_tube,
     grows,
     halt,
     jams,
@@ -29,6 +30,9 @@ from rigid_body_sim.integrators.equations.contact_rest import (
     pause,
     rolls,
     spins,
+    stays_flat,
+    tip,
+    tipping,
     withheld,
 )
 from rigid_body_sim.integrators.equations.contact_states import read
@@ -64,12 +68,15 @@ LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
+STIFF = 1e-5             # rad: error of a torus that tips where no step follows its friction
+MOST_IMPACTS = 100       # of a ring that lies flat, at a time
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
                                           'rolling', 'restitution', 'mass'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 WAY = CONTACT.part('way').places
-ONSET, TURN, SINCE = (CONTACT.part(name).first for name in ('onset', 'turn', 'since'))
+ONSET, TURN, SINCE, RIM = (CONTACT.part(name).first
+                           for name in ('onset', 'turn', 'since', 'rim'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 Q, OMEGA, U = (UNKNOWNS.part(name).places for name in ('q', 'omega', 'u'))
 PACE = ROW.part('pace').first
@@ -132,6 +139,7 @@ class OnPlane:
         self.work_shape = contact_step.WORK_ROWS, ROW.size
         self._fixed, self._held = contact_parameters(scene), {}
         self.is_disk = scene.body.surface.kind == 'disk'
+        self.is_torus = scene.body.surface.kind == 'torus'
         self.heaviness = max(weight(scene), 1e-3)
 
     def _acting(self, time):
@@ -149,7 +157,7 @@ class OnPlane:
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).
 
-        `low` says that the body is a ring that is almost flat.
+        `low` says that the body is a ring that is almost flat, in flight that it is flat.
         """
         return self.kernels
 
@@ -173,6 +181,7 @@ class PlaneCourse:
     def __init__(self, stepped, bound):
         self._bound, self._start = bound, np.array(stepped.vector)
         self._begin = float(self._start[STATE_TIME])
+        self._error = stepped.accuracy
         self._tolerance = stepped.accuracy / stepped.horizon
         self._work = np.zeros(bound.work_shape)
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
@@ -191,8 +200,9 @@ class PlaneCourse:
         if y[GAP] > slack:
             self._open(FLIGHT, p, y)
             return
-        ux, uy, normal = velocity_of_lowest(p, y)
         rounding = ROUNDING * speed
+        tip(p, y, rounding / length)
+        ux, uy, normal = velocity_of_lowest(p, y)
         y[GAP] = 0.0
         if normal > rounding:
             self._open(FLIGHT, p, y)
@@ -240,11 +250,14 @@ class PlaneCourse:
         A rolling that ends does so at a time rounded to doubles: `stopped` says that what is left
         of it is rounding, however large.
         """
-        p[WAY], p[ONSET], p[TURN] = (1.0, 0.0), 0.0, 0.0
+        p[WAY], p[ONSET], p[TURN], p[RIM] = (1.0, 0.0), 0.0, 0.0, 0.0
         if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
             return
         p[SWIFT] = swift = self._speed(y)
-        disk, speed = self._bound.is_disk, rolls(p, y)
+        disk, torus, speed = self._bound.is_disk, self._bound.is_torus, rolls(p, y)
+        if lies(p, y) and disk:
+            # the lowest point runs along the rim of a flat disk at any speed that rounding gives
+            stopped = stopped or abs(tipping(p, y)[1]) * self._length <= ROUNDING * swift
         if stopped or abs(speed) <= (ROUNDING if disk else 2.0 * SLOW) * swift:
             pause(p, y)
             p[WAY], row = HELD, np.empty(ROW.size)
@@ -252,10 +265,32 @@ class PlaneCourse:
             if row[ROLLS] >= 0.0:
                 return
             speed, across = withheld(p, y, row)
-            if not disk:
+            if not disk and not (torus and self._tips(p, y, about_tube(p, y, speed, across))):
                 self._begin_to_roll(p, y, speed, across)
+        elif torus:
+            self._tips(p, y, tipping(p, y)[0])
         if disk:
             p[WAY] = math.copysign(1.0, speed), 0.0
+
+    def _tips(self, p, y, speed):
+        """Note, and return, whether friction lets a low torus tip only; `speed` has its sign."""
+        about, along = tipping(p, y)
+        if abs(along) * self._length > ROUNDING * p[SWIFT] + self._error * abs(about):
+            return False
+        way, p[RIM] = tuple(p[WAY].tolist()), self._error
+        p[WAY], row = (math.copysign(1.0, speed), 0.0), np.empty(ROW.size)
+        pause(p, y)
+        self._bound.rates.rate(p, y, row)
+        if not row[ROLLS] > 0.0:
+            p[WAY], p[RIM] = way, 0.0
+        return p[RIM] > 0.0
+
+    def _goes_on_tipping(self, p, y):
+        """Return whether a torus whose friction along the ring no step follows tips only."""
+        if not p[DRY] > 0.0 or not self._bound.is_torus or p[RIM] > 0.0:
+            return False
+        self._error = max(self._error, STIFF)
+        return self._tips(p, y, tipping(p, y)[0])
 
     def _begin_to_roll(self, p, y, x, z):
         """Set the way in which a body begins to roll that a force (x, z) would hold.
@@ -297,6 +332,10 @@ class PlaneCourse:
             return
         if not row[NORMAL] > 0.0:
             self._fly(p, y)
+            return
+        if stays_flat(p, y, row, ROUNDING * self._speed(y) / self._length):
+            p[MODE] = SLIDING
+            self._rest(p, y, self._begin + float(y[TIME]))
             return
         mode = p[MODE]
         held = _held(p) and not self._bound.is_disk
@@ -346,6 +385,7 @@ class PlaneCourse:
 
     def _stop(self, p, y, time):
         """Let a body rest that lies flat or is held by friction, else let it roll on."""
+        p[RIM] = 0.0
         if lies(p, y) or (p[MODE] == ROLLING and self._bound.rates.stays(p, y)):
             self._rest(p, y, time)
         else:
@@ -362,25 +402,45 @@ class PlaneCourse:
 
     def _impact(self, p, y):
         """Let the body bounce, or land where it rebounds no more."""
+        impact, rebounds = self._bounce(p, y, p[RESTITUTION])
+        given, slip = impact.impulse, impact.slip
+        for _ in range(MOST_IMPACTS):
+            # a ring that lies flat turns about another axis from now on: another point goes down
+            rounding = ROUNDING * self._speed(y)
+            if given < 0.0 or not lies(p, y):
+                break
+            tips = tip(p, y, rounding / self._length)
+            ux, uy, normal = velocity_of_lowest(p, y)
+            slides = hypot(ux, uy) > rounding
+            sticks = slip == (0.0, 0.0) and not rebounds and p[MU] > 0.0
+            if not tips or (normal >= -rounding and not (sticks and slides)):
+                rebounds = rebounds and normal > rounding
+                slip = (ux, uy) if slides else (0.0, 0.0)
+                break
+            again, rebounds = self._bounce(p, y, 0.0)
+            given, slip = given + again.impulse, again.slip
+        self._events.append((self._begin + float(y[TIME]), 'impact', {
+            'normal_velocity': impact.before, 'impulse': given}))
+        if given < -CHATTER * self._speed(y) * p[MASS]:
+            self._end(y, PULLS)
+            return
+        if rebounds:
+            self._open(FLIGHT, p, y)
+        else:
+            self._land(p, y, slip)
+
+    def _bounce(self, p, y, restitution):
+        """Change the unknowns by an impact; return the Impact, and whether the body rebounds."""
         out = np.empty(IMPACT.size)
         trial = y.copy()
-        collide(p, trial, p[RESTITUTION], out)
+        collide(p, trial, restitution, out)
         rebounds = load_impact(out).after > CHATTER * self._speed(y)
         if not rebounds:
             trial = y.copy()
             collide(p, trial, 0.0, out)
         y[:] = trial
         y[GAP] = 0.0
-        impact = load_impact(out.tolist())
-        self._events.append((self._begin + float(y[TIME]), 'impact', {
-            'normal_velocity': impact.before, 'impulse': impact.impulse}))
-        if impact.impulse < -CHATTER * self._speed(y) * p[MASS]:
-            self._end(y, PULLS)
-            return
-        if rebounds:
-            self._open(FLIGHT, p, y)
-        else:
-            self._land(p, y, impact.slip)
+        return load_impact(out.tolist()), rebounds
 
     def _follow(self, phase):
         """Begin the phase that follows one that has ended.
@@ -389,6 +449,9 @@ class PlaneCourse:
         """
         p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
         time = self._begin + float(y[TIME])
+        if why == contact_march.FAILED and self._goes_on_tipping(p, y):
+            self._open(int(p[MODE]), p, y)
+            return
         if why == contact_march.FAILED and lies_low(p, y) and (
                 phase.kernels is not self._bound.kernels):
             self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
@@ -420,10 +483,10 @@ class PlaneCourse:
         elif why == contact_march.STOPPED:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
-            self._open(int(p[MODE]), p, y, stopped=not p[ONSET] > 0.0)
+            self._open(int(p[MODE]), p, y, stopped=not p[ONSET] + p[RIM] > 0.0)
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
-            if self._phases[-1].p[MODE] == RESTING:
+            if self._phases[-1].p[MODE] == RESTING and self._events[-1][1] != 'rest':
                 self._events.append((time, 'rest', {}))
         elif why == contact_march.FASTER:
             row = np.empty(ROW.size)
@@ -506,7 +569,8 @@ class _Phase:
     """
 
     def __init__(self, bound, p, y, tolerance, work, length):
-        self.kernels = bound.kernels_of(int(p[MODE]), lies_low(p, y))
+        low = lies(p, y) if p[MODE] == FLIGHT else lies_low(p, y)
+        self.kernels = bound.kernels_of(int(p[MODE]), low)
         self.p, self._work = p, work
         self.begin = float(y[TIME])
         self._meta = np.zeros(contact_march.META)

@@ -60,9 +60,9 @@ class OnPlaneBySeries(OnPlane):
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).
 
-        `low` says that the body is a ring that is almost flat.
+        `low` says that the body is a ring that is almost flat, in flight that it is flat.
         """
-        if mode not in SERIES_OF or (low and mode != FLIGHT):
+        if mode not in SERIES_OF or low:
             return self.kernels
         phase = SERIES_OF[mode]
         if phase not in self._marches:

@@ -128,7 +128,7 @@ def system_of(c, at, push):
 def patch_of(c, at, push):
     """Return the Patch of a body with a patch of contact."""
     turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque, push.wrung)
-    if c.way == HELD:
+    if c.way == HELD or c.rim > 0.0:
         spun = spun[0] + dot(at.axes[2], at.shift), spun[1]
     return patch_system(system_of(c, at, push), turned, twisted, spun, c.patch)
 

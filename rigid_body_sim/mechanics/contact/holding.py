@@ -6,6 +6,12 @@ it. A disk falls, too, for its point of contact moves along the rim only: with t
 rim and b = e x n, s' is along e and 0 for b . omega = 0, and it stays 0 as long as b . omega' =
 -(e . omega) (n . omega). Friction does this by the couple -(S h) x n of a force h, without power,
 as long as |h| <= C N.
+
+A torus rolls along its ring, with the part s_e of s' along e, and about its tube, with the part s_b
+along b. At a small inclination a the lever of h_e is R/a, for the radius R of the ring: friction
+stops s_e in a time that falls like a^2, and s_e : s_b = h_e : h_b from then on. As long as a
+h_e/(C N) is negligible, s_e = 0 is the motion of a disk that is held, with friction C N against s_b
+(ContactParameters: rim).
 """
 
 import math
@@ -37,10 +43,30 @@ def across_rim(gamma):
 
 
 @inlined
+def grips(c):
+    """Return whether dry friction holds the rolling of a body, or its part along a ring."""
+    return c.way == HELD or c.rim > 0.0
+
+
+@inlined
+def tips(c, at):
+    """Return s_b, the velocity at which the point of contact of a torus moves about its tube."""
+    gamma = at.axes[2]
+    return -c.size[1] * dot(across_rim(gamma), cross(gamma, at.omega))
+
+
+@inlined
 def gripped(c, at):
-    """Return the Posture of a body whose point of contact friction holds where it is on it."""
+    """Return the Posture of a body whose point of contact friction holds where it is on it.
+
+    That of a torus that tips still moves about the tube.
+    """
     gamma, inverse, shift = at.axes[2], c.inverse, (0.0, 0.0, 0.0)
-    if is_disk(c):
+    moved, drawn = at.moved, at.drawn
+    if c.rim > 0.0:
+        moved = scaled(tips(c, at), across_rim(gamma))
+        drawn = plus(cross(at.omega, at.carried), cross(at.omega, moved))
+    if is_disk(c) or c.rim > 0.0:
         b = across_rim(gamma)
         turned = apply(c.inverse, b)
         share = 1.0 / dot(b, turned)
@@ -53,8 +79,8 @@ def gripped(c, at):
         share = 1.0 / dot(gamma, apply(c.inertia, gamma))
         inverse = (scaled(share * gamma[0], gamma), scaled(share * gamma[1], gamma),
                    scaled(share * gamma[2], gamma))
-    return Posture(at.q, at.omega, at.axes, at.r, at.carried, at.moved,
-                   plus(at.drawn, cross(shift, at.r)), inverse, shift)
+    return Posture(at.q, at.omega, at.axes, at.r, at.carried, moved,
+                   plus(drawn, cross(shift, at.r)), inverse, shift)
 
 
 @inlined
@@ -81,9 +107,12 @@ def gripping(c, at, torque, grown):
 
 @inlined
 def against(c, at, couple):
-    """Return h along the plane, N, whose friction is a couple -(S h) x n; of a disk h . e, 0."""
+    """Return h along the plane, N, whose friction is a couple -(S h) x n.
+
+    Of a disk, and of a torus that tips, it is h . e and 0.
+    """
     e1, e2, gamma = at.axes
-    if is_disk(c):
+    if is_disk(c) or c.rim > 0.0:
         return dot(across_rim(gamma), couple) * inclination(gamma) / c.size[0], 0.0
     wanted = scaled(-1.0, cross(gamma, couple))    # S h
     first, second = shifted(c.kind, c.size, gamma, e1), shifted(c.kind, c.size, gamma, e2)
@@ -114,6 +143,11 @@ def rolling_couples(c, at, way):
     viscous, wrung, speed, film = couples(c, at.axes[2], at.moved)
     if c.way == HELD:
         return viscous, (0.0, 0.0, 0.0), 0.0, film    # what is left of s' takes no power
+    if c.rim > 0.0:
+        gamma = at.axes[2]
+        about = scaled(-c.size[1], cross(across_rim(gamma), gamma))
+        return (scaled(-(c.rolling_viscous + film) * tips(c, at), about),
+                scaled(-c.rolling * way[0], about), abs(tips(c, at)), film)
     if is_disk(c) or c.onset > 0.0 or speed < SLOW * c.swift:
         e1, e2, gamma = at.axes
         along = tangent(gamma)

@@ -54,6 +54,10 @@ class ContactParameters(NamedTuple):
         turns, m/s; 0 in other phases.
     turn, since : float
         The rate at which it turns, rad/s, and the time of the unknowns from which on, s.
+    rim : float
+        Above 0 while dry rolling friction holds the point of contact of a low torus where it is
+        along the ring, and the torus tips (holding.py): the error that this may have, rad. The
+        sign of the rolling is in `way`, as for a disk.
     until : float
         Time at which what acts jumps, since the start of the course, s; infinite if never.
     began : float
@@ -84,6 +88,7 @@ class ContactParameters(NamedTuple):
     onset: float
     turn: float
     since: float
+    rim: float
     until: float
     began: float
     origin: Pair
