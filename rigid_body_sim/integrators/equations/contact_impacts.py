@@ -82,6 +82,6 @@ def collide(p, y, restitution, out):
     store_u(y, plus(now.u, scaled(1.0 / c.mass, given)))
     y[STRUCK] += loss
     store_impulse(y, plus(now.ledger.impulse, apply(at.axes, turn)))
-    sticks = c.mu > 0.0 and hypot(given[0], given[1]) < c.mu * given[2] * (1.0 - 1e-14)
+    sticks = given[2] > 0.0 and hypot(given[0], given[1]) < c.mu * given[2] * (1.0 - 1e-14)
     slip = (0.0, 0.0) if sticks else (after[0], after[1])
     store_impact(out, Impact(slip, before[2], normal, given[2]))

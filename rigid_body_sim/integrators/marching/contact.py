@@ -157,7 +157,7 @@ class OnPlane:
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).
 
-        `low` says that the body is a ring that is almost flat, in flight that it is flat.
+        `low` says that the body is a ring that is almost flat.
         """
         return self.kernels
 
@@ -569,8 +569,7 @@ class _Phase:
     """
 
     def __init__(self, bound, p, y, tolerance, work, length):
-        low = lies(p, y) if p[MODE] == FLIGHT else lies_low(p, y)
-        self.kernels = bound.kernels_of(int(p[MODE]), low)
+        self.kernels = bound.kernels_of(int(p[MODE]), lies_low(p, y))
         self.p, self._work = p, work
         self.begin = float(y[TIME])
         self._meta = np.zeros(contact_march.META)

@@ -110,7 +110,8 @@ def march(p, w, phase, sizes, front, meta, target):
         good, planned, took = False, h, h
         for _ in range(TRIALS):
             bad = step_from(p, w, y, lost, h)
-            error = error_of(w, h, (meta[RATE], meta[SPEED], meta[LENGTH])) + bad
+            error = bad if bad > 0.0 else error_of(
+                w, h, (meta[RATE], meta[SPEED], meta[LENGTH]))
             took = w[FRESH, TIME] - y[TIME]
             allowed = meta[TOLERANCE] * min(took, STRETCH * h * w[0, PACE]) + FLOOR
             good = error <= allowed

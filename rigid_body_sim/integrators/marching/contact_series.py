@@ -60,7 +60,7 @@ class OnPlaneBySeries(OnPlane):
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).
 
-        `low` says that the body is a ring that is almost flat, in flight that it is flat.
+        `low` says that the body is a ring that is almost flat.
         """
         if mode not in SERIES_OF or low:
             return self.kernels

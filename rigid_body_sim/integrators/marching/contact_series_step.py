@@ -28,8 +28,8 @@ expand = UNBOUND
 FLAT = UNBOUND
 
 ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
-normalise, weight_of, COUPLED = (
-    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED)
+normalise, weight_of, COUPLED, LARGE = (
+    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED, contact_step.LARGE)
 FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
 KEY, TOTALS, SERIES = range(contact_step.WORK_ROWS, contact_step.WORK_ROWS + 3)
 LEFT, RIGHT = SERIES + ORDER + 1, SERIES + 2 * (ORDER + 1)
@@ -42,6 +42,7 @@ PRESSING, GRIPPING, MOTION = (ROW.part('watched').part(name).first
 GAP = UNKNOWNS.part('gap').first
 MODE, MU, KIND = (CONTACT.part(name).first for name in ('mode', 'mu', 'kind'))
 BEFORE = 0.25    # share of the last term but one that the last one has at least
+SQUARED = 1e150  # squares of larger coefficients overflow
 SAFETY = 4.0     # times the rest of the series that the error may be
 
 
@@ -52,7 +53,7 @@ def step_from(p, w, y, lost, h):
     Returns
     -------
     float
-        0, or infinite: numbers did not stay finite, or a ring would turn through the plane.
+        0, or infinite: numbers did not stay small, or a ring would turn through the plane.
     """
     key, S = w[KEY], w[SERIES:LEFT]
     known = key[SIZE] == p[MODE] + 1.0
@@ -68,18 +69,15 @@ def step_from(p, w, y, lost, h):
     for k in range(1, ORDER):
         for n in range(WIDTH):
             w[TRIED, n] = h * (w[TRIED, n] + S[ORDER - k, n])
-    bad = 0.0
     for n in range(SIZE):
         d = lost[n] + w[TRIED, n]
         s = y[n] + d
         w[FRESH, n] = s
         w[TRIED, n] = d - (s - y[n])
-        if not abs(s) < math.inf:
-            bad = math.inf
+        if not abs(s) < LARGE:
+            return math.inf
     normalise(w)
-    if not _sample(p, w, y, S, h) >= 0.0:
-        bad = math.inf
-    return bad
+    return 0.0 if _sample(p, w, y, S, h) >= 0.0 else math.inf
 
 
 @compiled_inline
@@ -131,6 +129,8 @@ def error_of(w, h, scales):
     for n in range(COUPLED):
         weight = weight_of(n, scales)
         one, other = weight * w[SERIES + ORDER, n], weight * w[SERIES + ORDER - 1, n]
+        if not (abs(one) < SQUARED and abs(other) < SQUARED):
+            return math.inf
         last += one * one
         before += other * other
     factor = h

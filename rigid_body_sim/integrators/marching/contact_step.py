@@ -40,6 +40,7 @@ OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
                               for name in ('omega', 'u', 'place', 'gap', 'time'))
 load_q, store_q = UNKNOWNS.part('q').load, UNKNOWNS.part('q').store
 ROUNDING = 2.0 ** -49
+LARGE = 1e30     # no unknown of a step that is short enough: powers of larger ones overflow
 
 
 @compiled
@@ -49,14 +50,16 @@ def step_from(p, w, y, lost, h):
     Returns
     -------
     float
-        0 if the numbers stayed finite, else infinite.
+        0 if the numbers stayed small, else infinite.
     """
     for i in range(1, STAGES):
         _stage(w, y, h, i)
+        for n in range(COUPLED):
+            if not abs(w[TRIED, n]) < LARGE:
+                return math.inf
         rate(p, w[TRIED], w[i])
     b0, b5, b6, b7 = h * B[0], h * B[5], h * B[6], h * B[7]
     b8, b9, b10, b11 = h * B[8], h * B[9], h * B[10], h * B[11]
-    bad = 0.0
     for n in range(SIZE):
         d = lost[n] + (
             b0 * w[0, n] + b5 * w[5, n] + b6 * w[6, n] + b7 * w[7, n]
@@ -64,10 +67,10 @@ def step_from(p, w, y, lost, h):
         s = y[n] + d
         w[FRESH, n] = s
         w[TRIED, n] = d - (s - y[n])
-        if not abs(s) < math.inf:
-            bad = math.inf
+        if not abs(s) < LARGE:
+            return math.inf
     normalise(w)
-    return bad
+    return 0.0
 
 
 @compiled_inline
