@@ -11,11 +11,13 @@ from rigid_body_sim.mechanics.contact.forces import (
     system_of,
 )
 from rigid_body_sim.mechanics.contact.holding import (
+    across_rim,
     gripped,
     gripping,
     growing,
     holds_still,
     rolling_couples,
+    tips,
     way_out,
 )
 from rigid_body_sim.mechanics.contact.laws import (
@@ -26,7 +28,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     slipping,
     sticking,
 )
-from rigid_body_sim.mechanics.contact.numbers import contact_parameters
+from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
@@ -41,6 +43,8 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, tra
 from rigid_body_sim.scene.surfaces import TORUS
 
 TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
+BEGINS = 1e-7      # share of the speeds below which a rolling has no direction of its own
+TIPS = 1e-5        # rad: error of a torus that tips (contact/holding.py)
 NOTHING = (0.0, 0.0, 0.0)
 
 
@@ -55,6 +59,7 @@ class Standing:
     def __init__(self, scene):
         self._c = CONTACT.load(contact_parameters(scene).tolist())
         self._is_disk = self._c.kind == TORUS and self._c.size[1] == 0.0
+        self._heaviness = weight(scene)
 
     def force(self, R, omega, position, velocity, force, couple):
         """Return what the plane exerts on the body.
@@ -111,22 +116,45 @@ class Standing:
             return self._exerted(c, stands, acts, slip)
         along, across = dot(tangent(gamma), stands.moved), 0.0
         c = c._replace(swift=slip[1] or 1.0)    # beside which no rolling is none
-        if (abs(along) if self._is_disk else hypot3(*stands.moved)) <= TOUCHES * slip[1]:
+        rolls = abs(along) if self._is_disk else hypot3(*stands.moved)
+        if c.kind == TORUS and not self._is_disk and rolls > TOUCHES * slip[1]:
+            tipped = self._tipped(c, stands, acts, slip)
+            if tipped is not None:
+                return tipped
+        falls = math.sqrt(self._heaviness * hypot3(*stands.r))
+        begins = not self._is_disk and rolls <= BEGINS * (slip[1] + falls)
+        if rolls <= TOUCHES * slip[1] or begins:
             still, held = c._replace(way=HELD), gripped(c, stands)
             f, touch = self._exerted(still, held, acts, slip)
             holds, (along, across) = gripping(c, held, *self._turned(held, acts, f, touch))
             if hypot(along, across) <= c.rolling * f[2]:
+                if begins and rolls > TOUCHES * slip[1]:    # it ends
+                    return self._exerted(c, stands, acts, slip)
                 return f, plus(touch, holds)
 
             def growth(x, z):
-                one = c._replace(way=(x, z))
+                one = c._replace(way=(x, z), onset=slip[1] + falls)
                 f, touch = self._exerted(one, stands, acts, slip)
                 return growing(one, stands, self._turned(stands, acts, f, touch)[1])
             if not self._is_disk:
                 way = way_out(growth, along, across)
-                return self._exerted(c._replace(way=way), stands, acts, slip)
+                # friction is along the way, whatever little s' there is
+                c = c._replace(way=way, onset=slip[1] + falls)
+                return self._exerted(c, stands, acts, slip)
         way = math.copysign(1.0, along), 0.0
         return self._exerted(c._replace(way=way), stands, acts, slip)
+
+    def _tipped(self, c, stands, acts, slip):
+        """Return what `_exerted` does, of a torus that tips, None of one that does not."""
+        if abs(dot(across_rim(stands.axes[2]), stands.omega)) > TOUCHES * hypot3(*stands.omega):
+            return None
+        c = c._replace(rim=TIPS, way=(math.copysign(1.0, tips(c, stands)), 0.0))
+        held = gripped(c, stands)
+        f, touch = self._exerted(c, held, acts, slip)
+        holds, (along, _) = gripping(c, held, *self._turned(held, acts, f, touch))
+        if abs(along) * inclination(stands.axes[2]) > TIPS * c.rolling * f[2]:
+            return None
+        return f, plus(touch, holds)
 
     def _turned(self, stands, acts, f, touch):
         """Return the couple about the centre of mass, and omega'."""
