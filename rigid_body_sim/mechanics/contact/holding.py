@@ -28,7 +28,7 @@ from rigid_body_sim.mechanics.contact.touch import (
 )
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
-from rigid_body_sim.scene.surfaces import TORUS, shifted
+from rigid_body_sim.scene.surfaces import TINY, TORUS, shifted
 
 SPINLESS = 1e-9   # share of the speeds below which a body that rests does not spin
 NEWTON = 50       # most Newton steps for a direction
@@ -69,7 +69,7 @@ def gripped(c, at):
     if is_disk(c) or c.rim > 0.0:
         b = across_rim(gamma)
         turned = apply(c.inverse, b)
-        share = 1.0 / dot(b, turned)
+        share = 1.0 / (dot(b, turned) + TINY)    # b is 0 where a disk lies flat
         rows = c.inverse
         inverse = (minus(rows[0], scaled(share * turned[0], turned)),
                    minus(rows[1], scaled(share * turned[1], turned)),
