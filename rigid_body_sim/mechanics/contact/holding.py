@@ -7,11 +7,11 @@ rim and b = e x n, s' is along e and 0 for b . omega = 0, and it stays 0 as long
 -(e . omega) (n . omega). Friction does this by the couple -(S h) x n of a force h, without power,
 as long as |h| <= C N.
 
-A torus rolls along its ring, with the part s_e of s' along e, and about its tube, with the part s_b
-along b. At a small inclination a the lever of h_e is R/a, for the radius R of the ring: friction
-stops s_e in a time that falls like a^2, and s_e : s_b = h_e : h_b from then on. As long as a
-h_e/(C N) is negligible, s_e = 0 is the motion of a disk that is held, with friction C N against s_b
-(ContactParameters: rim).
+A torus rolls along its ring, with the part s_e of s' along e, and about its tube, with the part
+s_b along b. At a small inclination a the lever of h_e is R/a, for the radius R of the ring:
+friction stops s_e in a time that falls like a^2, and s_e : s_b = h_e : h_b from then on. As long
+as a h_e/(C N) is negligible, s_e = 0 is the motion of a disk that is held, with friction C N
+against s_b (ContactParameters: rim).
 """
 
 import math
