@@ -364,7 +364,7 @@ def _motion(c, at, speed, along):
     """
     flat = above_flat(c, at.axes[2])
     if HOLDS and c.rim > 0.0:
-        goes = c.way[0] * tips(c, at)
+        goes = c.way[0] * tips(c, at) + SLOW * c.swift
         return goes if c.way[0] * at.axes[2][2] < 0.0 else min(flat, goes)
     if HOLDS and c.way != HELD and not is_disk(c):
         return min(flat, along + SLOW * c.swift if c.onset > 0.0 else speed - SLOW * c.swift)
