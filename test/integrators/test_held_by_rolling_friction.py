@@ -295,7 +295,7 @@ def test_a_hoop_that_rolls_straight_stops_where_it_says_and_stands():
 @IN_SOAK
 @pytest.mark.parametrize('later', [1e-6, 1e-4, 3e-4])
 def test_the_reactions_of_a_body_that_friction_lets_go_are_those_of_its_motion(later):
-    """A rolling grows with no rate, and its direction is not that of the friction: 2.4e-3 rad/s^2."""
+    """Friction was along so slow a rolling, whose direction is another: 2.4e-3 rad/s^2."""
     sim = Simulation(parse_scene(
         'scene: begins\nbody: {mass: 0.3, inertia: [3.6e-5, 4.2e-5, 4.8e-5], center_of_mass: '
         '[0.003, 0.0051, -0.0057], surface: {sphere: {radius: 0.02}}}\nconstraint: {table: '

@@ -108,7 +108,7 @@ def tip(p, y, slow):
         return False
     a, b, d, e = now.q
     level = normalised(0.0, 0.0, d, e) if gamma[2] > 0.0 else normalised(a, b, 0.0, 0.0)
-    inclined = inclination(gamma)
+    inclined, momentum = inclination(gamma), apply(c.inertia, now.omega)
     if not rate > slow:
         spin = now.omega[2] if abs(now.omega[2]) > slow else 0.0
         store_omega(y, (0.0, 0.0, spin))
@@ -123,6 +123,9 @@ def tip(p, y, slow):
     store_q(y, normalised(*multiply(
         *level, half * (on * now.omega[0] - off * now.omega[1]),
         half * (off * now.omega[0] + on * now.omega[1]), 0.0, 1.0)))
+    # the plane gives what the momentum turns with the body
+    turned = minus(apply(matrix(*load_unknowns(y).q), momentum), apply(matrix(*now.q), momentum))
+    store_impulse(y, plus(now.ledger.impulse, turned))
     return True
 
 
