@@ -44,8 +44,8 @@ OLD_LIBC = ','.join(f'-{name}' for name in (
 OLD_NUMPY = ('X86_V3 X86_V4 AVX2 FMA3 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL '
              'AVX512_ICL AVX512_SPR')
 PLAIN = {'NUMBA_DISABLE_JIT': '1'}
-TESTS = ('test/numerics', 'test/motions', 'test/integrators/test_taylor.py',
-         'test/integrators/test_batch.py', 'test/scene/test_bodies.py')
+TESTS = ('test/numerics', 'test/motions', 'test/integrators/methods/test_taylor.py',
+         'test/integrators/marching/test_batch.py', 'test/scene/test_bodies.py')
 PATIENCE = 4.0 * 3600.0    # s, for one run; a busy machine compiles slowly
 SHOWN = 10           # most differences shown of one machine
 

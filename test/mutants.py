@@ -90,9 +90,9 @@ WIDER = {
     'testing': ('test/test_extending.py',),
 }
 """Room -> what else runs: first the digests, the rest when its own tests have found nothing."""
-SLOW = ('test/choice/test_choose.py', 'test/integrators/test_convex_body.py',
-        'test/integrators/test_methods.py', 'test/integrators/test_gauss16.py',
-        'test/integrators/test_dop8.py', 'test/integrators/test_smooth_scenes.py',
+SLOW = ('test/choice/test_choose.py', 'test/integrators/marching/test_convex_body.py',
+        'test/integrators/methods/test_methods.py', 'test/integrators/methods/test_gauss16.py',
+        'test/integrators/methods/test_dop8.py', 'test/integrators/test_smooth_scenes.py',
         'test/recording/test_recover.py', 'test/recording/test_flips.py',
         'test/motions/test_relaxing.py', 'test/study/test_check_scenes.py',
         'test/view/test_page.py', 'test/view/test_push_node.py', 'test/sweeps/test_killed.py')

@@ -123,3 +123,11 @@ def test_a_room_says_what_lives_there(room):
     about = ast.get_docstring(ast.parse((PACKAGE / room / '__init__.py').read_text()))
     assert about, f'rigid_body_sim/{room}/__init__.py says nothing'
     assert 'import' in about, f'rigid_body_sim/{room}/__init__.py does not say what it may import'
+
+
+
+def test_folders_of_tests_are_those_of_the_package():
+    test = PACKAGE.parent / 'test'
+    folders = {path.parent.relative_to(test) for path in test.rglob('test_*.py')}
+    assert all((PACKAGE / folder).is_dir()
+               for folder in folders - {pathlib.Path('hard_cases')}), folders

@@ -45,7 +45,7 @@ def runnable(scene):
     if scene.constraint.mechanism is Mechanism.PLANE:
         return [GENERAL.NAME, taylor.NAME] if has_phases(scene) else [GENERAL.NAME]
     if scene.constraint.mechanism is Mechanism.TABLE:
-        return [name for name, method in METHODS.data.items() if method.TABLE]
+        return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects
                if effect.acting is not None or effect.as_impulse is None]
     frame = scene.frame
@@ -54,9 +54,9 @@ def runnable(scene):
     hot = any(one.books == 'heat' or one.of_motion for one in acting)
     kinked = any(one.modes for one in acting)
     in_field = frame.path is not None or any(one.in_field for one in acting)
-    shown = {view for view in {method.NEEDS for method in METHODS.data.values()}
+    shown = {view for view in {method.NEEDS for method in METHODS.values()}
              if all(getattr(effect, view) is not None for effect in effects)}
-    return [name for name, method in METHODS.data.items()
+    return [name for name, method in METHODS.items()
             if method.NEEDS in shown
             and (method.HEAT or not hot) and (method.FIELD or not in_field)
             and (method.FAMILY.KINKS or not kinked)]

@@ -43,7 +43,7 @@ MUTANTS = {
     'pendulum: turning points at the lowest position': (
         'motions/pendulum/pendulum.py',
         '(0.25 + 0.5 * half_turns', '(0.0 + 0.5 * half_turns',
-        'test/motions/test_pendulum.py::test_turning_points'),
+        'test/motions/pendulum/test_pendulum.py::test_turning_points'),
     'ball: friction heats twice': (
         'motions/sliding_sphere.py', '(1.0 - 0.5 * share)', '(1.0 - share)',
         'test/motions/test_sliding_sphere.py::test_energy_lost_is_heat'),
@@ -52,7 +52,7 @@ MUTANTS = {
         'test/motions/test_sliding_sphere.py::test_masse_runs_on_a_parabola'),
     'dop8: a digit of a weight': (
         'integrators/marching/dormand_prince.py', '0.054293734116568765', '0.054293734116468765',
-        'test/integrators/test_dop8.py::test_order_conditions'),
+        'test/integrators/methods/test_dop8.py::test_order_conditions'),
     'impulse: work without half of its own': (
         'mechanics/impulse.py', 'work = dot(turns, plus(omega, scaled(0.5, d)))',
         'work = dot(turns, omega)',

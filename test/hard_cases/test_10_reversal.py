@@ -24,7 +24,7 @@ def test_case(case):
 def test_stepped_motion_comes_back_by_symmetric_compositions():
     """N steps forward and N back by split4 return to round-off.
 
-    test/integrators/test_methods.py shows that rk4 does not.
+    test/integrators/methods/test_methods.py shows that rk4 does not.
     """
     simulation = Simulation('heavy_top', 'split4', step=0.01)
     simulation.advance(2000)

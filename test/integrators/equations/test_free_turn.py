@@ -17,7 +17,7 @@ from rigid_body_sim.integrators.equations.euler import EULER, FIXED, MOMENTS
 from rigid_body_sim.integrators.equations.free_turn import LEAST, turned_freely
 from rigid_body_sim.numerics.rotations import angle_between
 
-RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
+RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[2] / 'data'
                       / 'free_body.json').read_text())
 NOTHING = (0.0,) * 7
 # rad; a racket that has tumbled beyond forgets its start, for the state was rounded on the way

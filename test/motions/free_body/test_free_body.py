@@ -19,7 +19,7 @@ from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.scene import Scene, parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
-RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
+RECORDS = json.loads((pathlib.Path(__file__).resolve().parents[2] / 'data'
                       / 'free_body.json').read_text())
 EPSILON = np.finfo(float).eps
 

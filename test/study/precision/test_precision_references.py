@@ -18,7 +18,7 @@ from rigid_body_sim.study.precision import inputs, reference, suite
 from rigid_body_sim.study.precision.ball import Ball
 from rigid_body_sim.study.precision.taylor import Turning
 
-DATA = pathlib.Path(__file__).resolve().parent.parent / 'data'
+DATA = pathlib.Path(__file__).resolve().parent.parent.parent / 'data'
 SMOOTH = json.loads((DATA / 'smooth.json').read_text())
 BITS = 152
 

@@ -24,7 +24,7 @@ from rigid_body_sim.scene.constraints import Free
 from rigid_body_sim.scene.scene import Scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 EPSILON = np.finfo(float).eps
 # one for every form of the series, with and without the centre of mass at the origin
 MOTIONS = {'circular': ((2.0, 3.0, 4.0), (0.7, -0.4, 1.1)),

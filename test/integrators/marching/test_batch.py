@@ -25,7 +25,7 @@ from rigid_body_sim.scene.scene import parse_scene
 pytestmark = pytest.mark.skipif(
     not HAVE_NUMBA, reason='thousands of bodies take minutes without numba')
 
-REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent / 'data'
+REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent.parent / 'data'
                         / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
 OMEGA = batch_lane.SERIES + batch_lane.DIRECTIONS    # its first row

@@ -29,7 +29,7 @@ from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.simulation.simulation import Simulation
 
 IN_PYTHON = pytest.mark.without_numba
-REFERENCES = json.loads((pathlib.Path(__file__).parents[1] / 'data/plane_scenes.json').read_text())
+REFERENCES = json.loads((pathlib.Path(__file__).parents[2] / 'data/plane_scenes.json').read_text())
 ORDER, FRESH, SIZE = contact_series_step.ORDER, contact_series_step.FRESH, UNKNOWNS.size
 ROLLED, FILMED = (UNKNOWNS.part('ledger').part(name).first for name in ('rolled', 'filmed'))
 GAP, OMEGA, PLACE, U = (UNKNOWNS.part(name).first for name in ('gap', 'omega', 'place', 'u'))

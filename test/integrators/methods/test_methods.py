@@ -24,7 +24,7 @@ from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 
-TEST = pathlib.Path(__file__).resolve().parent.parent
+TEST = pathlib.Path(__file__).resolve().parent.parent.parent
 REFERENCE = json.loads((pathlib.Path(smooth_cases.__file__).parent / 'smooth.json').read_text())
 BY_STEP = ('dop8', 'rk4', 'semi_implicit_euler', 'split2', 'split4', 'split6', 'split8')
 SPLITS = ('split2', 'split4', 'split6', 'split8')

@@ -25,7 +25,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.scenes.confirm import confirm
 from rigid_body_sim.theory import rising
 
-REFERENCES = json.loads((pathlib.Path(__file__).parents[1] / 'data/convex_body.json').read_text())
+REFERENCES = json.loads((pathlib.Path(__file__).parents[2] / 'data/convex_body.json').read_text())
 FINEST = 1e-15
 G = 9.81
 BALL = '{mass: 1.0, inertia: [0.001, 0.001, 0.001], surface: {sphere: {radius: 0.05}}}'

@@ -19,7 +19,7 @@ from tops import HEAVY, ROUND, UPRIGHT, anchored, at, many
 from rigid_body_sim.motions.lagrange_top import lagrange_top as motion
 from rigid_body_sim.numerics.rotations import from_euler_zyz
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 CASES = json.loads((ROOT / 'test' / 'data' / 'lagrange_top.json').read_text())
 MOMENTS = [(name, k) for name, case in CASES.items() for k in range(len(case['states']))]
 # cases whose top's axes are not the body's: the turn into them rounds like a change of the inputs
