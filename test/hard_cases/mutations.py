@@ -19,8 +19,8 @@ MUTANTS = {
         'motions/free_body/anchor.py', 'if gap[0] < 0.0:', 'if gap[0] > 0.0:',
         'test/hard_cases/test_02_inertia.py::test_case[lamina]'),
     'free body: Euler coefficient of the wrong axis': (
-        'motions/free_body/anchor.py', '_quotient(d3 * I2, I3 * d2)',
-        '_quotient(d2 * I3, I2 * d3)',
+        'motions/free_body/anchor.py', '_quotient(to_c * b, c * to_b)',
+        '_quotient(to_b * c, b * to_c)',
         'test/hard_cases/test_02_inertia.py::test_case[lamina]'),
     'free body: next flip a half turn late': (
         'motions/free_body/free_body.py',
