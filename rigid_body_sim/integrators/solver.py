@@ -98,6 +98,7 @@ class Stepped:
         self._ledger = _Ledger(scene, wrench)
         self._departs = step is None and applies(scene, wrench)
         self._may_wind = scene.wound.constraint != scene.constraint
+        self._carried = scene.frame.path is not None
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -150,7 +151,8 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        found = None if self._departs or self._may_wind else self._bound.runner(self)
+        alone = self._departs or self._may_wind or self._carried
+        found = None if alone else self._bound.runner(self)
         if found is None:
             return self._run
         final, room = found
@@ -180,6 +182,7 @@ class Stepped:
         time = float(time)
         self._within(time, time)
         self._course.state(time, out)
+        self._check(out[np.newaxis])
 
     def states(self, times, out):
         """Fill out, shape (n, 14), with the states at n times (s).
@@ -196,6 +199,7 @@ class Stepped:
         if len(times):
             self._within(float(times.min()), float(times.max()))
             self._course.states(times, out)
+            self._check(out)
 
     def many(self, starts, times, out):
         """Fill out, shape (bodies, n, 14), with the states of many bodies at n times (s).
@@ -219,6 +223,9 @@ class Stepped:
             if failed:
                 with _naming(part.start + failed[0]):
                     raise lost(self.method, self.scene, failed[1])
+            for body in range(part.start, part.stop) if self._carried else ():
+                with _naming(body):
+                    self._check(out[body])
 
         batch = None
         if self.method.FAMILY.LANES and len(times) and not self._may_wind:
@@ -233,6 +240,12 @@ class Stepped:
             with _naming(body):
                 self.start(starts[body])._within(first, last)
         on_all_cores(side_by_side, len(starts), 4 * LANES)
+
+    def _check(self, rows):
+        """Raise if a pivot that moves has left what doubles hold: nothing is solved for it."""
+        if self._carried and not np.isfinite(rows).all():
+            beyond = ~np.isfinite(rows).all(axis=1)
+            raise lost(self.method, self.scene, rows[beyond, TIME].min())
 
     def _within(self, first, last):
         """Raise unless the times from the first to the last can be reached."""

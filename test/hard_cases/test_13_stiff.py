@@ -25,6 +25,7 @@ from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import solver as closed_forms
 from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
 
 TEST = pathlib.Path(__file__).resolve().parents[1]
@@ -248,7 +249,8 @@ def counted(monkeypatch):
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('held', 'formula'), [
-    ('free', 'exp(500*t)'), ('pivot', 'exp(20*t)'), ('free', 'exp(t^3)')])
+    ('free', 'exp(500*t)'), ('pivot', 'exp(20*t)'), ('free', 'exp(t^3)'),
+    ('pivot', 'abs(exp(50*t) - 2)')])
 def test_a_torque_that_explodes_is_given_up_after_a_thousand_steps(held, formula, monkeypatch):
     """The march may take 100,000 steps to each of the times."""
     body = scene(held, body=BODY, effects=[{'torque': {'value': [formula, 0, 0]}}],
@@ -258,6 +260,19 @@ def test_a_torque_that_explodes_is_given_up_after_a_thousand_steps(held, formula
     with pytest.raises(TooMuchWork, match='too many'):
         solver.states(np.linspace(0.0, 10.0, 65)[1:], np.empty((64, 14)))
     assert 32 < sum(made) < 5000
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('method', ['gauss16', 'taylor', 'dop8'])
+def test_a_pivot_that_leaves_what_doubles_hold_is_told(method):
+    body = scene({'pivot': {'motion': [0, 'exp(77*t)', 0]}}, body=BODY, effects=[],
+                 initial={'angular_velocity': [0.1, 0.2, 0.3]})
+    simulation = Simulation(body, method, rate=1.0)
+    assert simulation.states([9.0]).position[0, 1] == pytest.approx(math.exp(693.0))
+    with pytest.raises(NotConverged, match=r'at t = 10.0 s the state is no longer finite'):
+        simulation.advance(10)
+    with pytest.raises(NotConverged, match=r'at t = 9.5 s the state is no longer finite'):
+        ensemble(body, [body.initial.vector] * 2, [1.0, 9.5, 10.0], method)
 
 
 @pytest.mark.without_numba

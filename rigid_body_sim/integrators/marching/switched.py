@@ -30,7 +30,7 @@ from rigid_body_sim.integrators.marching.points import (
     TIME,
     VALUES,
 )
-from rigid_body_sim.integrators.marching.work import Work
+from rigid_body_sim.integrators.marching.work import Doublings, Work
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, VELOCITY
 
 LOOKS = 4                    # looks in one step, at least
@@ -144,7 +144,7 @@ class Switched:
         self._bound, equations = bound, bound.equations
         self._kernels = specialise(sides, switching=equations.switching_source(),
                                    COUNT=f'COUNT = {len(equations.modes)}\n')
-        self._stretches, self._begins, self._stalls = [], [], 0
+        self._stretches, self._begins, self._stalls, self._steps = [], [], 0, 0
         self._winds = equations.frame.hinge is not None and equations.frame.hinge.winds
         self._courses = {}
         self._enter(np.array(stepped.vector, dtype=float), None)
@@ -194,10 +194,12 @@ class Switched:
                 if self._seen > target:
                     return True
                 self._look_on()
+                self._steps += 1
             return False
 
         if not self._seen > target:
-            work = Work(f'{self._method.NAME} on {self._scene.name}', self._most, DEAR)
+            work = Work(f'{self._method.NAME} on {self._scene.name}', self._most, DEAR,
+                        made=self._steps, doublings=Doublings(target, 1))
             work.go(arrived, lambda: self._seen, target)
 
     def _sides(self, vector, modes=None):
