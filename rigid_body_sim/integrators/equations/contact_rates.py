@@ -82,6 +82,7 @@ from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, SLOW
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
     couples,
+    gap_of,
     inclination,
     is_disk,
     tangent,
@@ -169,7 +170,8 @@ def _applied(p, c, now, at, omega, v, ahead):
     """Return the Applied at an attitude, with velocities, a time `ahead` (s) of the unknowns."""
     time = c.began + now.time + ahead
     # the height is that of the attitude: the gap less r . n
-    height = (now.gap if c.mode == FLIGHT else 0.0) - dot(at.axes[2], at.r)
+    gap = gap_of(c, now.gap, at.axes[2]) if c.mode == FLIGHT else 0.0
+    height = gap - dot(at.axes[2], at.r)
     place = (c.origin[0] + now.place[0] + ahead * v[0],
              c.origin[1] + now.place[1] + ahead * v[1], height)
     if c.inclined == 0.0:
@@ -291,7 +293,8 @@ def _in_flight(c, now, at, push):
     """Return the Contact of a FLIGHT: none."""
     # a gap that shrinks no faster than rounding is that of a body that has just lifted off
     shrinks = now.u[2] + dot(at.axes[2], at.carried) < -ROUNDING * c.swift
-    normal = now.gap if shrinks else max(now.gap, 0.0)
+    gap = gap_of(c, now.gap, at.axes[2])
+    normal = gap if shrinks else max(gap, 0.0)
     return Contact(ZERO, push, scaled(1.0 / c.mass, push.force),
                    (now.u[0], now.u[1], 0.0), now.u, normal, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -428,7 +431,8 @@ def rate(p, y, k):
     gap, motion, rolling, along = 0.0, 1.0, 1.0, 0.0
     if c.mode == FLIGHT:
         contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))
-        gap = v[2] + dot(e3, at.carried)
+        gap = v[2] + dot(e3, cross(at.omega, c.middle) if c.level > 0.0 else at.carried)
+        motion = 1.0 if c.level > 0.0 else above_flat(c, e3)
     else:
         viscous, wrung, speed, film = _couples(c, at, now.time)
         push = Push(F, plus(torque, viscous), viscous, wrung)

@@ -57,6 +57,16 @@ def lies_low(p, y):
 
 
 @compiled
+def rise(p, y):
+    """Return by how much a ring that lay flat on its lowest point would be higher, m.
+
+    That is the unknown gap of a `level` flight less the gap (mechanics/contact/touch.py).
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    return c.size[0] * inclination(matrix(*now.q)[2])
+
+
+@compiled
 def jams(p, y):
     """Return whether a ring lies so low that rolling friction leaves it no motion."""
     c = load_contact(p)

@@ -407,6 +407,11 @@ def _watch(made, kind, normal, square, outline):
     made.lines.append(f'S[k - 1, {NORMAL}] = {normal}')
     if square:
         made.lines.append(f'S[max(k - 2, 0), {FRICTION}] = {square}')
+    _incline(made, kind, outline)
+
+
+def _incline(made, kind, outline):
+    """Let a pass store the series of the inclination of a ring."""
     if kind == TORUS:
         made.lines += [f'S[0, {INCLINED}] = across', f'S[k, {INCLINED}] = {outline[1].now}']
 
@@ -420,7 +425,8 @@ def flight(kind, friction):
     omega = made.put('omega', _halved(_transformed('c.inverse', gyro)))
     made.put('h', _transformed('c.inertia', omega))
     gamma, = _axes(made, q, 1)
-    r, _ = _lever(made, kind, gamma)
+    r, outline = _lever(made, kind, gamma)
+    _incline(made, kind, outline)
     # the motion of the centre of mass is a parabola
     x, y, z = (f'(v[{i}] if k == 1 else 0.5 * a[{i}] if k == 2 else 0.0)' for i in range(3))
     height = f'{z} + {made.summed(gamma, r, made.product)}'

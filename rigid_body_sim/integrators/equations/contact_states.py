@@ -16,7 +16,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     Unknowns,
 )
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
-from rigid_body_sim.mechanics.contact.touch import lever
+from rigid_body_sim.mechanics.contact.touch import gap_of, lever
 from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE, Entries
 from rigid_body_sim.numerics.rotations import matrix, multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus
@@ -54,7 +54,7 @@ def write(p, y, row, time, start, out):
     """
     c, now, arm, v = load_contact(p), load_unknowns(y), load_lever(row), load_velocity(row)
     q, spent = now.q, now.ledger
-    gap = now.gap if c.mode == FLIGHT else 0.0
+    gap = gap_of(c, now.gap, matrix(*now.q)[2]) if c.mode == FLIGHT else 0.0
     place = start[0] + now.place[0], start[1] + now.place[1], gap - arm[2]
     turn = spent.impulse
     if c.inclined != 0.0:

@@ -28,6 +28,7 @@ from rigid_body_sim.integrators.equations.contact_rest import (
     lies,
     lies_low,
     pause,
+    rise,
     rolls,
     spins,
     stays_flat,
@@ -75,8 +76,8 @@ MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
                                           'rolling', 'restitution', 'mass'))
 STARTED, ORIGIN = CONTACT.part('began').first, CONTACT.part('origin').places
 WAY = CONTACT.part('way').places
-ONSET, TURN, SINCE, RIM = (CONTACT.part(name).first
-                           for name in ('onset', 'turn', 'since', 'rim'))
+ONSET, TURN, SINCE, RIM, LEVEL = (CONTACT.part(name).first for name in (
+    'onset', 'turn', 'since', 'rim', 'level'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 Q, OMEGA, U = (UNKNOWNS.part(name).places for name in ('q', 'omega', 'u'))
 PACE = ROW.part('pace').first
@@ -234,6 +235,9 @@ class PlaneCourse:
         p[MODE], p[SWIFT] = mode, self._speed(y)
         p[CREEP] = self._creep * p[SWIFT]
         self._hold(p, y, stopped)
+        if mode == FLIGHT and lies(p, y):
+            p[LEVEL] = 1.0
+            y[GAP] += rise(p, y)
         short = AT_ONCE * self._length / p[SWIFT]
         if len(self._phases) >= MOST_PHASES and (
                 float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
@@ -449,6 +453,9 @@ class PlaneCourse:
         """
         p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
         time = self._begin + float(y[TIME])
+        if p[LEVEL] > 0.0:
+            y[GAP] -= rise(p, y)
+            p[LEVEL] = 0.0
         if why == contact_march.FAILED and self._goes_on_tipping(p, y):
             self._open(int(p[MODE]), p, y)
             return
@@ -480,7 +487,7 @@ class PlaneCourse:
                 self._events.append((time, 'lift-off', {}))
         elif why == contact_march.LET_GO:
             self._creep_off(p, y)
-        elif why == contact_march.STOPPED:
+        elif why == contact_march.STOPPED and p[MODE] != FLIGHT:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
             self._open(int(p[MODE]), p, y, stopped=not p[ONSET] + p[RIM] > 0.0)

@@ -64,8 +64,9 @@ META = 12
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
  STOPPED, HELD) = range(11)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
-the body comes down; no step is small enough; a creep has become a slip; a ring lies flat or a body
-no longer rolls; dry friction holds the rolling of a disk, or lets a body roll."""
+the body comes down; no step is small enough; a creep has become a slip; a ring lies flat, is flat
+in a flight, or a body no longer rolls; dry friction holds the rolling of a disk, or lets a body
+roll."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
 FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely

@@ -90,7 +90,7 @@ def _sample(p, w, y, S, h):
         The inclination of a ring at the end, rad. It is negative past lying flat: no rate is.
     """
     mode, mu, inclined = p[MODE], p[MU], 0.0
-    if p[KIND] == TORUS and mode != FLIGHT:
+    if p[KIND] == TORUS:
         for k in range(ORDER + 1):
             inclined = h * inclined + S[ORDER - k, INCLINED]
     ends = inclined
@@ -109,7 +109,7 @@ def _sample(p, w, y, S, h):
         grip = motion = 1.0
         if first == FRICTION:
             grip = mu * normal - math.sqrt(max(0.0, second))
-        if p[KIND] == TORUS and mode != FLIGHT:
+        if p[KIND] == TORUS:
             for k in range(ORDER + 1):
                 inclined = t * inclined + S[ORDER - k, INCLINED]
             motion = inclined - FLAT

@@ -58,6 +58,9 @@ class ContactParameters(NamedTuple):
         Above 0 while dry rolling friction holds the point of contact of a low torus where it is
         along the ring, and the torus tips (holding.py): the error that this may have, rad. The
         sign of the rolling is in `way`, as for a disk.
+    level : float
+        1 in a flight of a ring that begins flat or turns through it, else 0: the unknown gap is
+        then the one that the ring would have if it were flat, which has no kink there (touch.py).
     until : float
         Time at which what acts jumps, since the start of the course, s; infinite if never.
     began : float
@@ -89,6 +92,7 @@ class ContactParameters(NamedTuple):
     turn: float
     since: float
     rim: float
+    level: float
     until: float
     began: float
     origin: Pair

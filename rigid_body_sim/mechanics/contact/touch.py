@@ -44,6 +44,16 @@ def above_flat(c, gamma):
 
 
 @inlined
+def gap_of(c, gap, gamma):
+    """Return the gap below a body in flight from the unknown that stands for it, m.
+
+    The lowest point of a ring that turns through flat jumps to its other side, and the rate of the
+    gap with it. The gap that it would have if it were flat, with the same middle, is smooth.
+    """
+    return gap - c.size[0] * inclination(gamma) if c.level > 0.0 else gap
+
+
+@inlined
 def is_disk(c):
     """Return whether the surface is the sharp edge of a disk."""
     return c.kind == TORUS and c.size[1] == 0.0
