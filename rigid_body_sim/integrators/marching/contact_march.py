@@ -49,8 +49,8 @@ NORMAL, GRIP, FIRMNESS, JUMPS, STOPS, ROLLS = (
     layout(Watched).part(name).first for name in Watched._fields)
 NOTHING = -1    # none does
 load_omega, load_u = UNKNOWNS.part('omega').load, UNKNOWNS.part('u').load
-MODE, SWIFT, KIND, DRY = (
-    CONTACT.part(name).first for name in ('mode', 'swift', 'kind', 'rolling'))
+MODE, SWIFT, KIND, DRY, VISCOUS, FILM = (CONTACT.part(name).first for name in (
+    'mode', 'swift', 'kind', 'rolling', 'rolling_viscous', 'film'))
 
 LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
@@ -104,6 +104,7 @@ def march(p, w, phase, sizes, front, meta, target):
     y, lost = front[:LOST], front[LOST:]
     mode = p[MODE]
     watches = WATCHES if p[DRY] > 0.0 else ROLLS    # only dry friction holds a rolling
+    jams = p[KIND] == TORUS and p[DRY] + p[VISCOUS] + p[FILM] > 0.0
     rate(p, y, w[0])
     while (meta[STATUS] == RUNNING and y[TIME] <= target and meta[STEPS] < len(sizes)
            and (meta[STORED] < len(phase) or len(phase) == KEPT)):
@@ -146,7 +147,7 @@ def march(p, w, phase, sizes, front, meta, target):
         meta[COUNT] += 1.0
         stalls = mode == SLIDING and w[END, PACE] <= DYING * p[SWIFT]
         low = w[END, WATCHED + STOPS]
-        if stalls or (p[KIND] == TORUS and low < LOW and (
+        if stalls or (jams and low < LOW and (
                 took * meta[RATE] < TOO_SHORT * math.sqrt(max(low, 0.0)))):
             meta[CROWDED] += 1.0
         else:

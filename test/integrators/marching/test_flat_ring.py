@@ -134,3 +134,19 @@ def test_a_low_torus_falls_where_no_step_follows_the_friction_along_its_ring():
         # measured: 1.4e-11, by the steps at 1e-6
         assert abs(sim.ledger()['energy_residual']) < 1e-10
     assert found[0] == pytest.approx(found[1], abs=2e-6)
+
+
+@IN_SOAK
+def test_the_spin_of_a_patch_dies_below_a_ring_that_is_almost_flat():
+    """The slip dies 2e4 times as fast as the spin: a run of short steps ends with both."""
+    scene = ring('disk: {radius: 0.3}', ', spinning_friction: {radius: 0.003}', '0.3',
+                 '{table: {restitution: 0.5}}')
+    sim = Simulation(scene, 'dop8', 1e-11, horizon=1.0)
+    sim.advance(10)
+    sim.impulse(torque=[0.0039, 0.0014, 0.0208])
+    sim.advance(50)
+    assert sim.events[-1].name == 'rolling began'
+    ledger = sim.ledger()
+    # measured: 1.0e-14
+    assert abs(ledger['energy_residual']) < 1e-12
+    assert ledger['momentum_residual'] < 1e-12
