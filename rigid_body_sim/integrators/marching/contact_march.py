@@ -148,7 +148,7 @@ def march(p, w, phase, sizes, front, meta, target):
         stalls = mode == SLIDING and w[END, PACE] <= DYING * p[SWIFT]
         low = w[END, WATCHED + STOPS]
         if stalls or (jams and low < LOW and (
-                took * meta[RATE] < TOO_SHORT * math.sqrt(max(low, 0.0)))):
+                took * meta[RATE] < TOO_SHORT * math.sqrt(abs(low)))):
             meta[CROWDED] += 1.0
         else:
             meta[CROWDED] = 0.0
