@@ -158,6 +158,8 @@ def stays_flat(p, y, row, slow):
         return False
     rate, grown = hypot(now.omega[0], now.omega[1]), load_omega(row)
     if not rate > slow:
+        if c.mu == 0.0:
+            return inclination(matrix(*now.q)[2]) > LEVEL    # it falls flat at once
         # friction at one point would turn a torus about its tube, or keep the spin of a disk
         return (now.u[0] != 0.0 or now.u[1] != 0.0) and c.mu > 0.0 and (
             c.size[1] > 0.0 or c.mode != SLIDING or now.omega[2] != 0.0)

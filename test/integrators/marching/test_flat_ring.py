@@ -80,6 +80,17 @@ def test_a_flat_torus_that_is_pushed_does_not_slide_on_one_point():
 
 
 @pytest.mark.without_numba
+@pytest.mark.parametrize('shape', RINGS)
+def test_a_ring_that_counts_as_flat_lies_where_nothing_rubs(shape):
+    """It went on about one point, through the pole of a flat ring."""
+    scene = ring(shape, '', '0.0', initial='{euler_zyz: [0.3, 5e-11, 0.2]}')
+    sim = Simulation(scene, 'dop8', 1e-9)
+    sim.advance(10)
+    assert not sim.states([0.01])[0].angular_velocity.any()
+    assert abs(sim.ledger()['energy_residual']) < 1e-14
+
+
+@pytest.mark.without_numba
 @pytest.mark.filterwarnings('error')
 @pytest.mark.parametrize(('shape', 'mu', 'tilt', 'spin'), [
     ('torus: {radius: 0.3, tube: 0.15}', '0.6', 1e-9, 10.0),
