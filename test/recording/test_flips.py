@@ -14,6 +14,7 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
+from mcap.records import Metadata
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType
 from mcap.writer import Writer as TheirWriter
@@ -22,7 +23,7 @@ from soak import SOAK
 
 from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.recording.mcap.records import HEAD
+from rigid_body_sim.recording.mcap.records import HEAD, to_bytes
 from rigid_body_sim.recording.recover import recover
 
 FLIPS = 60 if SOAK else 3       # flips in each recording, whole and without its tail
@@ -159,3 +160,65 @@ def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name,
         else:           # nothing but the tail was written
             assert path.read_bytes()[:100] == flipped[:100]
     assert not bad, bad[:5]
+
+
+WRONG = b'\0', b'\xff', b'7'
+
+
+@pytest.mark.parametrize('size', [4, 8])
+@pytest.mark.parametrize('statistics', [True, False])
+@pytest.mark.parametrize('compression', list(CompressionType))
+def test_wrong_bytes_over_the_header_and_the_first_chunk_cost_no_message(
+        tmp_path, compression, statistics, size):
+    path = by_the_library(tmp_path / 'x.mcap', compression=compression,
+                          use_statistics=statistics)
+    content = path.read_bytes()
+    truth, header_end = messages_of(content, records=False), 8 + 9 + 4 + 4 + 4 + len('theirs')
+    assert (len(truth), content[header_end]) == (900, Opcode.CHUNK)
+    bad = []
+    for at in range(header_end - size + 1, header_end + 1):
+        for wrong in WRONG:
+            flipped = bytearray(content)
+            flipped[at:at + size] = wrong * size
+            path.write_bytes(flipped)
+            result, = recover(path)
+            if messages_of(path.read_bytes(), records=False) != truth or result.lost_messages:
+                bad.append((at, wrong, str(result)))
+            path.with_name('x.mcap.orig').unlink()
+    assert not bad
+
+
+def test_a_summary_without_a_checksum_that_makes_no_sense_is_written_anew(tmp_path):
+    path = by_the_library(tmp_path / 'x.mcap', enable_crcs=False)
+    content = path.read_bytes()
+    truth = messages_of(content, records=False)
+    at = content.rindex(b'std_msgs/msg/Float64') - 4    # the length of the name
+    path.write_bytes(content[:at] + b'\xfe' + content[at + 1:])
+    assert messages_of(path.read_bytes(), records=False) == []
+    result, = recover(path)
+    assert (result.changed, result.lost_messages) == (True, 0)
+    assert messages_of(path.read_bytes(), records=False) == truth
+
+
+def test_a_metadata_record_that_says_it_is_empty_is_read_by_its_content(tmp_path):
+    path = tmp_path / 'x.mcap'
+    with path.open('wb') as stream:
+        writer = TheirWriter(stream, chunk_size=300)
+        writer.start('ros2', 'theirs')
+        channel = writer.register_channel('/x', 'cdr', 0)
+        for k in range(100):
+            writer.add_message(channel, 10**18 + k, bytes(20), 10**18 + k, k)
+            if k == 50:
+                writer.add_metadata('made', {'by': 'them'})
+        writer.finish()
+    content = path.read_bytes()
+    truth = messages_of(content, records=False)
+    record = to_bytes(Metadata('made', {'by': 'them'}))
+    damaged = content.replace(record, record[:1] + bytes(8) + record[HEAD.size:])
+    assert damaged != content
+    path.write_bytes(damaged)
+    result, = recover(path)
+    mended = path.read_bytes()
+    assert messages_of(mended, records=False) == truth == messages_of(mended, records=True)
+    assert (result.lost_messages, result.certainty) == (0, 'counted')
+    assert record in mended

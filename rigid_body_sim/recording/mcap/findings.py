@@ -108,7 +108,7 @@ class Findings:
 
     def _hint_table(self):
         if self._hints is None:
-            self._hints = chunk_indexes(self._stream) if self.told else {}
+            self._hints = chunk_indexes(self._stream)
         return self._hints
 
     @property

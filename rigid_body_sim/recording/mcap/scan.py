@@ -79,7 +79,8 @@ class Scan(DamagedRecords):
             self._keep(0, end)
             self.end = self.header_end = end
             return end
-        following = end or next_record(self._bytes, begin, size, None)
+        first = min(self._hint_table(), default=size)    # a chunk begins there, whole or not
+        following = end or next_record(self._bytes, begin, first, None)
         if following == size and not self.told:
             return None                     # cut in its very head: an empty one
         self.damages.append(Damage(0, lost=0))
@@ -135,13 +136,20 @@ class Scan(DamagedRecords):
                 self._bad_descriptions = True
                 self.damages.append(Damage(0, lost=0))
                 return False
+        noted = None    # parsed before anything is kept: of a damaged record nothing is
+        if opcode == Opcode.METADATA:
+            noted = of_bytes(Metadata, content).name
+        elif opcode == Opcode.ATTACHMENT:
+            noted = attachment_index(offset, end - offset, content)
+        elif opcode in DESCRIPTIONS:
+            noted = of_bytes(DESCRIPTIONS[opcode], content)
         contents = self._keep(offset, end)
         if opcode == Opcode.METADATA:
-            contents.add_metadata(offset, end - offset, of_bytes(Metadata, content).name)
+            contents.add_metadata(offset, end - offset, noted)
         elif opcode == Opcode.ATTACHMENT:
-            contents.attachment_indexes.append(attachment_index(offset, end - offset, content))
+            contents.attachment_indexes.append(noted)
         elif opcode in DESCRIPTIONS:
-            contents.describe(opcode, content)
+            contents.note(noted)
         return True
 
     def _chunk(self, offset, end):

@@ -65,10 +65,15 @@ def read_tail(stream):
 
 
 def tail_is_whole(stream, data_end):
-    """Return whether a whole tail follows the data section, which ends at `data_end`."""
-    tail = read_tail(stream)
-    if tail is None:
+    """Return whether a whole tail follows the data section, which ends at `data_end`.
+
+    A summary without a checksum has to make sense at least.
+    """
+    try:
+        read_summary(stream)
+    except Damaged:
         return False
+    tail = read_tail(stream)
     size = os.fstat(stream.fileno()).st_size
     return data_end + _DATA_END_SIZE == (tail[0] or size - _END_SIZE)
 
@@ -141,9 +146,15 @@ def read_told(stream):
 
 
 def chunk_indexes(stream):
-    """Return the ChunkIndexes of a whole summary: offset of the chunk -> record."""
-    summary = read_tail(stream)[1]
-    reader = StreamReader(io.BytesIO(summary), skip_magic=True, emit_chunks=True)
+    """Return the ChunkIndexes of a summary: offset of the chunk -> record.
+
+    There are none where the summary is not whole. One without statistics has them, too.
+    """
+    try:
+        read_summary(stream)
+    except Damaged:
+        return {}
+    reader = StreamReader(io.BytesIO(read_tail(stream)[1]), skip_magic=True, emit_chunks=True)
     return {record.chunk_start_offset: record for record in reader.records
             if isinstance(record, ChunkIndex)}
 
