@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Metadata
 from mcap.stream_reader import StreamReader
-from mcap.writer import CompressionType
+from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as TheirWriter
 from recording.conftest import write
 from soak import SOAK
@@ -222,3 +222,33 @@ def test_a_metadata_record_that_says_it_is_empty_is_read_by_its_content(tmp_path
     assert messages_of(mended, records=False) == truth == messages_of(mended, records=True)
     assert (result.lost_messages, result.certainty) == (0, 'counted')
     assert record in mended
+
+
+def test_a_header_that_says_it_is_empty_leaves_a_file_that_is_read_from_its_first_byte(tmp_path):
+    path = by_the_library(tmp_path / 'x.mcap')
+    content = path.read_bytes()
+    truth = messages_of(content, records=False)
+    path.write_bytes(content[:9] + bytes(8) + content[17:])
+    recover(path)
+    mended = path.read_bytes()
+    assert messages_of(mended, records=False) == truth == messages_of(mended, records=True)
+
+
+def test_statistics_that_contradict_themselves_count_nothing(tmp_path):
+    path = by_the_library(tmp_path / 'x.mcap', enable_crcs=False)
+    content = path.read_bytes()
+    truth = messages_of(content, records=False)
+    at = content.rindex(HEAD.pack(Opcode.STATISTICS, 42 + 4 + 3 * 10)) + HEAD.size + 42 + 4 + 2
+    path.write_bytes(content[:at + 5] + b'\x01' + content[at + 6:])
+    result, = recover(path)
+    assert result.lost_messages == 0
+    assert messages_of(path.read_bytes(), records=False) == truth
+
+
+def test_a_chunk_that_went_with_the_header_is_not_said_to_cost_nothing(tmp_path):
+    path = by_the_library(tmp_path / 'x.mcap', index_types=IndexType.NONE)
+    content, header_end = path.read_bytes(), 8 + 9 + 4 + 4 + 4 + len('theirs')
+    path.write_bytes(content[:header_end - 8] + b'\xff' * 16 + content[header_end + 8:])
+    result, = recover(path)
+    assert result.messages < 900
+    assert (result.certainty == 'unknown' or result.messages + result.lost_messages == 900)

@@ -136,7 +136,7 @@ def record_end(source, offset, channels=None):
         good = _attachment_fits(source.read(offset + HEAD.size, min(length, _ATTACHMENT_START)),
                                 length)
     elif opcode in _PARSED:
-        good = (length <= LONGEST_PARSED and consumed(
+        good = (0 < length <= LONGEST_PARSED and consumed(
             _PARSED[opcode], source.read(offset + HEAD.size, length)) == length)
     else:               # a record of the future, or a private one
         good = chunk_end(source, offset) == 0

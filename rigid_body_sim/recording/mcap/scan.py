@@ -83,7 +83,8 @@ class Scan(DamagedRecords):
         following = end or next_record(self._bytes, begin, first, None)
         if following == size and not self.told:
             return None                     # cut in its very head: an empty one
-        self.damages.append(Damage(0, lost=0))
+        sure = bool(end or self._hint_table())    # no chunk is left out
+        self.damages.append(Damage(0 if sure else following - begin, lost=0 if sure else None))
         if has_header:
             self.header = self._bytes.read(begin, end - begin)
         self._bad_descriptions, self.end = True, following
@@ -136,20 +137,13 @@ class Scan(DamagedRecords):
                 self._bad_descriptions = True
                 self.damages.append(Damage(0, lost=0))
                 return False
-        noted = None    # parsed before anything is kept: of a damaged record nothing is
-        if opcode == Opcode.METADATA:
-            noted = of_bytes(Metadata, content).name
-        elif opcode == Opcode.ATTACHMENT:
-            noted = attachment_index(offset, end - offset, content)
-        elif opcode in DESCRIPTIONS:
-            noted = of_bytes(DESCRIPTIONS[opcode], content)
         contents = self._keep(offset, end)
         if opcode == Opcode.METADATA:
-            contents.add_metadata(offset, end - offset, noted)
+            contents.add_metadata(offset, end - offset, of_bytes(Metadata, content).name)
         elif opcode == Opcode.ATTACHMENT:
-            contents.attachment_indexes.append(noted)
+            contents.attachment_indexes.append(attachment_index(offset, end - offset, content))
         elif opcode in DESCRIPTIONS:
-            contents.note(noted)
+            contents.describe(opcode, content)
         return True
 
     def _chunk(self, offset, end):

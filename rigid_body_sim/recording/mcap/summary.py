@@ -110,6 +110,8 @@ def read_summary(stream):
                        if count}
     if not set(contents.counts) <= set(contents.channels):
         return None
+    if contents.counts and sum(contents.counts.values()) != totals.message_count:
+        return None
     return contents, sorted(places, key=lambda place: place.offset)
 
 
