@@ -17,6 +17,8 @@ import time
 from rigid_body_sim.errors import BadInput, NotConverged
 
 GOOD, CHECK_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SIGNALLED = 128
+"""An exit status above it says the number of the signal that ended a subcommand."""
 PATIENCE, LOOK = 4.0, 0.5
 """Time after which a subcommand says that it compiles, and time between its checks, s."""
 COMPILER = 'numba.core.compiler'
@@ -82,7 +84,7 @@ def interruptible(function, *arguments):
     signal.signal(signal.SIGINT, hear)
     try:
         status = function(*arguments)
-        if heard:
+        if heard or (status or 0) > SIGNALLED:    # a subcommand may answer a signal by itself
             _leave(status)
         return status
     except BaseException:

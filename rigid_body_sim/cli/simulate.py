@@ -31,15 +31,39 @@ LONGEST = 10**9
 PARTS = ('orientation', 'angular_velocity', 'position', 'velocity')
 
 
+class Asked(list):
+    """Numbers of the signals that asked to end, in their order.
+
+    They end nothing by themselves: the caller finishes its work and then looks here. Only within
+    `at_once` a signal raises KeyboardInterrupt.
+    """
+
+    def __init__(self):
+        super().__init__()
+        self._at_once = False
+
+    def hear(self, number, _):
+        """Take a signal, as its handler."""
+        self.append(number)
+        if self._at_once:
+            raise KeyboardInterrupt
+
+    @contextlib.contextmanager
+    def at_once(self):
+        """Let a signal end what runs within."""
+        self._at_once = True
+        try:
+            yield
+        finally:
+            self._at_once = False
+
+
 @contextlib.contextmanager
 def interruptible():
-    """Yield a list that gets the number of each signal that asks to end (SIGINT, SIGTERM, SIGHUP).
-
-    The signals end nothing by themselves: the caller finishes its work and then checks the list.
-    """
-    asked = []
+    """Yield an Asked, which hears SIGINT, SIGTERM and SIGHUP."""
+    asked = Asked()
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-    before = {number: signal.signal(number, lambda number, _: asked.append(number))
+    before = {number: signal.signal(number, asked.hear)
               for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
     try:
         yield asked
@@ -48,7 +72,7 @@ def interruptible():
             signal.signal(number, handler)
 
 
-def simulate(simulation, ticks, recording=None, stop=(), progress=None):
+def simulate(simulation, ticks, recording=None, stop=None, progress=None):
     """Run a simulation from tick 0 to `ticks`; return how often each event occurred, by name.
 
     Parameters
@@ -58,8 +82,8 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
     ticks : int
     recording : SimulationRecording, optional
         Gets the states at all ticks, the first one included.
-    stop : sequence
-        The run ends early when it is not empty any more.
+    stop : Asked, optional
+        The run ends early when it is not empty any more; a tick that takes long is given up.
     progress : callable, optional
         Called with the number of ticks done.
     """
@@ -68,12 +92,19 @@ def simulate(simulation, ticks, recording=None, stop=(), progress=None):
         recording.ticks(0, States(simulation.vector[np.newaxis].copy()))
     while simulation.tick < ticks and not stop:
         first, count = simulation.tick + 1, min(BLOCK, ticks - simulation.tick)
+        try:
+            with contextlib.nullcontext() if stop is None else stop.at_once():
+                if recording:
+                    states = simulation.advance_through(count)
+                else:
+                    simulation.advance(count)
+        except KeyboardInterrupt:
+            if not stop:
+                raise
+            break
         if recording:
-            states = simulation.advance_through(count)
             recording.note(simulation.events)
             recording.ticks(first, states)
-        else:
-            simulation.advance(count)
         counts.update(event.name for event in simulation.events)
         simulation.events.clear()
         simulation.forget_past()
@@ -175,7 +206,7 @@ def _simulate(options, bar):
     if asked:
         whole = f'; {options.output} is whole up to there' if recording else ''
         print(f'interrupted at t = {simulation.time:.9g} s{whole}', file=sys.stderr)
-        return 128 + asked[0]
+        return command_line.SIGNALLED + asked[0]
     return command_line.GOOD
 
 

@@ -22,7 +22,7 @@ from notices import without_notices
 
 from rigid_body_sim.analysis.resimulate import main as resimulate
 from rigid_body_sim.choice.choose import methods_for
-from rigid_body_sim.cli.simulate import main
+from rigid_body_sim.cli.simulate import interruptible, main, simulate
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
@@ -223,6 +223,21 @@ def test_a_signal_ends_it_with_a_whole_recording(tmp_path, number):
     assert np.diff(pose['log_time']).tolist() == [1_000_000] * (len(pose['log_time']) - 1)
     with rosbags.AnyReader([path]) as reader:
         assert reader.message_count == Recording(path).message_count > 4 * 5000
+
+
+def test_a_signal_ends_a_run_whose_next_ticks_take_long(monkeypatch):
+    """It was heard after 4096 ticks, which may take minutes."""
+    simulation = Simulation('tennis_racket')
+    advance = simulation.advance
+
+    def slow(ticks):
+        signal.raise_signal(signal.SIGINT)
+        advance(ticks)
+    monkeypatch.setattr(simulation, 'advance', slow)
+    with interruptible() as asked:
+        simulate(simulation, 10**6, stop=asked)
+    assert asked == [signal.SIGINT]
+    assert simulation.tick == 0
 
 
 def test_a_full_disk_loses_nothing_recorded(tmp_path):
