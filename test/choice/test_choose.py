@@ -158,3 +158,18 @@ def test_a_missing_numba_is_said_once(monkeypatch, caplog):
     [line] = [record.getMessage() for record in caplog.records]
     assert 'numba is not installed' in line and 'pip install numba' in line
     choose_module._say_what_is_slow.cache_clear()
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('effects', [
+    [{'spring': {'at': [0.1, 0, 0], 'anchor': [0, 0, 1], 'stiffness': 0}}],
+    [{'torque': {'value': ['0', '0*wx', 0]}}],
+    [{'force': {'value': ['0', 0, '-0.0*t'], 'at': [1, 2, 3]}}],
+    [{'drag': {'linear': 0.2, 'quadratic': 0}}, {'gravity': {'g': 3}}],
+    [{'drag': {'linear': [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]]}}],
+], ids=['spring', 'torque', 'force', 'no squares', 'a number times the identity'])
+def test_what_does_not_act_leaves_the_closed_form(effects):
+    scene = parse_scene(json.dumps({
+        'scene': 'x', 'body': {'mass': 2.3, 'inertia': [0.03, 0.05, 0.07]}, 'constraint': 'free',
+        'effects': effects, 'initial': {'angular_velocity': [3.1, -2.2, 5.3]}}))
+    assert choose(scene).method == 'exact'

@@ -155,8 +155,13 @@ class ShapedDrag(Effect):
     @classmethod
     def from_scene(cls, settings: dict[str, Any], body: Body, constraint: Constraint,
                    where: str) -> Effect:
-        """Return the effect of its settings in a scene file."""
-        return cls(*(_matrix(settings.get(key, 0.0), f'{where}.{key}') for key in KEYS))
+        """Return the effect of its settings in a scene file; a Drag where it acts as one."""
+        shaped = cls(*(_matrix(settings.get(key, 0.0), f'{where}.{key}') for key in KEYS))
+        squares = *shaped.quadratic, *shaped.angular_quadratic
+        if any(map(any, squares)) or not (_is_number(shaped.linear)
+                                          and _is_number(shaped.angular)):
+            return shaped
+        return Drag(shaped.linear[0][0], shaped.angular[0][0])
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and couple; zero ones are left out."""

@@ -69,7 +69,9 @@ class ExpressedTorque(Effect):
                    value[0].parameters)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
-        """Return the couple."""
+        """Return the couple; one of zero does not act."""
+        if all(one == tree.ZERO for one in self.trees):
+            return ()
         return as_written([actions.torque(self.trees, self.frame, self.parameters, frame,
                                           self.books)])
 

@@ -97,6 +97,8 @@ def torque(trees, axes, parameters, frame, books):
 def force(trees, axes, parameters, at, frame, books):
     """Return the Actings of a force by three trees at a point: force and moment, or the moment.
 
+    A force of zero does not act.
+
     Parameters
     ----------
     at : tuple of 3 floats
@@ -106,6 +108,8 @@ def force(trees, axes, parameters, at, frame, books):
     """
     arm = minus(frame.from_body(at), frame.from_body(frame.point))
     found = []
+    if all(one == tree.ZERO for one in trees):
+        return ()
     if frame.pushed:
         lines = _lines(trees, parameters, frame)
         components = ', '.join(lines.of(*trees))
