@@ -101,6 +101,10 @@ def _number(text):
 
 def parse(text, where):
     """Return the mapping that a scene text holds; BadInput with the line where it is not one."""
+    try:
+        text.encode()
+    except (AttributeError, UnicodeEncodeError):
+        raise BadInput(where, f'got {text!r:.80}', 'the text of a scene (str)') from None
     return copied(_parsed(text, where))
 
 

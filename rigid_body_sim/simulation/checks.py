@@ -4,10 +4,13 @@
 import numbers
 import operator
 
+import numpy as np
+
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.energy import NOT_FINITE, NOT_UNIT
 from rigid_body_sim.scene.state import ORIENTATION
 
+TIMES = 'times in s: a number, or a sequence of numbers'
 LAST_TICK = 2**53
 """Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
 
@@ -18,6 +21,22 @@ def refuse_no_number(name, value):
         return
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise BadInput(name, f'got {value!r}', 'a number')
+
+
+def doubles(what, values, expected):
+    """Return numbers as an array of doubles; BadInput where they are none.
+
+    `what` names them, and `expected` says what would be right.
+    """
+    try:
+        found = np.asarray(values)
+        if found.dtype.kind in 'iuf' or not found.size:
+            return np.ascontiguousarray(found, dtype=float)
+        if found.dtype.kind == 'O' and all(isinstance(one, numbers.Real) for one in found.flat):
+            return np.ascontiguousarray(found, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise BadInput(what, f'got {values!r:.80}', expected)
 
 
 def number_of_ticks(what, ticks, now):

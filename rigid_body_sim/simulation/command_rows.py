@@ -51,6 +51,8 @@ def row_of(kind: int, force, torque, frame: str) -> np.ndarray:
         whether a body can take the numbers (admission.py).
     """
     try:
+        if isinstance(force, (set, dict)) or isinstance(torque, (set, dict)):
+            raise TypeError    # in no order
         force, torque = tuple(map(float, force)), tuple(map(float, torque))
     except (TypeError, ValueError):
         raise not_three_numbers(kind, force, torque) from None

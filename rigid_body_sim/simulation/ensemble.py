@@ -14,6 +14,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
 from rigid_body_sim.scene.state import PLACES, STATE_SIZE, States
+from rigid_body_sim.simulation.checks import TIMES, doubles
 from rigid_body_sim.simulation.spans import Event
 
 BLOCK_BYTES = 2**25
@@ -129,7 +130,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
         With the number of the body and the time where a method gave up.
     """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
-    times = np.ascontiguousarray(times, dtype=float).reshape(-1)
+    times = doubles('times', times, TIMES).reshape(-1)
     scenes = _scenes(scene, overrides or {})
     starts = _starts(starts, scene, scenes)
     if not (np.isfinite(starts).all() and np.isfinite(times).all()):
@@ -202,7 +203,7 @@ def _starts(starts, scene, scenes):
         raise BadInput('starts', 'stand beside overrides of `initial`', 'give one of them')
     if not isinstance(starts, np.ndarray):
         starts = [getattr(start, 'vector', start) for start in starts]
-    starts = np.ascontiguousarray(starts, dtype=float)
+    starts = doubles('starts', starts, f'numbers (bodies, {STATE_SIZE}), or a list of State')
     if starts.ndim != 2 or starts.shape[1] != STATE_SIZE:
         raise BadInput('ensemble', f'got starts of shape {starts.shape}',
                        f'(bodies, {STATE_SIZE})')

@@ -32,7 +32,13 @@ from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Overrides, Scene, changed_scene, load_scene
 from rigid_body_sim.scene.state import STATE_SIZE, TIME, State, States
 from rigid_body_sim.simulation.admission import Given, admit, refusals, scene_refuses
-from rigid_body_sim.simulation.checks import number_of_ticks, refuse_no_number, refuse_start
+from rigid_body_sim.simulation.checks import (
+    TIMES,
+    doubles,
+    number_of_ticks,
+    refuse_no_number,
+    refuse_start,
+)
 from rigid_body_sim.simulation.command_rows import (
     HOLD,
     IMPULSE,
@@ -57,6 +63,7 @@ KEPT = (
 )
 """Attributes that a copy or a pickle takes over unchanged."""
 NOTHING_HELD = Wrench()
+STARTS = 'a State, or 14 numbers'
 
 
 class Simulation:
@@ -161,9 +168,9 @@ class Simulation:
             quaternion, more energy than a double holds. The simulation stays as it was.
             Whether the motion can be followed from there shows with the first state asked for.
         """
-        start = np.array(getattr(initial, 'vector', initial), dtype=float)
+        start = doubles('restart', getattr(initial, 'vector', initial), STARTS).copy()
         if start.shape != (STATE_SIZE,):
-            raise BadInput('restart', f'got a shape of {start.shape}', 'a State, or 14 numbers')
+            raise BadInput('restart', f'got a shape of {start.shape}', STARTS)
         start[TIME] = 0.0
         choice = self._choice_from(start) if self._chosen.rests_on_start else self.choice
         self._begin(choice, start, 0)
@@ -429,9 +436,9 @@ class Simulation:
         Raises
         ------
         BadInput
-            A time before the first one kept, or not finite.
+            What is no time or no row of times; a time before the first one kept, or not finite.
         """
-        times = np.ascontiguousarray(times, dtype=float).reshape(-1)
+        times = doubles('states', times, TIMES).reshape(-1)
         if not len(times):
             return States(np.empty((0, STATE_SIZE)))
         if len(times) == 1:    # reductions take longer than a short run

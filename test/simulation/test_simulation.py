@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
 
 EPS = np.finfo(float).eps
@@ -178,7 +179,21 @@ def test_past_is_kept_until_it_is_forgotten():
     (lambda s: s.impulse(force=(np.inf, 0, 0)), 'three finite numbers'),
     (lambda s: s.hold(torque=(1, 2)), 'three finite numbers'),
     (lambda s: s.hold(torque=(1, 2, 3), frame='moon'), "'world' or 'body'"),
-    (lambda s: s.states([np.nan]), 'finite times')])
+    (lambda s: s.hold(torque={1, 2, 3}), 'three finite numbers'),
+    (lambda s: s.states([np.nan]), 'finite times'),
+    (lambda s: s.states('12'), '^states: got .*a sequence of numbers'),
+    (lambda s: s.states(None), '^states: got .*a sequence of numbers'),
+    (lambda s: s.states([1j]), '^states: got .*a sequence of numbers'),
+    (lambda s: s.states({1.0}), '^states: got .*a sequence of numbers'),
+    (lambda s: s.states([[1.0, 2.0], [3.0]]), '^states: got .*a sequence of numbers'),
+    (lambda s: s.restart('x'), '^restart: got .*14 numbers'),
+    (lambda s: s.restart([10**400] * 14), '^restart: got .*14 numbers'),
+    (lambda s: ensemble(s.scene, times='x'), '^times: got .*a sequence of numbers'),
+    (lambda s: ensemble(s.scene, times=[1.0], starts=['x']), '^starts: got .*list of State'),
+    (lambda s: parse_scene(None), '^scene: got None; the text of a scene'),
+    (lambda s: parse_scene(b'scene: x'), '^scene: got .*; the text of a scene'),
+    (lambda s: parse_scene('\ud800'), '^scene: got .*; the text of a scene'),
+    (lambda s: Simulation(s.scene, ['rk4']), '^integrator: got .*; one of auto')])
 def test_bad_command_gets_one_line_and_changes_nothing(act, words):
     simulation = Simulation('tennis_racket')
     before = simulation.vector.copy()
