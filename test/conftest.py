@@ -89,7 +89,7 @@ def plain(shared):
 
 WITHOUT_NUMBA = pytest.StashKey()
 """Of a session: the results of the tests that ran without numba, by name."""
-IN_ONE_PROCESS = 4
+IN_ONE_PROCESS = 6
 """Files of a folder whose tests run without numba in one process: starting one takes a second."""
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""

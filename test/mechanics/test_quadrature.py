@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
@@ -235,6 +236,7 @@ def test_a_kink_of_what_acts_is_resolved_however_small_it_is():
     assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-14)    # 0
 
 
+@IN_SOAK
 @pytest.mark.without_numba
 def test_a_coarse_tolerance_that_is_fine_enough_leaves_the_ledger_as_fine_as_was_asked():
     """Slow torques: gauss16 meets 1e-11 with a tolerance of 0.1, whose own jumps are no bound."""

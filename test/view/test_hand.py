@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from soak import SOAK
+from soak import IN_SOAK
 
 from rigid_body_sim import Simulation, load_scene
 from rigid_body_sim.drawing.body import drawing_of
@@ -127,8 +127,7 @@ RARE = {'baseball_bat': {}, 'major_axis_relaxation': {},
 
 @pytest.mark.parametrize('name', [
     pytest.param(name, marks=[pytest.mark.without_numba] * (name in RARE)
-                 + [pytest.mark.skipif(not SOAK, reason='takes ten seconds: make soak')]
-                 * (name == 'kapitza_pendulum'))
+                 + [IN_SOAK] * (name in ('kapitza_pendulum', 'major_axis_relaxation')))
     for name in scene_names()])
 def test_a_pull_at_sixty_snapshots_a_second_is_taken_and_stays_bounded_in_every_scene(name):
     simulation = Simulation(name, rate=600.0, **RARE.get(name, {}))
