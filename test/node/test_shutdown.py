@@ -15,6 +15,7 @@ import time
 import pytest
 import yaml
 from notices import without_notices
+from soak import IN_SOAK
 from std_msgs.msg import Float64
 
 pytestmark = pytest.mark.usefixtures('compiled_kernels')
@@ -74,7 +75,8 @@ def interrupt_twice(process, _):
 
 @pytest.mark.parametrize(('send', 'number'),
                          [(one, signal.SIGINT), (interrupt_twice, signal.SIGINT),
-                          (one, signal.SIGTERM), (one, signal.SIGHUP)],
+                          (one, signal.SIGTERM),
+                          pytest.param(one, signal.SIGHUP, marks=IN_SOAK)],
                          ids=['SIGINT', 'SIGINT twice to the group', 'SIGTERM', 'SIGHUP'])
 def test_signal_ends_it_with_a_whole_recording(run_node, send, number):
     with run_node() as node:

@@ -60,6 +60,7 @@ def test_an_override_that_is_wrong_is_one_line():
     assert '\n' not in str(refused.value)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('take', [Simulation.copy, copy.copy, copy.deepcopy,
                                   lambda one: pickle.loads(pickle.dumps(one))],
                          ids=['method', 'copy', 'deepcopy', 'pickle'])

@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 import ros
+from soak import IN_SOAK
 
 pytest.importorskip('viser')
 
@@ -148,6 +149,7 @@ def grab(page):
     until(page, lambda: page.snapshot.wrench)
 
 
+@IN_SOAK
 def test_a_drag_ends_with_its_scene_and_lasts_through_all_else(tmp_path):
     """The wrench of a body that was dragged once went to the next body."""
     source = Live(load_scene('tippe_top').text, {'rate': 1000.0}, str(tmp_path / 'run'))
