@@ -52,7 +52,7 @@ from rigid_body_sim.integrators.marching import contact_march, contact_step, con
 from rigid_body_sim.integrators.marching.work import Work
 from rigid_body_sim.mechanics.contact.holding import way_out
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW, TIPS
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
 from rigid_body_sim.numerics.functions import hypot, hypot3, power
 from rigid_body_sim.numerics.rotations import normalised
@@ -69,7 +69,6 @@ LARGEST_CREEP = 1e-7
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-STIFF = 1e-5             # rad: error of a torus that tips where no step follows its friction
 MOST_IMPACTS = 100       # of a ring that lies flat, at a time
 MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, DRY, RESTITUTION, MASS = (
     CONTACT.part(name).first for name in ('mode', 'swift', 'creep', 'until', 'mu', 'inclined',
@@ -293,7 +292,7 @@ class PlaneCourse:
         """Return whether a torus whose friction along the ring no step follows tips only."""
         if not p[DRY] > 0.0 or not self._bound.is_torus or p[RIM] > 0.0:
             return False
-        self._error = max(self._error, STIFF)
+        self._error = max(self._error, TIPS)
         return self._tips(p, y, tipping(p, y)[0])
 
     def _begin_to_roll(self, p, y, x, z):

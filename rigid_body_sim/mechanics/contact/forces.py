@@ -17,8 +17,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     patch_system,
     sticking,
 )
-from rigid_body_sim.mechanics.contact.parameters import HELD
-from rigid_body_sim.mechanics.contact.touch import lever, response, spinning
+from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -128,7 +127,7 @@ def system_of(c, at, push):
 def patch_of(c, at, push):
     """Return the Patch of a body with a patch of contact."""
     turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque, push.wrung)
-    if c.way == HELD or c.rim > 0.0:
+    if grips(c):
         spun = spun[0] + dot(at.axes[2], at.shift), spun[1]
     return patch_system(system_of(c, at, push), turned, twisted, spun, c.patch)
 

@@ -43,12 +43,6 @@ def across_rim(gamma):
 
 
 @inlined
-def grips(c):
-    """Return whether dry friction holds the rolling of a body, or its part along a ring."""
-    return c.way == HELD or c.rim > 0.0
-
-
-@inlined
 def tips(c, at):
     """Return s_b, the velocity at which the point of contact of a torus moves about its tube."""
     gamma = at.axes[2]

@@ -10,6 +10,7 @@ FILMY = 1e-4             # rad: and where a film of air does
 FLATTER = 1e-10          # rad: and where neither does
 HELD = (0.0, 0.0)        # `way` of what does not roll
 SLOW = 1e-13             # share of the speeds below which a body does not roll
+TIPS = 1e-5              # rad: error of a low torus that tips, where no step follows its friction
 LOW = 1e-3               # rad: below it rolling friction jams a ring that no step can follow
 
 

@@ -29,7 +29,7 @@ from rigid_body_sim.mechanics.contact.laws import (
     sticking,
 )
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, TIPS
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
     couples,
@@ -44,7 +44,6 @@ from rigid_body_sim.scene.surfaces import TORUS
 
 TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
 BEGINS = 1e-7      # share of the speeds below which a rolling has no direction of its own
-TIPS = 1e-5        # rad: error of a torus that tips (contact/holding.py)
 NOTHING = (0.0, 0.0, 0.0)
 
 

@@ -10,7 +10,7 @@ couple -R |h| omega_t/|omega_t| that is usually called rolling friction.
 import math
 
 from rigid_body_sim.compilation.jit import inlined
-from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
+from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER, HELD
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 from rigid_body_sim.scene.surfaces import TINY, TORUS, lowest, shifted
 
@@ -51,6 +51,12 @@ def gap_of(c, gap, gamma):
     gap with it. The gap that it would have if it were flat, with the same middle, is smooth.
     """
     return gap - c.size[0] * inclination(gamma) if c.level > 0.0 else gap
+
+
+@inlined
+def grips(c):
+    """Return whether dry friction holds the rolling of a body, or its part along a ring."""
+    return c.way == HELD or c.rim > 0.0
 
 
 @inlined
