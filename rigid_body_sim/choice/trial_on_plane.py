@@ -11,7 +11,7 @@ import math
 
 from rigid_body_sim.choice.forecast import FINER
 from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
-from rigid_body_sim.integrators.marching.contact import CANCELS
+from rigid_body_sim.integrators.marching.contact_course import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.contact.numbers import weight
@@ -61,7 +61,8 @@ class TrialOnPlane(Trial):
     def _cancelling(self):
         """Return the finest tolerance (rad) whose finer run, NEAR of it, steps can still follow.
 
-        The rounding of forces that cancel limits the tolerance per second (marching/contact.py).
+        The rounding of forces that cancel limits the tolerance per second
+        (marching/contact_course.py).
         """
         heaviness, size = max(weight(self._scene), 1e-3), max(self._scene.body.surface.size)
         start = self._scene.initial

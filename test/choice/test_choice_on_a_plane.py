@@ -17,7 +17,7 @@ from numba_only import LONG_IN_PYTHON
 from rigid_body_sim.choice import trial_on_plane
 from rigid_body_sim.compilation import threads
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
-from rigid_body_sim.integrators.marching import contact
+from rigid_body_sim.integrators.marching import contact_course
 from rigid_body_sim.numerics.rotations import angles_between
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -91,7 +91,7 @@ def test_a_rattleback_says_until_when_an_accuracy_is_met_that_its_motion_does_no
 LONG = 'tippe_top', 'rising_egg', 'rattleback', 'tossed_coin'
 
 
-class Counting(contact.Work):
+class Counting(contact_course.Work):
     """A Work that is kept."""
 
     made: ClassVar[list] = []
@@ -103,7 +103,7 @@ class Counting(contact.Work):
 
 def choice_and_steps(name, accuracy, horizon, monkeypatch):
     """Return (tolerance of auto, steps that the choice took)."""
-    monkeypatch.setattr(contact, 'Work', Counting)
+    monkeypatch.setattr(contact_course, 'Work', Counting)
     Counting.made.clear()
     tolerance = Simulation(load_scene(name), 'auto', accuracy, horizon=horizon).choice.tolerance
     return tolerance, sum(work.done for work in Counting.made)

@@ -23,7 +23,7 @@ import numpy as np
 from rigid_body_sim.choice import forecast, trial
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.families import scipy_methods
-from rigid_body_sim.integrators.marching import contact, switched, work
+from rigid_body_sim.integrators.marching import contact_course, switched, work
 from rigid_body_sim.mechanics import events, quadrature
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -416,7 +416,7 @@ def interrupt(*_):
 def main(first, end):
     """Run the scenes of the seeds from the first to the end; return the exit status."""
     warnings.simplefilter('ignore')    # plain Python warns where compiled code makes inf
-    work.FIRST_LOOK, work.MOST, work.PATIENCE, contact.EVENT = 16, 50.0, 1e4, 4
+    work.FIRST_LOOK, work.MOST, work.PATIENCE, contact_course.EVENT = 16, 50.0, 1e4, 4
     switched.DEAR = scipy_methods.COST = work.SLOWER = 1
     quadrature.MOST, quadrature.EVENLY = 2 ** 10, 2 ** 4
     trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 20, 5, 0.5, 20

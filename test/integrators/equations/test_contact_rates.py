@@ -13,7 +13,8 @@ from rigid_body_sim.integrators.equations.contact_views import (
     ROW,
     UNKNOWNS,
 )
-from rigid_body_sim.integrators.marching.contact import MODE, SWIFT, OnPlane
+from rigid_body_sim.integrators.marching.contact import OnPlane
+from rigid_body_sim.integrators.marching.contact_phase import MODE, SWIFT
 from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.contact.touch import lever

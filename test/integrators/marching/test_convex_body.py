@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
-from rigid_body_sim.integrators.marching.contact import CHATTER
+from rigid_body_sim.integrators.marching.contact_bounce import CHATTER
 from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.scene import load_scene, parse_scene

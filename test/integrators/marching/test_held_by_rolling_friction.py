@@ -9,7 +9,8 @@ import pytest
 from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.integrators.equations.contact_views import ROLLING, ROW, SLIDING, UNKNOWNS
-from rigid_body_sim.integrators.marching.contact import MODE, SWIFT, WAY, OnPlane
+from rigid_body_sim.integrators.marching.contact import OnPlane
+from rigid_body_sim.integrators.marching.contact_rolling import MODE, SWIFT, WAY
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD

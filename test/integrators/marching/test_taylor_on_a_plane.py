@@ -20,7 +20,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     UNKNOWNS,
 )
 from rigid_body_sim.integrators.marching import contact_series_step
-from rigid_body_sim.integrators.marching.contact import MODE, SWIFT
+from rigid_body_sim.integrators.marching.contact_phase import MODE, SWIFT
 from rigid_body_sim.integrators.marching.contact_series import OnPlaneBySeries
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angles_between

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The course of a body on a plane: which phase follows an event, and the states between.
+
+The phases are in equations/contact_rates.py, the march through one is contact_phase.py's.
+"""
+
+import bisect
+import math
+
+import numpy as np
+
+from rigid_body_sim.compilation.threads import look
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
+from rigid_body_sim.integrators.equations.contact_rest import (
+    halt,
+    jams,
+    lies,
+    lies_low,
+    rise,
+    spins,
+    stays_flat,
+    tip,
+)
+from rigid_body_sim.integrators.equations.contact_states import read
+from rigid_body_sim.integrators.equations.contact_views import (
+    CREEPING,
+    FLIGHT,
+    GLIDING,
+    RESTING,
+    ROLLING,
+    ROW,
+    SLIDING,
+    UNKNOWNS,
+    WATCHED,
+)
+from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.integrators.marching.contact_bounce import CHATTER, bounce
+from rigid_body_sim.integrators.marching.contact_phase import Phase
+from rigid_body_sim.integrators.marching.contact_rolling import DryRolling, is_held
+from rigid_body_sim.integrators.marching.contact_scales import ROUNDING, Scales, length_of
+from rigid_body_sim.integrators.marching.work import Work
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, HEATS
+from rigid_body_sim.numerics.functions import hypot, hypot3
+from rigid_body_sim.scene.state import STATE_SIZE
+from rigid_body_sim.scene.state import TIME as STATE_TIME
+
+HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
+CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
+EVENT = 256              # steps that cost as much as finding one event and what follows it
+MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL = (
+    CONTACT.part(name).first for name in (
+        'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
+        'level'))
+ORIGIN = CONTACT.part('origin').places
+SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
+OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
+SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
+VELOCITY = ROW.part('velocity').places
+NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
+    'normal', 'grip', 'firmness', 'motion'))
+BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
+PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
+           'sinking into the plane; a smaller mu does not meet it')
+PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
+         'would stay on it; a finite mu lets it slip')
+SLIDES = ('at t = {} s the body lies flat and goes on sliding on its face or rim, which is not '
+          'solved: it may touch the plane at one point; more friction or a level plane lets it '
+          'rest')
+IDEAL = 1e300            # a larger mu is infinite
+ROWS = 4096              # states of one call of a kernel
+FIRST = np.array([0])    # the only row
+
+class PlaneCourse:
+    """One course from a start."""
+
+    TELLS_EVENTS = True
+
+    def __init__(self, stepped, bound):
+        self._bound, self._start = bound, np.array(stepped.vector)
+        self._begin = float(self._start[STATE_TIME])
+        self._tolerance = stepped.accuracy / stepped.horizon
+        self._work = np.zeros(bound.work_shape)
+        self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
+                           comes_to_rest=True)
+        self._phases, self._begins = [], []
+        self._events, self._over, self._why = [], None, ''
+        y = np.empty(SIZE)
+        x, yy, height = read(bound.parameters(self._begin), self._start, y)
+        self._place = x, yy
+        p = self._parameters(self._begin)
+        length = length_of(p, bound.rates, y, self._work[0])
+        self._scales = scales = Scales(length, bound.heaviness, stepped.accuracy)
+        self._rolling = DryRolling(bound, scales, stepped.accuracy)
+        slack = ROUNDING * (length + abs(height) + p[INCLINED] * hypot(x, yy))
+        if y[GAP] > slack:
+            self._open(FLIGHT, p, y)
+            return
+        rounding = scales.rounding(y)
+        tip(p, y, rounding / length)
+        ux, uy, normal = velocity_of_lowest(p, y)
+        y[GAP] = 0.0
+        if normal > rounding:
+            self._open(FLIGHT, p, y)
+        elif normal < -rounding or (p[MU] > IDEAL and hypot(ux, uy) > rounding):
+            self._impact(p, y)    # of a slip, too, that ideal rolling does not let be
+        else:
+            self._land(p, y, (ux, uy) if hypot(ux, uy) > rounding else (0.0, 0.0))
+
+    def _parameters(self, time):
+        """Return the parameters that hold just after a time (s), of this course."""
+        p = self._bound.parameters(time)
+        p[STARTED], p[ORIGIN] = self._begin, self._place
+        return p
+
+    def _open(self, mode, p, y, stopped=False):
+        """Begin a phase; `stopped` says that the body no longer rolls."""
+        time = self._begin + float(y[TIME])
+        stopped = stopped or is_held(p)
+        p = self._parameters(time)
+        k = bisect.bisect_right(self._bound.breakpoints, time)
+        later = self._bound.breakpoints[k:]
+        p[UNTIL] = later[0] - self._begin if later else math.inf
+        p[MODE], p[SWIFT] = mode, self._scales.speed(y)
+        p[CREEP] = self._scales.creep * p[SWIFT]
+        self._rolling.begin(p, y, stopped)
+        if mode == FLIGHT and lies(p, y):
+            p[LEVEL] = 1.0
+            y[GAP] += rise(p, y)
+        short = AT_ONCE * self._scales.length / p[SWIFT]
+        if len(self._phases) >= MOST_PHASES and (
+                float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
+            raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
+                               'follow each other without end')
+        # no step is asked to resolve the rounding of forces that cancel
+        tolerance = max(self._tolerance, CANCELS * self._scales.heaviness / p[SWIFT])
+        self._phases.append(Phase(self._bound, p, y, tolerance, self._work, self._scales.length))
+        self._begins.append(self._phases[-1].begin)
+
+    def _land(self, p, y, u):
+        """Begin the phase of contact with the slip u that the laws of contact say."""
+        y[U] = *u, 0.0
+        y[GAP] = 0.0
+        mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
+        slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > self._scales.rounding(y)
+        p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
+        self._rolling.begin(p, y, is_held(p))
+        rates.rate(p, y, row)
+        if not row[FIRMNESS] > 0.0:
+            self._end(y)
+            return
+        if not row[NORMAL] > 0.0:
+            self._fly(p, y)
+            return
+        if stays_flat(p, y, row, self._scales.rounding(y) / self._scales.length):
+            p[MODE] = SLIDING
+            self._rest(p, y, self._begin + float(y[TIME]))
+            return
+        mode = p[MODE]
+        held = is_held(p) and not self._bound.is_disk
+        if mode == ROLLING and (held or not (row[MOTION] > 0.0 or any(y[OMEGA]))) and (
+                rates.stays(p, y)):
+            halt(p, y)
+            self._open(RESTING, p, y)
+            return
+        if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]:
+            self._creep_off(p, y)
+            return
+        self._open(mode, p, y)
+
+    def _creep_off(self, p, y):
+        y[SLIP] = 0.0, 0.0
+        p[MODE], row = CREEPING, np.empty(ROW.size)
+        p[SWIFT] = self._scales.speed(y)
+        p[CREEP] = self._scales.creep * p[SWIFT]
+        self._rolling.begin(p, y, is_held(p))
+        self._bound.rates.rate(p, y, row)
+        if not row[FIRMNESS] > 0.0:
+            self._end(y)
+        elif not row[NORMAL] > 0.0:
+            self._fly(p, y)
+        else:
+            self._open(CREEPING, p, y)
+
+    def _fly(self, p, y):
+        """Begin a flight from a contact whose slip is in y."""
+        row = np.empty(ROW.size)
+        if p[MU] > IDEAL:
+            # without friction the body would stay: ideal rolling would need a plane that pulls
+            p[MODE] = GLIDING
+            self._bound.rates.rate(p, y, row)
+            if row[NORMAL] > 0.0:
+                self._end(y, PULLS)
+                return
+            p[MODE] = ROLLING
+        self._bound.rates.rate(p, y, row)
+        y[U], y[GAP] = row[VELOCITY], 0.0
+        self._open(FLIGHT, p, y)
+
+    def _end(self, y, why=PARADOX):
+        """End the course: no law of contact says how it goes on."""
+        self._over, self._why = float(y[TIME]), why
+        self._events.append((self._begin + self._over, 'end', {}))
+
+    def _stop(self, p, y, time):
+        """Let a body rest that lies flat or is held by friction, else let it roll on."""
+        p[RIM] = 0.0
+        if lies(p, y) or (p[MODE] == ROLLING and self._bound.rates.stays(p, y)):
+            self._rest(p, y, time)
+        else:
+            self._open(int(p[MODE]), p, y, stopped=True)
+
+    def _rest(self, p, y, time):
+        """Let a body rest, or end the course of one that lies flat and slides on."""
+        if self._bound.rates.slides_on(p, y):
+            self._end(y, SLIDES)
+            return
+        halt(p, y)
+        self._events.append((time, 'rest', {}))
+        self._open(RESTING, p, y)
+
+    def _impact(self, p, y):
+        """Let the body bounce, or land where it rebounds no more."""
+        found = bounce(p, y, self._scales)
+        self._events.append((self._begin + float(y[TIME]), 'impact', {
+            'normal_velocity': found.before, 'impulse': found.impulse}))
+        if found.impulse < -CHATTER * self._scales.speed(y) * p[MASS]:
+            self._end(y, PULLS)
+        elif found.rebounds:
+            self._open(FLIGHT, p, y)
+        else:
+            self._land(p, y, found.slip)
+
+    def _follow(self, phase):
+        """Begin the phase that follows one that has ended.
+
+        More than forty lines: each way in which a phase ends has its own sequel.
+        """
+        p, y, why = phase.p.copy(), phase.front[:SIZE].copy(), int(phase.status)
+        time = self._begin + float(y[TIME])
+        if p[LEVEL] > 0.0:
+            y[GAP] -= rise(p, y)
+            p[LEVEL] = 0.0
+        if why == contact_march.FAILED and self._rolling.goes_on_tipping(p, y):
+            self._open(int(p[MODE]), p, y)
+            return
+        if why == contact_march.FAILED and lies_low(p, y) and (
+                phase.kernels is not self._bound.kernels):
+            self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
+            return
+        if why == contact_march.FAILED and jams(p, y):
+            self._rest(p, y, time)
+            return
+        if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
+            why = contact_march.STUCK
+        if why == contact_march.FAILED:
+            raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
+                               f't = {time!r} s')
+        if why == contact_march.PARADOX:
+            self._end(y)
+            return
+        if why == contact_march.TOUCHED:
+            self._impact(p, y)
+            return
+        if why == contact_march.FASTER and y[SLIP][0] < 0.5 * p[CREEP]:
+            why = contact_march.STUCK    # the slip that began has died again
+        if why in BEGAN:
+            self._events.append((time, BEGAN[why], {}))
+        if why == contact_march.LOST_CONTACT:
+            self._fly(p, y)
+            if self._over is None:
+                self._events.append((time, 'lift-off', {}))
+        elif why == contact_march.LET_GO:
+            self._creep_off(p, y)
+        elif why == contact_march.STOPPED and p[MODE] != FLIGHT:
+            self._stop(p, y, time)
+        elif why == contact_march.HELD:
+            self._open(int(p[MODE]), p, y, stopped=not p[ONSET] + p[RIM] > 0.0)
+        elif why == contact_march.STUCK:
+            self._land(p, y, (0.0, 0.0))
+            if self._phases[-1].p[MODE] == RESTING and self._events[-1][1] != 'rest':
+                self._events.append((time, 'rest', {}))
+        elif why == contact_march.FASTER:
+            row = np.empty(ROW.size)
+            self._bound.rates.rate(p, y, row)
+            y[SLIP] = row[ROW.part('slip').places]
+            self._open(SLIDING, p, y)
+        elif why == contact_march.JUMP and p[MODE] == RESTING:
+            self._wake(y, time)
+        else:
+            self._open(int(p[MODE]), p, y)
+
+    def _wake(self, y, time):
+        """Let a body stay at rest if it is held under what acts from now on, else let it move."""
+        p = self._parameters(time)
+        p[SWIFT] = self._scales.speed(y)
+        self._land(p, y, (0.0, 0.0))
+
+    def reach(self, elapsed):
+        """March until the time since the start is passed."""
+        while self._over is None and self._phases[-1].reach(elapsed, self._steps):
+            self._steps.count(EVENT, float(self._phases[-1].front[TIME]), elapsed)
+            self._follow(self._phases[-1])
+        if self._over is not None and (elapsed > self._over or not self._phases):
+            raise NotConverged(f'{self._bound.scene.name}: '
+                               + self._why.format(repr(self._begin + self._over)))
+
+    def state(self, time, out):
+        """Fill `out` with the state at a time not before the start.
+
+        Columns from 14 on, where `out` has them, get the entries of the ledger, and after them
+        the heat by its cause (ledger.HEATS).
+        """
+        elapsed = time - self._begin
+        self.reach(elapsed)
+        phase = self._phases[bisect.bisect_right(self._begins, elapsed) - 1]
+        phase.write(self._place, self._begin, np.array([time]), FIRST, out[np.newaxis])
+
+    def entries(self, time):
+        """Return the ledger's entries from the start to a time, and the HEATS after them."""
+        row = np.empty(STATE_SIZE + ENTRIES_SIZE + len(HEATS))
+        self.state(time, row)
+        return row[STATE_SIZE:]
+
+    def states(self, times, out):
+        """Fill the rows of `out` as `state` does, for times not before the start."""
+        times = np.ascontiguousarray(times)
+        order = np.argsort(times, kind='stable')
+        elapsed, done = times[order] - self._begin, 0
+        self.reach(float(elapsed[-1]))
+        while done < len(order):
+            look()
+            k = bisect.bisect_right(self._begins, elapsed[done])
+            end = min(len(order), done + ROWS)
+            if k < len(self._begins):
+                end = min(end, int(np.searchsorted(elapsed, self._begins[k])))
+            self._phases[k - 1].write(self._place, self._begin, times, order[done:end], out)
+            done = end
+
+    def events(self, after, until):
+        """Return the (time, name, values) after one time (s) and up to another."""
+        try:
+            self.reach(until - self._begin)
+        except NotConverged:
+            if self._over is None:
+                raise
+        return [event for event in self._events if after < event[0] <= until]
+
+
+def _died(p, y):
+    """Return whether a slip has died: a step past its end reverses what is left of it.
+
+    What the laws say of a slip the other way is then no event.
+    """
+    slip = hypot3(*y[SLIP].tolist(), spins(p, y))
+    return p[MODE] == SLIDING and slip <= contact_march.DEAD * p[SWIFT]

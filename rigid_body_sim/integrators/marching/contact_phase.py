@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One phase of a body on a plane: the march from one event to the next, and its states."""
+
+import numpy as np
+
+from rigid_body_sim.integrators.equations.contact_rest import lies_low
+from rigid_body_sim.integrators.equations.contact_views import UNKNOWNS
+from rigid_body_sim.integrators.marching import contact_march
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+
+MODE, SWIFT = (CONTACT.part(name).first for name in ('mode', 'swift'))
+SIZE, TIME = UNKNOWNS.size, UNKNOWNS.part('time').first
+
+
+class Phase:
+    """One phase, from an event to the next.
+
+    Attributes
+    ----------
+    begin : float
+        Time since the start of the course, s.
+    kernels : module
+        contact_march.py as it is bound.
+    front : array
+        The last point of the march, and where the phase ended.
+    """
+
+    def __init__(self, bound, p, y, tolerance, work, length):
+        self.kernels = bound.kernels_of(int(p[MODE]), lies_low(p, y))
+        self.p, self._work = p, work
+        self.begin = float(y[TIME])
+        self._meta = np.zeros(contact_march.META)
+        self._meta[contact_march.TOLERANCE] = tolerance
+        speed = float(p[SWIFT])
+        self._meta[contact_march.SPEED], self._meta[contact_march.LENGTH] = speed, length
+        self._meta[contact_march.RATE] = speed / length
+        self.front = np.zeros(contact_march.POINT)
+        self._store, self._sizes = np.empty((8, contact_march.POINT)), np.empty(64)
+        self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
+        bound.rates.rate(p, y, work[0])
+        self.kernels.begin(p, work[0], self.front, self._meta, y)
+
+    @property
+    def status(self):
+        """Why the phase ended; RUNNING if it did not yet."""
+        return self._meta[contact_march.STATUS]
+
+    def reach(self, elapsed, work):
+        """March until the time is passed or the phase ends; return whether it ends before.
+
+        Parameters
+        ----------
+        elapsed : float
+            s.
+        work : Work
+            Bounds the steps.
+
+        Raises
+        ------
+        TooMuchWork
+        """
+        meta = self._meta
+
+        def arrived():
+            return (meta[contact_march.STATUS] != contact_march.RUNNING
+                    or self.front[TIME] > elapsed)
+
+        if arrived():
+            return self.front[TIME] <= elapsed
+
+        def follow(limit):
+            end = int(meta[contact_march.STEPS]) + limit
+            if end > len(self._sizes):
+                self._sizes = np.concatenate((self._sizes, np.empty(end)))
+            while not arrived() and meta[contact_march.STEPS] < end:
+                if meta[contact_march.STORED] == len(self._store) < contact_march.KEPT:
+                    self._store = np.concatenate((self._store, np.empty_like(self._store)))
+                self.kernels.march(self.p, self._work, self._store, self._sizes[:end],
+                                   self.front, meta, elapsed)
+            return arrived()
+
+        before, steps = work.done, int(meta[contact_march.STEPS])
+        work.go(follow, lambda: float(self.front[TIME]), elapsed)
+        # `go` leaves out the last slice, whose size depends on the clock
+        made = int(meta[contact_march.STEPS]) - steps - (work.done - before)
+        work.count(made, float(self.front[TIME]), elapsed)
+        return meta[contact_march.STATUS] != contact_march.RUNNING and self.front[TIME] <= elapsed
+
+    def write(self, start, begin, times, order, out):
+        """Fill rows of `out` with states at times that the march has passed (contact_march.py)."""
+        self.kernels.states(self.p, self._work, self._store, self._sizes, self.front, self._meta,
+                            self._cursor, self._y, start, begin, times, order, out)
