@@ -23,8 +23,8 @@ COLCON = env -u AMENT_PREFIX_PATH .venv/bin/colcon --log-base .cache/colcon/log
 COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/install
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels;
-# five processes for two cores, since many tests wait for nodes
-PYTEST = python -m pytest --numprocesses 5 --dist worksteal --timeout 300 --ignore test/test_installed.py
+# three processes for two cores, since many tests wait for nodes; each one more collects all tests
+PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 --ignore test/test_installed.py
 
 .PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-target bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean
 

@@ -89,8 +89,11 @@ def plain(shared):
 
 WITHOUT_NUMBA = pytest.StashKey()
 """Of a session: the results of the tests that ran without numba, by name."""
-IN_ONE_PROCESS = 6
-"""Files of a folder whose tests run without numba in one process: starting one takes a second."""
+IN_ONE_PROCESS = 8
+"""Files, in the order of their paths, whose tests run without numba in one process.
+
+Starting one takes a second.
+"""
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 
@@ -113,16 +116,15 @@ def pytest_pyfunc_call(pyfuncitem):
 
 
 def _without_numba(wanted):
-    """Return name -> what failed, '' if nothing, of a test and those like it in files beside its.
+    """Return name -> what failed, '' if nothing, of a test and those like it in some files.
 
     Workers share what one of them has run.
     """
-    beside = {item.nodeid: item.path for item in wanted.session.items
-              if item.path.parent == wanted.path.parent
-              and item.get_closest_marker('without_numba') is not None}
-    files = sorted(set(beside.values()))
+    plain = {item.nodeid: item.path for item in wanted.session.items
+             if item.get_closest_marker('without_numba') is not None}
+    files = sorted(set(plain.values()))
     first = files.index(wanted.path) // IN_ONE_PROCESS * IN_ONE_PROCESS
-    names = [name for name, path in beside.items()
+    names = [name for name, path in plain.items()
              if path in files[first:first + IN_ONE_PROCESS]]
     return json.loads(done_once(wanted.session.stash[SHARED], names,
                                 lambda: json.dumps(_run_without_numba(names, wanted.config))))

@@ -42,6 +42,9 @@ def test_a_sourced_ros_is_unset_and_said_in_one_line():
                 extra='shown: ; @echo nothing to say\n').stdout == 'nothing to say\n'
 
 
+TOOLS = 'chmod', 'cp', 'dirname', 'false', 'grep', 'ln', 'ls', 'mkdir', 'sed', 'sh', 'uname'
+
+
 def make_venv(folder, *versions, pythons):
     """Run make_venv.sh on a machine with a POSIX shell and the given Pythons only.
 
@@ -49,7 +52,7 @@ def make_venv(folder, *versions, pythons):
     """
     tools = folder / 'bin'
     tools.mkdir()
-    for name in ('ls', 'sed', 'sh', 'uname'):
+    for name in TOOLS:
         (tools / name).symlink_to(shutil.which(name))
     for name, script in pythons.items():
         (tools / name).write_text(f'#!/bin/sh\n{script}\n')
@@ -84,3 +87,20 @@ def test_another_python_is_found_where_python3_is_too_old(tmp_path):
     result = make_venv(tmp_path, '3.12', pythons={'python3': OLD, 'python3.12': fitting})
     assert result.returncode == 7, result.stderr
     assert made.read_text().strip().endswith('python3.12')
+
+
+@pytest.mark.parametrize('pip', [
+    '*config*) echo global.index-url=mirror;; *--target*) exit 7;;',
+    '*--target*) exit 1;;',
+    '*--target*) mkdir -p $V/uv/bin; ln -s "$(command -v false)" $V/uv/bin/uv;;'],
+    ids=['pip has a mirror', 'there is no uv', 'uv fails'])
+def test_where_uv_cannot_fetch_pip_does(tmp_path, pip):
+    made, environment = tmp_path / 'made', tmp_path / '.venv'
+    result = make_venv(tmp_path, '3.12', pythons={'python3': f"""V={environment}
+case "$*" in
+    *venv\\ --clear*) mkdir -p $V/bin $V/lib/python3.12/site-packages; cp "$0" $V/bin/python;;
+    {pip}
+    *pip\\ --disable*) echo "$*" > {made};;
+esac"""})
+    assert (result.returncode, result.stderr) == (0, '')
+    assert made.read_text().endswith('install --quiet --no-compile --no-deps -r pins\n')

@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 from numba_only import LONG_IN_PYTHON
+from soak import IN_SOAK
 
 from rigid_body_sim.choice import trial_on_plane
 from rigid_body_sim.compilation import threads
@@ -119,7 +120,7 @@ def test_a_long_horizon_asks_for_no_long_choice(name, accuracy, monkeypatch):
 
 
 @LONG_IN_PYTHON
-@pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
+@pytest.mark.parametrize('accuracy', [pytest.param(1e-3, marks=IN_SOAK), 1e-9])
 @pytest.mark.parametrize('name', LONG)
 def test_the_errors_over_a_long_time_are_those_that_were_asked_or_foretold(name, accuracy):
     times = tuple((0.78125 * np.arange(1, 65)).tolist())

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Group 13, slim and stiffly damped bodies: nothing hangs, and what is followed is right."""
 
-import functools
 import json
 import math
 import os
@@ -15,7 +14,7 @@ import time
 import numpy as np
 import pytest
 from hard_cases.stiff_scenes import scene
-from soak import IN_SOAK
+from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.compilation import threads
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
@@ -36,20 +35,22 @@ LIKE_OTHERS = 'spinning', 'skew', 'driven', 'needle'
 
 @pytest.fixture(scope='module')
 def stiff(plain):
-    return functools.partial(plain, 'hard_cases/stiff_scenes.py')
+    # only one test, of the soak, looks at the skew body
+    return plain('hard_cases/stiff_scenes.py', 'departures',
+                 *(name for name in NAMES if SOAK or name != 'skew'))
 
 
 @pytest.mark.parametrize('name', [
     pytest.param(name, marks=IN_SOAK if name in LIKE_OTHERS else ()) for name in NAMES])
 def test_auto_takes_a_method_that_keeps_the_pace_of_the_motion(stiff, name):
-    assert stiff(name)['method'] in ('gauss16', 'exact')
-    assert stiff(name)['expected'] < 1e-11
+    assert stiff[name]['method'] in ('gauss16', 'exact')
+    assert stiff[name]['expected'] < 1e-11
 
 
 def test_a_pendulum_in_tar_creeps_at_the_rate_of_torque_over_drag(stiff):
     pendulum = load_scene('kater_pendulum_from_p')
     arm = pendulum.constraint.arm(pendulum.body)
-    end = stiff('hinge')['end']
+    end = stiff['hinge']['end']
     angle, rate = 2.0 * math.atan2(end[2], end[4]), end[6]
     down = math.hypot(arm[0], arm[2])
     torque = -pendulum.body.mass * 9.81 * down * math.sin(angle - math.pi)
@@ -59,7 +60,7 @@ def test_a_pendulum_in_tar_creeps_at_the_rate_of_torque_over_drag(stiff):
 
 
 def test_an_overdamped_top_keeps_its_spin_and_its_axis_falls_as_the_sum_says(stiff):
-    _, x, y, z, w, _, _, spin, *_ = stiff('spinning')['end']
+    _, x, y, z, w, _, _, spin, *_ = stiff['spinning']['end']
     assert abs(spin - 30.0) < 1e-12
     tilt = 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
     # c r^2 theta' = M g r sin(theta), gyroscopic corrections are (I3 w3/(c r^2))^2 = 6e-11 of it
@@ -68,14 +69,14 @@ def test_an_overdamped_top_keeps_its_spin_and_its_axis_falls_as_the_sum_says(sti
 
 
 def test_a_driven_body_in_tar_turns_with_torque_over_drag(stiff):
-    omega = np.array(stiff('driven')['end'][5:8])
+    omega = np.array(stiff['driven']['end'][5:8])
     assert np.abs(omega - np.array([0.1, 0.2, 0.3]) / 1e5).max() < 1e-15
 
 
 def test_drag_slows_a_needle_as_it_slows_a_disk(stiff):
     # I1 = I2 and I3 = 0: omega1 and omega2 fall by e^(-k t/I1), the axis turns in a plane
-    omega = np.array(stiff('needle')['end'][5:8])
-    assert np.abs(omega - np.array([1.0, 2.0, 0.0]) * math.exp(-0.05)).max() < 1e-13
+    omega = np.array(stiff['needle']['end'][5:8])
+    assert np.abs(omega - np.array([1.0, 2.0, 0.0]) * math.exp(-0.0125)).max() < 1e-13
 
 
 def departing(moments, coefficient, omega):
@@ -88,7 +89,7 @@ def departing(moments, coefficient, omega):
 @pytest.mark.parametrize('name', DEPARTURES)
 def test_internal_dissipation_leaves_an_axis_at_the_right_time(stiff, name, accuracy):
     # measured at 1e-12: errors of at most 1e-14, and they are the expected ones
-    found = stiff('departures')[f'{name} {accuracy}']
+    found = stiff['departures'][f'{name} {accuracy}']
     assert found['error'] < accuracy
     assert found['rate'] < 10.0 * accuracy
     assert found['error'] < 2.0 * found['expected'] + 1e-14

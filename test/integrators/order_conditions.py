@@ -47,12 +47,18 @@ def weight(tree, A):
     return result
 
 
-def largest_defect(order, A, B):
-    """Return the largest |sum b Phi(t) - 1/gamma(t)| over the trees of an order.
+def defects(order, A, B):
+    """Yield |sum b Phi(t) - 1/gamma(t)| for each tree of an order.
 
     The arithmetic on the given doubles is exact.
     """
     A = [{j: Fraction(a) for j, a in row.items()} for row in A]
-    sums = {tree: sum(Fraction(b) * weight(tree, A)[j] for j, b in B.items())
-            for tree in trees(order)}
-    return max(abs(float(total - Fraction(1, density(tree)))) for tree, total in sums.items())
+    for tree in trees(order):
+        phi = weight(tree, A)
+        total = sum(Fraction(b) * phi[j] for j, b in B.items())
+        yield abs(float(total - Fraction(1, density(tree))))
+
+
+def largest_defect(order, A, B):
+    """Return the largest of the `defects`."""
+    return max(defects(order, A, B))

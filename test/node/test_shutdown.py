@@ -75,7 +75,7 @@ def interrupt_twice(process, _):
 
 @pytest.mark.parametrize(('send', 'number'),
                          [(one, signal.SIGINT), (interrupt_twice, signal.SIGINT),
-                          (one, signal.SIGTERM),
+                          pytest.param(one, signal.SIGTERM, marks=IN_SOAK),
                           pytest.param(one, signal.SIGHUP, marks=IN_SOAK)],
                          ids=['SIGINT', 'SIGINT twice to the group', 'SIGTERM', 'SIGHUP'])
 def test_signal_ends_it_with_a_whole_recording(run_node, send, number):

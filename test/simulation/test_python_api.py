@@ -13,6 +13,7 @@ import typing
 
 import numpy as np
 import pytest
+from soak import IN_SOAK
 
 import rigid_body_sim
 from rigid_body_sim import BadInput, Simulation, State, States, load_scene
@@ -61,9 +62,9 @@ def test_an_override_that_is_wrong_is_one_line():
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize('take', [Simulation.copy, copy.copy, copy.deepcopy,
-                                  lambda one: pickle.loads(pickle.dumps(one))],
-                         ids=['method', 'copy', 'deepcopy', 'pickle'])
+@pytest.mark.parametrize('take', [
+    Simulation.copy, copy.copy, pytest.param(copy.deepcopy, marks=IN_SOAK),
+    lambda one: pickle.loads(pickle.dumps(one))], ids=['method', 'copy', 'deepcopy', 'pickle'])
 @pytest.mark.parametrize('made', [{'scene': 'heavy_top'}, STEPPED, {'scene': 'billiard_follow'}],
                          ids=['exact', 'stepped', 'table'])
 def test_a_copy_goes_on_with_the_same_bits_and_leaves_the_original_alone(made, take):

@@ -120,23 +120,11 @@ def follow(piece, target, end, limit):
 
 
 @compiled
-def _fill(p, control, point, following, time, out):
-    """Fill `out` with the state at a time within the step from `point`."""
-    y = between(p, control, point, following, time - point[TIME])
-    write(p, time, y, out)
-
-
-@compiled
 def _within(piece, time, out):
     """Fill `out` with the state at a time within the present step of a piece."""
-    _fill(
-        piece[:CONTROL],
-        piece[CONTROL:POINT],
-        piece[POINT:FOLLOWING],
-        piece[FOLLOWING:COUNTS],
-        time,
-        out,
-    )
+    p, point = piece[:CONTROL], piece[POINT:FOLLOWING]
+    y = between(p, piece[CONTROL:POINT], point, piece[FOLLOWING:COUNTS], time - point[TIME])
+    write(p, time, y, out)
 
 
 @compiled
@@ -187,16 +175,11 @@ def states(piece, times, order, end, out):
 
     Return how many rows were filled: fewer than asked where one takes more than AT_ONCE steps.
     """
-    p, control, point, following = (
-        piece[:CONTROL],
-        piece[CONTROL:POINT],
-        piece[POINT:FOLLOWING],
-        piece[FOLLOWING:COUNTS],
-    )
+    point, following = piece[POINT:FOLLOWING], piece[FOLLOWING:COUNTS]
     for i in range(len(order)):
         k = order[i]
         within = point[TIME] <= times[k] < following[TIME]
         if not within and follow(piece, times[k], end, int(AT_ONCE)) != REACHED:
             return i
-        _fill(p, control, point, following, times[k], out[k])
+        _within(piece, times[k], out[k])
     return len(order)

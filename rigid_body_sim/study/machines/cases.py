@@ -8,10 +8,10 @@ must have the same digests: ticks in slices, other blocks of times, other number
 Durations are short and states few, so that plain Python takes minutes, not hours.
 """
 
+import functools
 import os
 import typing
 import unittest.mock
-from functools import partial
 
 import numpy as np
 
@@ -194,32 +194,33 @@ def many(name, method, bodies, threads):
     return {'states': [found.vector]}
 
 
+@functools.cache
 def cases():
     """Return the table: name -> Case."""
     table = {}
     for name in [*scene_names(), *scenes.AWKWARD]:
-        table[f'{name}: set-up'] = Case(name, partial(set_up, name))
-        table[f'{name}: choice of auto'] = Case(name, partial(chosen, name))
+        table[f'{name}: set-up'] = Case(name, functools.partial(set_up, name))
+        table[f'{name}: choice of auto'] = Case(name, functools.partial(chosen, name))
         for method in methods_for(scene_of(name)):
             if method not in EXCEPTED and (name not in scenes.AWKWARD or method in ON_AWKWARD):
-                table[f'{name} by {method}'] = Case(name, partial(states, name, method))
+                table[f'{name} by {method}'] = Case(name, functools.partial(states, name, method))
     for name in COMMANDED:
         for axes in ('body', 'world'):
-            run = partial(commanded, name, axes)
+            run = functools.partial(commanded, name, axes)
             table[f'{name} under commands in {axes} axes'] = Case(name, run)
     for name, method in BOOKED:
-        table[f'{name} by {method}: ledger'] = Case(name, partial(booked, name, method))
+        table[f'{name} by {method}: ledger'] = Case(name, functools.partial(booked, name, method))
     for name, method in STRETCHED:
         whole = f'{name} by {method}: ticks in one go'
-        table[whole] = Case(name, partial(ticks, name, method, 'in one go'))
+        table[whole] = Case(name, functools.partial(ticks, name, method, 'in one go'))
         for way in WAYS:
-            run = partial(ticks, name, method, way)
+            run = functools.partial(ticks, name, method, way)
             table[f'{name} by {method}: ticks {way}'] = Case(name, run, whole)
     for name, method in ENSEMBLES:
         for bodies in BODIES:
             first = f'{bodies} of {name} by {method}: {THREADS[0]} threads'
             for threads in THREADS:
-                run = partial(many, name, method, bodies, threads)
+                run = functools.partial(many, name, method, bodies, threads)
                 label = f'{bodies} of {name} by {method}: {threads} threads'
                 table[label] = Case(name, run, None if label == first else first)
     return table

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from data import smooth_cases
-from integrators.order_conditions import largest_defect
+from integrators.order_conditions import defects, largest_defect
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.methods import dop8
@@ -34,7 +34,7 @@ def test_order_conditions(order):
 
 
 def test_order_is_not_nine():
-    assert largest_defect(9, dop8.A, dop8.B) > 1e-5
+    assert any(defect > 1e-5 for defect in defects(9, dop8.A, dop8.B))
 
 
 @pytest.mark.parametrize(('estimate', 'order'), [(dop8.E5, 5), (dop8.E3, 3)])

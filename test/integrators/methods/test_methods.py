@@ -12,6 +12,7 @@ from data import smooth_cases
 from integrators import slopes
 from integrators.order_conditions import largest_defect
 from numba_only import LONG_IN_PYTHON
+from soak import IN_SOAK
 
 from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -138,7 +139,7 @@ def test_slope_of_the_error_is_the_order(name, measured_slopes):
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize('name', ['split4', 'split8'])
+@pytest.mark.parametrize('name', ['split4', pytest.param('split8', marks=IN_SOAK)])
 def test_reversed_motion_comes_back(name):
     scene = scene_of('asymmetric_heavy_top')
     there = state(scene, name, 2.0, step=0.01)
