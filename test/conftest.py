@@ -98,6 +98,13 @@ OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 
 
+def pytest_collection_modifyitems(items):
+    """Let a test wait for the process without numba, in which its own time limit holds."""
+    for item in items:
+        if HAVE_NUMBA and item.get_closest_marker('without_numba') is not None:
+            item.add_marker(pytest.mark.timeout(300), append=False)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem):
     """Run the tests of some files marked `without_numba` in one process that does not compile.
