@@ -28,8 +28,9 @@ expand = UNBOUND
 FLAT = UNBOUND
 
 ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
-normalise, weight_of, COUPLED, LARGE = (
-    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED, contact_step.LARGE)
+normalise, weight_of, COUPLED, LARGE, nears_flat = (
+    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED, contact_step.LARGE,
+    contact_step.nears_flat)
 FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
 KEY, TOTALS, SERIES = range(contact_step.WORK_ROWS, contact_step.WORK_ROWS + 3)
 LEFT, RIGHT = SERIES + ORDER + 1, SERIES + 2 * (ORDER + 1)
@@ -53,8 +54,11 @@ def step_from(p, w, y, lost, h):
     Returns
     -------
     float
-        0, or infinite: numbers did not stay small, or a ring would turn through the plane.
+        0, or infinite: numbers did not stay small, a ring would turn through the plane, or the
+        step may pass a kink of the gap.
     """
+    if nears_flat(p, y, h, 1.0):
+        return math.inf    # the terms of the series need not show it
     key, S = w[KEY], w[SERIES:LEFT]
     known = key[SIZE] == p[MODE] + 1.0
     for n in range(SIZE):

@@ -14,9 +14,13 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.contact_views import UNKNOWNS
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, UNKNOWNS
 from rigid_body_sim.integrators.marching import dormand_prince
-from rigid_body_sim.numerics.rotations import normalised
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.mechanics.contact.touch import inclination
+from rigid_body_sim.numerics.functions import hypot
+from rigid_body_sim.numerics.rotations import matrix, normalised
+from rigid_body_sim.scene.surfaces import TORUS
 
 rate = UNBOUND
 
@@ -39,8 +43,21 @@ COUPLED = UNKNOWNS.part('ledger').first    # unknowns that the rates depend on
 OMEGA, U, PLACE, GAP, TIME = (UNKNOWNS.part(name).first
                               for name in ('omega', 'u', 'place', 'gap', 'time'))
 load_q, store_q = UNKNOWNS.part('q').load, UNKNOWNS.part('q').store
+MODE, KIND, LEVEL = (CONTACT.part(name).first for name in ('mode', 'kind', 'level'))
+TURNS = 0.5      # share of its inclination by which a step turns a ring in flight at most
 ROUNDING = 2.0 ** -49
 LARGE = 1e30     # no unknown of a step that is short enough: powers of larger ones overflow
+
+
+@compiled_inline
+def nears_flat(p, y, h, share):
+    """Return whether a ring in flight may turn by a share of its inclination in a step h from y.
+
+    Where it almost turns through flat, the rate of its gap almost jumps. The gap of a `level`
+    flight does not (mechanics/contact/touch.py).
+    """
+    return p[MODE] == FLIGHT and p[KIND] == TORUS and p[LEVEL] == 0.0 and (
+        h * hypot(y[OMEGA], y[OMEGA + 1]) > share * inclination(matrix(*load_q(y))[2]))
 
 
 @compiled
@@ -50,8 +67,10 @@ def step_from(p, w, y, lost, h):
     Returns
     -------
     float
-        0 if the numbers stayed small, else infinite.
+        0, or infinite: numbers did not stay small, or the step may pass a kink of the gap.
     """
+    if nears_flat(p, y, h, TURNS):
+        return math.inf    # no stage need show where the lowest point of a ring jumps
     for i in range(1, STAGES):
         _stage(w, y, h, i)
         for n in range(COUPLED):
