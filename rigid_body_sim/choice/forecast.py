@@ -90,7 +90,7 @@ def looks(time):
     return time * (np.arange(1, LOOKS + 1) / LOOKS)
 
 
-def run(scene, prototype, vector, times):
+def run(scene, prototype, vector, times, allowances=None):
     """Return the states at rising times (s), shape (n, 14), with the strikes of the scene.
 
     They are NaN where the run did not converge.
@@ -100,11 +100,18 @@ def run(scene, prototype, vector, times):
     prototype : Solver
     vector : array (14,)
         The start.
+    allowances : list, optional
+        What solvers have allowed themselves (Solver.allowance) is appended to it.
 
     Raises
     ------
     TooMuchWork
     """
+    def allowed(solver, until):
+        found = solver.allowance(until)
+        if found and allowances is not None:
+            allowances.append(found)
+
     out = np.full((len(times), STATE_SIZE), math.nan)
     try:
         solver, first = prototype.start(vector), 0
@@ -113,8 +120,11 @@ def run(scene, prototype, vector, times):
                 break
             last = int(np.searchsorted(times, strike.time))
             solver.states(times[first:last], out[first:last])
-            solver, first = prototype.start(_struck(scene, strike, solver)), last
+            struck, first = prototype.start(_struck(scene, strike, solver)), last
+            allowed(solver, strike.time)
+            solver = struck
         solver.states(times[first:], out[first:])
+        allowed(solver, float(times[-1]))
     except TooMuchWork:
         raise
     except NotConverged:

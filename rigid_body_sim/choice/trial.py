@@ -65,6 +65,7 @@ class Trial:
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._runs, self._patience = promised, {}, patience
         self._beyond = {}    # what a run that took too much work said
+        self._allowed = []    # (tolerance, error, since): what runs allowed themselves
         self._flies = _flies(scene)
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
@@ -171,6 +172,9 @@ class Trial:
         if float(errors.max()) < MAGNIFIED:
             errors = np.maximum(errors, forecast.lost(
                 self._scene, self.prototype.at(finer, self._most), times, self._states(finer)))
+        for one, error, since in self._allowed:
+            if one in (tolerance, finer):    # both allow it themselves, and do not differ by it
+                errors = np.maximum(errors, np.where(times >= since, error, 0.0))
         return forecast.forecast(errors, times, accuracy, horizon)
 
     def _grid(self, tolerance):
@@ -192,8 +196,11 @@ class Trial:
 
     def _run(self, tolerance, most):
         """Return the states of a run that takes at most so many steps."""
-        return forecast.run(self._scene, self.prototype.at(tolerance, most),
-                            self._scene.initial.vector, self._times)
+        found = []
+        states = forecast.run(self._scene, self.prototype.at(tolerance, most),
+                              self._scene.initial.vector, self._times, found)
+        self._allowed += [(tolerance, *one) for one in found]
+        return states
 
     def _reference(self, tolerance):
         """Return the tolerance of a finer run, or None if none is within the work."""

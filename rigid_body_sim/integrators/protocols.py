@@ -75,6 +75,15 @@ class Solver(Protocol):
         mechanics/ledger.py has their layout: work (J), heat (J), angular impulse (N m s, world).
         """
 
+    def allowance(self, until: float) -> tuple[float, float] | None:
+        """Return the error that the solver has allowed itself beyond its accuracy, or None.
+
+        Returns
+        -------
+        (float, float) or None
+            Error of the attitude, rad, and the time from which on, s, not after `until`.
+        """
+
     def events(self, after: float, until: float, tick: float = 0.0) -> list[Event]:
         """Return what happens after one time and not later than another, in order.
 

@@ -275,6 +275,11 @@ class Stepped:
                                     unbounded(self.scene))
         return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
+    def allowance(self, until):
+        """Return (error, since) as Solver.allowance does (protocols.py): on a plane only."""
+        on_plane = self.scene.constraint.mechanism is Mechanism.PLANE
+        return self._course.allowance(until) if on_plane else None
+
     def entries(self, time):
         """Return the ledger's entries from the start to a time, shape (5,), longer on a plane.
 

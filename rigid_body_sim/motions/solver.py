@@ -157,6 +157,9 @@ class Exact:
         if len(times) and len(starts) and times.min() < starts[:, TIME].max():
             _refuse_beyond(out.reshape(-1, out.shape[-1]))
 
+    def allowance(self, until):
+        """Return None: a closed form allows itself no error (integrators/protocols.py)."""
+
     def entries(self, time):
         """Return the ledger's entries from anchor to time, shape (5,) (mechanics/ledger.py)."""
         out = np.zeros(ENTRIES_SIZE)

@@ -20,6 +20,7 @@ import typing
 import numpy as np
 
 from rigid_body_sim.choice.choose import HORIZON, choose, methods_for
+from rigid_body_sim.choice.forecast import missed
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
@@ -345,18 +346,32 @@ class Simulation:
         what it does to the motion. `choice.expected_error` is that of the scene. Trial runs tell
         it when it is first asked for: of a method that was named, too.
         """
-        return self.choice.expected_error if self.departed is None else None
+        if self.departed is not None:
+            return None
+        error, allowed = self.choice.expected_error, self._allowed
+        return max(error or 0.0, allowed[0]) if allowed else error
+
+    @property
+    def _allowed(self):
+        """The (error, since) that the first solver has allowed itself so far, or None.
+
+        integrators/protocols.py: Solver.allowance.
+        """
+        ends = [span.time for span in self._spans[1:]]
+        found = (span.solver.allowance(end)
+                 for span, end in zip(self._spans, [*ends, self.time], strict=True))
+        return next(filter(None, found), None)
 
     @property
     def missed(self) -> str | None:
         """One line that says that the accuracy asked is missed and until when it is met; or None.
 
-        After a command it says what was missed before.
+        After a command it says what was missed before, or what the run itself tells.
         """
-        line = self.choice.missed
-        if line is None or self.departed is None or self.choice.met_until < self.departed:
+        line, allowed = self.choice.missed, self._allowed
+        if line and (self.departed is None or self.choice.met_until < self.departed):
             return line
-        return None
+        return missed(self.choice.accuracy, self.choice.horizon, *allowed) if allowed else None
 
     def advance(self, ticks: int = 1) -> None:
         """Go on by a number of ticks; events on the way are appended to `events`.

@@ -14,7 +14,6 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
 from rigid_body_sim.integrators.equations.contact_rest import (
     halt,
-    jams,
     lies,
     lies_low,
     rise,
@@ -250,7 +249,7 @@ class PlaneCourse:
                 phase.kernels is not self._bound.kernels):
             self._open(int(p[MODE]), p, y)    # the series of a ring that is almost flat has a pole
             return
-        if why == contact_march.FAILED and jams(p, y):
+        if why == contact_march.FAILED and self._rolling.jams(p, y):
             self._rest(p, y, time)
             return
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
@@ -338,6 +337,12 @@ class PlaneCourse:
                 end = min(end, int(np.searchsorted(elapsed, self._begins[k])))
             self._phases[k - 1].write(self._place, self._begin, times, order[done:end], out)
             done = end
+
+    def allowance(self, until):
+        """Return (error, since) as Solver.allowance does, of a ring that lies low; else None."""
+        error, elapsed = self._rolling.allowed
+        since = self._begin + elapsed
+        return (error, since) if since <= until else None
 
     def events(self, after, until):
         """Return the (time, name, values) after one time (s) and up to another."""

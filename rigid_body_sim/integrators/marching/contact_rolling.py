@@ -8,6 +8,7 @@ import numpy as np
 from rigid_body_sim.integrators.equations.contact_rest import (
     about_tube,
     grows,
+    jams,
     lies,
     pause,
     rolls,
@@ -24,7 +25,8 @@ from rigid_body_sim.integrators.equations.contact_views import (
 from rigid_body_sim.integrators.marching.contact_scales import ROUNDING
 from rigid_body_sim.mechanics.contact.holding import way_out
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW, TIPS
-from rigid_body_sim.numerics.rotations import normalised
+from rigid_body_sim.mechanics.contact.touch import inclination
+from rigid_body_sim.numerics.rotations import matrix, normalised
 
 SHORT = 1e-6             # time of a difference, over that in which a body moves by its length
 MODE, SWIFT, DRY, ONSET, TURN, SINCE, RIM = (CONTACT.part(name).first for name in (
@@ -45,11 +47,18 @@ class DryRolling:
     scales : contact_scales.Scales
     error : float
         What a direction of rolling may err by.
+
+    Attributes
+    ----------
+    allowed : tuple of 2 floats
+        Error beyond that which it allows itself, rad, and the time of the unknowns from which on,
+        s; infinite if never.
     """
 
     def __init__(self, bound, scales, error):
         self._rates, self._scales, self._error = bound.rates, scales, error
         self._is_disk, self._is_torus = bound.is_disk, bound.is_torus
+        self.allowed = 0.0, math.inf
 
     def begin(self, p, y, stopped):
         """Note whether dry rolling friction holds the body from here on, or which way it rolls.
@@ -96,8 +105,24 @@ class DryRolling:
         """Return whether a torus whose friction along the ring no step follows tips only."""
         if not p[DRY] > 0.0 or not self._is_torus or p[RIM] > 0.0:
             return False
-        self._error = max(self._error, TIPS)
+        if self._error < TIPS:
+            self._error = TIPS
+            self._allow(TIPS, y)
         return self._tips(p, y, tipping(p, y)[0])
+
+    def jams(self, p, y):
+        """Return whether a ring lies so low that rolling friction leaves it no motion.
+
+        It errs by its inclination from here on, since it would come to lie flat.
+        """
+        if not jams(p, y):
+            return False
+        self._allow(inclination(matrix(*y[Q].tolist())[2]), y)
+        return True
+
+    def _allow(self, error, y):
+        before, since = self.allowed
+        self.allowed = max(error, before), min(float(y[TIME]), since)
 
     def _begin_to_roll(self, p, y, x, z):
         """Set the way in which a body begins to roll that a force (x, z) would hold.
