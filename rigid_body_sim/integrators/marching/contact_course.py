@@ -49,10 +49,10 @@ HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL = (
+MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, VISCOUS, FILM = (
     CONTACT.part(name).first for name in (
         'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
-        'level'))
+        'level', 'rolling_viscous', 'film'))
 ORIGIN = CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
@@ -65,6 +65,9 @@ PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
+LIFTS = ('at t = {} s viscous rolling friction or a film of air lifts the body, which falls back '
+         'at once without it: its couple does not fall with the load; that of dry rolling '
+         'friction does')
 SLIDES = ('at t = {} s the body lies flat and goes on sliding on its face or rim, which is not '
           'solved: it may touch the plane at one point; more friction or a level plane lets it '
           'rest')
@@ -194,9 +197,23 @@ class PlaneCourse:
                 self._end(y, PULLS)
                 return
             p[MODE] = ROLLING
+        if self._is_lifted(p, y):
+            self._end(y, LIFTS)
+            return
         self._bound.rates.rate(p, y, row)
         y[U], y[GAP] = row[VELOCITY], 0.0
         self._open(FLIGHT, p, y)
+
+    def _is_lifted(self, p, y):
+        """Return whether rolling friction lifts a body that has just fallen back without it."""
+        last = self._phases[-1] if self._phases else None
+        if not p[VISCOUS] + p[FILM] > 0.0 or last is None or last.p[MODE] != FLIGHT or (
+                y[TIME] - last.begin > AT_ONCE * self._scales.length / last.p[SWIFT]):
+            return False
+        alone, row = p.copy(), np.empty(ROW.size)
+        alone[VISCOUS], alone[FILM] = 0.0, 0.0
+        self._bound.rates.rate(alone, y, row)
+        return row[NORMAL] > 0.0
 
     def _end(self, y, why=PARADOX):
         """End the course: no law of contact says how it goes on."""

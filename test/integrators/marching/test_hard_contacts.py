@@ -330,3 +330,27 @@ def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     assert '\n' not in str(error.value)
     assert sim.time == 0.009    # what can be said is kept
     assert np.isfinite(sim.vector).all()
+
+
+@pytest.mark.without_numba
+def test_a_body_that_viscous_rolling_friction_lifts_ends_the_run_in_one_line():
+    """N vanishes under a couple that does not: the body left and came back without end."""
+    scene = parse_scene("""
+scene: lifted
+body:
+  mass: 0.01
+  inertia: [2.7e-4, 3.15e-4, 3.6e-4]
+  center_of_mass: [-0.0733, 0.0823, -0.0209]
+  surface: {sphere: {radius: 0.3}}
+constraint: {table: {normal: [0, 0.6, 0.8]}}
+effects: [gravity: {g: 9.81}, sliding_friction: {mu: 0.6}, rolling_friction: {viscous: 0.001}]
+initial:
+  orientation: [-0.618138779940398, -0.531468910521077, -0.274728697712324, -0.509871933466263]
+  velocity: [0.792620801608891, 2.71581061988097, -2.03685796491073]
+  angular_velocity: [-0.783245452759793, -5.21900664290315, -10.670457455845]
+""")
+    sim = Simulation(scene, 'dop8', 1e-9, horizon=1.0)
+    sim.states([0.007])
+    with pytest.raises(NotConverged, match=r'at t = 0\.0074728889\d* s viscous rolling friction '
+                                           r'or a film of air lifts the body'):
+        sim.states([0.01])
