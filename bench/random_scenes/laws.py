@@ -157,7 +157,9 @@ class Laws:
             elif name == 'gravity_gradient':
                 n, share = _away(one, t, w)
                 n = back(q, n)
-                G = share * cross(n, times(held.about_center, n))
+                tensor = held.about_center    # less a sphere, which adds terms that cancel
+                sphere = tensor[:, :1, :1] * np.eye(3, dtype=WIDE)
+                G = share * cross(n, times(tensor - sphere, n))
                 torque, pulled = torque + G, pulled + ('mu' in one) * G
             elif name == 'rotor':
                 torque = torque + _rotor(one, w, t)

@@ -2,7 +2,8 @@
 """Bodies whose moments differ too little to matter: they are taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
-that lie within NEARLY of each other: both of a pair become their mean I. What that leaves out of
+that lie within NEARLY of each other: both of a pair become their mean I. Moments of one double may
+differ by what the parallel-axis theorem lost. What that leaves out of
 Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third axis k, in cyclic order, is
 
     omega_i' by -d/(2 I) (omega_i' + omega_j omega_k),
@@ -53,8 +54,15 @@ class Nearly(NamedTuple):
     error: float
 
 
+def differ(scene, equal):
+    """Return whether moments that turn the body differ where `equal` has one double for them."""
+    return scene.constraint.axis is None and any(
+        difference != 0.0 and equal[(k + 1) % 3] == equal[(k + 2) % 3]
+        for k, difference in enumerate(scene.constraint.inertia(scene.body).differences))
+
+
 def nearly_absorbing(scene, horizon):
-    """Return the Nearly of a scene that no motion absorbs, or None.
+    """Return the Nearly of a scene with moments that nearly agree, or None.
 
     None also where the body turns too often in the horizon for the error to be summed up.
 
@@ -64,9 +72,8 @@ def nearly_absorbing(scene, horizon):
     horizon : float
         s.
     """
-    moments = scene.constraint.inertia(scene.body).moments
-    equal = _made_equal(moments)
-    if equal == moments:
+    equal = _made_equal(scene.constraint.inertia(scene.body).moments)
+    if not differ(scene, equal):
         return None
     symmetric = _with_moments(scene, equal)
     motion = absorbing_motion(symmetric)
@@ -93,7 +100,7 @@ def _error(solver, scene, equal, horizon, each):
     w = apply(transposed(axes), looks[:, ANGULAR_VELOCITY].T)
     sums = [(w[(k + 1) % 3] * w[(k + 2) % 3]).reshape(STRETCHES, each).cumsum(axis=1)[:, -1] * step
             for k in range(3)]
-    kicks = _kicks(scene.constraint.inertia(scene.body).moments, equal, rises, sums)
+    kicks = _kicks(scene.constraint.inertia(scene.body), equal, rises, sums)
     size = np.abs(kicks).max()
     if not size > 0.0:
         return 0.0
@@ -108,18 +115,18 @@ def _error(solver, scene, equal, horizon, each):
     return float(TWICE * np.sqrt((changes * changes).sum(axis=1)).max() / larger)
 
 
-def _kicks(moments, equal, rises, sums):
+def _kicks(inertia, equal, rises, sums):
     """Return the kicks about the principal axes, shape (3, STRETCHES), rad/s."""
     kicks = np.zeros((3, STRETCHES))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        d, I = moments[i] - moments[j], equal[i]
+        d, I = inertia.differences[k], equal[i]
         if equal[i] != equal[j] or I == 0.0:
             continue
         kicks[i] -= 0.5 * d / I * (rises[i] + sums[i])
         kicks[j] += 0.5 * d / I * (rises[j] - sums[j])
-        if moments[k] > 0.0:
-            kicks[k] += d / moments[k] * sums[k]
+        if inertia.moments[k] > 0.0:
+            kicks[k] += d / inertia.moments[k] * sums[k]
     return kicks
 
 
@@ -150,7 +157,7 @@ def _made_equal(moments):
 def _with_moments(scene, equal):
     """Return the scene with other moments about the point that its constraint holds."""
     inertia, body = scene.constraint.inertia(scene.body), scene.body
-    changed = dataclasses.replace(inertia, moments=equal)
+    changed = dataclasses.replace(inertia, moments=equal, lost=(0.0, 0.0, 0.0))
     changes = {name: changed for name in ('about_center', 'about_origin')
                if getattr(body, name) == inertia}
     return dataclasses.replace(scene, body=dataclasses.replace(body, **changes))

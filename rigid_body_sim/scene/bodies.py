@@ -5,6 +5,7 @@ Symbols: M mass (kg), I1, I2, I3 principal moments (kg m^2).
 """
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property, reduce
 from operator import add
 
@@ -32,10 +33,15 @@ SMALLEST_MASS = 1e-75     # kg
 
 @dataclass(frozen=True)
 class Inertia:
-    """An inertia tensor: principal moments (kg m^2) and the turn from principal to body axes."""
+    """An inertia tensor: principal moments (kg m^2) and the turn from principal to body axes.
+
+    `lost` (kg m^2) is what the sums of the parallel-axis theorem are more than the moments, which
+    are doubles. In a slim body, whose large moments nearly agree, it counts.
+    """
 
     moments: tuple
     axes: tuple = IDENTITY
+    lost: tuple = (0.0, 0.0, 0.0)
 
     @classmethod
     def of_matrix(cls, matrix):
@@ -49,6 +55,12 @@ class Inertia:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
         moments, axes = nearest_where_equal(*nearest_to_the_body(*eigenvectors(matrix.tolist())))
         return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))))
+
+    @property
+    def differences(self):
+        """I2 - I3, I3 - I1 and I1 - I2 with what rounding lost, kg m^2."""
+        (I1, I2, I3), (d1, d2, d3) = self.moments, self.lost
+        return (I2 - I3) + (d2 - d3), (I3 - I1) + (d3 - d1), (I1 - I2) + (d1 - d2)
 
     @cached_property
     def matrix(self):
@@ -98,7 +110,21 @@ def moved(inertia, M, shift, sign):
     if sign > 0.0 and min(found.moments) < 0.0:
         least = max(0.0, min(inertia.moments))
         return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
+    if inertia.axes == found.axes == IDENTITY:
+        return replace(found, lost=_lost(inertia, found, M, shift, sign))
     return found
+
+
+def _lost(inertia, found, M, shift, sign):
+    """Return what the rounded sums of diagonal tensors lost, kg m^2."""
+    if not np.isfinite(found.moments).all():
+        return 0.0, 0.0, 0.0
+    x, y, z = (Fraction(float(part)) ** 2 for part in shift)
+    return tuple(float(Fraction(moment) + Fraction(less) + Fraction(sign * M) * square
+                       - Fraction(now))
+                 for moment, less, square, now in zip(
+                     inertia.moments, inertia.lost, (y + z, z + x, x + y), found.moments,
+                     strict=True))
 
 
 def _of_point(d):

@@ -45,6 +45,8 @@ class Frame:
     moments : tuple of 3 floats
         Principal moments about the reference point, kg m^2. For a body on an axis they are about
         the centre of mass, and only the moment about the axis counts.
+    differences : tuple of 3 floats
+        I2 - I3, I3 - I1 and I1 - I2 of these moments before they were rounded, kg m^2.
     axes : tuple of 4 floats
         Quaternion that turns frame components into body components.
     point : tuple of 3 floats
@@ -60,6 +62,7 @@ class Frame:
     moves: bool
     mass: float
     moments: tuple[float, float, float]
+    differences: tuple[float, float, float]
     axes: tuple[float, float, float, float]
     point: tuple[float, float, float]
     arm: tuple[float, float, float]

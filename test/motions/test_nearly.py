@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tops whose moments differ in the last digits: taken as symmetric, with a known error."""
 
+import json
+import math
 import pathlib
 import sys
 
 import pytest
 from mpmath import mpf
+from near import near
 
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.motions.nearly import nearly_absorbing
 from rigid_body_sim.numerics.rotations import angle_between
-from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'data'))
@@ -57,6 +61,29 @@ def test_the_expected_error_knows_what_is_left_out(start, difference):
     floor = 1e-14
     # measured: 2.0 to 2.6 times
     assert found <= simulation.choice.expected_error <= 6.0 * found + floor
+
+
+def rounded_needle():
+    """Return a needle whose two large moments are one double at the pivot, but not exactly."""
+    return parse_scene(json.dumps({
+        'scene': 'needle', 'constraint': 'pivot', 'effects': [{'gravity': {'g': 1.0}}],
+        'body': {'mass': 0.5, 'inertia': [0.037, math.nextafter(0.037, 1.0), 3.7e-8],
+                 'center_of_mass': [0, 0, 0.25]},
+        'initial': {'orientation': [0.1, 0.5, -0.2, 0.8], 'angular_velocity': [3, -2, 1]}}))
+
+
+@pytest.mark.without_numba
+def test_what_the_parallel_axis_theorem_rounds_away_counts_for_a_needle():
+    """I1 - I2 = 7e-18 kg m^2 spins it about an axis of 4e-8: it turns by w1 w2 t^2/2 times that."""
+    scene, horizon = rounded_needle(), 5.0
+    I1, I2, I3 = scene.body.about_origin.moments
+    assert I1 == I2 and scene.body.about_origin.differences[2] == near(-2.0 ** -57, 1e-9)
+    choice = choose(scene, 'exact', accuracy=1e-6, horizon=horizon)
+    # measured: 2.5e-9 by 64-bit mantissas
+    assert 1e-9 < choice.expected_error < 1e-8
+    assert choose(scene, accuracy=1e-6, horizon=horizon).method == 'exact'
+    # too long for the sum of what is left out: nobody knows
+    assert choose(scene, 'exact', horizon=1e5).expected_error == math.inf
 
 
 @pytest.mark.parametrize(('difference', 'accuracy'), [(1e-13, 1e-12), (1e-10, 1e-9), (1e-6, 1e-2)])

@@ -3,6 +3,7 @@
 
 import itertools
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -53,6 +54,22 @@ def test_about_a_far_point_no_moment_is_below_the_least_about_the_centre(shift):
     about = bodies.moved(body.about_center, body.mass, shift, 1.0)
     assert min(about.moments) >= 0.0013
     assert bodies.make_body(1.3, (0.7, 0.0013, 0.7), shift).about_origin.moments == about.moments
+
+
+@pytest.mark.parametrize('about', ['center_of_mass', 'origin'])
+def test_differences_of_moments_that_were_moved_are_those_before_rounding(about):
+    """A needle's two large moments agree in nine digits, and its small one divides the rest."""
+    M, center = 0.5, (0.0, 0.0, 0.25)
+    given = 0.037, 0.037 * (1.0 + 1e-9), 0.037 * 3e-6
+    body = bodies.make_body(M, given, center, about)
+    sign, inertia = ((1, body.about_origin) if about == 'center_of_mass'
+                     else (-1, body.about_center))
+    more = sign * Fraction(M) * Fraction(center[2]) ** 2
+    I1, I2, I3 = Fraction(given[0]) + more, Fraction(given[1]) + more, Fraction(given[2])
+    assert inertia.differences == near((I2 - I3, I3 - I1, I1 - I2), 4e-16)
+    if about == 'center_of_mass':
+        I1, I2, I3 = inertia.moments
+        assert abs(inertia.differences[2] - (I1 - I2)) > 1e-8 * abs(I1 - I2)    # doubles lose that
 
 
 def test_flat_shapes_have_perpendicular_axes():

@@ -166,12 +166,12 @@ class Equations:
     def _constants(self):
         """Return the fixed parameters, without those that a start decides."""
         frame, hinge = self.frame, self.on_hinge
-        I1, I2, I3 = moments = (0.0, 0.0, 0.0) if hinge else frame.moments
+        moments = (0.0, 0.0, 0.0) if hinge else frame.moments
         inverse = [1.0 / moment if moment > 0.0 else 0.0 for moment in moments]
         if hinge:
             inverse[0] = 1.0 / self._body.hinge_moment
         share = [difference / moment if moment > 0.0 else 0.0 for difference, moment in zip(
-            (I2 - I3, I3 - I1, I1 - I2), moments, strict=True)]
+            frame.differences, moments, strict=True)]
         fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
         euler.EQUATION.store(fixed, euler.EquationParameters(
             scene=self._body, euler=share, inverse=inverse,

@@ -128,7 +128,7 @@ def rotation_parameters(inertia):
     BadInput
         A moment that is not zero but so small beside the others that its square would underflow.
     """
-    bits = struct.pack('7d', *inertia.moments, *inertia.axes)
+    bits = struct.pack('10d', *inertia.moments, *inertia.axes, *inertia.lost)
     return _numbers(inertia, bits).copy()
 
 
@@ -145,7 +145,9 @@ def _numbers(inertia, bits):
             f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
             f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
     unit = math.frexp(inertia.moments[large])[1]
-    moments, one = in_integers([math.ldexp(inertia.moments[k], -unit) for k in order])
+    parts, one = in_integers([math.ldexp(part[k], -unit)
+                              for part in (inertia.moments, inertia.lost) for k in order])
+    moments = [moment + lost for moment, lost in zip(parts[:3], parts[3:], strict=True)]
     (a, b, c), square = moments, one * one
     to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
     ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),

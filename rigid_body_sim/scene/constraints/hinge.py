@@ -99,8 +99,9 @@ class Hinge(Constraint):
 
     def frame(self, body: Body) -> Frame:
         """Return the body's axes through the point `through`."""
-        return Frame(False, body.mass, body.about_center.moments, IDENTITY, self.through,
-                     self.arm(body), Hinging(self.axis, self.zero, self.winds))
+        inertia = body.about_center
+        return Frame(False, body.mass, inertia.moments, inertia.differences, IDENTITY,
+                     self.through, self.arm(body), Hinging(self.axis, self.zero, self.winds))
 
 
 def _suspension(settings: dict[str, Any], axis: Vector, body: Body, where: str) -> Vector:

@@ -112,8 +112,9 @@ class Plane(Constraint):
 
     def frame(self, body: Body) -> Frame:
         """Return the body's own axes about the centre of mass."""
-        return Frame(True, body.mass, body.about_center.moments, IDENTITY, body.center_of_mass,
-                     (0.0, 0.0, 0.0))
+        inertia = body.about_center
+        return Frame(True, body.mass, inertia.moments, inertia.differences, IDENTITY,
+                     body.center_of_mass, (0.0, 0.0, 0.0))
 
 
 def _tilt(normal):

@@ -137,8 +137,8 @@ class Constraint(Protocol):
         """
         inertia = self.inertia(body)
         arm = turned_back(inertia.axes, self.arm(body)) if self.holds_a_point else (0.0, 0.0, 0.0)
-        return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.axes,
-                     self.point(body), arm)
+        return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.differences,
+                     inertia.axes, self.point(body), arm)
 
     @property
     def axis(self) -> Vector | None:

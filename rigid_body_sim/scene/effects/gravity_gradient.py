@@ -132,9 +132,7 @@ class GravityGradient(Effect):
 
     def _differences(self, frame: Frame) -> tuple[float, float, float]:
         """Return a, b, c of the torque (a n2 n3, b n3 n1, c n1 n2), N m."""
-        I1, I2, I3 = frame.moments
-        a, b, c = (self.share * (one - other)
-                   for one, other in ((I3, I2), (I1, I3), (I2, I1)))
+        a, b, c = (self.share * (0.0 - difference) for difference in frame.differences)
         return a, b, c
 
     def series(self, frame: Frame, time: float) -> Pull:
