@@ -74,9 +74,9 @@ def rounded_needle():
 
 @pytest.mark.without_numba
 def test_what_the_parallel_axis_theorem_rounds_away_counts_for_a_needle():
-    """I1 - I2 = 7e-18 kg m^2 spins it about an axis of 4e-8: it turns by w1 w2 t^2/2 times that."""
+    """I1 - I2 = 7e-18 kg m^2 spins it about an axis of 4e-8, by w1 w2 t^2/2 times that."""
     scene, horizon = rounded_needle(), 5.0
-    I1, I2, I3 = scene.body.about_origin.moments
+    I1, I2, _ = scene.body.about_origin.moments
     assert I1 == I2 and scene.body.about_origin.differences[2] == near(-2.0 ** -57, 1e-9)
     choice = choose(scene, 'exact', accuracy=1e-6, horizon=horizon)
     # measured: 2.5e-9 by 64-bit mantissas
