@@ -269,6 +269,8 @@ class PlaneCourse:
         if why == contact_march.FAILED and self._rolling.jams(p, y):
             self._rest(p, y, time)
             return
+        if why == contact_march.FAILED and self._rolling.has_ended(p, y):
+            why = contact_march.STOPPED
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
         if why == contact_march.FAILED:

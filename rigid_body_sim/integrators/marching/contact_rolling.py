@@ -28,6 +28,7 @@ from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, SLOW, TIP
 from rigid_body_sim.mechanics.contact.touch import inclination
 from rigid_body_sim.numerics.rotations import matrix, normalised
 
+ENDED = 1e-10            # share of the speeds below which a rolling is over that no step follows
 SHORT = 1e-6             # time of a difference, over that in which a body moves by its length
 MODE, SWIFT, DRY, ONSET, TURN, SINCE, RIM = (CONTACT.part(name).first for name in (
     'mode', 'swift', 'rolling', 'onset', 'turn', 'since', 'rim'))
@@ -109,6 +110,14 @@ class DryRolling:
             self._error = TIPS
             self._allow(TIPS, y)
         return self._tips(p, y, tipping(p, y)[0])
+
+    def has_ended(self, p, y):
+        """Return whether a rolling that no step follows further has ended.
+
+        Its direction relaxes ever faster as it dies, at last within the rounding of time.
+        """
+        return p[DRY] > 0.0 and p[MODE] not in (FLIGHT, RESTING) and not is_held(p) and (
+            not self._is_disk and rolls(p, y) <= ENDED * p[SWIFT])
 
     def jams(self, p, y):
         """Return whether a ring lies so low that rolling friction leaves it no motion.

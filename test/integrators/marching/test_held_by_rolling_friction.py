@@ -9,6 +9,7 @@ import pytest
 from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.integrators.equations.contact_views import ROLLING, ROW, SLIDING, UNKNOWNS
+from rigid_body_sim.integrators.marching import contact_march
 from rigid_body_sim.integrators.marching.contact import OnPlane
 from rigid_body_sim.integrators.marching.contact_rolling import MODE, SWIFT, WAY
 from rigid_body_sim.mechanics.balance import Dynamics
@@ -335,3 +336,21 @@ def test_a_body_that_slides_held_begins_to_roll(body, table, laws, initial, let_
         sim.advance(math.floor(1000.0 * times[1]))
         assert abs(sim.ledger()['energy_residual']) < accuracy
     assert found[0] == pytest.approx(found[1], abs=1e-6)
+
+
+@pytest.mark.without_numba
+def test_a_rolling_that_no_step_follows_to_its_end_is_over():
+    """Its direction relaxes ever faster, at last within the rounding of time: the run ended."""
+    sim = Simulation(parse_scene(
+        'scene: ends\nbody: {mass: 1.0, shape: {ellipsoid: {semi_axes: [0.03, 0.02, 0.01]}}}\n'
+        f'constraint: table\neffects: [gravity: {{g: {G}}}, sliding_friction: {{mu: .inf}}, '
+        'rolling_friction: {dry: 0.5}]\n'
+        'initial: {angular_velocity: [1.0, 2.0, 0.0], rolling: true}\n'), 'dop8', 1e-9)
+    sim.states([1e-4])
+    course = sim._spans[-1].solver._course
+    phase = course._phases[-1]
+    phase.front[UNKNOWNS.part('omega').places] *= 1e-12
+    # the steps that come so far take minutes in plain Python
+    phase._meta[contact_march.STATUS] = contact_march.FAILED
+    course._follow(phase)
+    assert [name for _, name, _ in course.events(0.0, 0.01)] == ['rest']
