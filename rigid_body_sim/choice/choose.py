@@ -90,7 +90,9 @@ class Choice:
     def expected_error(self):
         """Largest error of the attitude within the horizon (rad); None where nothing tells.
 
-        Trial runs tell it, when it is first asked for. Fixed steps are not tried.
+        In a fast nutation a method that was named may err more in the angular velocity: then it
+        is that error as a share of the largest angular velocity. Trial runs tell it, when it is
+        first asked for. Fixed steps are not tried.
         """
         return self._forecast.error
 
@@ -103,9 +105,11 @@ class Choice:
     def missed(self):
         """One line that says that the accuracy is missed and until when it is met; else None.
 
-        A method that was named is tried only where it was never measured on such scenes.
+        A method that was named is tried only where it was never measured on such scenes: fast
+        nutations are not in the table.
         """
-        if self.settled is None and measured.on_such(self.scene, self.method):
+        if (self.settled is None and measured.on_such(self.scene, self.method)
+                and not settling.nutation(self.scene)):
             return None
         return missed(self.accuracy, self.horizon, self.expected_error, self.met_until)
 
@@ -270,8 +274,9 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     if integrator == 'auto':
         stiff = _stiff(scene)
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
-        finer = min(accuracy, ENDING) if wobbles else accuracy
-        settled = settled or settling.settle(scene, fit, finer, horizon)
+        coarsest = ENDING if wobbles else math.inf
+        settled = settled or settling.settle(scene, fit, min(accuracy, coarsest), horizon,
+                                             coarsest=coarsest)
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:
         settled = None

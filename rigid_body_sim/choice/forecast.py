@@ -188,6 +188,11 @@ def velocities_apart(states, others):
     return _shares(states[:, VELOCITY], others[:, VELOCITY])
 
 
+def rates_apart(states, others):
+    """Return the differences of the angular velocities of two runs, shape (n,), as above."""
+    return _shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY])
+
+
 def _shares(one, other):
     """Return the lengths of differences as shares of the largest length so far, shape (n,)."""
     sizes, apart = np.maximum.accumulate(_lengths(one)), _lengths(one - other)

@@ -1,16 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `auto` settles on: a method and its tolerance, found good by trials on the scene."""
 
+import contextlib
 import functools
 import math
+
+import numpy as np
 
 from rigid_body_sim.choice import forecast, measured
 from rigid_body_sim.choice.trial import HELPS, Trial
 from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators import GENERAL
 from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.solver import FINEST, Stepped
+from rigid_body_sim.mechanics.energy import DIAGNOSIS
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.scene import kept
 
+FASTER = 4.0        # times the pace of the body: a nutation that its attitude hardly shows
+RADIANS = 64.0      # of a nutation that are followed, rad
 PATIENCE = 1, 16    # factors on the steps of trials; the second if no method passes with the first
 
 
@@ -73,10 +85,11 @@ class Settled:
         return self
 
 
-def settle(scene, able, accuracy, horizon):
+def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     """Return the Settled choice that meets an accuracy on this scene.
 
-    The parameters are those of :func:`rigid_body_sim.choice.measured.pick`. A trial runs a part of
+    The parameters are those of :func:`rigid_body_sim.choice.measured.pick`, and the largest
+    tolerance that a run may have (rad), whatever a trial finds sufficient. A trial runs a part of
     a long horizon, and errors are taken to grow in proportion to time.
 
     A method that takes many more steps than the motion asks for does not suit the scene, and the
@@ -110,8 +123,9 @@ def settle(scene, able, accuracy, horizon):
                 continue
             if best is None or excess < HELPS * least:
                 least = excess
-                best = Settled(method, found, find=functools.partial(trial.forecast, found),
-                               prototype=trial.prototype)
+                tolerance = min(found, coarsest)    # the forecast is that of the run
+                best = Settled(method, tolerance, prototype=trial.prototype,
+                               find=functools.partial(trial.forecast, tolerance))
             if not excess > 0.0:
                 break
         if best:
@@ -121,6 +135,9 @@ def settle(scene, able, accuracy, horizon):
 
 def of_named(scene, prototype, accuracy, horizon):
     """Return the Forecast of a method that was named; it holds None where nothing is known.
+
+    Where a rotor makes the body nutate, and the angular velocity errs by a larger share than the
+    accuracy, this share is the error.
 
     Parameters
     ----------
@@ -132,8 +149,44 @@ def of_named(scene, prototype, accuracy, horizon):
     horizon : float
         s.
     """
-    try:
+    found, lost = forecast.Forecast(None, None), _nutation_lost(scene, prototype, horizon)
+    with contextlib.suppress(TooMuchWork):
         trial = Trial(scene, accuracy, horizon, prototype.name, None, PATIENCE[0], False)
-        return trial.forecast(prototype.accuracy)
+        found = trial.forecast(prototype.accuracy)
+    if lost > max(accuracy, found.error or 0.0):
+        return forecast.Forecast(lost, min(horizon * accuracy / lost, found.met_until or horizon))
+    return found
+
+
+@kept
+def nutation(scene):
+    """Return the rate of a nutation (rad/s) that is much faster than the body turns; else 0."""
+    diagnosis = np.empty(DIAGNOSIS.size)
+    energies(scene).diagnose(parameters(scene), scene.initial.vector, diagnosis)
+    momentum = hypot3(*diagnosis[DIAGNOSIS.part('momentum').places].tolist())
+    rate = momentum / max(scene.frame.moments)
+    fast = scene.constraint.axis is None and rate > FASTER * measured.pace(scene)
+    return rate if fast else 0.0
+
+
+def _nutation_lost(scene, prototype, horizon):
+    """Return by which share the angular velocity errs at the horizon in a fast nutation, about.
+
+    Implicit methods damp a nutation, and a finer run of the same method damps it, too; the
+    attitude hardly shows it. So the general method is the reference, along the first RADIANS of
+    the nutation, which is as fast as |L|/I. Errors are taken to grow in proportion to time, up to
+    the whole angular velocity. It is 0 where the body itself turns as fast, and where a run does
+    not get so far.
+    """
+    rate, start = nutation(scene), scene.initial.vector
+    if rate == 0.0:
+        return 0.0
+    part = min(horizon, RADIANS / rate)
+    times = forecast.looks(part)
+    best = Stepped(scene, GENERAL.NAME, max(FINEST, forecast.FINER * prototype.accuracy),
+                   horizon=part)
+    try:
+        states, others = (forecast.run(scene, one, start, times) for one in (prototype, best))
     except TooMuchWork:
-        return forecast.Forecast(None, None)
+        return 0.0
+    return min(1.0, float(forecast.rates_apart(states, others).max()) * (horizon / part))

@@ -53,7 +53,8 @@ def test_error_meets_the_request_on_tops_outside_the_table(name, accuracy):
 def test_every_kind_of_scene_has_a_choice_and_finer_requests_expect_less(name, monkeypatch):
     # choices of the table without trial runs: compiling those of all kinds takes minutes
     monkeypatch.setattr(
-        settling, 'settle', lambda *asked: settling.Settled(*measured.pick(*asked), asked[-1]))
+        settling, 'settle',
+        lambda *asked, coarsest: settling.Settled(*measured.pick(*asked), asked[-1]))
     choices = [choose(scene_of(name), accuracy=accuracy) for accuracy in (1e-2, 1e-6, 1e-10)]
     assert all(choice.method in METHODS for choice in choices)
     assert [choice.expected_error for choice in choices] == sorted(
@@ -99,7 +100,7 @@ def test_a_table_that_promises_too_much_is_found_out_and_the_error_told_is_that_
 def test_dissipation_is_stiff_where_slim_axes_follow_faster_than_the_body_turns(
         constraint, moments, coefficient, stiff, tolerance, monkeypatch):
     fit = []
-    monkeypatch.setattr(settling, 'settle', lambda scene, able, *asked: (
+    monkeypatch.setattr(settling, 'settle', lambda scene, able, *asked, **_: (
         fit.extend(able) or settling.Settled('dop8', asked[0])))
     scene = parse_scene(
         f'scene: s\nbody: {{mass: 1, inertia: {moments}, center_of_mass: [0, 1, 0]}}\n'

@@ -375,6 +375,47 @@ def test_a_method_that_is_named_says_what_it_errs_by(effects, method, accuracy, 
     assert Simulation(simulation.scene, 'dop8', step=0.01).expected_error is None
 
 
+@pytest.mark.without_numba
+def test_stiff_dissipation_at_a_coarse_request_is_told_the_error_of_its_run():
+    """A coarse run keeps a residual wobble, so it is finer than the trial found sufficient."""
+    scene, times = parse_scene(
+        FALLING.replace('EFFECTS', 'internal_dissipation: {coefficient: 4.0}'),
+        {'initial.angular_velocity': [20, 3, 1]}), forecast.looks(1.0)
+    simulation = Simulation(scene, accuracy=1e-3, horizon=1.0, rate=1.0)
+    fine = Simulation(scene, 'dop8', accuracy=1e-13, horizon=1.0, rate=1.0)
+    error = forecast.apart(*(run.states(times).vector for run in (simulation, fine))).max()
+    assert simulation.choice.tolerance == 1e-9
+    # measured: the error; that of the tolerance found sufficient is 23 times larger
+    assert error / 2.0 < simulation.expected_error < 2.0 * error
+
+
+ROTOR = 'rotor: {axis: [0.3, 0.2, 1], momentum: 1.0e+5}'
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('method', 'accuracy', 'missed'), [
+    ('lsoda', 1e-5, True), ('radau', 1e-3, True), ('dop8', 1e-6, False)])
+def test_a_damped_nutation_counts_though_the_attitude_does_not_show_it(method, accuracy, missed):
+    """A rotor of 1e5 N m s nutates at 5e4 rad/s; a finer run damps it, too."""
+    scene, horizon = parse_scene(FALLING.replace('EFFECTS', ROTOR)), 2e-4
+    simulation = Simulation(scene, method, accuracy=accuracy, horizon=horizon, rate=5e3)
+    one, best = (run.states([horizon]) for run in (
+        simulation, Simulation(scene, 'dop8', accuracy=1e-13, horizon=horizon)))
+    assert angle_between(*one.orientation[0], *best.orientation[0]) < accuracy
+    off = np.linalg.norm(one.angular_velocity - best.angular_velocity) / np.linalg.norm(
+        best.angular_velocity)
+    assert (off > accuracy) == missed == bool(simulation.missed)
+    if missed:    # measured: 0.95 to 1.04 of the error
+        assert off / 3.0 < simulation.expected_error < 3.0 * off
+
+
+def test_only_a_nutation_that_is_faster_than_the_body_counts_beside_the_attitude():
+    slow = ROTOR.replace('1.0e+5', '1.0')
+    assert settling.nutation(parse_scene(FALLING.replace('EFFECTS', slow))) == 0.0
+    rate = settling.nutation(parse_scene(FALLING.replace('EFFECTS', ROTOR)))
+    assert rate == pytest.approx(1e5 / 0.4, rel=1e-3)
+
+
 def test_simulate_says_it(tmp_path, capsys):
     from rigid_body_sim.cli import simulate
     asked = ['--scene', 'tennis_racket', '--duration', '3', '--accuracy', '1e-15']
