@@ -121,12 +121,19 @@ class Scene:
         """The effects that do something to this body under this constraint, impulses apart.
 
         One that is listed may do nothing: a coefficient of zero, gravity on a body whose pivot is
-        its centre of mass.
+        its centre of mass, one of two that cancel each other.
         """
-        frame = self.frame
-        return tuple(effect for effect in self.effects if effect.contact is not None or (
-            effect.acting is not None
-            and any(effect.acting(frame, time) for time in (0.0, *effect.breakpoints))))
+        frame, acting = self.frame, []
+        for effect in self.effects:
+            if effect.contact is None and (effect.acting is None or not any(
+                    effect.acting(frame, time) for time in (0.0, *effect.breakpoints))):
+                continue
+            opposite = effect.opposite
+            if opposite is not None and opposite in acting:
+                acting.remove(opposite)
+            else:
+                acting.append(effect)
+        return tuple(acting)
 
     @functools.cached_property
     def field(self) -> Vector:

@@ -174,3 +174,42 @@ def test_what_does_not_act_leaves_the_closed_form(effects):
         'scene': 'x', 'body': {'mass': 2.3, 'inertia': [0.03, 0.05, 0.07]}, 'constraint': 'free',
         'effects': effects, 'initial': {'angular_velocity': [3.1, -2.2, 5.3]}}))
     assert choose(scene).method == 'exact'
+
+
+CANCELS = {
+    'forces': [{'force': {'value': [1, -2, 3], 'at': [0.1, 0, 0]}},
+               {'force': {'value': [-1, 2, -3], 'at': [0.1, 0, 0]}}],
+    'torques in pieces': [{'torque': {'times': [0, 1], 'values': [[1, 2, 3], [0, 0, 1]]}},
+                          {'torque': {'times': [0, 1], 'values': [[-1, -2, -3], [0, 0, -1]]}}],
+    'rotors': [{'rotor': {'axis': [0, 0, 1], 'inertia': 0.1, 'rate': 7.0, 'torque': 0.2}},
+               {'rotor': {'axis': [0, 0, 1], 'inertia': 0.1, 'rate': -7.0, 'torque': -0.2}}]}
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('effects', CANCELS.values(), ids=CANCELS)
+def test_effects_that_cancel_each_other_leave_the_closed_form(effects):
+    """The weight of a top is all that acts, and the ledger books both of what cancels."""
+    scene = parse_scene(json.dumps({
+        'scene': 'x', 'body': {'mass': 1.0, 'inertia': [0.03, 0.03, 0.01],
+                               'center_of_mass': [0, 0, 0.1]},
+        'constraint': 'pivot', 'effects': [{'gravity': {'g': 9.81}}, *effects],
+        'initial': {'tilt': 0.5, 'angular_velocity': [1.0, 0.5, 30.0]}}))
+    simulation = Simulation(scene, rate=10.0)
+    assert simulation.choice.method == 'exact'
+    simulation.advance(2)
+    ledger = simulation.ledger()
+    assert abs(ledger['energy_residual']) < 1e-14 and ledger['momentum_residual'] < 1e-14
+    alone = parse_scene(scene.text, {'effects': [{'gravity': {'g': 9.81}}]})
+    assert simulation.states([1.3]).vector.tolist() == Simulation(alone).states([
+        1.3]).vector.tolist()
+
+
+def test_one_effect_cancels_one_other():
+    """Of three torques one is left; a formula has no opposite."""
+    body = {'scene': 'x', 'body': {'mass': 1.0, 'inertia': [0.03, 0.04, 0.05]},
+            'constraint': 'free', 'initial': {}}
+    up, down = ({'torque': {'value': [0, 0, one]}} for one in (2.0, -2.0))
+    scene = parse_scene(json.dumps(body | {'effects': [up, down, up]}))
+    assert [effect.values for effect in scene.acting] == [((0.0, 0.0, 2.0),)]
+    sides = [{'force': {'value': [0, 0, text]}} for text in ('sin(t)', '-sin(t)')]
+    assert len(parse_scene(json.dumps(body | {'effects': sides})).acting) == 2

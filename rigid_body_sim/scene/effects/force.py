@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Force: at a point of the body, constant or an expression of time and state."""
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -52,6 +53,14 @@ class Force(Effect):
         x, y, z = map(float, settings.get('at', body.center_of_mass))
         return cls(trees, (x, y, z), settings.get('frame', 'body'),
                    settings.get('books', 'work'), value[0].parameters)
+
+    @property
+    def opposite(self) -> Self | None:
+        """The contrary force, if it is given in numbers."""
+        if any(one.op != 'number' for one in self.trees):
+            return None
+        return dataclasses.replace(self, trees=tuple(
+            tree.number(-float(one.args[0])) for one in self.trees))
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the force and its moment."""

@@ -292,6 +292,14 @@ class Effect(Protocol):
         return None
 
     @property
+    def opposite(self) -> 'Effect | None':
+        """The effect of this class that does the contrary at all times, where a scene can say it.
+
+        Two such effects do nothing together.
+        """
+        return None
+
+    @property
     def series(self) -> Callable[[Frame, float], Pull] | None:
         """``series(frame, time)``: the same as `acting`, as a Pull. The method taylor needs it."""
         return None

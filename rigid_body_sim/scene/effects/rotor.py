@@ -9,6 +9,7 @@ The momentum of body and rotor, R (m + h a), is constant where nothing acts from
 ledger has it whole, and the energy without that of the rotor's own spin.
 """
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -88,6 +89,12 @@ class Rotor(Effect):
             return cls(axis, float(settings['momentum']), 0.0)
         return cls(axis, float(settings['inertia']) * float(settings['rate']),
                    float(settings.get('torque', 0.0)))
+
+    @property
+    def opposite(self) -> Self:
+        """The rotor that turns the other way."""
+        return dataclasses.replace(self, momentum_at_start=-self.momentum_at_start,
+                                   torque=-self.torque)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the gyroscopic torque and that of the motor."""

@@ -5,12 +5,14 @@ These are Euler's equations with a torque Gamma.
 """
 
 import bisect
+import dataclasses
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import ExpressedTorque
@@ -79,6 +81,11 @@ class Torque(Effect):
     def breakpoints(self) -> tuple[float, ...]:
         """The times at which the torque jumps, s."""
         return self.times
+
+    @property
+    def opposite(self) -> Self:
+        """The contrary torque."""
+        return dataclasses.replace(self, values=tuple(scaled(-1.0, one) for one in self.values))
 
     def value(self, time: float) -> tuple[float, ...]:
         """Return the components just after a time, N m."""
