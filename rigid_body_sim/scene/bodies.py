@@ -119,7 +119,7 @@ def _lost(inertia, found, M, shift, sign):
     """Return what the rounded sums of diagonal tensors lost, kg m^2."""
     if not np.isfinite(found.moments).all():
         return 0.0, 0.0, 0.0
-    x, y, z = (Fraction(float(part)) ** 2 for part in shift)
+    x, y, z = (part * part for part in map(Fraction, map(float, shift)))
     return tuple(float(Fraction(moment) + Fraction(less) + Fraction(sign * M) * square
                        - Fraction(now))
                  for moment, less, square, now in zip(

@@ -147,7 +147,9 @@ def _numbers(inertia, bits):
     unit = math.frexp(inertia.moments[large])[1]
     parts, one = in_integers([math.ldexp(part[k], -unit)
                               for part in (inertia.moments, inertia.lost) for k in order])
-    moments = [moment + lost for moment, lost in zip(parts[:3], parts[3:], strict=True)]
+    *sums, less_small, less_middle, less_large = parts
+    moments = [moment + less for moment, less in zip(
+        sums, (less_small, less_middle, less_large), strict=True)]
     (a, b, c), square = moments, one * one
     to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
     ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),
