@@ -123,7 +123,8 @@ class Scene:
         One that is listed may do nothing: a coefficient of zero, gravity on a body whose pivot is
         its centre of mass, one of two that cancel each other.
         """
-        frame, acting = self.frame, []
+        frame = self.frame
+        acting: list[Effect] = []
         for effect in self.effects:
             if effect.contact is None and (effect.acting is None or not any(
                     effect.acting(frame, time) for time in (0.0, *effect.breakpoints))):
