@@ -138,19 +138,18 @@ def _numbers(inertia, bits):
 
     Integers keep the moments exact, as fractions would at ten times the cost.
     """
-    small, middle, large = order = sorted(range(3), key=inertia.moments.__getitem__)
+    small, middle, large = order = sorted(
+        range(3), key=lambda k: (inertia.moments[k], inertia.lost[k]))
     if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
         raise BadInput(
             'body.inertia',
             f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
             f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
     unit = math.frexp(inertia.moments[large])[1]
-    parts, one = in_integers([math.ldexp(part[k], -unit)
-                              for part in (inertia.moments, inertia.lost) for k in order])
-    *sums, less_small, less_middle, less_large = parts
-    moments = [moment + less for moment, less in zip(
-        sums, (less_small, less_middle, less_large), strict=True)]
-    (a, b, c), square = moments, one * one
+    (a, b, c, more_a, more_b, more_c), one = in_integers([
+        math.ldexp(part[k], -unit) for part in (inertia.moments, inertia.lost) for k in order])
+    a, b, c = moments = a + more_a, b + more_b, c + more_c
+    square = one * one
     to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
     ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),
                   _quotient(to_c * to_a, c * a))

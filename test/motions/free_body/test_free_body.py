@@ -204,3 +204,12 @@ def test_a_body_about_a_principal_axis_is_steady_and_one_beside_it_is_not(omega)
         assert anchors._is_principal(moments, beside) == (beside == omega)
         assert anchors._is_principal((1.0, 1.0, 3.0), beside) == (
             beside == omega or beside[2] == 0.0)
+
+
+@pytest.mark.parametrize('lost', [(2.0 ** -54, -2.0 ** -55, 0.0), (-2.0 ** -55, 2.0 ** -54, 0.0)])
+def test_moments_of_one_double_are_sorted_by_what_was_lost(lost):
+    small, middle = sorted(lost[:2])
+    sizes = anchors.rotation_parameters(Inertia((1.0, 1.0, 2.0), lost=lost))
+    assert np.isfinite(sizes).all()
+    in_order = anchors.rotation_parameters(Inertia((1.0, 1.0, 2.0), lost=(small, middle, 0.0)))
+    assert sizes[:3] == pytest.approx(in_order[:3], rel=0.0, abs=0.0)
