@@ -60,6 +60,9 @@ class Coasting:
         for time, row in zip(times, out, strict=True):
             self.state(time, row)
 
+    def allowance(self, until):
+        return None
+
 
 def scene(*strikes, effects=()):
     struck = [f'strike: {{impulse: [{impulse}, 0, 0], point: [0, 1, 0], time: {time}, '
