@@ -117,8 +117,8 @@ class PlaneCourse:
         p[STARTED], p[ORIGIN] = self._begin, self._place
         return p
 
-    def _open(self, mode, p, y, stopped=False):
-        """Begin a phase; `stopped` says that the body no longer rolls."""
+    def _open(self, mode, p, y, stopped=False, tipped=False):
+        """Begin a phase; `stopped` and `tipped` are those of DryRolling.begin."""
         time = self._begin + float(y[TIME])
         stopped = stopped or is_held(p)
         p = self._parameters(time)
@@ -127,7 +127,7 @@ class PlaneCourse:
         p[UNTIL] = later[0] - self._begin if later else math.inf
         p[MODE], p[SWIFT] = mode, self._scales.speed(y)
         p[CREEP] = self._scales.creep * p[SWIFT]
-        self._rolling.begin(p, y, stopped)
+        self._rolling.begin(p, y, stopped, tipped)
         if mode == FLIGHT and lies(p, y):
             p[LEVEL] = 1.0
             y[GAP] += rise(p, y)
@@ -295,7 +295,7 @@ class PlaneCourse:
         elif why == contact_march.STOPPED and p[MODE] != FLIGHT:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
-            self._open(int(p[MODE]), p, y, stopped=not p[ONSET] + p[RIM] > 0.0)
+            self._open(int(p[MODE]), p, y, not p[ONSET] + p[RIM] > 0.0, tipped=p[RIM] > 0.0)
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
             if self._phases[-1].p[MODE] == RESTING and self._events[-1][1] != 'rest':

@@ -61,11 +61,12 @@ class DryRolling:
         self._is_disk, self._is_torus = bound.is_disk, bound.is_torus
         self.allowed = 0.0, math.inf
 
-    def begin(self, p, y, stopped):
+    def begin(self, p, y, stopped, tipped=False):
         """Note whether dry rolling friction holds the body from here on, or which way it rolls.
 
         A rolling that ends does so at a time rounded to doubles: `stopped` says that what is left
-        of it is rounding, however large.
+        of it is rounding, however large. `tipped` says that friction along the ring of a torus has
+        just ended a tipping: where it has rolled no further than rounding, it rolls both ways.
         """
         p[WAY], p[ONSET], p[TURN], p[RIM] = (1.0, 0.0), 0.0, 0.0, 0.0
         if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
@@ -82,7 +83,8 @@ class DryRolling:
             if row[ROLLS] >= 0.0:
                 return
             speed, across = withheld(p, y, row)
-            if not disk and not (torus and self._tips(p, y, about_tube(p, y, speed, across))):
+            tips = torus and not tipped and self._tips(p, y, about_tube(p, y, speed, across))
+            if not disk and not tips:
                 self._begin_to_roll(p, y, speed, across)
         elif torus:
             self._tips(p, y, tipping(p, y)[0])

@@ -211,3 +211,22 @@ def test_a_flat_torus_tips_where_no_step_follows_the_friction_along_its_ring():
     ledger = sim.ledger()
     assert abs(ledger['energy_residual']) < 1e-13
     assert ledger['momentum_residual'] < 1e-13
+
+
+@pytest.mark.without_numba
+def test_a_torus_that_tips_for_no_longer_than_rounding_begins_to_roll():
+    """Friction along the ring is 0 in a spin about the normal, and grows with the tipping.
+
+    The tipping ended there at once, and began again without end.
+    """
+    spins = ring('torus: {radius: 0.05, tube: 0.01}', ', rolling_friction: {dry: 0.005}',
+                 initial='{euler_zyz: [0, 1.3, 0], angular_velocity_world: [0, 0, 8], '
+                         'rolling: true}')
+    fine, coarse = (Simulation(spins, 'dop8', accuracy, horizon=0.05)
+                    for accuracy in (1e-13, 1e-6))
+    # measured: 5e-9
+    assert fine.states([0.05]).vector == pytest.approx(coarse.states([0.05]).vector, abs=1e-7)
+    fine.advance(50)
+    ledger = fine.ledger()
+    assert abs(ledger['energy_residual']) < 1e-13
+    assert ledger['momentum_residual'] < 1e-13
