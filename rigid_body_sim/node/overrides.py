@@ -14,6 +14,8 @@ import tempfile
 
 import yaml
 
+from rigid_body_sim.node.parameter_table import ENTRIES
+
 PARAMETERS = 'ros__parameters'
 EVERY_NODE = '/**'
 RULE, FILE = ('-p', '--param'), ('--params-file',)
@@ -41,7 +43,7 @@ def settled(arguments):
     """
     rest, sources = _taken_apart(arguments)
     try:
-        sections = [_section(*source) for source in sources]
+        sections = [section for source in sources for section in _sections(*source)]
     except (OSError, ValueError, yaml.YAMLError):
         sections = None
     if not sections:
@@ -72,23 +74,27 @@ def _taken_apart(arguments):
     return rest, sources
 
 
-def _section(flag, text):
-    """Return (from a file, {node: {name: YAML node}}) of a source; ValueError if it is unclear."""
+def _sections(flag, text):
+    """Return a list of (from a file, {node: {name: YAML node}}), one for each YAML document.
+
+    It raises ValueError if the source is unclear.
+    """
     if flag in FILE:
         with open(text, encoding='utf-8') as file:
-            return True, dict(_nodes(_composed(file), ''))
+            return [(True, dict(_nodes(document, ''))) for document in _composed(file)]
     name, equals, value = text.partition(':=')
     node, colon, own = name.rpartition(':')
-    if not (equals and own):
+    [value, *more] = _composed(value)
+    if more or not (equals and own):
         raise ValueError(text)
-    return False, {f'/{node.lstrip("/")}' if colon else EVERY_NODE: {own: _composed(value)}}
+    return [(False, {f'/{node.lstrip("/")}' if colon else EVERY_NODE: {own: value}})]
 
 
 def _composed(text):
-    node = yaml.compose(text, Loader=yaml.SafeLoader)
-    if node is None:
+    documents = list(yaml.compose_all(text, Loader=yaml.SafeLoader))
+    if not documents:
         raise ValueError('empty')
-    return node
+    return documents
 
 
 def _nodes(node, path):
@@ -150,7 +156,19 @@ def _text(merged):
     def mapping(entries):
         return yaml.MappingNode('tag:yaml.org,2002:map', [
             (yaml.ScalarNode(TEXT, key), value) for key, value in entries.items()])
-    nodes = {node: mapping({PARAMETERS: mapping(parameters)})
+    nodes = {node: mapping({PARAMETERS: mapping({name: _quoted(name, value)
+                                                 for name, value in parameters.items()})})
              for node, parameters in merged.items() if parameters}
     return yaml.serialize(mapping(nodes), Dumper=yaml.SafeDumper, allow_unicode=True,
                           width=float('inf'))
+
+
+def _quoted(name, value):
+    """Return the YAML node of a parameter, in quotes where it is a text that rcl would change.
+
+    rcl reads 1e3 as a number and y as true. PyYAML, which ``ros2 param dump`` writes with, takes
+    both for texts and leaves out the quotes.
+    """
+    if isinstance(getattr(ENTRIES.get(name), 'default', None), str) and value.tag == TEXT:
+        return yaml.ScalarNode(TEXT, value.value, style="'")
+    return value

@@ -55,19 +55,10 @@ class Settings:
         self._foreign = tuple(node.get_parameters_by_prefix(''))
         with node.handle:
             self._overrides = node.handle.get_parameters(Parameter)
-        self._node = node
+        self._node, self._shared = node, shared
         self.on_change(lambda changes: None, lambda changes: None)
         for name, override in self._overrides.items():
-            try:
-                self._refuse_unknown(name, [*ENTRIES, *self._foreign])
-            except BadInput as refusal:
-                if name not in shared:
-                    raise
-                near = f', {refusal.remedy}' if refusal.remedy.startswith('did') else ''
-                node.get_logger().warning(
-                    f'{refusal.where}: {refusal.problem}{near}; '
-                    'it stands in a section for several nodes and is left to the others'
-                )
+            self._refuse_unless_shared(name, [*ENTRIES, *self._foreign])
             if name == SIM_TIME and not isinstance(override.value, bool):
                 raise BadInput(
                     f'parameter {SIM_TIME}', f'got {override.value!r}', 'needs true or false'
@@ -107,7 +98,7 @@ class Settings:
         declared = list(self._node.get_parameters_by_prefix(''))
         for name in self._overrides:
             if name.startswith(FOREIGN_PREFIX):
-                self._refuse_unknown(name, declared, ())
+                self._refuse_unless_shared(name, declared, ())
 
     def on_change(self, before, after):
         """Register the functions that a change calls.
@@ -122,12 +113,19 @@ class Settings:
         """
         self._before_change, self._after_change = before, after
 
-    @staticmethod
-    def _refuse_unknown(name, known, prefixes=(FOREIGN_PREFIX,)):
-        if name not in known and not name.startswith(prefixes):
-            raise BadInput(
-                f'parameter {name}', 'there is none of that name', _nearest(name, known)
-            )
+    def _refuse_unless_shared(self, name, known, prefixes=(FOREIGN_PREFIX,)):
+        if name in known or name.startswith(prefixes):
+            return
+        refusal = BadInput(
+            f'parameter {name}', 'there is none of that name', _nearest(name, known)
+        )
+        if name not in self._shared:
+            raise refusal
+        near = f', {refusal.remedy}' if refusal.remedy.startswith('did') else ''
+        self._node.get_logger().warning(
+            f'{refusal.where}: {refusal.problem}{near}; '
+            'it stands in a section for several nodes and is left to the others'
+        )
 
     def _with_types(self, parameters):
         """Return the parameters with the types of the table: doubles, and lists of words."""
@@ -167,7 +165,7 @@ class Settings:
         self._after_change(changes)
 
     def _changes(self, parameters):
-        """Return the checked changes by name."""
+        """Return the checked changes by name, without what is fixed and stays as it is."""
         changes = {}
         for parameter in parameters:
             entry = ENTRIES.get(parameter.name)
@@ -175,16 +173,18 @@ class Settings:
                 raise BadInput(
                     f'parameter {parameter.name}', 'it cannot be deleted', 'set it to a value'
                 )
-            same_time = parameter.name != SIM_TIME or parameter.value == self.use_sim_time
-            changeable = same_time if entry is None else entry.changeable
-            if self.running and not changeable:
-                raise BadInput(
-                    f'parameter {parameter.name}',
-                    'it cannot change while the node runs',
-                    'give it at the start',
-                )
-            if entry is not None:
-                changes[entry.name] = entry.checked(parameter.value)
+            value = parameter.value if entry is None else entry.checked(parameter.value)
+            fixed = parameter.name == SIM_TIME if entry is None else not entry.changeable
+            if self.running and fixed:
+                present = self.use_sim_time if entry is None else self.values[entry.name]
+                if value != present:
+                    raise BadInput(
+                        f'parameter {parameter.name}',
+                        'it cannot change while the node runs',
+                        'give it at the start',
+                    )
+            elif entry is not None:
+                changes[entry.name] = value
         return changes
 
 

@@ -39,8 +39,10 @@ def run(make_node, arguments, stop):
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         with overrides.settled(arguments) as (settled, shared):
-            # rclpy takes the first argument for the program's name
-            rclpy.init(args=['', *settled], signal_handler_options=SignalHandlerOptions.NO)
+            try:
+                _init(settled)
+            except RCLError:
+                _init(arguments)    # so that the error names the file that the user gave
     except Exception as error:  # rclpy has a class of its own for each fault of the command line
         say(f'ROS arguments: {_one_line(error)}; see --help')
         return BAD_INPUT
@@ -63,6 +65,11 @@ def run(make_node, arguments, stop):
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _init(arguments):
+    # rclpy takes the first argument for the program's name
+    rclpy.init(args=['', *arguments], signal_handler_options=SignalHandlerOptions.NO)
 
 
 def _spin(node, stop):

@@ -4,11 +4,13 @@
 import pytest
 import rclpy
 import yaml
+from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.parameter import Parameter
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.node import overrides
+from rigid_body_sim.node import overrides, process
 from rigid_body_sim.node.parameters import Settings
+from rigid_body_sim.realtime.shutdown import Stop
 
 
 @pytest.fixture
@@ -177,3 +179,50 @@ def test_the_clock_cannot_change_while_the_node_runs(start):
     settings.running = False
     assert node.set_parameters([Parameter('use_sim_time', value=True)])[0].successful
     assert settings.use_sim_time is True
+
+
+def test_the_last_document_of_a_file_wins_and_a_later_rule_after_it(start, tmp_path):
+    path = tmp_path / 'two.yaml'
+    path.write_text('\n---\n'.join(yaml.safe_dump(file(rate=rate)) for rate in (30, 40)))
+    given = ['--params-file', str(path)]
+    assert start(extra=given)[1].rate == 40.0
+    assert start('rate:=200.5', extra=given)[1].rate == 200.5
+    assert start({**file(rate=1.5)}, 'accuracy:=1e-9', extra=given)[1].rate == 1.5
+
+
+@pytest.mark.parametrize('name', ['1e3', '12e5', 'y', 'N', '.5e3', 'inf'])
+def test_a_text_that_its_dump_does_not_quote_stays_a_text(start, name):
+    """PyYAML leaves out the quotes of what rcl takes for a number or a truth value."""
+    assert f'{name}\n' == yaml.safe_dump({'x': name}).removeprefix('x: ')
+    _, settings = start(named(world_frame=name, recording={'name': name}), f'body_frame:={name}')
+    assert [settings[key] for key in ('world_frame', 'recording.name', 'body_frame')] == [name] * 3
+
+
+def test_a_shared_file_may_hold_the_qos_of_other_nodes(start):
+    scan = {'/scan': {'subscription': {'depth': 3}}}
+    node, settings = start(file(qos_overrides=scan))
+    settings.refuse_unknown_qos()
+    assert [line.split(';')[0] for line in node.warned] == [
+        'parameter qos_overrides./scan.subscription.depth: there is none of that name']
+    _, settings = start(named(qos_overrides=scan))
+    with pytest.raises(BadInput, match=r'qos_overrides\./scan\.subscription\.depth: there is none'):
+        settings.refuse_unknown_qos()
+
+
+def test_what_rcl_refuses_is_told_by_the_name_of_the_file_that_the_user_gave(tmp_path, capfd):
+    path = tmp_path / 'mine.yaml'
+    path.write_text('/**: {ros__parameters: {rate: [1, 2.5]}}')
+    try:
+        assert process.run(None, ['--ros-args', '--params-file', str(path)], Stop()) == 2
+    finally:
+        set_logger_level('rcl', LoggingSeverity.UNSET)
+    told = capfd.readouterr().err
+    assert str(path) in told and told.count('\n') == 1
+
+
+def test_what_is_fixed_may_be_set_to_what_it_is(start):
+    """``ros2 param load`` of a dump sets everything, one by one."""
+    node, _ = start('publish:=[odom, imu]')
+    for value, successful in (['odom', 'imu'], True), (['odom'], False):
+        [result] = node.set_parameters([Parameter('publish', value=value)])
+        assert result.successful == successful
