@@ -205,7 +205,7 @@ def test_a_shared_file_may_hold_the_qos_of_other_nodes(start):
     assert [line.split(';')[0] for line in node.warned] == [
         'parameter qos_overrides./scan.subscription.depth: there is none of that name']
     _, settings = start(named(qos_overrides=scan))
-    with pytest.raises(BadInput, match=r'qos_overrides\./scan\.subscription\.depth: there is none'):
+    with pytest.raises(BadInput, match=r'scan\.subscription\.depth: there is none'):
         settings.refuse_unknown_qos()
 
 
