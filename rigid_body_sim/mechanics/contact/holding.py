@@ -130,9 +130,9 @@ def way_at(c, time):
 def rolling_couples(c, at, way):
     """Return what `couples` (touch.py) does, under dry friction that may hold.
 
-    Friction goes by the way of the phase (`way_at`) where s' is too small to have a direction, in
-    a rolling that has just begun, and for a disk: the sign of its velocity may change within a
-    step.
+    Friction goes by the way of the phase (`way_at`) in a rolling that has just begun, and for a
+    disk: the sign of its velocity may change within a step. Where s' counts as none, friction is
+    in proportion to it, so that a step may pass the end of the rolling.
     """
     viscous, wrung, speed, film = couples(c, at.axes[2], at.moved)
     if c.way == HELD:
@@ -142,12 +142,14 @@ def rolling_couples(c, at, way):
         about = scaled(-c.size[1], cross(across_rim(gamma), gamma))
         return (scaled(-(c.rolling_viscous + film) * tips(c, at), about),
                 scaled(-c.rolling * way[0], about), abs(tips(c, at)), film)
-    if is_disk(c) or c.onset > 0.0 or speed < SLOW * c.swift:
+    if is_disk(c) or c.onset > 0.0:
         e1, e2, gamma = at.axes
         along = tangent(gamma)
         ahead = scaled(way[0], along) if is_disk(c) else plus(scaled(way[0], e1),
                                                               scaled(way[1], e2))
         wrung = scaled(-c.rolling, cross(shifted(c.kind, c.size, gamma, ahead), gamma))
+    elif speed < SLOW * c.swift:
+        wrung = scaled(speed / (SLOW * c.swift), wrung)
     return viscous, wrung, speed, film
 
 

@@ -354,3 +354,25 @@ def test_a_rolling_that_no_step_follows_to_its_end_is_over():
     phase._meta[contact_march.STATUS] = contact_march.FAILED
     course._follow(phase)
     assert [name for _, name, _ in course.events(0.0, 0.01)] == ['rest']
+
+
+@pytest.mark.without_numba
+def test_a_ball_that_turns_as_it_slides_without_friction_is_held_where_its_turning_ends():
+    """Friction along another direction drove so slow a rolling on, and no step passed its end."""
+    sim = Simulation(parse_scene(
+        'scene: turns\nbody: {mass: 1.0, inertia: [0.00012, 0.00014, 0.00016], center_of_mass: '
+        '[0.0029, -0.005, -0.0016], surface: {sphere: {radius: 0.02}}}\nconstraint: {table: '
+        f'{{normal: [0.1, -0.05, 1.0]}}}}\neffects: [gravity: {{g: {G}}}, sliding_friction: '
+        '{mu: 0.0}, rolling_friction: {dry: 0.05, viscous: 0.02}]\ninitial: {}\n'),
+        'dop8', 1e-9, horizon=1.0)
+    sim.advance(700)
+    before = sim.state.velocity
+    sim.advance(300)
+    # measured: 3e-12, a spin about the normal that nothing holds
+    assert sim.state.angular_velocity == pytest.approx(np.zeros(3), abs=1e-10)
+    slope = G * math.hypot(0.1, 0.05) / math.hypot(0.1, 0.05, 1.0)
+    grown = math.hypot(*(sim.state.velocity - before))
+    assert grown == pytest.approx(0.3 * slope, abs=1e-9)
+    ledger = sim.ledger()
+    assert abs(ledger['energy_residual']) < 1e-9
+    assert ledger['momentum_residual'] < 1e-9
