@@ -43,7 +43,7 @@ class Residual:
         self.least, self.greatest = np.full(size, np.inf), np.full(size, -np.inf)
         self.largest = self.last_residual = 0.0
         self.judged = self.stretches = 0
-        self.levels = []
+        self.levels, self._level = [], None
 
     def add(self, stamps, times, values):
         """Take values (n,) or (n, size): their stamps (ns) and times from the start (s)."""
@@ -74,12 +74,16 @@ class Residual:
         self.last_residual = float(residuals[-1])
 
     def _note_levels(self, times, values, places):
-        """Note where the quantity begins to be constant, and its value there."""
+        """Note where the quantity begins to be constant, where it ends, and its value."""
         for time, value, place in zip(times.tolist(), values, places.tolist(), strict=True):
-            self.stretches += bool(self._kept[place])
-            if self._kept[place] and len(self.levels) < MOST_LEVELS:
-                self.levels.append({'from': time, 'value': _plain(value),
-                                    'begun_by': self._history.segments[place].begun_by})
+            if self._level:
+                self._level['until'] = time
+            self._level = None
+            if self._kept[place]:
+                self._level = {'from': time, 'until': None, 'value': _plain(value),
+                               'begun_by': self._history.segments[place].begun_by}
+                self.stretches += 1
+                self.levels += [self._level] if len(self.levels) < MOST_LEVELS else []
 
     @property
     def not_kept_from(self):
@@ -99,7 +103,8 @@ class Residual:
 
         It has the first, last, least and greatest value; the largest and the last residual (None
         where it is never constant); how many stretches there are in which it is constant, and of
-        the first MOST_LEVELS of them when each begins (s), by what, and the value.
+        the first MOST_LEVELS of them when each begins (s), by what, when it ends (None: with the
+        recording), and the value.
         """
         seen = {
             name: _plain(getattr(self, name)) if self.first is not None else None

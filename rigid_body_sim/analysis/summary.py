@@ -98,7 +98,9 @@ def lines(found):
     ):
         text.append(f'  {label:9}{_quantity(found[name], unit)}')
     if found['momentum'] and found['momentum']['largest_residual'] is not None:
-        text.append(f'  {found["momentum"]["of"]:9}{_residual(found["momentum"])}')
+        parts = found['momentum']['stretches']
+        within = f'within each of {parts} stretches ' if parts > 1 else ''
+        text.append(f'  {found["momentum"]["of"]:9}{within}{_residual(found["momentum"])}')
     if found['flips'] is not None:
         text.append(f'  flips    {found["flips"]}')
     if found['phases']:
@@ -156,14 +158,20 @@ def _quantity(values, unit):
     if values['largest_residual'] is None:
         return f'{values["first"]:.9g} to {values["last"]:.9g} {unit} (not constant in this scene)'
     levels, kept = values['levels'], _residual(values)
-    if values['stretches'] == 1 and levels[0]['from'] == 0.0:
+    if values['stretches'] == 1 and (levels[0]['from'], levels[0]['until']) == (0.0, None):
         return f'{values["first"]:.9g} {unit}; {kept}'
-    told = [f'{level["value"]:.9g} {unit} from {level["from"]:.6g} s on'
+    told = [f'{level["value"]:.9g} {unit} from {level["from"]:.6g} {_end(level, following)}'
             + (f' ({level["begun_by"]})' if level['begun_by'] else '')
-            for level in levels[:TOLD]]
+            for level, following in zip(levels[:TOLD], [*levels[1:], None], strict=False)]
     more = values['stretches'] - TOLD
     told += [f'and in {more} more stretches'] if more > 0 else []
     return f'{", ".join(told)}; within each {kept}'
+
+
+def _end(level, following):
+    """Return when a level ends, in words; a wrench that is held may follow it."""
+    begins = following and following['from']
+    return 's on' if level['until'] in (None, begins) else f'to {level["until"]:.6g} s'
 
 
 def _residual(values):

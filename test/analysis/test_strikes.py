@@ -78,3 +78,26 @@ def test_energy_that_nothing_changes_has_one_level(tmp_path):
     [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
     assert found['energy']['stretches'] == 1
     assert 'stretches' not in (tmp_path / 'report/report.txt').read_text()
+
+
+def test_a_level_ends_where_a_wrench_is_held(tmp_path):
+    """Energy moves from 0.1 to 0.15 s; no level may be said to last until 0.15 s."""
+    torque = (0.0, 0.3, 0.0)
+    made.record(tmp_path / 'run', 'tennis_racket', 300, acts={
+        100: [('cmd_wrench', (0.0, 0.0, 0.0), torque, 'body')],
+        150: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 'body')],
+        200: [('cmd_impulse', (0.0, 0.0, 0.0), torque, 'body')]})
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    levels = found['energy']['levels']
+    assert [(level['from'], level['until']) for level in levels] == [
+        (0.0, 0.1), (0.15, 0.2), (0.2, None)]
+    text = (tmp_path / 'report/report.txt').read_text()
+    assert ' from 0 to 0.1 s, ' in text and ' from 0.15 s on (commands), ' in text
+    assert re.search('  L        within each of 3 stretches drift', text)
+
+
+def test_the_last_level_ends_where_a_wrench_is_held_to_the_end(tmp_path):
+    made.record(tmp_path / 'run', 'tennis_racket', 200, acts={
+        100: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.3, 0.0), 'body')]})
+    analyze(tmp_path / 'run', tmp_path / 'report')
+    assert ' from 0 to 0.1 s; within each ' in (tmp_path / 'report/report.txt').read_text()
