@@ -26,14 +26,19 @@ from rigid_body_sim.simulation import arithmetic
 EPS = float(np.finfo(float).eps)
 
 
-def resimulate(path, method=None):
+def resimulate(path, method=None, left_out=lambda source: None):
     """Run a recording again; return a list of (Source, Rerun, Comparison), one per body.
+
+    Topics that were remapped into another namespace look like a body without a journal. It is left
+    out where another body has one.
 
     Parameters
     ----------
     path : path-like
     method : dict, optional
         ``integrator``, ``accuracy``: run it by these instead.
+    left_out : callable
+        Called with the Source of each body that is left out.
 
     Raises
     ------
@@ -42,7 +47,11 @@ def resimulate(path, method=None):
     """
     results = []
     with Recording(path) as recording:
-        for source in sources(recording):
+        found = sources(recording)
+        for source in found:
+            if not source.entries and any(other.entries for other in found):
+                left_out(source)
+                continue
             messages = recording
             with journal_of(recording.path):
                 rerun = Rerun(source.entries, method or {}, source.stamps and source.stamps[0])
@@ -194,17 +203,19 @@ def _run(options):
         if (value := getattr(options, name)) is not None
     }
     folder = pathlib.Path(options.output) if options.output else report_folder(options.recording)
-    outcomes, files = [], []
-    for source, rerun, comparison in resimulate(options.recording, method):
+    outcomes, files, left_out = [], [], []
+    for source, rerun, comparison in resimulate(options.recording, method, left_out.append):
         outcomes.append(verdict(source, rerun, comparison, bool(method), options.tolerance))
         if comparison.parting:
             files += _write(folder, source, comparison, outcomes[-1])
     if options.json:
-        command_line.print_json({'bodies': outcomes, 'files': [str(path) for path in files]})
+        command_line.print_json({'bodies': outcomes, 'files': [str(path) for path in files],
+                                 'left_out': [source.namespace for source in left_out]})
     else:
         print(
             '\n'.join(
                 [line for found in outcomes for line in lines(found, bool(method))]
+                + [f'{source.namespace}: not run again: it has no journal' for source in left_out]
                 + [f'  {path}' for path in files]
             )
         )

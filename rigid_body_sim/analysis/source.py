@@ -167,12 +167,16 @@ def _run(recording, topics, entries, start, end):
 
 @contextlib.contextmanager
 def journal_of(where):
-    """Turn any error that a malformed journal causes into BadInput.
+    """Turn any error that a malformed journal causes into BadInput with the place of the file.
 
     A journal is read as if this package wrote it, but another program may have.
     """
     try:
         yield
+    except BadInput as refusal:
+        if refusal.where.startswith(str(where)):
+            raise
+        raise BadInput(f'{where}: {refusal.where}', refusal.problem, refusal.remedy) from refusal
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         said = ' '.join(str(error).split())[:200]
         raise BadInput(str(where), f'the journal makes no sense ({type(error).__name__}: {said})',

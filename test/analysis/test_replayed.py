@@ -131,3 +131,19 @@ def test_a_topic_that_the_node_remapped_is_found(tmp_path, capsys, monkeypatch):
     assert (status, found['identical'], found['not_compared']) == (0, True, [])
     with Recording(path) as opened:
         assert len(opened.states()) == 101
+
+
+def test_a_topic_in_a_namespace_without_a_journal_is_left_out(recording, tmp_path, capsys):
+    path = again(recording, tmp_path / 'again.mcap', renamed={'/pose': '/lab/pose'})
+    assert main([str(path)]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith('identical in 3 of 4 topics')
+    assert 'not compared: pose' in text and '/lab: not run again: it has no journal' in text
+    assert main([str(path), '--json']) == 0
+    assert json.loads(capsys.readouterr().out)['left_out'] == ['/lab']
+
+
+def test_a_missing_journal_is_not_one_that_makes_no_sense(recording, tmp_path, capsys):
+    path = again(recording, tmp_path / 'again.mcap', renamed={'/journal': '/notes'})
+    assert main([str(path)]) == 2
+    assert capsys.readouterr().err.startswith(f'{path}: journal: is missing; a recording by ')
