@@ -90,8 +90,8 @@ class Choice:
     def expected_error(self):
         """Largest error of the attitude within the horizon (rad); None where nothing tells.
 
-        In a fast nutation a method that was named may err more in the angular velocity: then it
-        is that error as a share of the largest angular velocity. Trial runs tell it, when it is
+        In a fast nutation a method that was named may err more in the angular velocity: then that
+        error is told, as a share of the largest angular velocity. Trial runs tell it, when it is
         first asked for. Fixed steps are not tried.
         """
         return self._forecast.error

@@ -2,9 +2,10 @@
 """Bodies whose moments differ too little to matter: they are taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
-that lie within NEARLY of each other: both of a pair become their mean I. Moments of one double may
-differ by what the parallel-axis theorem lost. What that leaves out of
-Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third axis k, in cyclic order, is
+that lie within NEARLY of each other: both of a pair become their mean I. Their difference d has
+what rounding lost in the parallel-axis theorem, so that it need not be 0 where both are the same
+double. What is left out of Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third
+axis k, in cyclic order, is
 
     omega_i' by -d/(2 I) (omega_i' + omega_j omega_k),
     omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
