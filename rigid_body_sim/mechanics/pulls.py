@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sum of everything that acts in a scene, whatever effects it comes from."""
 
+import functools
+import operator
+from fractions import Fraction
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Vector
-from rigid_body_sim.numerics.vectors import plus
+from rigid_body_sim.numerics.vectors import plus, scaled
+from rigid_body_sim.scene.effects.protocol import Pull
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.scene import kept
 
 NOTHING = (0.0, 0.0, 0.0)
-BOOKS = {'force': 'potential', 'torque': 'work', 'drag': 'heat'}
-"""Where the ledger books each kind of action in a motion in closed form."""
 
 
 class Total(NamedTuple):
@@ -24,7 +27,8 @@ class Total(NamedTuple):
     force : Vector
         At the centre of mass, world components, N.
     drag : Matrix
-        Torque = drag . omega in the frame of the scene, N m s.
+        Torque = drag . omega in the frame of the scene, N m s. Its skew part is that of
+        `carried`.
     slowing : float
         c of the force -c v at the centre of mass of a free body, N s/m.
     """
@@ -36,30 +40,88 @@ class Total(NamedTuple):
     slowing: float
 
 
+    @property
+    def carried(self):
+        """The h of the torque h x omega in the frame of the scene, kg m^2/s: that of rotors."""
+        (_, xy, xz), (yx, _, yz), (zx, zy, _) = self.drag
+        return 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
+
+    @property
+    def is_carried_only(self):
+        """Whether the drag is but what rotors carry."""
+        return all(one == -other for row, column in zip(self.drag, zip(*self.drag, strict=True),
+                                                        strict=True)
+                   for one, other in zip(row, column, strict=True))
+
+
 @kept
 def total_pull(scene):
-    """Return the Total of what acts in a scene.
+    """Return the Total of what acts in a scene, wherever the ledger books it.
+
+    Forces that cancel each other to the rounding of the scene are none.
 
     Returns
     -------
     Total or None
         None where something acts that is not of this kind, or changes in time, and where another
-        point than the body's origin is held.
+        point than the body's origin is held, or one that moves.
     """
     frame = scene.frame
-    if scene.constraint.axis is None and not frame.moves and any(frame.point):
+    if frame.path is not None or (
+            scene.constraint.axis is None and not frame.moves and any(frame.point)):
         return None    # motions about a point hold the body's origin
     pulls = []
     for effect in scene.acting:
+        field = effect.uniform_field
+        if field is not None:
+            pulls.append(Pull(force=scaled(frame.mass, field)))
+            continue
         if effect.series is None or effect.acting is None:
             return None
         pull = effect.series(frame, 0.0)
-        if any(effect.series(frame, time) != pull for time in effect.breakpoints):
-            return None
-        if {one.books for one in effect.acting(frame, 0.0)} != _expected(pull):
+        if pull.formulas or any(effect.series(frame, time) != pull for time in effect.breakpoints):
             return None
         pulls.append(pull)
-    return total_of(pulls)
+    return total_of(pulls)._replace(force=_sums([pull.force or NOTHING for pull in pulls]))
+
+
+def _sums(vectors):
+    """Return the sum of vectors; components that cancel to the rounding of the scene are 0."""
+    totals = []
+    for column in zip(*(vectors or [NOTHING]), strict=True):
+        total = functools.reduce(operator.add, column, 0)
+        is_left = abs(total) > ULPS * functools.reduce(operator.add, map(abs, column))
+        totals.append(total if is_left else total - total)
+    return tuple(totals)
+
+
+@kept
+def load_of(scene):
+    """Return the force at the centre of mass of a held body, if besides it only rotors act.
+
+    Returns
+    -------
+    tuple of 3 Fractions or None
+        N, world components, exactly what the doubles of the scene say. None where anything else
+        acts.
+    """
+    total = total_pull(scene)
+    if total is None or any(total.torque) or any(total.couple) or not total.is_carried_only:
+        return None
+    # a field pulls at a bearing even where it turns nothing
+    forces = [effect.series(scene.frame, 0.0).force for effect in scene.acting
+              if effect.uniform_field is None]
+    weight = scaled(Fraction(scene.body.mass), tuple(map(Fraction, scene.field)))
+    return _sums([weight, *(tuple(map(Fraction, force)) for force in forces if force)])
+
+
+@kept
+def weight_of(scene):
+    """Return g (m/s^2, a Fraction) of a held body whose load is M g along -z, else None."""
+    load = load_of(scene)
+    if load is None or load[0] or load[1] or load[2] > 0:
+        return None
+    return -load[2] / Fraction(scene.body.mass)
 
 
 def total_of(pulls):
@@ -73,10 +135,3 @@ def total_of(pulls):
         slowing += pull.slowing
     return Total(torque, couple, force, drag, slowing)
 
-
-def _expected(pull):
-    """Return the entries of the ledger that belong to the parts of a Pull."""
-    parts = {'force': pull.force is not None and any(pull.force),
-             'torque': any(pull.constant) or any(pull.couple or NOTHING),
-             'drag': pull.drag is not None or pull.slowing != 0.0}
-    return {BOOKS[part] for part, is_there in parts.items() if is_there}

@@ -71,7 +71,7 @@ def axle_of(axis, center, point, mass, inertia):
 def _unit(axis):
     """Return the unit vector along an axis, exactly."""
     along, one = in_integers(axis)
-    size = _root(Fraction(dot(along, along), one * one))
+    size = root_of(Fraction(dot(along, along), one * one))
     return Exact(scaled(size.denominator, along), one * size.numerator)
 
 
@@ -82,13 +82,13 @@ def swung(axis, center, point):
     (x, y, z, *held), one = in_integers((*center, *point))
     r = Exact(minus((x, y, z), held), one)
     side, over = cross(n.integers, r.integers), n.over * r.over
-    d = _root(Fraction(dot(side, side), over * over))
+    d = root_of(Fraction(dot(side, side), over * over))
     if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
         d = Fraction(0)         # on the axis, to the rounding of what the scene says
     return n, r, d, Exact(cross(side, r.integers), over * r.over)
 
 
-def _root(number):
+def root_of(number):
     """Return the square root of a Fraction, to 40 digits or more."""
     if not number:
         return number

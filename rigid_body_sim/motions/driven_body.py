@@ -3,16 +3,17 @@
 
 It absorbs a body with two equal moments under a constant torque N along its third axis a, fixed in
 the body, and a sphere (three equal moments) under any constant torque, fixed in the body or in the
-world. A free body may also fly under a constant force and linear drag (flight.py). The spin may
-pass through zero.
+world. Under a torque along a, or under none, it may have rotors of the momentum h along a. A free
+body may also fly under a constant force and linear drag (flight.py). The spin may pass through
+zero.
 
 With I1 the equal moments, I that about a, w the spin about a and t the part of omega across it,
 
     w = w0 + N tau/I,     Phi = w0 tau + N tau^2/(2 I),
 
-and omega's part across a turns in the body by the angle (I - I1)/I1 Phi, quadratic in time. Seen
-from axes that turn in the body with it, the angular velocity is t0 + (I/I1) w a: it changes
-linearly with time. The turn of these axes is that of numerics/ramped_rotation.py
+and omega's part across a turns in the body by the angle (I - I1)/I1 Phi + h/I1 tau, quadratic in
+time. Seen from axes that turn in the body with it, the angular velocity is t0 + (I w + h)/I1 a: it
+changes linearly with time. The turn of these axes is that of numerics/ramped_rotation.py
 (parabolic-cylinder functions; the Landau-Zener problem), and the body lags behind them by the same
 angle. Under a torque fixed in the world omega of a sphere changes linearly in world axes.
 """
@@ -62,6 +63,7 @@ class Drive(NamedTuple):
     growth: Pair         # N/I, rad/s^2
     ratio: Pair          # I/I1
     excess: Pair         # (I - I1)/I1
+    rotor: Pair          # h/I1, rad/s
 
 
 class Parameters(NamedTuple):
@@ -100,7 +102,7 @@ def absorbs(scene):
     if scene.constraint.mechanism not in (Mechanism.FREE, Mechanism.POINT):
         return False
     total = total_pull(scene)
-    return (total is not None and not any(map(any, total.drag))
+    return (total is not None and total.is_carried_only
             and (scene.constraint.mechanism is Mechanism.FREE or not any(total.force))
             and drive(scene) is not None)
 
@@ -109,28 +111,38 @@ def absorbs(scene):
 def drive(scene):
     """Return the Drive of a scene that has a Total (mechanics/pulls.py), or None."""
     inertia, total = scene.constraint.inertia(scene.body), total_pull(scene)
-    moments = inertia.moments
-    if any(total.torque) == any(total.couple) or min(moments) == 0.0:
-        return None
+    moments, torque, carried = inertia.moments, total.torque, total.carried
+    size, spinning = hypot3(*torque), hypot3(*carried)
     in_world = any(total.couple)
-    torque = total.couple if in_world else total.torque
-    size = hypot3(*torque)
-    if len(set(moments)) == 1:
-        direction = [component / size for component in torque]
-        a = direction if in_world else rotate(*inertia.axes, *direction)
-        return Drive(IN_WORLD if in_world else IN_BODY, a, quotient_of(size, moments[0]),
-                     (1.0, 0.0), (0.0, 0.0))
-    if in_world:
+    if in_world + any(torque) + any(carried) == 0 or min(moments) == 0.0:
         return None
+    if in_world:
+        if any(torque) or any(carried) or len(set(moments)) > 1:
+            return None
+        size = hypot3(*total.couple)
+        direction = [component / size for component in total.couple]
+        return Drive(IN_WORLD, direction, quotient_of(size, moments[0]), (1.0, 0.0), (0.0, 0.0),
+                     (0.0, 0.0))
+    if len(set(moments)) == 1:
+        along, whole = (torque, size) if size else (carried, spinning)
+        direction = [component / whole for component in along]
+        h = dot(direction, carried)
+        if hypot3(*across(direction, carried)) > ULPS * spinning:
+            return None
+        return Drive(IN_BODY, rotate(*inertia.axes, *direction), quotient_of(size, moments[0]),
+                     (1.0, 0.0), (0.0, 0.0),
+                     quotient_of(math.copysign(spinning, h), moments[0]))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        if moments[i] == moments[j] and max(abs(torque[i]), abs(torque[j])) <= ULPS * size:
+        if (moments[i] == moments[j] and max(abs(torque[i]), abs(torque[j])) <= ULPS * size
+                and max(abs(carried[i]), abs(carried[j])) <= ULPS * spinning):
+            sign = math.copysign(1.0, torque[k])
             unit = [0.0, 0.0, 0.0]
-            unit[k] = math.copysign(1.0, torque[k])
+            unit[k] = sign
             (I, I1), _ = in_integers((moments[k], moments[i]))
             return Drive(IN_BODY, rotate(*inertia.axes, *unit),
                          quotient_of(abs(torque[k]), moments[k]), quotient(I, I1),
-                         quotient(I - I1, I1))
+                         quotient(I - I1, I1), quotient_of(sign * carried[k], moments[i]))
     return None
 
 
@@ -163,10 +175,14 @@ def anchor(parameters, start, out):
 
 
 @compiled
-def _spun(held, dt):
-    """Return the turns of Phi as a pair, dt (s, a pair) after the start."""
-    grown = scaled(times(held.drive.growth, dt), 0.5)
-    return times(TURN, times(dt, plus_any(grown, (held.along, 0.0))))
+def _lagged(held, dt):
+    """Return the turns of (I - I1)/I1 Phi + h/I1 dt as a pair, dt (s, a pair) after the start."""
+    drive = held.drive
+    grown = scaled(times(drive.growth, dt), 0.5)
+    turns = times(drive.excess, times(TURN, times(dt, plus_any(grown, (held.along, 0.0)))))
+    if drive.rotor[0] == 0.0:
+        return turns
+    return plus_any(turns, times(TURN, times(dt, drive.rotor)))
 
 
 @compiled_inline
@@ -183,7 +199,8 @@ def state(anchor, time, out):
     drive, dt = held.drive, two_sum(time, -held.start)
     t, gained = dt[0], drive.growth[0] * dt[0]
     ratio = drive.ratio[0]
-    x, y, z, w = ramped_rotation(ratio * held.along, held.across, ratio * drive.growth[0], t)
+    x, y, z, w = ramped_rotation(ratio * held.along + drive.rotor[0], held.across,
+                                 ratio * drive.growth[0], t)
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = held.e1, held.e2, held.e3
     x, y, z = ax * x + bx * y + cx * z, ay * x + by * y + cy * z, az * x + bz * y + cz * z
     omega = sum_of(held.omega, stretched(gained, drive.a))
@@ -192,8 +209,8 @@ def state(anchor, time, out):
         omega = rotate_back(*q, *omega)
     else:
         q = multiply(*held.orientation, -x, -y, -z, w)
-        if drive.excess[0] != 0.0:
-            turns = times(drive.excess, _spun(held, dt))
+        if drive.excess[0] != 0.0 or drive.rotor[0] != 0.0:
+            turns = _lagged(held, dt)
             sine, cosine = sin_cos(*fraction(0.5 * turns[0], 0.5 * turns[1]))
             q = multiply(*q, *stretched(-sine, drive.a), cosine)
             rest = stretched(-held.across, held.e2)

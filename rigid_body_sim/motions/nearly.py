@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies whose moments differ too little to matter: they are taken as symmetric.
+"""Bodies that are symmetric but for what is too little to matter: they are taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
 that lie within NEARLY of each other: both of a pair become their mean I. Their difference d has
@@ -10,10 +10,13 @@ axis k, in cyclic order, is
     omega_i' by -d/(2 I) (omega_i' + omega_j omega_k),
     omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
 
-It is summed up along the closed form, stretch by stretch, and given to the body as a kick at the
-start of each stretch. The closed form itself says what a kick does until the horizon, so it
-includes how the motion magnifies kicks or averages them out. The changes of attitude by all kicks
-are added as vectors, because they are small; TWICE their largest sum counts as the error.
+The centre of mass of a held body may lie off the axis by NEARLY of its distance: its part d across
+the axis is left out, and with it the torque d x R^T F of the force on the body.
+
+What is left out is summed up along the closed form, stretch by stretch, and given to the body as a
+kick at the start of each stretch. The closed form itself says what a kick does until the horizon,
+so it includes how the motion magnifies kicks or averages them out. The changes of attitude by all
+kicks are added as vectors, because they are small; TWICE their largest sum counts as the error.
 """
 
 import dataclasses
@@ -23,15 +26,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.pulls import total_pull
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import matrix
-from rigid_body_sim.numerics.vectors import apply, transposed
+from rigid_body_sim.numerics.rotations import matrix, rotate
+from rigid_body_sim.numerics.vectors import apply, cross, minus, transposed
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import Scene
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 
-NEARLY = 1e-9                           # difference of two moments over the larger one
+NEARLY = 1e-9    # difference of two moments over the larger one; d over the distance
 STRETCHES = 32                          # kicks about each axis, and looks at what they do
 LOOKS_A_RADIAN, MOST_LOOKS = 8.0, 2 ** 17
 SHOWN = 1e-7                            # size of the tried kicks over the rates of the body
@@ -63,7 +68,7 @@ def differ(scene, equal):
 
 
 def nearly_absorbing(scene, horizon):
-    """Return the Nearly of a scene with moments that nearly agree, or None.
+    """Return the Nearly of a scene that is nearly symmetric, or None.
 
     None also where the body turns too often in the horizon for the error to be summed up.
 
@@ -74,9 +79,10 @@ def nearly_absorbing(scene, horizon):
         s.
     """
     equal = _made_equal(scene.constraint.inertia(scene.body).moments)
-    if not differ(scene, equal):
+    off = _off_axis(scene, equal)
+    if not differ(scene, equal) and not any(off):
         return None
-    symmetric = _with_moments(scene, equal)
+    symmetric = _symmetric(scene, equal, off)
     motion = absorbing_motion(symmetric)
     if motion is None:
         return None
@@ -85,10 +91,25 @@ def nearly_absorbing(scene, horizon):
     if not looks <= MOST_LOOKS:
         return None
     each = int(looks / STRETCHES) + 2
-    return Nearly(motion, symmetric, _error(Exact(symmetric, motion), scene, equal, horizon, each))
+    error = _error(Exact(symmetric, motion), scene, equal, off, horizon, each)
+    return Nearly(motion, symmetric, error)
 
 
-def _error(solver, scene, equal, horizon, each):
+def _off_axis(scene, equal):
+    """Return the part d of the centre of mass across the axis, principal axes, m; 0 if it shows.
+
+    It is that of a body held at a point whose moments are made equal.
+    """
+    arm = scene.frame.arm
+    if scene.constraint.mechanism is Mechanism.POINT and len(set(equal)) == 2:
+        k = next(k for k in range(3) if equal[(k + 1) % 3] == equal[(k + 2) % 3])
+        off = [0.0 if place == k else part for place, part in enumerate(arm)]
+        if hypot3(*off) <= NEARLY * abs(arm[k]):
+            return off
+    return [0.0, 0.0, 0.0]
+
+
+def _error(solver, scene, equal, off, horizon, each):
     """Return the error; the sums along a stretch have `each` terms."""
     solver = solver.start(scene.initial.vector)
     axes = matrix(*scene.constraint.inertia(scene.body).axes)
@@ -102,6 +123,12 @@ def _error(solver, scene, equal, horizon, each):
     sums = [(w[(k + 1) % 3] * w[(k + 2) % 3]).reshape(STRETCHES, each).cumsum(axis=1)[:, -1] * step
             for k in range(3)]
     kicks = _kicks(scene.constraint.inertia(scene.body), equal, rises, sums)
+    if any(off):
+        force = apply(transposed(matrix(*looks[:, ORIENTATION].T)), total_pull(scene).force)
+        turns = cross(off, apply(transposed(axes), force))
+        for kick, turn, moment in zip(kicks, turns, equal, strict=True):
+            if moment > 0.0:
+                kick += turn.reshape(STRETCHES, each).cumsum(axis=1)[:, -1] * (step / moment)
     size = np.abs(kicks).max()
     if not size > 0.0:
         return 0.0
@@ -155,10 +182,12 @@ def _made_equal(moments):
     return tuple(means[moment] for moment in moments)
 
 
-def _with_moments(scene, equal):
-    """Return the scene with other moments about the point that its constraint holds."""
+def _symmetric(scene, equal, off):
+    """Return the scene with other moments about the point that is held, and no `off`."""
     inertia, body = scene.constraint.inertia(scene.body), scene.body
     changed = dataclasses.replace(inertia, moments=equal, lost=(0.0, 0.0, 0.0))
     changes = {name: changed for name in ('about_center', 'about_origin')
                if getattr(body, name) == inertia}
+    if any(off):
+        changes['center_of_mass'] = minus(body.center_of_mass, rotate(*inertia.axes, *off))
     return dataclasses.replace(scene, body=dataclasses.replace(body, **changes))

@@ -56,6 +56,13 @@ def normalised(qx, qy, qz, qw):
     return qx - qx * half, qy - qy * half, qz - qz * half, qw - qw * half
 
 
+def turn_to(x, y, z):
+    """Return a quaternion that turns the third axis into the unit vector (x, y, z)."""
+    if z < 0.0:    # -z into it, after z into -z
+        return multiply(*normalised(y, -x, 0.0, 1.0 - z), 1.0, 0.0, 0.0, 0.0)
+    return normalised(-y, x, 0.0, 1.0 + z)
+
+
 @compiled
 def _excess(qx, qy, qz, qw):
     """Return |q|^2 - 1."""

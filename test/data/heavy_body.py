@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """High-precision reference for a body with a fixed point in a uniform field, by Taylor series.
 
-    q' = q omega / 2,   gamma' = gamma x omega,   I omega' = I omega x omega - M g c x gamma
+    q' = q omega / 2,   gamma' = gamma x omega,   I omega' = (I omega + h) x omega - M g c x gamma
 
 These full equations of motion are solved. q is the attitude (x, y, z, w), omega and gamma (the
-vertical) are in body axes, which are principal, and c is the centre of mass from the fixed point.
-No closed form is used. Numbers are integers in units of 2^-bits, so that a convolution is one loop
-of integer products: every product is exact, and only the sum is truncated.
+vertical) are in body axes, which are principal, c is the centre of mass from the fixed point, and
+h the momentum of rotors in the body. No closed form is used. Numbers are integers in units of
+2^-bits, so that a convolution is one loop of integer products: every product is exact, and only
+the sum is truncated.
 """
 
 from operator import mul
@@ -25,11 +26,13 @@ class Flow:
         About the fixed point; a zero moment means no spin about that axis.
     weight_arm : 3 numbers, N m
         M g c.
+    rotor : 3 numbers, kg m^2/s
+        h.
     """
 
-    def __init__(self, bits, moments, weight_arm):
+    def __init__(self, bits, moments, weight_arm, rotor=(0, 0, 0)):
         self.bits, self.order = bits, max(24, bits * 3 // 10)
-        self.moments, self.weight_arm = moments, weight_arm
+        self.moments, self.weight_arm, self.rotor = moments, weight_arm, rotor
 
     def start(self, q, omega):
         """Go to q (any norm) and omega at time 0."""
@@ -41,7 +44,8 @@ class Flow:
             omega = [mpf(rate) for rate in omega]
             # in this unit of time rates are of order one
             pull = mp.sqrt(mp.fsum(mpf(x) ** 2 for x in self.weight_arm)) / sorted(self.moments)[1]
-            fastest = mp.sqrt(mp.fsum(rate * rate for rate in omega)) + mp.sqrt(pull)
+            fastest = (mp.sqrt(mp.fsum(rate * rate for rate in omega)) + mp.sqrt(pull)
+                       + max(map(abs, self.rotor)) / sorted(self.moments)[1])
             self.unit = mpf(2) ** (-int(mp.ceil(mp.log(fastest, 2))))
             self._prepare()
             self._state = [self._fixed(x)
@@ -84,6 +88,10 @@ class Flow:
         # rows of -(M g c x) / I
         rows = ((0, z * u, -y * u), (-z * v, 0, x * v), (y * w, -x * w, 0))
         self._pull = [[self._fixed(entry) for entry in row] for row in rows]
+        x, y, z = (mpf(component) * self.unit for component in self.rotor)
+        # rows of (h x) / I
+        rows = ((0, -z * u, y * u), (z * v, 0, -x * v), (-y * w, x * w, 0))
+        self._turn = [[self._fixed(entry) for entry in row] for row in rows]
 
     def _series(self, state):
         """Return the Taylor coefficients of q, gamma, omega."""
@@ -98,7 +106,9 @@ class Flow:
 
         def turn(i, product, k):
             a, b, c = self._pull[i]
-            return self._gyro[i] * (product >> bits) + a * g1[k] + b * g2[k] + c * g3[k]
+            d, e, f = self._turn[i]
+            return (self._gyro[i] * (product >> bits) + a * g1[k] + b * g2[k] + c * g3[k]
+                    + d * w1[k] + e * w2[k] + f * w3[k])
 
         for k in range(self.order):
             b1.insert(0, w1[k])

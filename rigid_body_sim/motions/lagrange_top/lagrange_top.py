@@ -3,16 +3,18 @@
 
 Notes, "Symmetric Top" to "Fast top". It absorbs a pivot (the body's origin stays where it is),
 gravity or none, and a body with two equal moments about the pivot and its centre of mass on the
-third axis. Spherical tops, thin rods (the spherical pendulum), hanging and standing tops, and tops
-without weight are ordinary cases.
+third axis. A constant force at the centre of mass is more weight or less, and rotors along the
+third axis are more spin. Spherical tops, thin rods (the spherical pendulum), hanging and standing
+tops, and tops without weight are ordinary cases.
 
 Symbols: e3 the symmetry axis, towards the centre of mass at distance h from the pivot; I1, I1, I3
-moments about the pivot; k = M g h/I1; n = P_gamma/I1 = I3 omega_3/I1; beta the angle of e3 to the
-vertical, u = cos(beta).
+moments about the pivot; k = M g h/I1; n = P_gamma/I1 = I3 omega_3/I1, or (I3 omega_3 + H)/I1 with
+rotors of the momentum H along e3; beta the angle of e3 to the vertical, u = cos(beta).
 
 A top with I3 := I1 and the same n differs from this one by a steady rotation about e3 at the rate
-omega_3 - n = omega_3 (I1 - I3)/I1, so I3 enters nowhere else. The attitude is a pair of complex
-numbers a = w + i z, b = y - i x (Cayley-Klein parameters, |a|^2 = (1 + u)/2, |b|^2 = (1 - u)/2),
+omega_3 - n, which is omega_3 (I1 - I3)/I1 without rotors, so I3 and H enter nowhere else. The
+attitude is a pair of complex numbers a = w + i z, b = y - i x (Cayley-Klein parameters,
+|a|^2 = (1 + u)/2, |b|^2 = (1 - u)/2),
 so nothing happens at beta = 0 and pi, where Euler's angles fail. a, b and omega_c = omega_2 - i
 omega_1 are single-valued functions of time: a theta quotient times a phase that grows steadily
 (theta.py). The phase of omega_c is that of b less that of a, because with gamma the vertical in
@@ -34,6 +36,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
+from rigid_body_sim.mechanics.pulls import total_pull, weight_of
 from rigid_body_sim.motions.lagrange_top.anchor import anchor_nutation
 from rigid_body_sim.motions.lagrange_top.means import NEVER
 from rigid_body_sim.motions.lagrange_top.nutation import (
@@ -48,13 +51,14 @@ from rigid_body_sim.motions.lagrange_top.nutation import (
 )
 from rigid_body_sim.motions.lagrange_top.theta import Klein
 from rigid_body_sim.motions.loops import COLUMNS
-from rigid_body_sim.numerics.double_double import multiply_double, two_sum
+from rigid_body_sim.numerics.double_double import add, multiply_double, two_sum
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.pairs import quotient
+from rigid_body_sim.numerics.pairs import quotient, quotient_of
 from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
-from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
-from rigid_body_sim.scene import bodies, principal_axes
+from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back, turn_to
+from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE, StateView
 
@@ -66,11 +70,12 @@ class Parameters(NamedTuple):
     """Numbers of the scene."""
 
     mass: float          # kg
-    g: float             # m/s^2
+    g: float             # m/s^2, with all that pulls at the centre of mass
     arm: float           # h, m
     pull: Pair           # M g h/I1, 1/s^2
     ratio: Pair          # I3/I1
     excess: Pair         # (I1 - I3)/I1
+    rotor: Pair          # H/I1, rad/s
     frame: Quaternion    # turns the axes of the top, whose third is e3, to those of the body
 
 
@@ -108,12 +113,27 @@ NOWHERE = (0.0, 0.0, 0.0)
 def absorbs(scene):
     """Return whether the scene is a symmetric body under its weight alone, held at its origin.
 
-    Symmetric means exactly so (:func:`symmetry_axis`).
+    Symmetric means exactly so (:func:`symmetry_axis`). What counts as weight says
+    :func:`mechanics.pulls.weight_of`; rotors may turn along the symmetry axis.
     """
-    held = scene.constraint
-    return (held.mechanism is Mechanism.POINT and held.path is None
-            and not any(held.point(scene.body)) and scene.weight is not None
-            and symmetry_axis(scene) is not None)
+    return (scene.constraint.mechanism is Mechanism.POINT and weight_of(scene) is not None
+            and is_symmetric(scene))
+
+
+def is_symmetric(scene):
+    """Return whether a body is symmetric and its rotors turn along its axis.
+
+    The scene has a Total (mechanics/pulls.py).
+    """
+    return symmetry_axis(scene) is not None and rotor_along(scene) is not None
+
+
+def rotor_along(scene):
+    """Return the momentum of rotors along e3 (kg m^2/s), None where some of it lies across."""
+    carried = total_pull(scene).carried
+    x, y, along = rotate_back(*symmetry_axis(scene)[1], *rotate(*scene.frame.axes, *carried))
+    size = hypot3(*carried)
+    return math.copysign(size, along) if max(abs(x), abs(y)) <= ULPS * size else None
 
 
 @kept
@@ -137,10 +157,10 @@ def symmetry_axis(scene):
     distance = hypot3(*center)
     if moments[0] == moments[1] == moments[2]:
         if distance > 0.0:
-            return 2, _turn_to(*(component / distance for component in center))
+            return 2, turn_to(*(component / distance for component in center))
         return 2, bodies.IDENTITY
     local = rotate_back(*axes, *center)
-    slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else principal_axes.ULPS * distance
+    slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else ULPS * distance
     orders = (0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY
     for k, order in enumerate(orders):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -150,38 +170,45 @@ def symmetry_axis(scene):
     return None
 
 
-def _turn_to(x, y, z):
-    """Return a quaternion that turns the third axis into the unit vector (x, y, z)."""
-    if z < 0.0:    # -z into it, after z into -z
-        return multiply(*normalised(y, -x, 0.0, 1.0 - z), 1.0, 0.0, 0.0, 0.0)
-    return normalised(-y, x, 0.0, 1.0 + z)
-
-
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    body, g, arm = scene.body, scene.weight, hypot3(*scene.body.center_of_mass)
+    return numbers_of(scene, weight_of(scene))
+
+
+def numbers_of(scene, g):
+    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2, a Fraction)."""
+    body, arm = scene.body, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(scene)
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
     (I1, of_I1), (I3, of_I3) = (body.about_origin.moments[k].as_integer_ratio()
                                 for k in ((axis + 1) % 3, axis))
-    factors = [number.as_integer_ratio() for number in (body.mass, float(g), arm)]
+    factors = [number.as_integer_ratio() for number in (body.mass, g, arm)]
     weight, of_weight = (math.prod(part) for part in zip(*factors, strict=True))
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        body.mass, g, arm, quotient(weight * of_I1, of_weight * I1),
-        quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1), frame))
+        body.mass, float(g), arm, quotient(weight * of_I1, of_weight * I1),
+        quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1),
+        quotient_of(rotor_along(scene), body.about_origin.moments[(axis + 1) % 3]), frame))
     return numbers
 
 
 @compiled
 def anchor(parameters, start, out):
     """Fill the anchor from the state `start`."""
-    p, begin = load_parameters(parameters), load_state(start)
+    fill_anchor(load_parameters(parameters), load_state(start), out)
+
+
+@compiled_inline
+def fill_anchor(p, begin, out):
+    """Fill the anchor from Parameters and a StateView."""
     x, y, z, w = multiply(*begin.orientation, *p.frame)
     omega_1, omega_2, omega_3 = rotate_back(*p.frame, *begin.angular_velocity)
-    anchor_nutation(Klein((w, z), (y, -x), (omega_2, -omega_1)),
-                    multiply_double(p.ratio[0], p.ratio[1], omega_3), p.pull,
-                    multiply_double(p.excess[0], p.excess[1], omega_3), out)
+    n = multiply_double(p.ratio[0], p.ratio[1], omega_3)
+    own_spin = multiply_double(p.excess[0], p.excess[1], omega_3)
+    if p.rotor[0] != 0.0:
+        (h, low) = p.rotor
+        n, own_spin = add(n[0], n[1], h, low), add(own_spin[0], own_spin[1], -h, -low)
+    anchor_nutation(Klein((w, z), (y, -x), (omega_2, -omega_1)), n, p.pull, own_spin, out)
     store_steady(out, Steady(begin.time, omega_3, p.frame, begin.position))
 
 
@@ -202,9 +229,14 @@ def _state_of(steady, time, klein):
 @compiled
 def state(anchor, time, out):
     """Fill out with the state at a time before or after the anchor."""
+    store_state(out, state_at(anchor, time))
+
+
+@compiled_inline
+def state_at(anchor, time):
+    """Return the state at a time, a StateView."""
     steady = load_steady(anchor)
-    klein = functions(anchor, two_sum(time, -steady.start))
-    store_state(out, _state_of(steady, time, klein))
+    return _state_of(steady, time, functions(anchor, two_sum(time, -steady.start)))
 
 
 @compiled
@@ -275,9 +307,9 @@ def reaction(parameters, state, out):
     q = multiply(*now.orientation, *p.frame)
     omega_1, omega_2, omega_3 = rotate_back(*p.frame, *now.angular_velocity)
     gamma_1, gamma_2, _ = rotate_back(*q, 0.0, 0.0, 1.0)
-    excess, pull = p.excess[0], p.pull[0]
-    rise_1 = excess * omega_2 * omega_3 + pull * gamma_2
-    rise_2 = -excess * omega_1 * omega_3 - pull * gamma_1
+    turning, pull = p.excess[0] * omega_3 - p.rotor[0], p.pull[0]
+    rise_1 = turning * omega_2 + pull * gamma_2
+    rise_2 = -turning * omega_1 - pull * gamma_1
     push = p.mass * p.arm
     x, y, z = rotate(*q, push * (rise_2 + omega_1 * omega_3), push * (omega_2 * omega_3 - rise_1),
                      -push * (omega_1 * omega_1 + omega_2 * omega_2))

@@ -13,6 +13,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
+from rigid_body_sim.mechanics.pulls import weight_of
 from rigid_body_sim.motions.axle import (
     KEPT,
     axle_of,
@@ -71,7 +72,7 @@ class Parameters(NamedTuple):
     unit: Vector         # n in doubles
     through: Vector      # m
     mass: float          # kg
-    g: float             # m/s^2
+    g: float             # m/s^2, with all that pulls at the centre of mass
     arm: Vector          # r, m
     momentum: Vector     # the tensor about `through` times n, kg m^2
     weight: float        # M g/I
@@ -130,13 +131,18 @@ def parameters(scene):
 
     They come from the exact rationals that the doubles of the scene are.
     """
+    return numbers_of(scene, weight_of(scene))
+
+
+def numbers_of(scene, g):
+    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2, a Fraction)."""
     held = held_of(scene)
-    return _numbers(np.array(held[2]).tobytes(), scene.weight, *held).copy()
+    return _numbers(np.array(held[2]).tobytes(), g, *held).copy()
 
 
 @functools.lru_cache(maxsize=KEPT)
 def _numbers(bits, weight, axis, center, point, mass, inertia):
-    """Return the array of `parameters`, which is cached; `bits` tell -0 from 0 in `point`."""
+    """Return the array of `numbers_of`, which is cached; `bits` tell -0 from 0 in `point`."""
     held = axle_of(axis, center, point, mass, inertia)
     (M, of_M), (g, of_g) = mass.as_integer_ratio(), weight.as_integer_ratio()
     weighs, over = M * g * held.moment[1], of_M * of_g * held.moment[0]    # M g/I
@@ -144,15 +150,20 @@ def _numbers(bits, weight, axis, center, point, mass, inertia):
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
         *_directions(axis, center, point), quotient(weighs * d.numerator, over * d.denominator),
-        held.axis.rounded(), point, mass, weight, held.arm.rounded(), held.momentum.rounded(),
-        weighs / over))
+        held.axis.rounded(), point, mass, float(weight), held.arm.rounded(),
+        held.momentum.rounded(), weighs / over))
     return numbers
 
 
 @compiled
 def anchor(parameters, start, out):
     """Fill the anchor from a state; of its angular velocity the part along the axis counts."""
-    p, begin = load_parameters(parameters), load_state(start)
+    fill_anchor(load_parameters(parameters), load_state(start), out)
+
+
+@compiled_inline
+def fill_anchor(p, begin, out):
+    """Fill the anchor from Parameters and a StateView."""
     wx, wy, wz = begin.angular_velocity
     w = scaled(_along(p.axis, (wx, 0.0), (wy, 0.0), (wz, 0.0)), 0.5)
     cosine, sine, size = _position(p.down, p.side, begin.orientation)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Physical pendulum: a body on a hinge of any direction (notes, "Kater's Pendulum").
 
-It is solved in closed form over any time, with gravity or without.
+It is solved in closed form over any time, with gravity or without. A constant force at the centre
+of mass is more weight or less, and rotors change nothing but the reaction.
 
 Symbols: n the axis (unit vector, the same in the body and in the world), I the moment about it, r
 the arm from `through` to the centre of mass, gamma the vertical in body axes, d and G the parts of
@@ -35,6 +36,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.mechanics.pulls import weight_of
 from rigid_body_sim.motions.free_body.rotation import (
     CIRCULAR,
     HYPERBOLIC,
@@ -81,15 +83,21 @@ store_reaction = layout(Reaction).store
 
 def absorbs(scene):
     """Return whether the scene is a body on a hinge under its weight alone, or under nothing."""
-    return scene.constraint.mechanism is Mechanism.AXIS and scene.weight is not None
+    return scene.constraint.mechanism is Mechanism.AXIS and weight_of(scene) is not None
 
 
 @compiled
 def state(anchor, time, out):
     """Fill out with the state at a time before or after the anchor."""
+    store_state(out, state_at(anchor, time))
+
+
+@compiled_inline
+def state_at(anchor, time):
+    """Return the state at a time, a StateView."""
     dt = two_sum(time, -load_course(anchor).start)
     s, c, w = functions(anchor, dt)
-    store_state(out, _state_of(load_circle(anchor), time, s, c, w))
+    return _state_of(load_circle(anchor), time, s, c, w)
 
 
 @compiled_inline

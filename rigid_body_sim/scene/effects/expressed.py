@@ -77,7 +77,7 @@ class ExpressedTorque(Effect):
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple."""
-        return formulas.torque(self.trees, self.frame, self.parameters)
+        return formulas.torque(self.trees, self.frame, self.parameters, frame)
 
 
 @dataclass(frozen=True)

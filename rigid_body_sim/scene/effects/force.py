@@ -2,13 +2,16 @@
 """Force: at a point of the body, constant or an expression of time and state."""
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.frame import Frame
@@ -61,6 +64,22 @@ class Force(Effect):
             return None
         return dataclasses.replace(self, trees=tuple(
             tree.number(-float(one.args[0])) for one in self.trees))
+
+    @property
+    def bounds(self) -> Callable[[Body, Constraint], Bounds] | None:
+        """Bounds of a force that is given in numbers."""
+        return None if self.opposite is None else self._bounds
+
+    def _bounds(self, body: Body, constraint: Constraint) -> Bounds:
+        """Return the range of the energy of a force fixed in the world, or the torque of another.
+
+        A force fixed in the world turns a free body by its torque only.
+        """
+        size = hypot3(*(float(one.args[0]) for one in self.trees))
+        held = constraint.holds_a_point
+        reach = minus(self.at, constraint.point(body) if held else body.center_of_mass)
+        torque = size * hypot3(*reach)
+        return Bounds(torque, 0.0) if held and self.frame == 'world' else Bounds(0.0, torque)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the force and its moment."""

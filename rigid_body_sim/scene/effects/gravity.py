@@ -106,8 +106,7 @@ class Gravity(Effect):
 class GravityVector(Effect):
     """``gravity: {g: [gx, gy, gz]}``: a uniform field in any direction, m/s^2, world components.
 
-    F = M g at the centre of mass, U = -M g . r. A vector along -z is a :class:`Gravity`. No motion
-    in closed form knows other directions: turn the world where one is wanted.
+    F = M g at the centre of mass, U = -M g . r. A vector along -z is a :class:`Gravity`.
     """
 
     g: Vector

@@ -103,7 +103,7 @@ class Spring(Effect):
         """Return the pull with the damping."""
         if self.at is None:
             found = formulas.pulls(self.energy, (), frame)
-            damper = formulas.torque(self.damper or formulas.NONE, 'body', ())
+            damper = formulas.torque(self.damper or formulas.NONE, 'body', (), frame)
             return Pull(formulas=found.formulas + damper.formulas)
         both = vectors.total(self.pull, self.damper or formulas.NONE)
         return formulas.force(both, 'world', (), self.at, frame)
