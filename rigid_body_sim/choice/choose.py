@@ -23,7 +23,7 @@ from rigid_body_sim.integrators.protocols import Solver
 from rigid_body_sim.integrators.solver import FINEST, Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
-from rigid_body_sim.motions.nearly import differ, nearly_absorbing
+from rigid_body_sim.motions.nearly import differ, nearly_absorbing, takes_any_moments
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
@@ -308,7 +308,8 @@ class _Closed(NamedTuple):
 def _closed_form(scene, horizon):
     """Return the _Closed of a scene, or None."""
     motion = absorbing_motion(scene)
-    if motion and not differ(scene, scene.constraint.inertia(scene.body).moments):
+    if motion and (takes_any_moments(motion, scene)
+                   or not differ(scene, scene.constraint.inertia(scene.body).moments)):
         return _Closed(motion, scene, 0.0, 0.0)
     nearly = nearly_absorbing(scene, horizon)
     if nearly is None:

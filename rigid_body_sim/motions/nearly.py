@@ -67,6 +67,13 @@ def differ(scene, equal):
         for k, difference in enumerate(scene.constraint.inertia(scene.body).differences))
 
 
+def takes_any_moments(motion, scene):
+    """Return whether a motion absorbs a scene also if no two of its moments are equal."""
+    moments = scene.constraint.inertia(scene.body).moments
+    apart = tuple(moment * (1.0 + k * NEARLY) for k, moment in enumerate(moments))
+    return motion.absorbs(_with_inertia(scene, apart))
+
+
 def nearly_absorbing(scene, horizon):
     """Return the Nearly of a scene that is nearly symmetric, or None.
 
@@ -184,10 +191,18 @@ def _made_equal(moments):
 
 def _symmetric(scene, equal, off):
     """Return the scene with other moments about the point that is held, and no `off`."""
+    found = _with_inertia(scene, equal)
+    if not any(off):
+        return found
+    axes, body = scene.constraint.inertia(scene.body).axes, found.body
+    center = minus(body.center_of_mass, rotate(*axes, *off))
+    return dataclasses.replace(found, body=dataclasses.replace(body, center_of_mass=center))
+
+
+def _with_inertia(scene, moments):
+    """Return the scene with other moments about the point that its constraint holds."""
     inertia, body = scene.constraint.inertia(scene.body), scene.body
-    changed = dataclasses.replace(inertia, moments=equal, lost=(0.0, 0.0, 0.0))
+    changed = dataclasses.replace(inertia, moments=moments, lost=(0.0, 0.0, 0.0))
     changes = {name: changed for name in ('about_center', 'about_origin')
                if getattr(body, name) == inertia}
-    if any(off):
-        changes['center_of_mass'] = minus(body.center_of_mass, rotate(*inertia.axes, *off))
     return dataclasses.replace(scene, body=dataclasses.replace(body, **changes))

@@ -19,6 +19,7 @@ from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.principal_axes import (
     ULPS,
     eigenvectors,
+    is_slim,
     nearest_to_the_body,
     nearest_where_equal,
 )
@@ -36,7 +37,8 @@ class Inertia:
     """An inertia tensor: principal moments (kg m^2) and the turn from principal to body axes.
 
     `lost` (kg m^2) is what the sums of the parallel-axis theorem are more than the moments, which
-    are doubles. In a slim body, whose large moments nearly agree, it counts.
+    are doubles. In a slim body, whose large moments nearly agree, it counts. There it is also what
+    the eigenvalues of a tensor are more.
     """
 
     moments: tuple
@@ -53,8 +55,10 @@ class Inertia:
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
-        moments, axes = nearest_where_equal(*nearest_to_the_body(*eigenvectors(matrix.tolist())))
-        return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))))
+        moments, axes, lost = nearest_to_the_body(*eigenvectors(matrix.tolist()))
+        moments, axes = nearest_where_equal(moments, axes)
+        return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
+                   tuple(lost) if is_slim(moments) else (0.0, 0.0, 0.0))
 
     @property
     def differences(self):

@@ -13,11 +13,14 @@ from rigid_body_sim.numerics.vectors import cross, dot
 PLANES = (0, 1), (0, 2), (1, 2)
 DIGITS, SWEEPS = 40, 20    # digits kept, most sweeps; four suffice for most tensors
 NEGLIGIBLE = Decimal('1e-70')    # square of an entry over the product of the diagonal ones
+SLIM = 2.0 ** -10    # smallest moment of a slim body over the largest, at most
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
 
 
 def eigenvectors(matrix):
     """Return the eigenvalues and eigenvectors of a symmetric 3 x 3 matrix, with 40 digits.
+
+    They are rounded to doubles; a third result is what this took from the eigenvalues.
 
     Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR
     iteration behind LAPACK does not (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
@@ -30,8 +33,10 @@ def eigenvectors(matrix):
             turns = [_turn_away(a, vectors, i, j) for i, j in PLANES]
             if not any(turns):
                 break
-        return ([float(a[k][k]) for k in range(3)],
-                [[float(x) for x in vector] for vector in vectors])
+        rounded = [float(a[k][k]) for k in range(3)]
+        lost = [float(a[k][k] - Decimal(rounded[k])) if math.isfinite(rounded[k]) else 0.0
+                for k in range(3)]
+        return rounded, [[float(x) for x in vector] for vector in vectors], lost
 
 
 def _turn_away(a, vectors, i, j):
@@ -56,10 +61,11 @@ def _turn_away(a, vectors, i, j):
     return True
 
 
-def nearest_to_the_body(moments, vectors):
+def nearest_to_the_body(moments, vectors, lost):
     """Return the moments and the axes (right-handed) that lie nearest to the body axes.
 
-    All orders and signs of the axes are compared.
+    All orders and signs of the axes are compared. `lost`, of each moment, is returned in the order
+    of the moments.
     """
     def turned(order, signs):
         return [[sign * entry for entry in vectors[k]]
@@ -69,11 +75,25 @@ def nearest_to_the_body(moments, vectors):
         x, y, z = turned(*choice)
         return x[0] + y[1] + z[2] if dot(cross(x, y), z) > 0.0 else -math.inf
     order, signs = max(product(permutations(range(3)), product((1.0, -1.0), repeat=3)), key=trace)
-    return [moments[k] for k in order], turned(order, signs)
+    return [moments[k] for k in order], turned(order, signs), [lost[k] for k in order]
+
+
+def is_slim(moments):
+    """Return whether the difference of two large moments may turn a body about its axis.
+
+    A small moment that is but the rounding of the large ones is that of a rod.
+    """
+    return ULPS * max(moments) < min(moments) < SLIM * max(moments)
 
 
 def nearest_where_equal(moments, axes):
-    """Make moments equal that agree to rounding, and turn their axes towards the body axes."""
+    """Make moments equal that agree to rounding, and turn their axes towards the body axes.
+
+    The two large moments of a slim body are left as they are: their difference, over the small
+    one, turns the body about its axis.
+    """
+    if is_slim(moments):
+        return moments, axes
     slack = ULPS * max(moments)
     equal = [(i, j) for i, j in PLANES if abs(moments[i] - moments[j]) <= slack]
     if len(equal) > 1:

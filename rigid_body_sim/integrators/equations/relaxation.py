@@ -72,7 +72,7 @@ def relaxations(scene, unknowns):
     elif matrices:
         roots = [math.sqrt(moment) for moment in frame.moments]
         over = [1.0 / root if root > 0.0 else 0.0 for root in roots]
-        rates, vectors = eigenvectors([[-matrix[i][j] * over[i] * over[j] for j in range(3)]
+        rates, vectors, _ = eigenvectors([[-matrix[i][j] * over[i] * over[j] for j in range(3)]
                                        for i in range(3)])
         into, back = np.array(vectors) * roots, (np.array(vectors) * over).T
         found.append(Relaxation(OMEGA, into, back, [max(rate, 0.0) for rate in rates]))
