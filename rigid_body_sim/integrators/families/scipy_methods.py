@@ -27,6 +27,7 @@ LANES = False
 KINKS = False
 ROOTS = True
 FINEST = 100.0 * np.finfo(float).eps
+UNMOVED = 1e-3    # s, the first step where nothing changes yet
 DEAR = 10    # steps of a compiled march that a trial takes for one step here
 COST = 200   # steps of a compiled march that cost as much as one step here
 
@@ -93,6 +94,7 @@ class _Course:
         rate = self._equations.kernels.rate
         self._p = p
         end = next(time for time in self._ends if time > begin)
+        at_rest = not any(rate(p, tuple(y.tolist())))
         self._solver = self._started(
             lambda time, y: np.array(rate(p, tuple(y.tolist()))),
             begin,
@@ -100,6 +102,8 @@ class _Course:
             end,
             rtol=self._accuracy,
             atol=self._accuracy * self._scales,
+            # of nothing that changes SciPy would make a step that never ends
+            first_step=min(UNMOVED, end - begin) if at_rest else None,
         )
 
     def _advance(self):

@@ -24,6 +24,7 @@ from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 
 TEST = pathlib.Path(__file__).resolve().parent.parent.parent
 REFERENCE = json.loads((pathlib.Path(smooth_cases.__file__).parent / 'smooth.json').read_text())
@@ -212,3 +213,17 @@ def test_ball_under_a_wrench_is_refused_where_steps_cannot_end_with_sliding(name
     control = {'accuracy': 1e-6} if 'accuracy' in METHODS[name].TAKES else {'step': 1e-3}
     with pytest.raises(BadInput, match='those that can: dop8'):
         Stepped(ball, name, wrench=Wrench((1.0, 0.0, 0.0)), **control)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('name', ['lsoda', 'radau'])
+def test_scipys_methods_start_a_body_at_rest(name):
+    """The first step of lsoda would be infinite: a bat before its strike gave 't = inf s'."""
+    simulation = Simulation(load_scene('baseball_bat'), integrator=name, accuracy=1e-3)
+    simulation.advance(2)
+    assert abs(simulation.state.angular_velocity[2]) > 1.0
+    still = parse_scene('scene: still\nbody: {mass: 1, inertia: [1, 2, 3]}\nconstraint: free\n'
+                        'effects: [torque: {times: [0.5], values: [[0, 0, 3]]}]\ninitial: {}\n')
+    simulation = Simulation(still, integrator=name, accuracy=1e-6)
+    simulation.advance(1500)
+    assert abs(simulation.state.angular_velocity[2] - 1.0) < 1e-5
