@@ -11,6 +11,7 @@ from rigid_body_sim.compilation.jit import compiled_inline
 from rigid_body_sim.mechanics.pulls import load_of
 from rigid_body_sim.motions.axle import root_of
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back, turn_to
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import StateView
 
@@ -30,7 +31,7 @@ def upright(scene):
     load = load_of(scene)
     if load is None or not any(load):
         return None
-    size = root_of(sum(one * one for one in load))
+    size = root_of(dot(load, load))
     return turn_to(*(float(-one / size) for one in load)), size / Fraction(scene.body.mass)
 
 
