@@ -15,7 +15,8 @@ along the axes of the plane.
     GLIDING   no friction (mu = 0)
     RESTING   nothing moves any more
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
-              behind that direction is corrected to the first order in |u| |omega|/(mu g)
+              behind that direction is corrected to the first order in |u| |omega|/(mu g). It
+              ends, as a SLIDING, where it is fast or lags far
 
 In each phase of contact dry rolling friction may hold the lowest point where it is on the body
 (p.way): a couple without power keeps it there, as long as its force is at most C N. Such a body
@@ -68,6 +69,7 @@ from rigid_body_sim.mechanics.contact.holding import (
     way_at,
 )
 from rigid_body_sim.mechanics.contact.laws import (
+    MOST_LAG,
     departure,
     patch_departure,
     patch_lagging,
@@ -100,6 +102,7 @@ HOLDS = UNBOUND
 
 ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
+LAGS = 1e4               # rad: lag with which a creep ends, over its share of the speeds then
 SHORT = 1e-6             # time of a difference, over the time in which the body moves by its size
 ZERO = (0.0, 0.0, 0.0)
 
@@ -235,7 +238,7 @@ def _ahead(p, c, now, at, f, touch):
 
 @compiled
 def _lagging(p, c, now, at, push, slow):
-    """Return the direction of a creep |u|: it lags behind the direction d, which turns.
+    """Return the direction of a creep |u|, and by how much (rad) it lags behind d, which turns.
 
     With the angle phi of u, |u| phi' is the part of u' across u. Where d turns at the rate phi', u
     stands off d by |u| phi' over the slope of that part. phi' is a finite difference.
@@ -253,16 +256,16 @@ def _lagging(p, c, now, at, push, slow):
     ex, ey, _ = departure(system_of(c, later, pushed), c.mu, dx, dy)
     _, _, slope, _ = turning(system, c.mu, dx, dy)
     if not slope < 0.0:
-        return dx, dy
-    off = slow * (dx * ey - dy * ex) / (_short(c) * slope)
-    off = max(-1e-2, min(1e-2, off))
+        return dx, dy, 0.0
+    lag = slow * (dx * ey - dy * ex) / (_short(c) * slope)
+    off = max(-MOST_LAG, min(MOST_LAG, lag))
     size = hypot(1.0, off)
-    return (dx - off * dy) / size, (dy + off * dx) / size
+    return (dx - off * dy) / size, (dy + off * dx) / size, abs(lag)
 
 
 @compiled
 def _parting(p, c, now, at, push, slow):
-    """Return the direction of a creep |w| of a patch that has begun to slip.
+    """Return the direction of a creep |w| of a patch that has begun to slip, and its lag (rad).
 
     It lags behind the direction along which the slip begins, as in `_lagging`.
     """
@@ -341,19 +344,20 @@ def _creeping(p, c, now, at, push, v, speed, film):
     """Return the Contact of a body that is CREEPING, at the speed u[0]."""
     slow = now.u[0]
     if c.patch > 0.0:
-        d = _parting(p, c, now, at, push, slow)
+        d, lag = _parting(p, c, now, at, push, slow)
         slipped, N, A = patch_slipping(patch_of(c, at, push), c.mu, d)
         growth = dot(d, slipped)
         push = wrung_by(push, minus(push.wrung, scaled(c.mu * c.patch * d[2], at.axes[2])))
     else:
         system = system_of(c, at, push)
-        dx, dy = _lagging(p, c, now, at, push, slow)
+        dx, dy, lag = _lagging(p, c, now, at, push, slow)
         growth = turning(system, c.mu, dx, dy)[0]
         _, _, N, A = slipping(system, c.mu, dx, dy)
         d = dx, dy, 0.0
     slid, spun = _shared(c, c.mu * N * slow, d[0], d[1])
     slip = slow * d[0], slow * d[1], 0.0
-    grip = c.creep - slow if slow >= 0.0 else slow    # it becomes a slip, or it dies again
+    # it becomes a slip, or it dies again
+    grip = c.creep - max(slow, lag * c.swift / LAGS) if slow >= 0.0 else slow
     return Contact((-c.mu * N * d[0], -c.mu * N * d[1], N), push, (growth, 0.0, 0.0), slip,
                    plus(v, slip), N, grip, A * c.mass, speed, film, slid, spun, 1.0)
 
@@ -401,7 +405,7 @@ def _gripped(c, at, torque, grown, N):
     """Return the couple by which friction holds the rolling, and the watched number for it."""
     if HOLDS and c.way == HELD:
         couple, force = gripping(c, at, torque, grown)
-        return couple, c.rolling * N - hypot(*force)
+        return couple, c.rolling * N * (1.0 + c.slack) - hypot(*force)
     if HOLDS and c.rim > 0.0:
         couple, (along, _) = gripping(c, at, torque, grown)
         return couple, c.rim * c.rolling * N - abs(along) * inclination(at.axes[2])

@@ -117,8 +117,8 @@ class PlaneCourse:
         p[STARTED], p[ORIGIN] = self._begin, self._place
         return p
 
-    def _open(self, mode, p, y, stopped=False, tipped=False):
-        """Begin a phase; `stopped` and `tipped` are those of DryRolling.begin."""
+    def _open(self, mode, p, y, stopped=False, tipped=False, released=False):
+        """Begin a phase; the last three are those of DryRolling.begin."""
         time = self._begin + float(y[TIME])
         stopped = stopped or is_held(p)
         p = self._parameters(time)
@@ -127,7 +127,7 @@ class PlaneCourse:
         p[UNTIL] = later[0] - self._begin if later else math.inf
         p[MODE], p[SWIFT] = mode, self._scales.speed(y)
         p[CREEP] = self._scales.creep * p[SWIFT]
-        self._rolling.begin(p, y, stopped, tipped)
+        self._rolling.begin(p, y, stopped, tipped, released)
         if mode == FLIGHT and lies(p, y):
             p[LEVEL] = 1.0
             y[GAP] += rise(p, y)
@@ -205,15 +205,16 @@ class PlaneCourse:
         self._open(FLIGHT, p, y)
 
     def _is_lifted(self, p, y):
-        """Return whether rolling friction lifts a body that has just fallen back without it."""
-        last = self._phases[-1] if self._phases else None
-        if not p[VISCOUS] + p[FILM] > 0.0 or last is None or last.p[MODE] != FLIGHT or (
-                y[TIME] - last.begin > AT_ONCE * self._scales.length / last.p[SWIFT]):
+        """Return whether rolling friction lifts a body that falls back without it."""
+        if not p[VISCOUS] + p[FILM] > 0.0:
             return False
+        last = self._phases[-1] if self._phases else None
+        has_fallen = last is not None and last.p[MODE] == FLIGHT and (
+            y[TIME] - last.begin <= AT_ONCE * self._scales.length / last.p[SWIFT])
         alone, row = p.copy(), np.empty(ROW.size)
         alone[VISCOUS], alone[FILM] = 0.0, 0.0
         self._bound.rates.rate(alone, y, row)
-        return row[NORMAL] > 0.0
+        return row[NORMAL] > (0.0 if has_fallen else HOLDS * p[MASS] * self._scales.heaviness)
 
     def _end(self, y, why=PARADOX):
         """End the course: no law of contact says how it goes on."""
@@ -282,7 +283,7 @@ class PlaneCourse:
         if why == contact_march.TOUCHED:
             self._impact(p, y)
             return
-        if why == contact_march.FASTER and y[SLIP][0] < 0.5 * p[CREEP]:
+        if why == contact_march.FASTER and y[SLIP][0] <= 0.0:
             why = contact_march.STUCK    # the slip that began has died again
         if why in BEGAN:
             self._events.append((time, BEGAN[why], {}))
@@ -295,7 +296,7 @@ class PlaneCourse:
         elif why == contact_march.STOPPED and p[MODE] != FLIGHT:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
-            self._open(int(p[MODE]), p, y, not p[ONSET] + p[RIM] > 0.0, tipped=p[RIM] > 0.0)
+            self._open(int(p[MODE]), p, y, not p[ONSET] + p[RIM] > 0.0, p[RIM] > 0.0, is_held(p))
         elif why == contact_march.STUCK:
             self._land(p, y, (0.0, 0.0))
             if self._phases[-1].p[MODE] == RESTING and self._events[-1][1] != 'rest':

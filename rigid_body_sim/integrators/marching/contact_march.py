@@ -56,11 +56,12 @@ LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
 KEPT = 4096                  # points of a phase; beyond, every other one is dropped
 (COUNT, STRIDE, STORED, STATUS, TOLERANCE, RATE, SPEED, LENGTH, PLANNED, STEPS,
- PLACED, CROWDED) = range(12)
+ PLACED, CROWDED, FADED) = range(13)
 """Numbers of a phase: points passed, steps from one kept point to the next, points kept, why it
 ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, the number of
-the point at which the cursor stands, and how many of the last steps were all too short."""
-META = 12
+the point at which the cursor stands, how many of the last steps were all too short, and how many
+were all of a slip that fades."""
+META = 13
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
  STOPPED, HELD) = range(11)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
@@ -76,6 +77,8 @@ STRETCH = 64.0               # growth of a slip in a step beyond which its error
 TOO_SHORT = 1e-5             # share of the time in which a ring that is almost flat falls
 CROWD = 25000                # so many steps in a row that short: friction leaves no motion
 STALLED = 2000               # and so many in a row of a slip that dies: it is dead
+FADES = 1e-3                 # slip below that share fades; after STALLED steps it may err by the
+PACED = 2.0 ** -52           # rounding of its pace beside the speeds, up to that share of itself
 
 
 @compiled
@@ -92,7 +95,7 @@ def begin(p, row, front, meta, y):
         fastest += hypot(slip[0], slip[1]) / pace
     meta[PLANNED] = power(meta[TOLERANCE], 1.0 / ORDER) / fastest
     meta[COUNT], meta[STRIDE], meta[STORED], meta[STATUS] = 0.0, 1.0, 0.0, RUNNING
-    meta[STEPS], meta[PLACED], meta[CROWDED] = 0.0, -1.0, 0.0
+    meta[STEPS], meta[PLACED], meta[CROWDED], meta[FADED] = 0.0, -1.0, 0.0, 0.0
 
 
 @compiled
@@ -116,6 +119,8 @@ def march(p, w, phase, sizes, front, meta, target):
                 w, h, (meta[RATE], meta[SPEED], meta[LENGTH]))
             took = w[FRESH, TIME] - y[TIME]
             allowed = meta[TOLERANCE] * min(took, STRETCH * h * w[0, PACE]) + FLOOR
+            if meta[FADED] > STALLED:
+                allowed += min(PACED * h * meta[RATE] * p[SWIFT], FADES * w[0, PACE] / p[SWIFT])
             good = error <= allowed
             planned = h * _factor(error, allowed)
             if good:
@@ -146,6 +151,8 @@ def march(p, w, phase, sizes, front, meta, target):
         meta[PLANNED] = planned
         meta[COUNT] += 1.0
         stalls = mode == SLIDING and w[END, PACE] <= DYING * p[SWIFT]
+        fades = mode == SLIDING and w[END, PACE] <= FADES * p[SWIFT]
+        meta[FADED] = meta[FADED] + 1.0 if fades else 0.0
         low = w[END, WATCHED + STOPS]
         if stalls or (jams and low < LOW and (
                 took * meta[RATE] < TOO_SHORT * math.sqrt(abs(low)))):

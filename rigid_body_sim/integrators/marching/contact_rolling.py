@@ -29,13 +29,15 @@ from rigid_body_sim.mechanics.contact.touch import inclination
 from rigid_body_sim.numerics.rotations import matrix, normalised
 
 ENDED = 1e-10            # share of the speeds below which a rolling is over that no step follows
+TIE = 1e-12              # share of what friction can hold: so much beyond it is rounding
 SHORT = 1e-6             # time of a difference, over that in which a body moves by its length
-MODE, SWIFT, DRY, ONSET, TURN, SINCE, RIM = (CONTACT.part(name).first for name in (
-    'mode', 'swift', 'rolling', 'onset', 'turn', 'since', 'rim'))
+MODE, SWIFT, DRY, ONSET, TURN, SINCE, SLACK, RIM = (CONTACT.part(name).first for name in (
+    'mode', 'swift', 'rolling', 'onset', 'turn', 'since', 'slack', 'rim'))
 WAY = CONTACT.part('way').places
 SIZE, TIME = UNKNOWNS.size, UNKNOWNS.part('time').first
 Q = UNKNOWNS.part('q').places
-PACE, ROLLS = ROW.part('pace').first, WATCHED.part('rolling').first
+PACE = ROW.part('pace').first
+NORMAL, ROLLS = WATCHED.part('normal').first, WATCHED.part('rolling').first
 
 
 class DryRolling:
@@ -61,14 +63,15 @@ class DryRolling:
         self._is_disk, self._is_torus = bound.is_disk, bound.is_torus
         self.allowed = 0.0, math.inf
 
-    def begin(self, p, y, stopped, tipped=False):
+    def begin(self, p, y, stopped, tipped=False, released=False):
         """Note whether dry rolling friction holds the body from here on, or which way it rolls.
 
         A rolling that ends does so at a time rounded to doubles: `stopped` says that what is left
         of it is rounding, however large. `tipped` says that friction along the ring of a torus has
         just ended a tipping: where it has rolled no further than rounding, it rolls both ways.
+        `released` says that friction has just ceased to hold the body, and not by rounding.
         """
-        p[WAY], p[ONSET], p[TURN], p[RIM] = (1.0, 0.0), 0.0, 0.0, 0.0
+        p[WAY], p[ONSET], p[TURN], p[SLACK], p[RIM] = (1.0, 0.0), 0.0, 0.0, 0.0, 0.0
         if not p[DRY] > 0.0 or p[MODE] in (FLIGHT, RESTING):
             return
         p[SWIFT] = swift = self._scales.speed(y)
@@ -80,6 +83,9 @@ class DryRolling:
             pause(p, y)
             p[WAY], row = HELD, np.empty(ROW.size)
             self._rates.rate(p, y, row)
+            if not released and abs(row[ROLLS]) <= TIE * p[DRY] * row[NORMAL]:
+                p[SLACK] = 2.0 * TIE
+                return
             if row[ROLLS] >= 0.0:
                 return
             speed, across = withheld(p, y, row)

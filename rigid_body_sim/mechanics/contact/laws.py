@@ -35,6 +35,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 NEWTON = 50         # most Newton steps for a direction
 SECTORS = 32        # directions that are tried where they fail
 CLOSE = 1e-16       # rad: a step that short is the last
+MOST_LAG = 1e-2     # rad: by which a slip that has just begun may lag
 
 
 class System(NamedTuple):
@@ -290,13 +291,12 @@ def _patch_refined(patch, mu, d):
 
 @compiled
 def patch_lagging(patch, mu, d, turned):
-    """Return the direction of a slip that lags behind a direction d, which turns.
+    """Return the direction of a slip that lags behind a direction d, which turns, and its lag.
 
     `turned` is the velocity at which d turns, times the speed of the slip, m/s^2.
     """
     first, second, slopes, _, _, _ = _patch_across(patch, mu, d)
-    found, _ = _patch_turn(d, first, second, slopes, dot(first, turned), dot(second, turned), 1e-2)
-    return found
+    return _patch_turn(d, first, second, slopes, dot(first, turned), dot(second, turned), MOST_LAG)
 
 
 @compiled

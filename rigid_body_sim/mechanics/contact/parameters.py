@@ -55,6 +55,9 @@ class ContactParameters(NamedTuple):
         turns, m/s; 0 in other phases.
     turn, since : float
         The rate at which it turns, rad/s, and the time of the unknowns from which on, s.
+    slack : float
+        Share of what dry rolling friction can hold that it holds beyond it: above 0 in a phase
+        that begins, but for rounding, with just what it can hold.
     rim : float
         Above 0 while dry rolling friction holds the point of contact of a low torus where it is
         along the ring, and the torus tips (holding.py): the error that this may have, rad. The
@@ -92,6 +95,7 @@ class ContactParameters(NamedTuple):
     onset: float
     turn: float
     since: float
+    slack: float
     rim: float
     level: float
     until: float

@@ -376,3 +376,28 @@ def test_a_ball_that_turns_as_it_slides_without_friction_is_held_where_its_turni
     ledger = sim.ledger()
     assert abs(ledger['energy_residual']) < 1e-9
     assert ledger['momentum_residual'] < 1e-9
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('attitude', [[0.0, 0.0, 0.0], [1.3, 0.7, 2.5]])
+@pytest.mark.parametrize('velocity', [[0.6, 0.8, 0.0], [0.3, 1.1, 0.0]])
+def test_a_sphere_that_friction_just_holds_slides_without_turning(attitude, velocity):
+    """With C = mu the couple of the slip is the one that rolling friction can hold.
+
+    By rounding it was more, and the rolling that then began never grew.
+    """
+    sim = Simulation(parse_scene(
+        'scene: tie\nbody: {mass: 1.0, shape: {solid_sphere: {radius: 0.02}}, '
+        'surface: {sphere: {radius: 0.02}}}\nconstraint: table\n'
+        f'effects: [gravity: {{g: {G}}}, sliding_friction: {{mu: 0.2}}, '
+        'rolling_friction: {dry: 0.2}]\n'
+        f'initial: {{euler_zyz: {attitude}, velocity: {velocity}}}\n'), 'dop8', 1e-11, horizon=1.0)
+    time, speed = 0.2, math.hypot(*velocity)
+    way = (speed * time - 0.1 * G * time ** 2) / speed * np.array(velocity)
+    state = sim.states([time])[0]
+    assert state.vector[8:10] == pytest.approx(way[:2], abs=1e-14)
+    assert np.abs(state.angular_velocity).max() < 1e-13
+    sim.advance(100)
+    sim.impulse(force=[0.3, 0.1, 0.0])
+    sim.advance(100)
+    assert abs(sim.ledger()['energy_residual']) < 1e-14
