@@ -140,6 +140,27 @@ def tip(p, y, slow):
 
 
 @compiled
+def is_askew(p, y):
+    """Return whether a body is a disk that lies flat but for more than rounding."""
+    c, now = load_contact(p), load_unknowns(y)
+    gamma = matrix(*now.q)[2]
+    return is_disk(c) and LEVEL < inclination(gamma) and above_flat(c, gamma) <= 0.0
+
+
+@compiled
+def lay(p, y, N):
+    """Lay a disk that lies flat down on the plane, which bears it with N; the loss is in the heat.
+
+    What slides on its face has its lowest point below the centre of the disk.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    a, b, d, e = now.q
+    up = matrix(*now.q)[2][2] > 0.0
+    y[STRUCK] += N * c.size[0] * inclination(matrix(*now.q)[2])
+    store_q(y, normalised(0.0, 0.0, d, e) if up else normalised(a, b, 0.0, 0.0))
+
+
+@compiled
 def stays_flat(p, y, row, slow):
     """Return whether a ring that lies flat and moves tips by no more than what counts as flat.
 

@@ -14,6 +14,8 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
 from rigid_body_sim.integrators.equations.contact_rest import (
     halt,
+    is_askew,
+    lay,
     lies,
     lies_low,
     rise,
@@ -57,7 +59,7 @@ ORIGIN = CONTACT.part('origin').places
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
 SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
-VELOCITY = ROW.part('velocity').places
+VELOCITY, FORCE = (ROW.part(name).places for name in ('velocity', 'force'))
 NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
     'normal', 'grip', 'firmness', 'motion'))
 BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
@@ -160,6 +162,12 @@ class PlaneCourse:
             p[MODE] = SLIDING
             self._rest(p, y, self._begin + float(y[TIME]))
             return
+        if slides and is_askew(p, y) and not hypot3(*y[OMEGA]) > self._scales.rounding(
+                y) / self._scales.length:
+            still = p.copy()
+            still[MODE] = RESTING
+            rates.rate(still, y, row)
+            lay(p, y, row[FORCE][2])
         mode = p[MODE]
         held = is_held(p) and not self._bound.is_disk
         if mode == ROLLING and (held or not (row[MOTION] > 0.0 or any(y[OMEGA]))) and (

@@ -230,3 +230,24 @@ def test_a_torus_that_tips_for_no_longer_than_rounding_begins_to_roll():
     ledger = fine.ledger()
     assert abs(ledger['energy_residual']) < 1e-13
     assert ledger['momentum_residual'] < 1e-13
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-9, 1e-12])
+def test_a_disk_that_has_come_to_lie_flat_slides_on_its_face_when_struck(accuracy):
+    """It lies 1e-6 rad above the plane: it comes down, and slides v^2/(2 mu g).
+
+    It went on about its edge, turned through the plane, and lost energy that was in no line.
+    """
+    sim = Simulation(parse_scene(
+        'scene: struck\nbody: {mass: 0.3, shape: {disk: {radius: 0.05}}}\nconstraint: table\n'
+        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.05}, '
+        'strike: {impulse: [0.0025, 0, 0], time: 0.4}]\n'
+        'initial: {euler_zyz: [0.3, 1.0e-6, 0.2]}\n'), 'dop8', accuracy, horizon=1.0)
+    sim.advance(600)
+    speed = 0.0025 / 0.3
+    assert sim.events[-1].name == 'rest'
+    assert sim.events[-1].time == pytest.approx(0.4 + speed / (0.3 * 9.81), abs=1e-12)
+    way = [speed ** 2 / (2.0 * 0.3 * 9.81), 0.0, 0.0]
+    assert sim.vector[8:11] == pytest.approx(way, abs=accuracy * 0.05)
+    assert abs(sim.ledger()['energy_residual']) < 10.0 * accuracy
