@@ -144,7 +144,7 @@ def is_askew(p, y):
     """Return whether a body is a disk that lies flat but for more than rounding."""
     c, now = load_contact(p), load_unknowns(y)
     gamma = matrix(*now.q)[2]
-    return is_disk(c) and LEVEL < inclination(gamma) and above_flat(c, gamma) <= 0.0
+    return is_disk(c) and inclination(gamma) > LEVEL and above_flat(c, gamma) <= 0.0
 
 
 @compiled

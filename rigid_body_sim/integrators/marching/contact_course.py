@@ -156,7 +156,10 @@ class PlaneCourse:
             self._end(y)
             return
         if not row[NORMAL] > 0.0:
-            self._fly(p, y)
+            if p[MODE] == ROLLING and mu < IDEAL and self._is_pressed(p, y):
+                self._creep_off(p, y)
+            else:
+                self._fly(p, y)
             return
         if stays_flat(p, y, row, self._scales.rounding(y) / self._scales.length):
             p[MODE] = SLIDING
@@ -197,20 +200,23 @@ class PlaneCourse:
     def _fly(self, p, y):
         """Begin a flight from a contact whose slip is in y."""
         row = np.empty(ROW.size)
-        if p[MU] > IDEAL:
+        if p[MU] > IDEAL and self._is_pressed(p, y):
             # without friction the body would stay: ideal rolling would need a plane that pulls
-            p[MODE] = GLIDING
-            self._bound.rates.rate(p, y, row)
-            if row[NORMAL] > 0.0:
-                self._end(y, PULLS)
-                return
-            p[MODE] = ROLLING
+            self._end(y, PULLS)
+            return
         if self._is_lifted(p, y):
             self._end(y, LIFTS)
             return
         self._bound.rates.rate(p, y, row)
         y[U], y[GAP] = row[VELOCITY], 0.0
         self._open(FLIGHT, p, y)
+
+    def _is_pressed(self, p, y):
+        """Return whether the body would stay on the plane without friction."""
+        smooth, row = p.copy(), np.empty(ROW.size)
+        smooth[MODE] = GLIDING
+        self._bound.rates.rate(smooth, y, row)
+        return row[NORMAL] > 0.0
 
     def _is_lifted(self, p, y):
         """Return whether rolling friction lifts a body that falls back without it."""

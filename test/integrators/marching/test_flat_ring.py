@@ -241,8 +241,8 @@ def test_a_disk_that_has_come_to_lie_flat_slides_on_its_face_when_struck(accurac
     """
     sim = Simulation(parse_scene(
         'scene: struck\nbody: {mass: 0.3, shape: {disk: {radius: 0.05}}}\nconstraint: table\n'
-        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.05}, '
-        'strike: {impulse: [0.0025, 0, 0], time: 0.4}]\n'
+        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: 0.3}, '
+        'rolling_friction: {dry: 0.05}, strike: {impulse: [0.0025, 0, 0], time: 0.4}]\n'
         'initial: {euler_zyz: [0.3, 1.0e-6, 0.2]}\n'), 'dop8', accuracy, horizon=1.0)
     sim.advance(600)
     speed = 0.0025 / 0.3
