@@ -308,8 +308,8 @@ class _Closed(NamedTuple):
 def _closed_form(scene, horizon):
     """Return the _Closed of a scene, or None."""
     motion = absorbing_motion(scene)
-    if motion and (takes_any_moments(motion, scene)
-                   or not differ(scene, scene.constraint.inertia(scene.body).moments)):
+    if motion and (not differ(scene, scene.constraint.inertia(scene.body).moments)
+                   or takes_any_moments(motion, scene)):
         return _Closed(motion, scene, 0.0, 0.0)
     nearly = nearly_absorbing(scene, horizon)
     if nearly is None:

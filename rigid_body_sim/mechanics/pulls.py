@@ -39,7 +39,6 @@ class Total(NamedTuple):
     drag: Matrix
     slowing: float
 
-
     @property
     def carried(self):
         """The h of the torque h x omega in the frame of the scene, kg m^2/s: that of rotors."""
@@ -66,11 +65,9 @@ def total_pull(scene):
         None where something acts that is not of this kind, or changes in time, and where another
         point than the body's origin is held, or one that moves.
     """
-    frame = scene.frame
-    if frame.path is not None or (
-            scene.constraint.axis is None and not frame.moves and any(frame.point)):
-        return None    # motions about a point hold the body's origin
-    pulls = []
+    if not _turns_about_origin(scene):
+        return None
+    frame, pulls = scene.frame, []
     for effect in scene.acting:
         field = effect.uniform_field
         if field is not None:
@@ -83,6 +80,16 @@ def total_pull(scene):
             return None
         pulls.append(pull)
     return total_of(pulls)._replace(force=_sums([pull.force or NOTHING for pull in pulls]))
+
+
+def _turns_about_origin(scene):
+    """Return whether no other point than the body's origin is held, and none that moves.
+
+    A hinge may hold any line.
+    """
+    frame = scene.frame
+    return frame.path is None and (
+        scene.constraint.axis is not None or frame.moves or not any(frame.point))
 
 
 def _sums(vectors):
@@ -117,7 +124,9 @@ def load_of(scene):
 
 @kept
 def weight_of(scene):
-    """Return g (m/s^2, a Fraction) of a held body whose load is M g along -z, else None."""
+    """Return g (m/s^2, exactly) of a held body whose load is M g along -z, else None."""
+    if scene.weight is not None:    # one product, no exact sums
+        return scene.weight if _turns_about_origin(scene) else None
     load = load_of(scene)
     if load is None or load[0] or load[1] or load[2] > 0:
         return None
@@ -134,4 +143,3 @@ def total_of(pulls):
         drag = tuple(map(plus, drag, pull.drag or (NOTHING, NOTHING, NOTHING)))
         slowing += pull.slowing
     return Total(torque, couple, force, drag, slowing)
-

@@ -130,6 +130,8 @@ def is_symmetric(scene):
 
 def rotor_along(scene):
     """Return the momentum of rotors along e3 (kg m^2/s), None where some of it lies across."""
+    if scene.weight is not None:
+        return 0.0
     carried = total_pull(scene).carried
     x, y, along = rotate_back(*symmetry_axis(scene)[1], *rotate(*scene.frame.axes, *carried))
     size = hypot3(*carried)
@@ -176,7 +178,7 @@ def parameters(scene):
 
 
 def numbers_of(scene, g):
-    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2, a Fraction)."""
+    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2)."""
     body, arm = scene.body, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(scene)
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1

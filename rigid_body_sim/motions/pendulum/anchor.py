@@ -135,7 +135,7 @@ def parameters(scene):
 
 
 def numbers_of(scene, g):
-    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2, a Fraction)."""
+    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2)."""
     held = held_of(scene)
     return _numbers(np.array(held[2]).tobytes(), g, *held).copy()
 
