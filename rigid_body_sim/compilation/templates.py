@@ -14,10 +14,10 @@ import importlib
 import importlib.util
 import inspect
 import linecache
-import os
 import re
 import sys
 import types
+import uuid
 
 from rigid_body_sim.compilation.environment import cache_folder
 
@@ -97,11 +97,11 @@ def module_of(source, stem):
     else:
         path = folder / f'{name}.py'
         if not path.exists():
-            partial = path.with_suffix(f'.{os.getpid()}')
+            # threads and processes may write it at once
+            partial = path.with_suffix(f'.{uuid.uuid4().hex}')
             partial.write_text(source)
             partial.replace(path)
         specification = importlib.util.spec_from_file_location(name, path)
         module = importlib.util.module_from_spec(specification)
         specification.loader.exec_module(module)
-    sys.modules[name] = module
-    return module
+    return sys.modules.setdefault(name, module)

@@ -77,8 +77,8 @@ STRETCH = 64.0               # growth of a slip in a step beyond which its error
 TOO_SHORT = 1e-5             # share of the time in which a ring that is almost flat falls
 CROWD = 25000                # so many steps in a row that short: friction leaves no motion
 STALLED = 2000               # and so many in a row of a slip that dies: it is dead
-FADES = 1e-3                 # slip below that share fades; after STALLED steps it may err by the
-PACED = 2.0 ** -52           # rounding of its pace beside the speeds, up to that share of itself
+FADES = 1e-3                 # share of the speeds below which a slip fades
+PACED = 2.0 ** -52           # rounding of its pace, by which it may err after STALLED such steps
 
 
 @compiled
