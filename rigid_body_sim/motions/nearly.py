@@ -202,7 +202,7 @@ def _symmetric(scene, equal, off):
 def _with_inertia(scene, moments):
     """Return the scene with other moments about the point that its constraint holds."""
     inertia, body = scene.constraint.inertia(scene.body), scene.body
-    changed = dataclasses.replace(inertia, moments=moments, lost=(0.0, 0.0, 0.0))
+    changed = dataclasses.replace(inertia, moments=moments, lost=(0.0, 0.0, 0.0), entries=())
     changes = {name: changed for name in ('about_center', 'about_origin')
                if getattr(body, name) == inertia}
     return dataclasses.replace(scene, body=dataclasses.replace(body, **changes))

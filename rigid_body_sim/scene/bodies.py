@@ -4,7 +4,7 @@
 Symbols: M mass (kg), I1, I2, I3 principal moments (kg m^2).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
 from operator import add
@@ -38,33 +38,56 @@ class Inertia:
 
     `lost` (kg m^2) is what the sums of the parallel-axis theorem are more than the moments, which
     are doubles. In a slim body, whose large moments nearly agree, it counts. There it is also what
-    the eigenvalues of a tensor are more.
+    the eigenvalues of a tensor are more, and `rows`, the principal axes in body axes as Fractions
+    of 32 digits, are given if they are not the body's: the rounding of a vector that lies along
+    the body, over the small moment, turns the body about its axis. `entries` are those of the
+    tensor before it was diagonalised, if it was.
     """
 
     moments: tuple
     axes: tuple = IDENTITY
     lost: tuple = (0.0, 0.0, 0.0)
+    rows: tuple = ()
+    entries: tuple = field(default=(), compare=False, repr=False)
 
     @classmethod
-    def of_matrix(cls, matrix):
+    def of_matrix(cls, matrix, exact=None):
         """Diagonalise a symmetric 3 x 3 tensor.
 
         The principal axes nearest to the body axes are taken, of all orders and signs and of all
-        choices within the plane of equal moments. A diagonal tensor is kept to the last bit.
+        choices within the plane of equal moments. A diagonal tensor is kept to the last bit. Those
+        of a slim body are the axes of the `exact` entries (Fractions), if they are given.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
+        entries = tuple(map(tuple, matrix.tolist() if exact is None else exact))
         moments, axes, lost = nearest_to_the_body(*eigenvectors(matrix.tolist()))
-        moments, axes = nearest_where_equal(moments, axes)
+        if not is_slim(moments):
+            moments, axes = nearest_where_equal(moments, axes)
+            return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
+                       entries=entries)
+        if exact is not None:
+            moments, axes, lost = nearest_to_the_body(*eigenvectors(entries))
+        rows = tuple(tuple(map(add, map(Fraction, row), map(Fraction, less)))
+                     for row, less in zip(axes, lost.vectors, strict=True))
         return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
-                   tuple(lost) if is_slim(moments) else (0.0, 0.0, 0.0))
+                   tuple(lost.moments), rows, entries)
 
     @property
     def differences(self):
         """I2 - I3, I3 - I1 and I1 - I2 with what rounding lost, kg m^2."""
         (I1, I2, I3), (d1, d2, d3) = self.moments, self.lost
         return (I2 - I3) + (d2 - d3), (I3 - I1) + (d3 - d1), (I1 - I2) + (d1 - d2)
+
+    @property
+    def exact(self):
+        """The tensor in body axes, rows of Fractions: its entries before any rounding."""
+        if self.axes != IDENTITY:
+            entries = self.entries or self.matrix.tolist()
+            return tuple(tuple(map(Fraction, row)) for row in entries)
+        x, y, z = map(add, map(Fraction, self.moments), map(Fraction, self.lost))
+        return (x, 0, 0), (0, y, 0), (0, 0, z)
 
     @cached_property
     def matrix(self):
@@ -101,16 +124,19 @@ class Body:
     surface: Surface | None = None
 
 
-def moved(inertia, M, shift, sign):
+def moved(inertia, M, shift, sign, exactly=None):
     """Return the tensor moved by the parallel-axis theorem.
 
     It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass. No
     moment is then below the least one about the centre. That one replaces a moment that rounding
-    leaves below zero, on a body that is small beside the shift.
+    leaves below zero, on a body that is small beside the shift. The shift as Fractions is
+    `exactly`, if doubles round it.
     """
     if not any(shift):
         return inertia
-    found = Inertia.of_matrix(inertia.matrix + sign * M * _of_point(shift))
+    sums = inertia.matrix + sign * M * _of_point(shift)
+    exact = _summed(inertia, M, exactly or shift, sign) if np.isfinite(sums).all() else None
+    found = Inertia.of_matrix(sums, exact)
     if sign > 0.0 and min(found.moments) < 0.0:
         least = max(0.0, min(inertia.moments))
         return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
@@ -129,6 +155,14 @@ def _lost(inertia, found, M, shift, sign):
                  for moment, less, square, now in zip(
                      inertia.moments, inertia.lost, (y + z, z + x, x + y), found.moments,
                      strict=True))
+
+
+def _summed(inertia, M, shift, sign):
+    """Return the sums of the parallel-axis theorem, rows of Fractions."""
+    d, mass = [Fraction(part) for part in shift], Fraction(sign * M)
+    square = dot(d, d)
+    return [[entry + mass * ((square if i == j else 0) - d[i] * d[j])
+             for j, entry in enumerate(row)] for i, row in enumerate(inertia.exact)]
 
 
 def _of_point(d):

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The frame of a scene: where its equations of motion are written."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import NamedTuple
 
 from rigid_body_sim.numerics import rotations
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import apply
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.expressions.path import Path
 
@@ -57,6 +61,9 @@ class Frame:
         Given for a body that turns about one axis only.
     path : Path, optional
         Given for a reference point that moves as the scene says (expressions/path.py).
+    rows : tuple of 3 tuples of 3 Fractions
+        The axes of the frame, body components, before they were rounded: given for a slim body
+        where the two differ, else empty.
     """
 
     moves: bool
@@ -68,6 +75,7 @@ class Frame:
     arm: tuple[float, float, float]
     hinge: Hinging | None = None
     path: Path | None = None
+    rows: tuple[tuple[Fraction, ...], ...] = ()
 
     @property
     def pushed(self) -> bool:
@@ -76,7 +84,20 @@ class Frame:
 
     def from_body(self, vector: Sequence[float]) -> tuple[float, float, float]:
         """Return the frame components of a vector given in body components."""
-        return turned_back(self.axes, vector)
+        return along(self.axes, self.rows, vector)
+
+
+def along(axes: tuple[float, float, float, float], rows: tuple[tuple[Fraction, ...], ...],
+          vector: Sequence[float | Fraction]) -> tuple[float, float, float]:
+    """Return the components of a body vector along axes, rounded once where there are `rows`.
+
+    `axes` and `rows` are those of a Frame.
+    """
+    x, y, z = map(float, vector)
+    if not rows or not hypot3(x, y, z) < math.inf:
+        return turned_back(axes, (x, y, z))
+    x, y, z = map(float, apply(rows, [Fraction(part) for part in vector]))
+    return x, y, z
 
 
 def turned_back(axes: tuple[float, float, float, float],

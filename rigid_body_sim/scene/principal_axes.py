@@ -3,7 +3,9 @@
 
 import math
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
+from fractions import Fraction
 from itertools import permutations, product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,26 +19,45 @@ SLIM = 2.0 ** -10    # smallest moment of a slim body over the largest, at most
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
 
 
+class Lost(NamedTuple):
+    """What rounding to doubles took from eigenvalues and from the entries of eigenvectors."""
+
+    moments: list
+    vectors: list
+
+
 def eigenvectors(matrix):
     """Return the eigenvalues and eigenvectors of a symmetric 3 x 3 matrix, with 40 digits.
 
-    They are rounded to doubles; a third result is what this took from the eigenvalues.
+    The entries are doubles or Fractions. The results are rounded to doubles; a third one is the
+    Lost of this.
 
     Jacobi's method keeps the small moments of graded tensors relatively accurate, which the QR
     iteration behind LAPACK does not (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
     Decimal numbers mean the same on every machine; an extended double of the processor does not.
     """
     with localcontext(Context(prec=DIGITS, rounding=ROUND_HALF_EVEN)):
-        a = [[Decimal(entry) for entry in row] for row in matrix]
+        a = [[_decimal(entry) for entry in row] for row in matrix]
         vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]    # in rows
         for _ in range(SWEEPS):
             turns = [_turn_away(a, vectors, i, j) for i, j in PLANES]
             if not any(turns):
                 break
         rounded = [float(a[k][k]) for k in range(3)]
-        lost = [float(a[k][k] - Decimal(rounded[k])) if math.isfinite(rounded[k]) else 0.0
-                for k in range(3)]
+        lost = Lost([_lost(a[k][k]) for k in range(3)],
+                    [[_lost(x) for x in vector] for vector in vectors])
         return rounded, [[float(x) for x in vector] for vector in vectors], lost
+
+
+def _decimal(entry):
+    return (Decimal(entry.numerator) / Decimal(entry.denominator) if isinstance(entry, Fraction)
+            else Decimal(entry))
+
+
+def _lost(number):
+    """Return what a decimal number is more than its double; 0 if that is not finite."""
+    rounded = float(number)
+    return float(number - Decimal(rounded)) if math.isfinite(rounded) else 0.0
 
 
 def _turn_away(a, vectors, i, j):
@@ -64,10 +85,10 @@ def _turn_away(a, vectors, i, j):
 def nearest_to_the_body(moments, vectors, lost):
     """Return the moments and the axes (right-handed) that lie nearest to the body axes.
 
-    All orders and signs of the axes are compared. `lost`, of each moment, is returned in the order
-    of the moments.
+    All orders and signs of the axes are compared. The Lost is returned in the order of the
+    moments.
     """
-    def turned(order, signs):
+    def turned(order, signs, vectors=vectors):
         return [[sign * entry for entry in vectors[k]]
                 for k, sign in zip(order, signs, strict=True)]
 
@@ -75,7 +96,8 @@ def nearest_to_the_body(moments, vectors, lost):
         x, y, z = turned(*choice)
         return x[0] + y[1] + z[2] if dot(cross(x, y), z) > 0.0 else -math.inf
     order, signs = max(product(permutations(range(3)), product((1.0, -1.0), repeat=3)), key=trace)
-    return [moments[k] for k in order], turned(order, signs), [lost[k] for k in order]
+    return [moments[k] for k in order], turned(order, signs), Lost(
+        [lost.moments[k] for k in order], turned(order, signs, lost.vectors))
 
 
 def is_slim(moments):

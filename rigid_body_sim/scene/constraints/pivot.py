@@ -101,7 +101,7 @@ class DisplacedPivot(Constraint):
 
     def inertia(self, body: Body) -> Inertia:
         """Return the tensor about the point `at`."""
-        return moved(body.about_center, body.mass, self.arm(body), 1.0)
+        return moved(body.about_center, body.mass, self.arm(body), 1.0, self.exact_arm(body))
 
 
 @dataclass(frozen=True)
@@ -167,8 +167,9 @@ class MovingPivot(Constraint):
 
     def inertia(self, body: Body) -> Inertia:
         """Return the tensor about the point `at`."""
-        return moved(body.about_center, body.mass, self.arm(body), 1.0) if any(self.at) \
-            else body.about_origin
+        if not any(self.at):
+            return body.about_origin
+        return moved(body.about_center, body.mass, self.arm(body), 1.0, self.exact_arm(body))
 
     def frame(self, body: Body) -> Frame:
         """Return the frame about the point, with its path."""

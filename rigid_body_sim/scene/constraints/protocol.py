@@ -6,12 +6,13 @@ docs/extending.md adds one step by step.
 """
 
 import enum
+from fractions import Fraction
 from typing import Any, ClassVar, Protocol, Self
 
 from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body, Inertia
 from rigid_body_sim.scene.expressions.path import Path
-from rigid_body_sim.scene.frame import Frame, turned_back
+from rigid_body_sim.scene.frame import Frame, along
 from rigid_body_sim.scene.initial import Start
 from rigid_body_sim.scene.state import State
 
@@ -136,9 +137,12 @@ class Constraint(Protocol):
         Its axes are the principal axes of the tensor.
         """
         inertia = self.inertia(body)
-        arm = turned_back(inertia.axes, self.arm(body)) if self.holds_a_point else (0.0, 0.0, 0.0)
+        arm = 0.0, 0.0, 0.0
+        if self.holds_a_point:
+            given = self.exact_arm(body) if inertia.rows else self.arm(body)
+            arm = along(inertia.axes, inertia.rows, given)
         return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.differences,
-                     inertia.axes, self.point(body), arm)
+                     inertia.axes, self.point(body), arm, rows=inertia.rows)
 
     @property
     def axis(self) -> Vector | None:
@@ -158,4 +162,10 @@ class Constraint(Protocol):
     def arm(self, body: Body) -> Vector:
         """Return the vector from the reference point to the centre of mass, body axes, m."""
         x, y, z = minus(body.center_of_mass, self.point(body))
+        return x, y, z
+
+    def exact_arm(self, body: Body) -> tuple[Fraction, Fraction, Fraction]:
+        """Return the same before it is rounded."""
+        x, y, z = minus(tuple(map(Fraction, body.center_of_mass)),
+                        tuple(map(Fraction, self.point(body))))
         return x, y, z
