@@ -62,6 +62,19 @@ def turned(axes, q):
             pw * qz + px * qy - py * qx + pz * qw, pw * qw - px * qx - py * qy - pz * qz]
 
 
+def error_of(simulation, moments, axes, pull):
+    """Return the largest angle (rad) at TIMES to a body of 40 digits under a constant force.
+
+    `pull` is the force times the arm, principal axes, N m.
+    """
+    initial, flow = simulation.scene.initial, Flow(140, moments, pull)
+    flow.start(turned(axes, [mpf(x) for x in initial.orientation.tolist()]), [
+        sum(axes[i, k] * mpf(initial.angular_velocity[i]) for i in range(3)) for k in range(3)])
+    attitudes = [turned(axes.T, flow.go(time)[0]) for time in TIMES]
+    return max(angle_between(*q, *map(float, p)) for q, p in zip(
+        simulation.states(TIMES).orientation, attitudes, strict=True))
+
+
 @pytest.mark.without_numba
 @pytest.mark.parametrize('constraint', ['free', 'pivot'])
 @pytest.mark.parametrize('unequal', [0.0, 1e-15, 1e-9])
@@ -75,14 +88,7 @@ def test_the_rotation_is_that_of_the_tensor_given(ratio, unequal, constraint):
     simulation = Simulation(scene, horizon=5.0)
     assert simulation.choice.method == 'exact'
     with mp.workdps(40):
-        moments, axes = principal(entries)
-        flow = Flow(140, moments, [mpf(0)] * 3)
-        flow.start(turned(axes, [mpf(x) for x in scene.initial.orientation.tolist()]), [
-            sum(axes[i, k] * mpf(scene.initial.angular_velocity[i]) for i in range(3))
-            for k in range(3)])
-        attitudes = [turned(axes.T, flow.go(time)[0]) for time in TIMES]
-    error = max(angle_between(*q, *map(float, p)) for q, p in zip(
-        simulation.states(TIMES).orientation, attitudes, strict=True))
+        error = error_of(simulation, *principal(entries), [mpf(0)] * 3)
     # measured: 1e-15 to 5e-15; 1e-11 to 1e-8 with moments that are rounded
     assert error <= 1.5e-14
     assert simulation.choice.expected_error <= 1.5e-14
@@ -123,13 +129,7 @@ def test_a_needle_swings_as_the_tensor_says(ratio, unequal, about):
     with mp.workdps(40):
         moments, axes, arm = held(mapping['body'])
         weight = mpf(scene.body.mass) * mpf(9.81)
-        flow = Flow(140, moments, [weight * part for part in arm])
-        flow.start(turned(axes, [mpf(x) for x in scene.initial.orientation.tolist()]), [
-            sum(axes[i, k] * mpf(scene.initial.angular_velocity[i]) for i in range(3))
-            for k in range(3)])
-        attitudes = [turned(axes.T, flow.go(time)[0]) for time in TIMES]
-    error = max(angle_between(*q, *map(float, p)) for q, p in zip(
-        simulation.states(TIMES).orientation, attitudes, strict=True))
+        error = error_of(simulation, moments, axes, [weight * part for part in arm])
     # measured: 3e-14 to 3e-13; 2e-11 to 3e-7 with vectors turned by rounded axes
     assert error <= 1e-12
     assert error <= 3.0 * simulation.choice.expected_error <= 3e-12
