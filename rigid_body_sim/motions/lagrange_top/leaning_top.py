@@ -19,6 +19,7 @@ from rigid_body_sim.motions.lagrange_top.lagrange_top import (
     load_parameters,
     numbers_of,
     state_at,
+    symmetry_axis,
 )
 from rigid_body_sim.motions.leaning import leant, straightened, upright
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -50,8 +51,8 @@ store_turn, load_state, store_state = ANCHOR.part('turn').store, STATE.load, STA
 
 def absorbs(scene):
     """Return whether the scene is a symmetric body under a constant force, held at its origin."""
-    return (scene.constraint.mechanism is Mechanism.POINT and upright(scene) is not None
-            and is_symmetric(scene))
+    return (scene.constraint.mechanism is Mechanism.POINT and symmetry_axis(scene) is not None
+            and upright(scene) is not None and is_symmetric(scene))
 
 
 def parameters(scene):
