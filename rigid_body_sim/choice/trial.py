@@ -3,7 +3,7 @@
 
 The chosen method runs from the scene's start, strikes included, with a tolerance that is likely to
 meet the accuracy, and with a much finer one; the difference is the error. How errors grow with the
-tolerance then leads to the tolerance that spends what is asked: a tenth of it to two fifths.
+tolerance then leads to the tolerance that spends what is asked: a tenth of it to a half.
 Tolerances are powers of two, so that nothing depends on the last digit of a difference. The
 angular momentum of a slim body errs more than its attitude, by the quotient of its moments, and
 the flight of a body that hardly turns errs where its attitude does not: angular momentum and
@@ -31,7 +31,7 @@ LONGER = 10.0   # times that: up to there a trial goes on to a strike
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
-LEAST, MOST, AIM = 0.1, 0.4, 0.2      # shares of the accuracy: errors that are taken; the aim
+LEAST, MOST, AIM = 0.1, 0.5, 0.22     # shares of the accuracy: errors that are taken; the aim
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
 SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
 COARSER = 8.0   # factor between the tolerance of the table and that of a scene, either way
