@@ -24,12 +24,17 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.mechanics.ledger import ENTRIES, Entries
-from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, PIVOT, SCENE, TABLE
+from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, PIVOT, SCENE, SLIM, TABLE
+from rigid_body_sim.numerics.pair_vectors import cross as cross_pairs
+from rigid_body_sim.numerics.pair_vectors import difference, turned_back, with_low
+from rigid_body_sim.numerics.pair_vectors import dot as dot_pairs
+from rigid_body_sim.numerics.pair_vectors import plus as plus_pairs
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, product, scaled
 from rigid_body_sim.scene.state import STATE
 
 ZERO = (0.0, 0.0, 0.0)
+NO_ARM = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0))    # in pairs
 
 
 class Response(NamedTuple):
@@ -55,7 +60,8 @@ class Response(NamedTuple):
 RESPONSE = layout(Response)
 RESPONSE_SIZE = RESPONSE.size
 WORK = RESPONSE.part('work').first
-load_scene, load_state = SCENE.load, STATE.load
+SLIM_SIZE = SLIM.size
+load_scene, load_slim, load_state = SCENE.load, SLIM.load, STATE.load
 load_response, store_response = RESPONSE.load, RESPONSE.store
 load_entries, store_entries = ENTRIES.load, ENTRIES.store
 store_omega = STATE.part('angular_velocity').store
@@ -72,10 +78,11 @@ def apply_impulse(p, state, force, couple, out):
         SceneParameters.
     state : array (14,)
         StateView, changed in place.
-    force : array (3,)
-        Impulse of force J (N s) at the centre of mass, world axes.
-    couple : array (3,)
-        Impulse of torque K (N m s), world axes.
+    force : array (3,) or (6,)
+        Impulse of force J (N s) at the centre of mass, world axes; three more numbers are what
+        rounding took from it.
+    couple : array (3,) or (6,)
+        Impulse of torque K (N m s), world axes, likewise.
     out : array (10,)
         Filled with the Response.
 
@@ -95,6 +102,8 @@ def apply_impulse(p, state, force, couple, out):
         along = dot(scene.hinge_axis, G)
         d = scaled(along / scene.hinge_moment, scene.hinge_axis)
         turns = scaled(along, scene.hinge_axis)
+    elif scene.slim != 0.0:
+        d = _jump_of_slim(scene, load_slim(p, len(p) - SLIM_SIZE), q, force, couple)
     else:
         solvable, d = _jump(scene, G)
     # the work of an impulse goes with the mean of the velocities before and after
@@ -194,6 +203,31 @@ def _jump(scene, G):
                 and _turns(I3, along[2], slack))
     principal = _quotient(along[0], I1), _quotient(along[1], I2), _quotient(along[2], I3)
     return solvable, rotate(*scene.axes, *principal)
+
+
+@compiled
+def _jump_of_slim(scene, axes, q, force, couple):
+    """Return I^-1 G of a slim body with what rounding would take from G along it.
+
+    `axes` are its SlimAxes.
+    """
+    arm = difference(scene.center, scene.through) if scene.kind != FREE else NO_ARM
+    J, K = turned_back(*q, _in_pairs(force)), turned_back(*q, _in_pairs(couple))
+    G = plus_pairs(K, cross_pairs(arm, J))
+    I1, I2, I3 = scene.moments
+    first, second, third = axes.rows
+    of_first, of_second, of_third = axes.lost
+    d1 = dot_pairs(with_low(first, of_first), G)[0] / I1
+    d2 = dot_pairs(with_low(second, of_second), G)[0] / I2
+    d3 = dot_pairs(with_low(third, of_third), G)[0] / I3
+    return plus(plus(scaled(d1, first), scaled(d2, second)), scaled(d3, third))
+
+
+@compiled
+def _in_pairs(given):
+    """Return an array of an impulse, shape (3,) or (6,), as a vector of pairs."""
+    high = (given[0], given[1], given[2])
+    return with_low(high, (given[3], given[4], given[5]) if len(given) > 3 else ZERO)
 
 
 @compiled

@@ -17,7 +17,9 @@ from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, WORK, apply_impulse
 from rigid_body_sim.mechanics.parameters import SCENE
+from rigid_body_sim.numerics.pair_vectors import difference, less, turned, with_low
 from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.numerics.vectors import plus, scaled
 from rigid_body_sim.scene.state import ORIENTATION, STATE, STATE_SIZE
 from rigid_body_sim.simulation.command_rows import (
     AXES,
@@ -40,6 +42,7 @@ TAKEN, NOT_FINITE, NOT_SOLVABLE, TOO_MUCH_WORK, TOO_FAST = range(5)
 SCENE_REFUSES = 'the scene refuses commands'
 REASONS = ('', 'not finite', 'the body cannot take it', 'too large', 'the body cannot take it')
 """The reason of each verdict, as events and diagnostics name it."""
+ZERO = (0.0, 0.0, 0.0)
 _F, _END = FORCE.start, TORQUE.stop
 load_moments = SCENE.part('moments').load
 load_q, load_omega = STATE.part('orientation').load, STATE.part('angular_velocity').load
@@ -52,8 +55,18 @@ class Push(NamedTuple):
     torque: Vector
 
 
-PUSH = layout(Push)
-load_push, store_push = PUSH.load, PUSH.store
+class InPairs(NamedTuple):
+    """Impulses of force and torque, and what rounding took from each (N s and N m s)."""
+
+    force: Vector
+    of_force: Vector
+    torque: Vector
+    of_torque: Vector
+
+
+GIVEN = layout(InPairs)
+GIVEN_SIZE, _SECOND = GIVEN.size, GIVEN.part('torque').first
+load_push, load_given, store_given = layout(Push).load, GIVEN.load, GIVEN.store
 
 
 class Refusal(NamedTuple):
@@ -82,8 +95,9 @@ class Given(NamedTuple):
     start : array (14,)
         The state at the tick before its first command. Commands in body axes turn with this
         attitude.
-    sums : array (6,)
-        Force (N s) and torque (N m s) of all impulses, world axes.
+    sums : array (12,)
+        Force (N s) and torque (N m s) of all impulses, world axes, each followed by three numbers
+        that say what rounding took from it.
     after : array (14,)
         The state after the sums.
     response : array (10,)
@@ -98,12 +112,13 @@ class Given(NamedTuple):
     @classmethod
     def at(cls, vector: np.ndarray) -> 'Given':
         """Return the Given of no commands at a state (14,)."""
-        return cls(vector.copy(), np.zeros(6), vector.copy(), np.zeros(RESPONSE_SIZE))
+        return cls(vector.copy(), np.zeros(GIVEN_SIZE), vector.copy(), np.zeros(RESPONSE_SIZE))
 
     @property
     def any_impulse(self) -> bool:
         """Whether the impulses do not cancel."""
-        return any(self.sums.tolist())
+        sums = load_given(self.sums)
+        return any(sums.force) or any(sums.torque)
 
 
 @compiled_allocating
@@ -133,7 +148,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
         commands.
     """
     last, taken = -1, 0
-    alone, total = np.empty(6), np.empty(6)
+    alone, total = np.empty(GIVEN_SIZE), np.empty(GIVEN_SIZE)
     trial, trial_response = np.empty(STATE_SIZE), np.empty(RESPONSE_SIZE)
     I1, I2, I3 = load_moments(p)
     some_do_not_turn = I1 == 0.0 or I2 == 0.0 or I3 == 0.0
@@ -150,8 +165,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
             # asked of the command alone: in a sum that nearly cancels, rounding looks like a
             # torque
             solvable = _apply(p, start, alone, trial, trial_response)
-        for j in range(6):
-            total[j] = sums[j] + alone[j]
+        _add(sums, alone, total)
         _apply(p, start, total, trial, trial_response)
         work = trial_response[WORK]
         wx, wy, wz = load_omega(trial)
@@ -165,7 +179,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
             verdicts[k], amounts[k] = TOO_MUCH_WORK, work
         elif impulse:
             taken += 1
-            for j in range(6):
+            for j in range(GIVEN_SIZE):
                 sums[j] = total[j]
             for j in range(STATE_SIZE):
                 after[j] = trial[j]
@@ -181,28 +195,48 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
 
 @compiled
 def _to_world(row, start, share, out):
-    """Fill out, shape (6,), with force and torque of a row divided by `share`, in world axes."""
-    force, torque = load_push(row, _F)
+    """Fill out, shape (12,), with force and torque of a row divided by `share`, as `sums` of Given.
+
+    What rounding takes is known of an impulse, whose share is 1.
+    """
+    q, (force, torque) = load_q(start), load_push(row, _F)
+    lost, of_torque = ZERO, ZERO
     if row[AXES] == BODY:
-        q = load_q(start)
+        given, of_body = with_low(force, ZERO), with_low(torque, ZERO)
         force, torque = rotate(*q, *force), rotate(*q, *torque)
+        if share == 1.0:
+            lost, of_torque = less(turned(*q, given), force), less(turned(*q, of_body), torque)
     (fx, fy, fz), (tx, ty, tz) = force, torque
-    store_push(out, Push((fx / share, fy / share, fz / share),
-                         (tx / share, ty / share, tz / share)))
+    store_given(out, InPairs((fx / share, fy / share, fz / share), lost,
+                             (tx / share, ty / share, tz / share), of_torque))
+
+
+@compiled
+def _add(one, other, out):
+    """Fill out, shape (12,), with the sum of two arrays as `sums` of Given."""
+    a, b = load_given(one), load_given(other)
+    store_given(out, InPairs(*_sum(a.force, a.of_force, b.force, b.of_force),
+                             *_sum(a.torque, a.of_torque, b.torque, b.of_torque)))
+
+
+@compiled
+def _sum(a, lost_of_a, b, lost_of_b):
+    """Return a + b of two vectors, and what rounding takes from it."""
+    total, rounding = plus(a, b), difference(a, scaled(-1.0, b))
+    return total, plus(less(rounding, total), plus(lost_of_a, lost_of_b))
 
 
 @compiled
 def _apply(p, start, given, after, response):
-    """Fill `after` and `response` with what an impulse (6,) does; return if it is possible."""
-    some = False
+    """Fill `after` and `response` with what an impulse (12,) does; return if it is possible."""
     for j in range(len(start)):
         after[j] = start[j]
     for j in range(len(response)):
         response[j] = 0.0
-    for j in range(6):
-        some = some or given[j] != 0.0
-    force, torque = load_push(given)
-    return not some or apply_impulse(p, after, force, torque, response)
+    some = False
+    for j in range(3):
+        some = some or given[j] != 0.0 or given[_SECOND + j] != 0.0
+    return not some or apply_impulse(p, after, given[:_SECOND], given[_SECOND:], response)
 
 
 def scene_refuses(scene_name: str, count: int) -> list[Refusal]:

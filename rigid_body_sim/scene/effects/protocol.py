@@ -347,7 +347,8 @@ class Effect(Protocol):
         """``as_impulse(body, vector)``: its impulse at one instant, the attribute `time` (s).
 
         For the state (14 doubles) just before it returns the impulse of force at the centre of
-        mass (N s) and of torque (N m s), each of shape (3,) in world axes.
+        mass (N s) and of torque (N m s), each of shape (3,) in world axes. Three more numbers,
+        if given, are what rounding took from each: in a slim body they count.
         """
         return None
 

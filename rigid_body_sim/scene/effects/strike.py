@@ -7,8 +7,11 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.pair_vectors import cross as cross_pairs
+from rigid_body_sim.numerics.pair_vectors import difference, less, turned, turned_back, with_low
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.numerics.vectors import across, cross, minus, plus, scaled
 from rigid_body_sim.scene.bodies import Body
@@ -82,7 +85,8 @@ class Strike(Effect):
     def as_impulse(self, body: Body, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the impulse of force (N s) at the centre of mass and of torque (N m s).
 
-        Both have shape (3,) and are in world axes, for the attitude of a state.
+        Both are in world axes, for the attitude of a state. They have shape (3,), or (6,): then
+        the last three numbers are what rounding took.
         """
         q, force = vector[ORIENTATION].tolist(), self.impulse
         if self.frame == 'body':
@@ -93,11 +97,36 @@ class Strike(Effect):
             behind = (math.sqrt(body.radius * body.radius - self.height * self.height) / size
                       if size > 0.0 else 0.0)
             lever = -behind * force[0], -behind * force[1], self.height
-        elif self.point is None:
+            return np.array(force), np.array(cross(lever, force))
+        if self.point is None and self.frame == 'world':
             return np.array(force), np.zeros(3)
-        else:
-            lever = rotate(*q, *minus(self.point, body.center_of_mass))
-        return np.array(force), np.array(cross(lever, force))
+        point = body.center_of_mass if self.point is None else self.point
+        couple = cross(rotate(*q, *minus(point, body.center_of_mass)), force)
+        lost = _lost(tuple(q), self.impulse, 1.0 if self.frame == 'body' else 0.0,
+                     difference(point, body.center_of_mass), force, couple)
+        return np.array([*force, *lost[0]]), np.array([*couple, *lost[1]])
+
+
+@compiled
+def _lost(q, impulse, in_body, lever, force, couple):
+    """Return what rounding took from the force and the couple of an impulse, world axes.
+
+    Parameters
+    ----------
+    q : Quaternion
+        Attitude of the body.
+    impulse : Vector
+        N s, in body axes where `in_body` is 1.0, else in world axes.
+    lever : vector of pairs
+        From the centre of mass, body axes, m.
+    force, couple : Vector
+        As they were rounded.
+    """
+    J = with_low(impulse, (0.0, 0.0, 0.0))
+    K = cross_pairs(lever, J if in_body != 0.0 else turned_back(*q, J))
+    if in_body != 0.0:
+        J = turned(*q, J)
+    return less(J, force), less(turned(*q, K), couple)
 
 
 def _impulse(settings, body, constraint, where):
