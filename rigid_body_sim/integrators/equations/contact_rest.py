@@ -6,7 +6,7 @@ Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 
 import math
 
-from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.integrators.equations.contact_views import (
     GLIDING,
     LEDGER,
@@ -31,6 +31,7 @@ from rigid_body_sim.scene.surfaces import TORUS
 
 TIPPED = 2.0 ** -56    # rad: the inclination of a ring that has lain flat and begins to tip
 LEVEL = 2.0 ** -49     # rad: the inclination of one that lies flat but for rounding
+IDEAL = 1e300          # a larger mu is infinite
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
@@ -95,6 +96,16 @@ def lies(p, y):
     return c.kind == TORUS and above_flat(c, matrix(*now.q)[2]) <= 0.0
 
 
+@compiled_inline
+def _tips(gamma, omega, slow):
+    """Return whether a ring that lies flat tips; `slow` as in `tip`.
+
+    A strike about the normal gives a ring that is a little inclined a part across its axis, too,
+    which is up to twice as large as that of the normal: I_3 <= 2 I_1.
+    """
+    return hypot(omega[0], omega[1]) > slow + 4.0 * abs(omega[2]) * inclination(gamma)
+
+
 @compiled
 def tip(p, y, slow):
     """Incline a ring that lies flat the way in which it begins to tip, or level one that does not.
@@ -119,7 +130,7 @@ def tip(p, y, slow):
     a, b, d, e = now.q
     level = normalised(0.0, 0.0, d, e) if gamma[2] > 0.0 else normalised(a, b, 0.0, 0.0)
     inclined, momentum = inclination(gamma), apply(c.inertia, now.omega)
-    if not rate > slow:
+    if not _tips(gamma, now.omega, slow):
         spin = now.omega[2] if abs(now.omega[2]) > slow else 0.0
         store_omega(y, (0.0, 0.0, spin))
         if inclined <= LEVEL:
@@ -137,6 +148,28 @@ def tip(p, y, slow):
     turned = minus(apply(matrix(*load_unknowns(y).q), momentum), apply(matrix(*now.q), momentum))
     store_impulse(y, plus(now.ledger.impulse, turned))
     return True
+
+
+@compiled
+def is_clamped(p, y, velocity, rounding):
+    """Return whether ideal friction holds a disk that lies flat by all of its rim.
+
+    It is what friction does to a flat disk as mu grows: the disk stops at once. One whose centre
+    of mass is above its rim would tip.
+
+    Parameters
+    ----------
+    velocity : tuple of 3 floats
+        Of its lowest point, along the axes of the plane, m/s.
+    rounding : float
+        Of a velocity, m/s.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    gamma = matrix(*now.q)[2]
+    return (c.mu > IDEAL and is_disk(c) and c.middle[2] == 0.0 and above_flat(c, gamma) <= 0.0
+            and not _tips(gamma, now.omega, rounding / c.size[0])
+            and abs(velocity[2]) <= rounding + inclination(gamma) * hypot(velocity[0],
+                                                                          velocity[1]))
 
 
 @compiled
@@ -174,16 +207,17 @@ def stays_flat(p, y, row, slow):
         As `tip` has it.
     """
     c, now = load_contact(p), load_unknowns(y)
-    flat = above_flat(c, matrix(*now.q)[2])
+    gamma = matrix(*now.q)[2]
+    flat = above_flat(c, gamma)
     if flat > 0.0:
         return False
     rate, grown = hypot(now.omega[0], now.omega[1]), load_omega(row)
-    if not rate > slow:
+    if not _tips(gamma, now.omega, slow):
         if c.mu == 0.0:
-            return inclination(matrix(*now.q)[2]) > LEVEL    # it falls flat at once
-        # friction at one point would turn a torus about its tube, or keep the spin of a disk
-        return (now.u[0] != 0.0 or now.u[1] != 0.0) and c.mu > 0.0 and (
-            c.size[1] > 0.0 or c.mode != SLIDING or now.omega[2] != 0.0)
+            return inclination(gamma) > LEVEL    # it falls flat at once
+        # friction at one point would turn a torus about its tube, or keep the spin of a ring
+        slides, spins_on = now.u[0] != 0.0 or now.u[1] != 0.0, abs(now.omega[2]) > slow
+        return spins_on or (slides and (c.size[1] > 0.0 or c.mode != SLIDING))
     pace = row[PACE] if c.mode == SLIDING else 1.0
     slows = -(now.omega[0] * grown[0] + now.omega[1] * grown[1]) / (rate * pace)
     return rate * rate < -2.0 * flat * slows

@@ -13,8 +13,10 @@ from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
 from rigid_body_sim.integrators.equations.contact_rest import (
+    IDEAL,
     halt,
     is_askew,
+    is_clamped,
     lay,
     lies,
     lies_low,
@@ -70,10 +72,9 @@ PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without fric
 LIFTS = ('at t = {} s viscous rolling friction or a film of air lifts the body, which falls back '
          'at once without it: its couple does not fall with the load; that of dry rolling '
          'friction does')
-SLIDES = ('at t = {} s the body lies flat and goes on sliding on its face or rim, which is not '
-          'solved: it may touch the plane at one point; more friction or a level plane lets it '
-          'rest')
-IDEAL = 1e300            # a larger mu is infinite
+SLIDES = ('at t = {} s the body lies flat and goes on sliding or spinning on its face or rim, '
+          'which is not solved: it may touch the plane at one point; more friction or a level '
+          'plane lets it rest')
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
 
@@ -104,9 +105,11 @@ class PlaneCourse:
             return
         rounding = scales.rounding(y)
         tip(p, y, rounding / length)
-        ux, uy, normal = velocity_of_lowest(p, y)
+        ux, uy, normal = velocity = velocity_of_lowest(p, y)
         y[GAP] = 0.0
-        if normal > rounding:
+        if is_clamped(p, y, velocity, rounding):
+            self._land(p, y, (ux, uy))
+        elif normal > rounding:
             self._open(FLIGHT, p, y)
         elif normal < -rounding or (p[MU] > IDEAL and hypot(ux, uy) > rounding):
             self._impact(p, y)    # of a slip, too, that ideal rolling does not let be

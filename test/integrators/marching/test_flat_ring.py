@@ -12,6 +12,7 @@ import pytest
 from scipy.optimize import brentq
 from soak import IN_SOAK
 
+from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -251,3 +252,35 @@ def test_a_disk_that_has_come_to_lie_flat_slides_on_its_face_when_struck(accurac
     way = [speed ** 2 / (2.0 * 0.3 * 9.81), 0.0, 0.0]
     assert sim.vector[8:11] == pytest.approx(way, abs=accuracy * 0.05)
     assert abs(sim.ledger()['energy_residual']) < 10.0 * accuracy
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('method', ['dop8', 'taylor'])
+def test_ideal_friction_holds_a_flat_hoop_by_all_of_its_rim(method):
+    """It went on about one point of its rim, inclined by 1e-10 rad, and stopped by chance."""
+    sim = Simulation(ring('hoop: {radius: 0.02}', initial='{euler_zyz: [0.3, 5e-11, 0.2]}'),
+                     method, 1e-9)
+    start = sim.states([0.0])[0]
+    sim.impulse(force=[0.001, 0.0, 0.0], torque=[0.0, 0.0, 1e-5])
+    sim.advance(10)
+    end = sim.states([0.01])[0]
+    assert end.position == pytest.approx(start.position, abs=1e-15)
+    assert end.orientation == pytest.approx(start.orientation, abs=1e-15)
+    ledger = sim.ledger()
+    work = 0.5 * (0.001 ** 2 + 1e-5 ** 2 / 0.02 ** 2)
+    assert ledger['dissipated_impacts'] == pytest.approx(work, rel=1e-9)
+    assert abs(ledger['energy_residual']) < 1e-15
+    assert ledger['momentum_residual'] < 1e-12
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('shape', [*RINGS, 'disk: {radius: 0.3}'])
+def test_a_ring_that_spins_on_its_face_does_not_spin_without_friction(shape):
+    """Its lowest point is below its middle where it lies flat: friction took nothing from it."""
+    sim = Simulation(ring(shape, mu='0.3'), 'dop8', 1e-9)
+    sim.impulse(torque=[0.0, 0.0, 0.005])
+    sim.advance(10)    # it would turn by 1e-3 rad at most
+    assert not sim.states([0.01])[0].angular_velocity.any()
+    assert abs(sim.ledger()['energy_residual']) < 1e-15
+    with pytest.raises(NotConverged, match='sliding or spinning on its face or rim'):
+        sim.impulse(torque=[0.0, 0.0, 1.0])
