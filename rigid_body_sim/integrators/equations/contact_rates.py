@@ -61,6 +61,7 @@ from rigid_body_sim.mechanics.contact.forces import (
 )
 from rigid_body_sim.mechanics.contact.holding import (
     along_way,
+    burden,
     gripped,
     gripping,
     holds_still,
@@ -482,6 +483,15 @@ def stays(p, y):
     at = posture(c, now.q, now.omega)
     acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
     return holds_still(c, at, acts.force, acts.couple)
+
+
+@compiled
+def load_of(p, y):
+    """Return the Burden (mechanics/contact/holding.py) of a ring that lies flat and rests."""
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
+    return burden(c, at, acts.force, acts.couple)
 
 
 @compiled

@@ -106,6 +106,35 @@ def _tips(gamma, omega, slow):
     return hypot(omega[0], omega[1]) > slow + 4.0 * abs(omega[2]) * inclination(gamma)
 
 
+@compiled_inline
+def _level(q, gamma):
+    """Return the attitude of a ring that lies level beside an almost flat one."""
+    return (normalised(0.0, 0.0, q[2], q[3]) if gamma[2] > 0.0
+            else normalised(q[0], q[1], 0.0, 0.0))
+
+
+@compiled_inline
+def _incline(y, level, time, rate):
+    """Incline a ring from a level attitude by a turn for a time (s) at a rate (body, rad/s)."""
+    half = 0.5 * time
+    store_q(y, normalised(*multiply(*level, half * rate[0], half * rate[1], 0.0, 1.0)))
+
+
+@compiled
+def topple(y, way):
+    """Incline a ring that lies flat and rests the way in which a couple begins to tip it.
+
+    Parameters
+    ----------
+    way : tuple of 2 floats
+        How omega grows, body axes, in any unit.
+    """
+    now = load_unknowns(y)
+    gamma = matrix(*now.q)[2]
+    inclined = max(inclination(gamma), TIPPED)
+    _incline(y, _level(now.q, gamma), inclined / hypot(way[0], way[1]), way)
+
+
 @compiled
 def tip(p, y, slow):
     """Incline a ring that lies flat the way in which it begins to tip, or level one that does not.
@@ -127,8 +156,7 @@ def tip(p, y, slow):
     gamma, rate = matrix(*now.q)[2], hypot(now.omega[0], now.omega[1])
     if c.kind != TORUS or above_flat(c, gamma) > 0.0:
         return False
-    a, b, d, e = now.q
-    level = normalised(0.0, 0.0, d, e) if gamma[2] > 0.0 else normalised(a, b, 0.0, 0.0)
+    level = _level(now.q, gamma)
     inclined, momentum = inclination(gamma), apply(c.inertia, now.omega)
     if not _tips(gamma, now.omega, slow):
         spin = now.omega[2] if abs(now.omega[2]) > slow else 0.0
@@ -137,17 +165,21 @@ def tip(p, y, slow):
             store_q(y, level)
         return False
     inclined = max(inclined, TIPPED)
-    half = 0.5 * inclined / rate
     # the spin turns the axis of the ring, too
     off = max(-1.0, min(1.0, -inclined * now.omega[2] / rate))
     on = math.sqrt(1.0 - off * off)
-    store_q(y, normalised(*multiply(
-        *level, half * (on * now.omega[0] - off * now.omega[1]),
-        half * (off * now.omega[0] + on * now.omega[1]), 0.0, 1.0)))
+    _incline(y, level, inclined / rate, (on * now.omega[0] - off * now.omega[1],
+                                         off * now.omega[0] + on * now.omega[1]))
     # the plane gives what the momentum turns with the body
     turned = minus(apply(matrix(*load_unknowns(y).q), momentum), apply(matrix(*now.q), momentum))
     store_impulse(y, plus(now.ledger.impulse, turned))
     return True
+
+
+@compiled
+def lies_level(p, y, slow):
+    """Return whether a body is a ring that lies flat and does not tip; `slow` as in `tip`."""
+    return lies(p, y) and not _tips(matrix(*load_unknowns(y).q)[2], load_unknowns(y).omega, slow)
 
 
 @compiled
@@ -166,58 +198,37 @@ def is_clamped(p, y, velocity, rounding):
     """
     c, now = load_contact(p), load_unknowns(y)
     gamma = matrix(*now.q)[2]
-    return (c.mu > IDEAL and is_disk(c) and c.middle[2] == 0.0 and above_flat(c, gamma) <= 0.0
-            and not _tips(gamma, now.omega, rounding / c.size[0])
+    return (c.mu > IDEAL and is_disk(c) and c.middle[2] == 0.0
+            and lies_level(p, y, rounding / c.size[0])
             and abs(velocity[2]) <= rounding + inclination(gamma) * hypot(velocity[0],
                                                                           velocity[1]))
 
 
 @compiled
-def is_askew(p, y):
-    """Return whether a body is a disk that lies flat but for more than rounding."""
-    c, now = load_contact(p), load_unknowns(y)
-    gamma = matrix(*now.q)[2]
-    return is_disk(c) and inclination(gamma) > LEVEL and above_flat(c, gamma) <= 0.0
-
-
-@compiled
 def lay(p, y, N):
-    """Lay a disk that lies flat down on the plane, which bears it with N; the loss is in the heat.
+    """Lay a ring that lies flat down on the plane, which bears it with N; the loss is in the heat.
 
-    What slides on its face has its lowest point below the centre of the disk.
-    """
-    c, now = load_contact(p), load_unknowns(y)
-    a, b, d, e = now.q
-    up = matrix(*now.q)[2][2] > 0.0
-    y[STRUCK] += N * c.size[0] * inclination(matrix(*now.q)[2])
-    store_q(y, normalised(0.0, 0.0, d, e) if up else normalised(a, b, 0.0, 0.0))
-
-
-@compiled
-def stays_flat(p, y, row, slow):
-    """Return whether a ring that lies flat and moves tips by no more than what counts as flat.
-
-    It may slide, or turn a little and come down at once.
-
-    Parameters
-    ----------
-    row : array
-        The rates.
-    slow : float
-        As `tip` has it.
+    What slides on its face has its lowest point below the middle of the ring.
     """
     c, now = load_contact(p), load_unknowns(y)
     gamma = matrix(*now.q)[2]
-    flat = above_flat(c, gamma)
+    if inclination(gamma) <= LEVEL:
+        return
+    y[STRUCK] += N * c.size[0] * inclination(gamma)
+    store_q(y, _level(now.q, gamma))
+
+
+@compiled
+def comes_down(p, y, row):
+    """Return whether a ring that lies flat and tips is inclined by no more than counts as flat.
+
+    It comes down at once. `row` holds the rates.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    flat = above_flat(c, matrix(*now.q)[2])
     if flat > 0.0:
         return False
     rate, grown = hypot(now.omega[0], now.omega[1]), load_omega(row)
-    if not _tips(gamma, now.omega, slow):
-        if c.mu == 0.0:
-            return inclination(gamma) > LEVEL    # it falls flat at once
-        # friction at one point would turn a torus about its tube, or keep the spin of a ring
-        slides, spins_on = now.u[0] != 0.0 or now.u[1] != 0.0, abs(now.omega[2]) > slow
-        return spins_on or (slides and (c.size[1] > 0.0 or c.mode != SLIDING))
     pace = row[PACE] if c.mode == SLIDING else 1.0
     slows = -(now.omega[0] * grown[0] + now.omega[1] * grown[1]) / (rate * pace)
     return rate * rate < -2.0 * flat * slows

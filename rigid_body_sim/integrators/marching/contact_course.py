@@ -14,16 +14,17 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
 from rigid_body_sim.integrators.equations.contact_rest import (
     IDEAL,
+    comes_down,
     halt,
-    is_askew,
     is_clamped,
     lay,
     lies,
+    lies_level,
     lies_low,
     rise,
     spins,
-    stays_flat,
     tip,
+    topple,
 )
 from rigid_body_sim.integrators.equations.contact_states import read
 from rigid_body_sim.integrators.equations.contact_views import (
@@ -53,11 +54,11 @@ HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, VISCOUS, FILM = (
-    CONTACT.part(name).first for name in (
-        'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
-        'level', 'rolling_viscous', 'film'))
-ORIGIN = CONTACT.part('origin').places
+(MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY, VISCOUS,
+ FILM) = (CONTACT.part(name).first for name in (
+     'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
+     'level', 'rolling', 'rolling_viscous', 'film'))
+ORIGIN, SIZES, WAY = (CONTACT.part(name).places for name in ('origin', 'size', 'way'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
 SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plane
@@ -75,6 +76,7 @@ LIFTS = ('at t = {} s viscous rolling friction or a film of air lifts the body, 
 SLIDES = ('at t = {} s the body lies flat and goes on sliding or spinning on its face or rim, '
           'which is not solved: it may touch the plane at one point; more friction or a level '
           'plane lets it rest')
+TURNS = 50               # corrections of the way in which a flat ring tips
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
 
@@ -154,6 +156,10 @@ class PlaneCourse:
         slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > self._scales.rounding(y)
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
         self._rolling.begin(p, y, is_held(p))
+        slow = self._scales.rounding(y) / self._scales.length
+        if lies_level(p, y, slow) and rates.load_of(p, y).normal > 0.0:
+            self._lie(p, y, slow)
+            return
         rates.rate(p, y, row)
         if not row[FIRMNESS] > 0.0:
             self._end(y)
@@ -164,16 +170,10 @@ class PlaneCourse:
             else:
                 self._fly(p, y)
             return
-        if stays_flat(p, y, row, self._scales.rounding(y) / self._scales.length):
+        if comes_down(p, y, row):
             p[MODE] = SLIDING
             self._rest(p, y, self._begin + float(y[TIME]))
             return
-        if slides and is_askew(p, y) and not hypot3(*y[OMEGA]) > self._scales.rounding(
-                y) / self._scales.length:
-            still = p.copy()
-            still[MODE] = RESTING
-            rates.rate(still, y, row)
-            lay(p, y, row[FORCE][2])
         mode = p[MODE]
         held = is_held(p) and not self._bound.is_disk
         if mode == ROLLING and (held or not (row[MOTION] > 0.0 or any(y[OMEGA]))) and (
@@ -185,6 +185,58 @@ class PlaneCourse:
             self._creep_off(p, y)
             return
         self._open(mode, p, y)
+
+    def _lie(self, p, y, slow):
+        """Begin the phase of a ring that lies flat and does not tip faster than `slow` (rad/s).
+
+        Friction at one point would turn a torus about its tube, or keep the spin of a ring.
+        """
+        slides, spins_on = any(y[SLIP]), abs(y[OMEGA][2]) > slow
+        if p[MU] > 0.0 and (spins_on or (slides and not (
+                p[MODE] == SLIDING and self._bound.is_disk))):
+            p[MODE] = SLIDING
+            self._rest(p, y, self._begin + float(y[TIME]))
+        elif not slides and not spins_on and self._bound.rates.stays(p, y):
+            halt(p, y)
+            self._open(RESTING, p, y)
+        else:
+            self._give_way(p, y)
+
+    def _give_way(self, p, y):
+        """Let a ring that lies flat tip about its rim, or slide: the plane does not hold it."""
+        load, radius, row = self._bound.rates.load_of(p, y), p[SIZES][0], np.empty(ROW.size)
+        tilting, slack = hypot3(*load.tilting), ROUNDING * p[SIZES][0] * load.normal
+        if tilting > radius * load.normal:
+            self._topple(p, y, tuple(-x for x in load.tilting[:2]))
+        elif tilting <= slack and (p[MU] == 0.0 or (
+                self._bound.is_disk and abs(load.spinning) <= slack)):
+            lay(p, y, load.normal)
+        else:
+            self._end(y, SLIDES)
+            return
+        self._rolling.begin(p, y, True)
+        self._bound.rates.rate(p, y, row)
+        if not row[NORMAL] > 0.0:
+            self._fly(p, y)
+        elif p[MODE] == ROLLING and row[GRIP] < -HOLDS * p[MU] * row[NORMAL]:
+            self._creep_off(p, y)
+        else:
+            self._open(int(p[MODE]), p, y)
+
+    def _topple(self, p, y, way):
+        """Incline a ring that lies flat so that its lowest point is the one that goes down first.
+
+        `way` is a first guess of how omega grows, body axes. Rolling friction has no part in it.
+        """
+        smooth, row = p.copy(), np.empty(ROW.size)
+        smooth[DRY], smooth[RIM], smooth[ONSET], smooth[WAY] = 0.0, 0.0, 0.0, (1.0, 0.0)
+        for _ in range(TURNS):
+            topple(y, way)
+            self._bound.rates.rate(smooth, y, row)
+            before, way = way, tuple(row[OMEGA][:2].tolist())
+            if abs(before[0] * way[1] - before[1] * way[0]) <= ROUNDING * (
+                    hypot(*before) * hypot(*way)):
+                return
 
     def _creep_off(self, p, y):
         y[SLIP] = 0.0, 0.0
@@ -253,6 +305,10 @@ class PlaneCourse:
             return
         halt(p, y)
         self._events.append((time, 'rest', {}))
+        if lies(p, y) and not self._bound.rates.stays(p, y):
+            p[MODE] = GLIDING if p[MU] == 0.0 else ROLLING
+            self._give_way(p, y)
+            return
         self._open(RESTING, p, y)
 
     def _impact(self, p, y):

@@ -15,8 +15,10 @@ against s_b (ContactParameters: rim).
 """
 
 import math
+from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, inlined
+from rigid_body_sim.compilation.layout import Vector
 from rigid_body_sim.mechanics.contact.forces import Posture, along_body
 from rigid_body_sim.mechanics.contact.parameters import HELD, SLOW
 from rigid_body_sim.mechanics.contact.touch import (
@@ -169,6 +171,52 @@ def growing(c, at, grown):
     return dot(e1, growth), dot(e2, growth)
 
 
+class Burden(NamedTuple):
+    """What a plane has to give a ring that lies flat on a circle, so that it rests.
+
+    Attributes
+    ----------
+    tilting : Vector
+        Couple about the middle of the circle, along the plane, body axes, N m.
+    spinning : float
+        And along the normal, N m.
+    along, normal : float
+        Force along the plane and along the normal, N.
+    """
+
+    tilting: Vector
+    spinning: float
+    along: float
+    normal: float
+
+
+@inlined
+def burden(c, at, F, T):
+    """Return the Burden under a force F (axes of the plane) and a couple T (body axes)."""
+    gamma, share = at.axes[2], 1.0 if c.mu > 0.0 else 0.0
+    held = -share * F[0], -share * F[1], -F[2]
+    foot = minus(c.middle, scaled(c.size[1], gamma))
+    couple = scaled(-1.0, plus(T, cross(foot, along_body(at.axes, held))))
+    spinning = dot(gamma, couple)
+    return Burden(minus(couple, scaled(spinning, gamma)), spinning, hypot(F[0], F[1]), -F[2])
+
+
+@inlined
+def topples(c, load):
+    """Return whether no pressure on the circle bears a Burden: it acts beyond the circle."""
+    return math.sqrt(dot(load.tilting, load.tilting)) > c.size[0] * load.normal
+
+
+@inlined
+def drags(c, load):
+    """Return whether a Burden may be more than friction holds.
+
+    It gives |f| <= mu N alone and |M| <= mu N R alone, and both together at least where the sum
+    of the shares is below 1.
+    """
+    return load.along + abs(load.spinning) / c.size[0] > c.mu * load.normal
+
+
 @compiled
 def holds_still(c, at, F, T):
     """Return whether a body that has almost stopped is at rest: a flat ring, or dry friction.
@@ -182,8 +230,9 @@ def holds_still(c, at, F, T):
         What acts on the resting body: force (axes of the plane), couple (body axes).
     """
     gamma = at.axes[2]
-    if c.kind == TORUS and (c.size[1] == 0.0 or above_flat(c, gamma) <= 0.0):
-        return True
+    if c.kind == TORUS and above_flat(c, gamma) <= 0.0:
+        load = burden(c, at, F, T)
+        return load.normal > 0.0 and not topples(c, load) and not drags(c, load)
     held = scaled(-1.0, F)
     if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:
         return False

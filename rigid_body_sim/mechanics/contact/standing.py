@@ -12,12 +12,15 @@ from rigid_body_sim.mechanics.contact.forces import (
 )
 from rigid_body_sim.mechanics.contact.holding import (
     across_rim,
+    burden,
+    drags,
     gripped,
     gripping,
     growing,
     holds_still,
     rolling_couples,
     tips,
+    topples,
     way_out,
 )
 from rigid_body_sim.mechanics.contact.laws import (
@@ -97,9 +100,8 @@ class Standing:
             return NOTHING, NOTHING, r
         pressed = rotate_back(*c.plane, *force)[2] < 0.0
         stands = standing(c, None, omega, axes, r)
-        if pressed and not any(omega) and not any(velocity) and (
-                self._lies(gamma) or (c.rolling > 0.0 and not self._is_disk and holds_still(
-                    c, stands, rotate_back(*c.plane, *force), couple))):
+        if pressed and not any(omega) and not any(velocity) and self._rests(
+                stands, rotate_back(*c.plane, *force), couple):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
         free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
@@ -181,6 +183,14 @@ class Standing:
         else:
             f = self._force(system_of(c, stands, push), u, speed)
         return f, plus(viscous, scaled(f[2], wrung))
+
+    def _rests(self, stands, force, couple):
+        """Return whether a body that does not move is at rest; force along the plane's axes."""
+        c = self._c
+        if self._lies(stands.axes[2]):
+            load = burden(c, stands, force, couple)
+            return not (topples(c, load) or drags(c, load))
+        return c.rolling > 0.0 and not self._is_disk and holds_still(c, stands, force, couple)
 
     def _lies(self, gamma):
         """Return whether the body is a ring that counts as flat once nothing moves.

@@ -284,3 +284,60 @@ def test_a_ring_that_spins_on_its_face_does_not_spin_without_friction(shape):
     assert abs(sim.ledger()['energy_residual']) < 1e-15
     with pytest.raises(NotConverged, match='sliding or spinning on its face or rim'):
         sim.impulse(torque=[0.0, 0.0, 1.0])
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('tilt', [0.0, 5e-11])
+@pytest.mark.parametrize(('shape', 'effects', 'method'), [
+    ('disk: {radius: 0.3}', '', 'dop8'), ('disk: {radius: 0.3}', '', 'taylor'),
+    ('disk: {radius: 0.3}', ', rolling_friction: {dry: 0.01}', 'dop8')])
+def test_a_couple_tips_a_flat_disk_about_its_rim_where_pressure_cannot_bear_it(
+        shape, effects, method, tilt):
+    """(A + m a^2) alpha = M - m g a cos alpha; at M < m g a it rests. No couple tipped it."""
+    radius = 0.3
+    sim = Simulation(ring(shape, effects, initial=f'{{euler_zyz: [0.3, {tilt}, 0.2]}}'),
+                     method, 1e-10)
+    sim.hold(torque=[0.99 * G * radius, 0.0, 0.0], frame='world')
+    sim.advance(10)
+    assert not sim.states([0.01])[0].angular_velocity.any()
+    couple = 1.5 * G * radius
+    sim.hold(torque=[couple, 0.0, 0.0], frame='world')
+    sim.advance(20)
+    end = sim.states([0.03])[0]
+    lift = end.position[2] / radius    # sin alpha
+    assert lift == pytest.approx(0.5 * (couple - G * radius) / (1.25 * radius ** 2) * 0.02 ** 2,
+                                 rel=1e-4)
+    spin = np.linalg.norm(end.angular_velocity)
+    work = couple * np.arcsin(lift) - G * radius * lift
+    assert 0.5 * 1.25 * radius ** 2 * spin ** 2 == pytest.approx(work, rel=1e-7)
+    assert abs(sim.ledger()['energy_residual']) < 1e-11
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('tilt', [0.0, 5e-11])
+@pytest.mark.parametrize('mu', [0.0, 0.3])
+def test_a_force_that_friction_cannot_hold_drags_a_flat_disk_along(mu, tilt):
+    """It rested under any force."""
+    sim = Simulation(ring('disk: {radius: 0.3}', '', mu,
+                          initial=f'{{euler_zyz: [0.3, {tilt}, 0.2]}}'), 'dop8', 1e-10)
+    sim.hold(force=[0.99 * mu * G, 0.0, 0.0], frame='world')
+    sim.advance(10)
+    assert not sim.states([0.01])[0].velocity.any()
+    sim.hold(force=[mu * G + 2.0, 0.0, 0.0], frame='world')
+    sim.advance(20)
+    end = sim.states([0.03])[0]
+    assert end.position == pytest.approx([0.02 ** 2, 0.0, 0.0], abs=1e-10)
+    assert end.velocity == pytest.approx([0.04, 0.0, 0.0], abs=1e-10)
+    assert sim.ledger()['dissipated_sliding'] == pytest.approx(mu * G * 0.02 ** 2, rel=1e-9)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('force', 'couple'), [(4.0, 0.0), (0.0, 1.0), (2.0, 0.5)])
+def test_a_flat_torus_that_friction_cannot_hold_ends_the_run(force, couple):
+    """It rested under any push."""
+    sim = Simulation(ring('torus: {radius: 0.3, tube: 0.06}', mu='0.3'), 'dop8', 1e-9)
+    sim.hold(force=[0.4 * force, 0.0, 0.0], torque=[0.0, 0.0, 0.4 * couple])
+    sim.advance(10)
+    assert not sim.states([0.01])[0].velocity.any()
+    with pytest.raises(NotConverged, match='sliding or spinning on its face or rim'):
+        sim.hold(force=[force, 0.0, 0.0], torque=[0.0, 0.0, couple])
