@@ -32,6 +32,11 @@ class OnPlane:
     """The kernels and the numbers of one scene and wrench.
 
     The wrench is always in the code, so that no command waits for a compilation.
+
+    Attributes
+    ----------
+    is_timed : bool
+        Whether what acts depends on time other than in pieces.
     """
 
     KEEPS_ENTRIES = True
@@ -50,7 +55,8 @@ class OnPlane:
             raise BadInput(f'{scene.name}: effects', 'an expression with a kink, or an effect '
                            'that turns the axes, for a body on a plane',
                            'a smooth expression, numbers that hold, or pieces in time')
-        if scene.contact.rolling > 0.0 and any(one.timed for one in acting):
+        self.is_timed = any(one.timed for one in acting)
+        if scene.contact.rolling > 0.0 and self.is_timed:
             raise BadInput(f'{scene.name}: effects', 'an expression of time for a body on a plane '
                            'that dry rolling friction may bring to rest',
                            'pieces in time, or viscous rolling friction')

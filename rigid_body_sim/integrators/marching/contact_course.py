@@ -71,11 +71,13 @@ PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
          'would stay on it; a finite mu lets it slip')
 LIFTS = ('at t = {} s viscous rolling friction or a film of air lifts the body, which falls back '
-         'at once without it: its couple does not fall with the load; that of dry rolling '
-         'friction does')
+         'at once without it: its couple does not fall with the load, and here the load is 0; a '
+         'smaller coefficient or dry rolling friction does not lift')
 SLIDES = ('at t = {} s the body lies flat and goes on sliding or spinning on its face or rim, '
           'which is not solved: it may touch the plane at one point; more friction or a level '
           'plane lets it rest')
+TIMED = ('at t = {} s the body lies flat under an effect that depends on time, which may move it '
+         'again at a time that is not looked for; pieces in time are followed')
 TURNS = 50               # corrections of the way in which a flat ring tips
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
@@ -126,6 +128,9 @@ class PlaneCourse:
 
     def _open(self, mode, p, y, stopped=False, tipped=False, released=False):
         """Begin a phase; the last three are those of DryRolling.begin."""
+        if mode == RESTING and self._bound.is_timed:
+            self._end(y, TIMED)
+            return
         time = self._begin + float(y[TIME])
         stopped = stopped or is_held(p)
         p = self._parameters(time)

@@ -341,3 +341,12 @@ def test_a_flat_torus_that_friction_cannot_hold_ends_the_run(force, couple):
     assert not sim.states([0.01])[0].velocity.any()
     with pytest.raises(NotConverged, match='sliding or spinning on its face or rim'):
         sim.hold(force=[force, 0.0, 0.0], torque=[0.0, 0.0, couple])
+
+
+@pytest.mark.without_numba
+def test_a_flat_disk_under_a_force_that_grows_ends_the_run_and_does_not_rest():
+    scene = ring('disk: {radius: 0.3}', ", force: {value: ['20.0*t', 0, 0], frame: world}", '0.3',
+                 initial='{position: [0, 0, 0.01]}')
+    sim = Simulation(scene, 'dop8', 1e-9)
+    with pytest.raises(NotConverged, match='under an effect that depends on time'):
+        sim.advance(200)
