@@ -51,6 +51,21 @@ def spins(p, y):
 
 
 @compiled
+def grip_patch(p, y):
+    """Take what is left of the spin of a patch of contact whose slip has died.
+
+    Friction takes it, and its angular impulse is in the ledger.
+    """
+    c, now = load_contact(p), load_unknowns(y)
+    if c.patch == 0.0:
+        return
+    axes = matrix(*now.q)
+    change = scaled(-dot(axes[2], now.omega), axes[2])
+    store_impulse(y, plus(now.ledger.impulse, apply(axes, apply(c.inertia, change))))
+    store_omega(y, plus(now.omega, change))
+
+
+@compiled
 def lies_low(p, y):
     """Return whether a body is a ring that is almost flat."""
     c, now = load_contact(p), load_unknowns(y)

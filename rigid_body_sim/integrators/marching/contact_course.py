@@ -15,6 +15,7 @@ from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_low
 from rigid_body_sim.integrators.equations.contact_rest import (
     IDEAL,
     comes_down,
+    grip_patch,
     halt,
     is_clamped,
     lay,
@@ -363,6 +364,7 @@ class PlaneCourse:
             return
         if why == contact_march.FASTER and y[SLIP][0] <= 0.0:
             why = contact_march.STUCK    # the slip that began has died again
+            grip_patch(p, y)
         if why in BEGAN:
             self._events.append((time, BEGAN[why], {}))
         if why == contact_march.LOST_CONTACT:

@@ -407,6 +407,21 @@ def test_a_body_that_sticks_in_an_impact_and_cannot_roll_on_slips(accuracy):
     assert events[-1][1] == pytest.approx(0.6293950717486, abs=10.0 * accuracy)
 
 
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
+def test_a_creep_of_a_patch_that_dies_leaves_no_spin(accuracy):
+    """Its spin erred by 1e-11 of the speeds: a slip of that size took a million steps to die."""
+    sim = simulation('{mass: 0.3, shape: {hoop: {radius: 0.05}}}',
+                     'sliding_friction: {mu: 0.2}, rolling_friction: {dry: 0.001, '
+                     'viscous: 0.001}, spinning_friction: {radius: 0.0005}',
+                     '{euler_zyz: [2.212, 1.329, 0.326]}',
+                     '{table: {normal: [0.1, -0.05, 1.0]}}', accuracy, horizon=1.0)
+    sim.advance(100)
+    assert [event.name for event in sim.events] == ['rolling began']
+    assert sim.events[0].time == pytest.approx(0.0273080800, abs=1e-9 + 2e-3 * accuracy)
+    assert abs(sim.ledger()['energy_residual']) < 1e-12
+
+
 @pytest.mark.parametrize(('patch', 'spin'), [(0.001, 10.0), (0.002, 30.0), (0.001, 36.0)])
 def test_the_spin_of_a_patch_dies_on_a_slope_when_its_quadrature_says(patch, spin):
     """The slip of a sphere dies at the slow pace of the spin, and its direction relaxes fast.
