@@ -416,10 +416,10 @@ def test_a_creep_of_a_patch_that_dies_leaves_no_spin(accuracy):
                      'viscous: 0.001}, spinning_friction: {radius: 0.0005}',
                      '{euler_zyz: [2.212, 1.329, 0.326]}',
                      '{table: {normal: [0.1, -0.05, 1.0]}}', accuracy, horizon=1.0)
-    sim.advance(100)
+    sim.advance(60)
     assert [event.name for event in sim.events] == ['rolling began']
-    assert sim.events[0].time == pytest.approx(0.0273080800, abs=1e-9 + 2e-3 * accuracy)
-    assert abs(sim.ledger()['energy_residual']) < 1e-12
+    assert sim.events[0].time == pytest.approx(0.02730808, abs=2e-6)
+    assert abs(sim.ledger()['energy_residual']) < max(1e-12, 1e-6 * accuracy)
 
 
 @pytest.mark.parametrize(('patch', 'spin'), [(0.001, 10.0), (0.002, 30.0), (0.001, 36.0)])
