@@ -195,7 +195,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
 
 @compiled
 def _to_world(row, start, share, out):
-    """Fill out, shape (12,), with force and torque of a row divided by `share`, as `sums` of Given.
+    """Fill out, shape (12,), with force and torque of a row over `share`, as `sums` of Given.
 
     What rounding takes is known of an impulse, whose share is 1.
     """
