@@ -213,7 +213,8 @@ class PlaneCourse:
         load, radius, row = self._bound.rates.load_of(p, y), p[SIZES][0], np.empty(ROW.size)
         tilting, slack = hypot3(*load.tilting), ROUNDING * p[SIZES][0] * load.normal
         if tilting > radius * load.normal:
-            self._topple(p, y, tuple(-x for x in load.tilting[:2]))
+            x, z, _ = load.tilting
+            self._topple(p, y, (-x, -z))
         elif tilting <= slack and (p[MU] == 0.0 or (
                 self._bound.is_disk and abs(load.spinning) <= slack)):
             lay(p, y, load.normal)
@@ -239,10 +240,10 @@ class PlaneCourse:
         for _ in range(TURNS):
             topple(y, way)
             self._bound.rates.rate(smooth, y, row)
-            before, way = way, tuple(row[OMEGA][:2].tolist())
-            if abs(before[0] * way[1] - before[1] * way[0]) <= ROUNDING * (
-                    hypot(*before) * hypot(*way)):
+            (x, z), (a, b, _) = way, row[OMEGA].tolist()
+            if abs(x * b - z * a) <= ROUNDING * hypot(x, z) * hypot(a, b):
                 return
+            way = a, b
 
     def _creep_off(self, p, y):
         y[SLIP] = 0.0, 0.0

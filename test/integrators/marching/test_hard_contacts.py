@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numba_only import LONG_IN_PYTHON
 from scipy.integrate import solve_ivp
-from soak import SOAK
+from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate_back
@@ -407,7 +407,7 @@ def test_a_body_that_sticks_in_an_impact_and_cannot_roll_on_slips(accuracy):
     assert events[-1][1] == pytest.approx(0.6293950717486, abs=10.0 * accuracy)
 
 
-@pytest.mark.without_numba
+@IN_SOAK
 @pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
 def test_a_creep_of_a_patch_that_dies_leaves_no_spin(accuracy):
     """Its spin erred by 1e-11 of the speeds: a slip of that size took a million steps to die."""
