@@ -57,7 +57,16 @@ class Response(NamedTuple):
     reaction_couple: Vector
 
 
-RESPONSE = layout(Response)
+class Given(NamedTuple):
+    """An impulse of force or torque (N s or N m s), and what rounding took from it."""
+
+    rounded: Vector
+    lost: Vector
+
+
+GIVEN, RESPONSE = layout(Given), layout(Response)
+GIVEN_SIZE = GIVEN.size
+load_rounded, load_lost = GIVEN.part('rounded').load, GIVEN.part('lost').load
 RESPONSE_SIZE = RESPONSE.size
 WORK = RESPONSE.part('work').first
 SLIM_SIZE = SLIM.size
@@ -226,8 +235,7 @@ def _jump_of_slim(scene, axes, q, force, couple):
 @compiled
 def _in_pairs(given):
     """Return an array of an impulse, shape (3,) or (6,), as a vector of pairs."""
-    high = (given[0], given[1], given[2])
-    return with_low(high, (given[3], given[4], given[5]) if len(given) > 3 else ZERO)
+    return with_low(load_rounded(given), load_lost(given) if len(given) == GIVEN_SIZE else ZERO)
 
 
 @compiled

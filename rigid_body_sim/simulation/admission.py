@@ -195,9 +195,10 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
 
 @compiled
 def _to_world(row, start, share, out):
-    """Fill out, shape (12,), with force and torque of a row over `share`, as `sums` of Given.
+    """Fill out with force and torque of a row divided by `share`.
 
-    What rounding takes is known of an impulse, whose share is 1.
+    It has shape (12,), as `sums` of Given. What rounding takes is known of an impulse, whose
+    share is 1.
     """
     q, (force, torque) = load_q(start), load_push(row, _F)
     lost, of_torque = ZERO, ZERO

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of what a Simulation is given: numbers, counts of ticks, and starts."""
 
+import math
 import numbers
 import operator
 
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.mechanics.energy import NOT_FINITE, NOT_UNIT
+from rigid_body_sim.mechanics.energy import DIAGNOSIS, NOT_FINITE, NOT_UNIT
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.state import ORIENTATION
 
+load_diagnosis = DIAGNOSIS.load
 TIMES = 'times in s: a number, or a sequence of numbers'
 LAST_TICK = 2**53
 """Number of the last tick: up to there ticks are exact as doubles, in which times are computed."""
@@ -78,7 +81,17 @@ def refuse_start(name, fault, start, diagnosis):
         raise BadInput(where, f'got the orientation {q}', 'a unit quaternion')
     raise BadInput(
         where,
-        'energy or momentum is beyond what a double holds '
-        f'({float(diagnosis[0])!r} J)',
+        '{} is beyond what a double holds ({})'.format(*_beyond(load_diagnosis(diagnosis))),
         'a smaller angular velocity, velocity or height',
     )
+
+
+def _beyond(found):
+    """Return the first quantity of a Diagnosis that is not finite, and its value, in words."""
+    for name, value in ('kinetic', found.kinetic), ('potential', found.potential):
+        if not math.isfinite(value):
+            return f'the {name} energy', f'{float(value)!r} J'
+    size = hypot3(*found.momentum)
+    if not math.isfinite(size):
+        return 'the angular momentum', f'{float(size)!r} kg m^2/s'
+    return 'the square of the angular momentum', f'of {float(size)!r} kg m^2/s'

@@ -123,8 +123,8 @@ def _after_a_blow(scene, state, blows):
     if (len(blows) != 1 or blows[0].time or state.time
             or scene.initial.angular_velocity.any() or not length):
         return None
-    impulse, turn = (np.array(rotate_back(*scene.initial.orientation, *vector)) for vector in
-                     blows[0].as_impulse(body, scene.initial.vector))
+    impulse, turn = (np.array(rotate_back(*scene.initial.orientation, *vector[:3]))
+                     for vector in blows[0].as_impulse(body, scene.initial.vector))
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
     # F d, the moment of the blow about the hinge
     return Steady(float(baseball_bat.angular_acceleration(

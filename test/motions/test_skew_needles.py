@@ -280,7 +280,7 @@ def test_a_commanded_impulse_on_a_needle_is_turned_into_its_axes_exactly(frame, 
 @pytest.mark.parametrize('off', [0.0, 1e-3])
 @pytest.mark.parametrize('center', [0.0, 1e-4])
 def test_a_needle_on_an_axle_is_struck_with_its_moment(center, off):
-    """The moment n . I n rounds as the large moments do in doubles: the rate was 7e-12 off."""
+    """The moment in doubles has the rounding of the large moments: the rate was 7e-12 off."""
     mapping, point = struck(1e-6, 'pivot', True), on_needle(True, 0.1, 1e-2)
     mapping['body'] |= {'center_of_mass': on_needle(True, 0.05, center),
                         'inertia_about': 'center_of_mass'}

@@ -30,10 +30,10 @@ initial: {{orientation: [0, 0, 1, 1]}}
 
 
 def struck(text):
-    """Return the impulses of force and torque at the start of a scene with one strike."""
+    """Return the impulses of force and torque at the start of a scene with one strike, rounded."""
     scene = parse_scene(text)
     force, torque = scene.effect('strike').as_impulse(scene.body, scene.initial.vector)
-    return force.tolist(), torque.tolist()
+    return force[:3].tolist(), torque[:3].tolist()
 
 
 @pytest.mark.parametrize('impulse', [(0.3, 0.4), (-0.5, 1.2), (0.2, 0.0), (0.0, -0.7)])
