@@ -35,9 +35,8 @@ STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # after COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)
-AT_ONCE = 8                         # steps of a call for each of many states, at least
-SHARED = 16384                      # steps of a call that few states share
-IN_ONE_CALL = 1024                  # steps of a call that asks for one state
+AT_ONCE = 8                         # steps of a call from Python that asks for a state
+IN_ONE_CALL = 1024                  # steps of a call that asks for a final state
 MOST_TURNS = 1e15                   # rad, of a final state: then somebody else says what is wrong
 load_state = STATE.load
 
@@ -133,7 +132,7 @@ def state(piece, time, end, out):
     """Fill out with the state at a time if the march reaches it; return what `follow` returns."""
     status = REACHED
     if not piece[POINT + TIME] <= time < piece[FOLLOWING + TIME]:
-        status = follow(piece, time, end, int(IN_ONE_CALL))
+        status = follow(piece, time, end, int(AT_ONCE))
     if status == REACHED:
         _within(piece, time, out)
     return status
@@ -174,15 +173,13 @@ def final(room, vector, time, out):
 def states(piece, times, order, end, out):
     """Fill row order[i] of out with the state at times[order[i]], times rising in that order.
 
-    Return how many rows were filled: fewer than asked where one takes more steps than its share
-    of a call.
+    Return how many rows were filled: fewer than asked where one takes more than AT_ONCE steps.
     """
     point, following = piece[POINT:FOLLOWING], piece[FOLLOWING:COUNTS]
-    limit = max(int(AT_ONCE), int(SHARED) // max(1, len(order)))
     for i in range(len(order)):
         k = order[i]
         within = point[TIME] <= times[k] < following[TIME]
-        if not within and follow(piece, times[k], end, limit) != REACHED:
+        if not within and follow(piece, times[k], end, int(AT_ONCE)) != REACHED:
             return i
         _within(piece, times[k], out[k])
     return len(order)

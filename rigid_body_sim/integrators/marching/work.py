@@ -21,7 +21,7 @@ from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.functions import log
 
-SLICE = 128             # steps of the first slice
+SLICE = 32              # steps of the first slice
 FIRST_LOOK = 1 << 17    # steps before the first look at what lies ahead; then at each doubling
 MOST = 3e8              # steps between two times that are asked for: minutes
 PATIENCE = 1e15         # steps done times steps ahead: beyond, and beyond MOST, a march gives up
