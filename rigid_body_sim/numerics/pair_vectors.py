@@ -23,12 +23,6 @@ def difference(a, b):
 
 
 @compiled
-def rounded(v):
-    """Return the doubles next to the components."""
-    return v[0][0], v[1][0], v[2][0]
-
-
-@compiled
 def less(v, a):
     """Return v - a as doubles; a is a vector of doubles."""
     return (v[0][0] - a[0]) + v[0][1], (v[1][0] - a[1]) + v[1][1], (v[2][0] - a[2]) + v[2][1]

@@ -64,9 +64,9 @@ class InPairs(NamedTuple):
     of_torque: Vector
 
 
-GIVEN = layout(InPairs)
-GIVEN_SIZE, _SECOND = GIVEN.size, GIVEN.part('torque').first
-load_push, load_given, store_given = layout(Push).load, GIVEN.load, GIVEN.store
+SUMS = layout(InPairs)
+SUMS_SIZE, _SECOND = SUMS.size, SUMS.part('torque').first
+load_push, load_sums, store_sums = layout(Push).load, SUMS.load, SUMS.store
 
 
 class Refusal(NamedTuple):
@@ -112,12 +112,12 @@ class Given(NamedTuple):
     @classmethod
     def at(cls, vector: np.ndarray) -> 'Given':
         """Return the Given of no commands at a state (14,)."""
-        return cls(vector.copy(), np.zeros(GIVEN_SIZE), vector.copy(), np.zeros(RESPONSE_SIZE))
+        return cls(vector.copy(), np.zeros(SUMS_SIZE), vector.copy(), np.zeros(RESPONSE_SIZE))
 
     @property
     def any_impulse(self) -> bool:
         """Whether the impulses do not cancel."""
-        sums = load_given(self.sums)
+        sums = load_sums(self.sums)
         return any(sums.force) or any(sums.torque)
 
 
@@ -148,7 +148,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
         commands.
     """
     last, taken = -1, 0
-    alone, total = np.empty(GIVEN_SIZE), np.empty(GIVEN_SIZE)
+    alone, total = np.empty(SUMS_SIZE), np.empty(SUMS_SIZE)
     trial, trial_response = np.empty(STATE_SIZE), np.empty(RESPONSE_SIZE)
     I1, I2, I3 = load_moments(p)
     some_do_not_turn = I1 == 0.0 or I2 == 0.0 or I3 == 0.0
@@ -179,7 +179,7 @@ def admit(p, rate, rows, start, sums, after, response, verdicts, amounts):
             verdicts[k], amounts[k] = TOO_MUCH_WORK, work
         elif impulse:
             taken += 1
-            for j in range(GIVEN_SIZE):
+            for j in range(SUMS_SIZE):
                 sums[j] = total[j]
             for j in range(STATE_SIZE):
                 after[j] = trial[j]
@@ -208,15 +208,15 @@ def _to_world(row, start, share, out):
         if share == 1.0:
             lost, of_torque = less(turned(*q, given), force), less(turned(*q, of_body), torque)
     (fx, fy, fz), (tx, ty, tz) = force, torque
-    store_given(out, InPairs((fx / share, fy / share, fz / share), lost,
+    store_sums(out, InPairs((fx / share, fy / share, fz / share), lost,
                              (tx / share, ty / share, tz / share), of_torque))
 
 
 @compiled
 def _add(one, other, out):
     """Fill out, shape (12,), with the sum of two arrays as `sums` of Given."""
-    a, b = load_given(one), load_given(other)
-    store_given(out, InPairs(*_sum(a.force, a.of_force, b.force, b.of_force),
+    a, b = load_sums(one), load_sums(other)
+    store_sums(out, InPairs(*_sum(a.force, a.of_force, b.force, b.of_force),
                              *_sum(a.torque, a.of_torque, b.torque, b.of_torque)))
 
 

@@ -202,19 +202,17 @@ def burden(c, at, F, T):
 
 
 @inlined
-def topples(c, load):
-    """Return whether no pressure on the circle bears a Burden: it acts beyond the circle."""
-    return math.sqrt(dot(load.tilting, load.tilting)) > c.size[0] * load.normal
+def bears(c, load):
+    """Return whether pressure on the circle and friction can bear a Burden.
 
-
-@inlined
-def drags(c, load):
-    """Return whether a Burden may be more than friction holds.
-
-    It gives |f| <= mu N alone and |M| <= mu N R alone, and both together at least where the sum
-    of the shares is below 1.
+    No pressure bears a couple beyond N R, which acts beyond the circle. Friction gives |f| <= mu N
+    alone and |M| <= mu N R alone, and both together at least where the sum of the shares is below
+    1.
     """
-    return load.along + abs(load.spinning) / c.size[0] > c.mu * load.normal
+    tilting = math.sqrt(dot(load.tilting, load.tilting))
+    needed = load.along + abs(load.spinning) / c.size[0]
+    return load.normal > 0.0 and tilting <= c.size[0] * load.normal and (
+        needed <= c.mu * load.normal)
 
 
 @compiled
@@ -231,8 +229,7 @@ def holds_still(c, at, F, T):
     """
     gamma = at.axes[2]
     if c.kind == TORUS and above_flat(c, gamma) <= 0.0:
-        load = burden(c, at, F, T)
-        return load.normal > 0.0 and not topples(c, load) and not drags(c, load)
+        return bears(c, burden(c, at, F, T))
     held = scaled(-1.0, F)
     if not held[2] > 0.0 or hypot(held[0], held[1]) > c.mu * held[2]:
         return False

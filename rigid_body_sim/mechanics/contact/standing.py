@@ -12,15 +12,14 @@ from rigid_body_sim.mechanics.contact.forces import (
 )
 from rigid_body_sim.mechanics.contact.holding import (
     across_rim,
+    bears,
     burden,
-    drags,
     gripped,
     gripping,
     growing,
     holds_still,
     rolling_couples,
     tips,
-    topples,
     way_out,
 )
 from rigid_body_sim.mechanics.contact.laws import (
@@ -188,8 +187,7 @@ class Standing:
         """Return whether a body that does not move is at rest; force along the plane's axes."""
         c = self._c
         if self._lies(stands.axes[2]):
-            load = burden(c, stands, force, couple)
-            return not (topples(c, load) or drags(c, load))
+            return bears(c, burden(c, stands, force, couple))
         return c.rolling > 0.0 and not self._is_disk and holds_still(c, stands, force, couple)
 
     def _lies(self, gamma):
