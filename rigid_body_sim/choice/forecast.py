@@ -270,8 +270,9 @@ def lost(scene, prototype, times, states, enough=math.inf):
     enough : float, optional
         rad. As in :func:`conditioning`.
     """
-    found = np.maximum(rounding(scene, states, times),
-                       conditioning(scene, prototype, times, states, enough))
+    found = rounding(scene, states, times)
+    if not float(found.max()) >= enough:
+        found = np.maximum(found, conditioning(scene, prototype, times, states, enough))
     squares = np.square(found)
     for strike in strikes(scene):
         since = 1.0 - max(strike.time, 0.0) / times

@@ -64,6 +64,7 @@ def floor(scene, horizon):
     return HALF_ULP * (4.0 + pace(scene) * horizon)
 
 
+@kept
 def rows(scene):
     """Return the measurements for a scene's kind.
 
@@ -92,11 +93,13 @@ def on_such(scene, method):
     return bool(rows(scene).get(method))
 
 
+@kept
 def is_stiff(scene):
     """Return whether drag in proportion to velocity is stiff in a scene."""
     return bool(stiff_relaxations(scene, OFTEN))
 
 
+@kept
 def _rooted(scene):
     """Return whether anything that acts takes a root of what moves."""
     return any(one.rooted for effect in scene.effects if effect.acting is not None

@@ -3,7 +3,7 @@
 
 The chosen method runs from the scene's start, strikes included, with a tolerance that is likely to
 meet the accuracy, and with a much finer one; the difference is the error. How errors grow with the
-tolerance then leads to the tolerance that spends what is asked: a tenth of it to two fifths.
+tolerance then leads to the tolerance that spends what is asked: a tenth of it to a half.
 Tolerances are powers of two, so that nothing depends on the last digit of a difference. The
 angular momentum of a slim body errs more than its attitude, by the quotient of its moments, and
 the flight of a body that hardly turns errs where its attitude does not: angular momentum and
@@ -31,10 +31,11 @@ LONGER = 10.0   # times that: up to there a trial goes on to a strike
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
-LEAST, MOST, AIM = 0.1, 0.4, 0.2      # shares of the accuracy: errors that are taken; the aim
+LEAST, MOST, AIM = 0.1, 0.5, 0.22     # shares of the accuracy: errors that are taken; the aim
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
 SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
 COARSER = 8.0   # factor between the tolerance of the table and that of a scene, either way
+LIKELY, MEASURED = 2.0, 100.0    # factor on the tolerance of the table up to such an angle (rad)
 NEAR = 2.0 ** -4     # largest such share: a run that is less fine does not tell the error
 FINER_ONES = FINER, NEAR, 0.25    # shares that are tried in turn where runs take too much work
 TRIES = 6       # largest number of tolerances
@@ -100,7 +101,7 @@ class Trial:
             A run takes more steps than the motion asks for.
         """
         accuracy, good, bad, slow = self._accuracy, None, None, None
-        here = self._grid(COARSER * tolerance)    # that of the table holds on most scenes
+        here = self._grid(self._likely(tolerance))
         if self._patience > 1:
             here = self._coarsest    # fine ones are known to take too much
         for _ in range(TRIES):
@@ -112,6 +113,8 @@ class Trial:
                 raise
             if error is None:    # no finer run to compare with: what was seen last is kept
                 return here if bad is None else bad[0]
+            if error <= self._rounding(here):
+                return here
             if error <= MOST * accuracy:
                 good = here, error
                 if error >= LEAST * accuracy or here == self._coarsest:
@@ -177,9 +180,25 @@ class Trial:
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
         return forecast.forecast(errors, times, accuracy, horizon)
 
+    def _likely(self, tolerance):
+        """Return a tolerance that is likely to do where the table has the one given.
+
+        It is rather too fine: a coarser one is then tried by one more run, a finer one by two.
+        """
+        return LIKELY * tolerance * (MEASURED / max(MEASURED, self._radians))
+
+    def _rounding(self, tolerance):
+        """Return the error (rad at the horizon) up to which rounding is taken to be its cause.
+
+        It is 0 for a tolerance that is not below what rounding does.
+        """
+        lost = float(forecast.rounding(
+            self._scene, self._states(tolerance), self._times)[-1]) / self._part
+        return ROUNDED * lost if tolerance <= lost else 0.0
+
     def _grid(self, tolerance):
         """Return the largest power of two up to a tolerance, within those of the table."""
-        exponent = math.frexp(tolerance)[1]
+        exponent = math.frexp(max(tolerance, self._finest))[1]    # a share may underflow to 0
         return min(max(math.ldexp(0.5, exponent), self._finest), self._coarsest)
 
     def _states(self, tolerance):
@@ -250,7 +269,8 @@ class Trial:
             growth = min(max(growth, GROWTHS[0]), GROWTHS[1])
         share = AIM * self._accuracy / error if error > 0.0 else math.inf
         factor = power(share, 1.0 / growth) if share < math.inf else FARTHEST
-        return self._grid(here * min(max(factor, 1.0 / FARTHEST), FARTHEST))
+        # the nearest one on the grid, not the one below
+        return self._grid(math.sqrt(2.0) * here * min(max(factor, 1.0 / FARTHEST), FARTHEST))
 
 
 def _slim(scene):

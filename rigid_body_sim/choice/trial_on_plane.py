@@ -30,9 +30,13 @@ class TrialOnPlane(Trial):
         """Return the tolerance to take where the table has the one given."""
         return self._careful() if self._dear(tolerance) else super().take(tolerance)
 
+    def _likely(self, tolerance):
+        """Return where the search begins: no table is behind the tolerance given."""
+        return COARSER * tolerance
+
     def _dear(self, tolerance):
         """Return whether a trial at a tolerance on a plane would take more than DEAR steps."""
-        finer = self._grid(FINER * COARSER * tolerance)
+        finer = self._grid(FINER * self._likely(tolerance))
         share = power(finer / COARSE[0], 1.0 / dop8.ORDER)    # steps of a coarse run in its steps
         try:
             self._run(COARSE[0], int(DEAR * min(1.0, share)))
