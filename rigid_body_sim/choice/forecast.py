@@ -24,7 +24,7 @@ from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
-from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.functions import hypot3, log, power
 from rigid_body_sim.numerics.rotations import angles_between, matrix, normalised
 from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.bodies import IDENTITY
@@ -40,6 +40,7 @@ FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
 FINER = 2.0 ** -7        # share of a tolerance: that of the finer run, which tells the error
+POWERS = 1.0, 2.0        # of the angle that a body turns: those with which errors grow
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 
@@ -222,6 +223,47 @@ def rounding(scene, states, times):
     return HALF_ULP * (numbers + fastest * times)
 
 
+def later(scene, states, errors, longer):
+    """Return the error (rad) at a time beyond a run, from its errors at looks.
+
+    It grows in proportion to time. Where a drive makes a body turn ever faster, errors go with the
+    angle that it turns, or with a power of it up to the square: then those of the momentum, which
+    add up, turn the body. What the errors did in the second half of the run tells the power.
+
+    Parameters
+    ----------
+    states : array (LOOKS, 14)
+        The run, at looks.
+    errors : array (LOOKS,)
+        rad.
+    longer : float
+        The later time over that of the run, at least 1.
+    """
+    last = float(errors.max())
+    faster, so_far = _spin_up(scene, states)
+    if faster == 0.0 or not 0.0 < last < math.inf:
+        return last * longer
+    first = float(errors[:LOOKS // 2].max())
+    grew = log(last / first) / log(so_far) if first > 0.0 else POWERS[1]
+    angle = longer * (1.0 + faster * (longer - 1.0))
+    return last * power(angle, min(max(grew, POWERS[0]), POWERS[1]))
+
+
+def _spin_up(scene, states):
+    """Return how a drive makes a body turn faster.
+
+    First the share of its last rate that a run adds, after the lesser growth of its last two
+    quarters; then the factor by which rate times time, an angle, grew in its second half.
+    """
+    if drive(scene, None) == 0.0:
+        return 0.0, 2.0
+    rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
+    half, quarter, last = (max(rates[:many]) for many in (LOOKS // 2, 3 * LOOKS // 4, LOOKS))
+    if not 0.0 < half <= last < math.inf:
+        return 0.0, 2.0
+    return 4.0 * min(quarter - half, last - quarter) / last, 2.0 * last / half
+
+
 def conditioning(scene, prototype, times, states, enough=math.inf):
     """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
 
@@ -308,10 +350,10 @@ def _rounded(scene, omega, by):
     return np.array(apply(axes, moved))
 
 
-def forecast(errors, times, accuracy, horizon):
+def forecast(errors, times, accuracy, horizon, last=None):
     """Return the Forecast that follows from errors at times.
 
-    Beyond the last time the error is taken to grow in proportion to time.
+    Beyond the last of the times the error is taken to grow evenly.
 
     Parameters
     ----------
@@ -320,17 +362,20 @@ def forecast(errors, times, accuracy, horizon):
         rad.
     horizon : float
         s.
+    last : float, optional
+        The error at the horizon, rad; else it grows in proportion to time.
     """
     errors = np.maximum.accumulate(errors)
-    error = float(errors[-1]) * max(1.0, horizon / float(times[-1]))
+    seen, end = float(errors[-1]), float(times[-1])
+    error = seen * max(1.0, horizon / end) if last is None else max(seen, last)
     if error <= accuracy:
         return Forecast(error, horizon)
     k = int(np.searchsorted(errors, accuracy, side='right'))    # errors[k] is too large
-    if 0 < k < len(errors):
+    if k == 0:    # in proportion to time before the first look
+        return Forecast(error, float(times[0]) * accuracy / float(errors[0]))
+    if k < len(errors):
         return Forecast(error, float(times[k - 1]))
-    # in proportion to time before the first look and after the last one
-    k = min(k, len(errors) - 1)
-    return Forecast(error, float(times[k]) * accuracy / float(errors[k]))
+    return Forecast(error, end + (horizon - end) * (accuracy - seen) / (error - seen))
 
 
 class _Continued:

@@ -70,7 +70,7 @@ class Trial:
         self._flies = _flies(scene)
         pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
-        self._part, self._times = time / horizon, forecast.looks(time)
+        self._longer, self._times = horizon / time, forecast.looks(time)
         self._radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
         most = patience * (1 if others else ALONE) * (STEPS + int(
             min(STEPS_PER_RADIAN * self._radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
@@ -153,7 +153,8 @@ class Trial:
             return 0.0
         if error >= least:
             return error
-        finer, rounded = self._reference(tolerance), error * self._part / ROUNDED
+        finer = self._reference(tolerance)
+        rounded = float(self._apart(tolerance, finer).max()) / ROUNDED
         try:
             lost = forecast.lost(self._scene, self.prototype.at(finer, self._most), self._times,
                                  self._states(finer), enough=rounded)
@@ -172,13 +173,20 @@ class Trial:
                 return forecast.Forecast(None, None)
             return forecast.Forecast(
                 self._promised, horizon if self._promised <= accuracy else 0.0)
+        here, last = self._states(tolerance), 0.0
         if float(errors.max()) < MAGNIFIED:
-            errors = np.maximum(errors, forecast.lost(
-                self._scene, self.prototype.at(finer, self._most), times, self._states(finer)))
+            best = self._states(finer)
+            lost = forecast.lost(self._scene, self.prototype.at(finer, self._most), times, best)
+            # what moving the start does grows with time, whatever drives the body
+            last = max(float(lost.max()) * self._longer,
+                       self._later(best, forecast.rounding(self._scene, best, times)))
+        else:
+            lost = np.zeros(len(times))
         for one, error, since in self._allowed:
             if one in (tolerance, finer):    # both allow it themselves, and do not differ by it
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
-        return forecast.forecast(errors, times, accuracy, horizon)
+        last = max(last, self._later(here, errors))
+        return forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon, last)
 
     def _likely(self, tolerance):
         """Return a tolerance that is likely to do where the table has the one given.
@@ -192,8 +200,8 @@ class Trial:
 
         It is 0 for a tolerance that is not below what rounding does.
         """
-        lost = float(forecast.rounding(
-            self._scene, self._states(tolerance), self._times)[-1]) / self._part
+        states = self._states(tolerance)
+        lost = self._later(states, forecast.rounding(self._scene, states, self._times))
         return ROUNDED * lost if tolerance <= lost else 0.0
 
     def _grid(self, tolerance):
@@ -251,15 +259,22 @@ class Trial:
 
     def _error(self, tolerance):
         """Return the error at a tolerance at the horizon, rad, or None if nothing tells it."""
-        here, finer = self._states(tolerance), self._reference(tolerance)
+        finer = self._reference(tolerance)
         if finer is None:
             return None
-        best = self._states(finer)
+        return self._later(self._states(tolerance), self._apart(tolerance, finer))
+
+    def _apart(self, tolerance, finer):
+        """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""
+        here, best = self._states(tolerance), self._states(finer)
         shares = forecast.momenta_apart(self._scene, here, best)
         if self._flies:
             shares = np.maximum(shares, forecast.velocities_apart(here, best))
-        return max(float(forecast.apart(here, best).max()),
-                   MOMENTA * float(shares.max())) / self._part
+        return np.maximum(forecast.apart(here, best), MOMENTA * shares)
+
+    def _later(self, states, errors):
+        """Return the error (rad) at the horizon after those of a run."""
+        return forecast.later(self._scene, states, errors, self._longer)
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""

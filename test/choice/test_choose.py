@@ -15,6 +15,7 @@ from rigid_body_sim.analysis import resimulate
 from rigid_body_sim.choice import choose as choose_module
 from rigid_body_sim.choice import measured, settling
 from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.cli import simulate
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import METHODS
@@ -213,3 +214,14 @@ def test_one_effect_cancels_one_other():
     assert [effect.values for effect in scene.acting] == [((0.0, 0.0, 2.0),)]
     sides = [{'force': {'value': [0, 0, text]}} for text in ('sin(t)', '-sin(t)')]
     assert len(parse_scene(json.dumps(body | {'effects': sides})).acting) == 2
+
+
+@pytest.mark.parametrize('tolerance', [1e-9, 5e-324, 0.0])
+def test_a_body_at_rest_has_a_first_tolerance_to_try(tolerance):
+    scene = parse_scene('scene: rest\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        'effects: [torque: {value: [1.0e-300, 0, 0], frame: world}]\n'
+                        'initial: {angular_velocity: [0, 0, 0]}\n')
+    trial = Trial(scene, 1e-9, 10.0, 'dop8', 1e-12, 1, True)
+    first = trial._grid(trial._likely(tolerance))
+    assert trial._finest <= first <= max(trial._finest, 2.0 * tolerance)
+    assert trial.tolerance_from(tolerance) >= first    # nothing errs

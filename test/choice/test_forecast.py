@@ -116,6 +116,26 @@ def test_forecast_from_errors_on_the_way(errors, accuracy, horizon, error, met_u
     assert found == pytest.approx((error, met_until))
 
 
+def test_beyond_the_last_time_an_error_grows_evenly_to_that_at_the_horizon():
+    found = forecast.forecast(np.array([1e-9, 2e-9]), np.array([1.0, 2.0]), 4e-9, 6.0, 10e-9)
+    assert found == pytest.approx((10e-9, 3.0))
+
+
+@pytest.mark.parametrize(('inertia', 'torque', 'rate', 'accuracy', 'horizon'), [
+    # expected 2.9e-8, error 2.2e-8; 3.9e-8 beside 2.4e-7 where errors went with time
+    ('[0.01, 0.010000005, 1.0e-8]', '[0, 0, 0.02]', '[0.1, 0, 0]', 1e-6, 1.0),
+    # 1.4e-10 beside 3.6e-10; 2.1e-10 beside 2.2e-9
+    ('[1, 2, 1.5]', '[0, 0.2, 0]', '[1, 1, 1]', 1e-9, 1500.0)], ids=['needle', 'body'])
+def test_the_error_of_a_body_that_turns_ever_faster_goes_with_its_angle(
+        inertia, torque, rate, accuracy, horizon):
+    scene = parse_scene(SLOW.replace('[1.0, 2.0, 3.0]', inertia).replace('[0.3, 0.2, 0.1]', rate)
+                        .replace('EFFECTS', f'torque: {{value: {torque}, frame: body}}'))
+    times = np.linspace(0.5, 1.0, 9) * horizon
+    ours, finer = (Simulation(scene, accuracy=one, horizon=horizon) for one in (accuracy, 1e-13))
+    error = forecast.apart(*(one.states(times).vector for one in (ours, finer))).max()
+    assert error < min(accuracy, 3.0 * ours.expected_error)
+
+
 def test_a_missed_accuracy_is_said_with_the_time_until_which_it_is_met():
     scene = load_scene('tennis_racket')
     missed = choose(scene, accuracy=1e-9, settled=Settled('dop8', 1e-9, 1.64, 12.5)).missed
@@ -237,6 +257,7 @@ def test_only_an_error_beyond_rounding_asks_for_another_method(
     assert tried.excess(2.0 ** -30) == 0.0    # nothing was tried
     tried._states(2.0 ** -30)
     monkeypatch.setattr(tried, '_error', lambda tolerance: error)
+    monkeypatch.setattr(tried, '_apart', lambda tolerance, finer: np.array([error]))
     assert tried.excess(2.0 ** -30) == expected
 
 
@@ -289,7 +310,8 @@ def test_no_more_runs_are_made_than_show_that_an_error_may_be_rounding(
     tried = Trial(scene, 1e-11, 6.0, 'dop8', 1e-12, 1, True)
     for tolerance in (2.0 ** -30, 2.0 ** -37):
         tried._runs[tolerance] = turned(0.0)
-    monkeypatch.setattr(tried, '_error', lambda tolerance: 1e-7 / tried._part)
+    monkeypatch.setattr(tried, '_error', lambda tolerance: 1e-7)
+    monkeypatch.setattr(tried, '_apart', lambda tolerance, finer: np.array([1e-7]))
     monkeypatch.setattr(forecast, 'run', run)
     assert (tried.excess(2.0 ** -30) == 0.0) == excused
     assert len(made) == runs

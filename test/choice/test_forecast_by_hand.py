@@ -106,6 +106,28 @@ def test_runs_are_apart_by_the_angle_between_them():
     assert forecasts.apart(states, others)[1] == math.inf
 
 
+TORQUE = 'torque: {value: [0, 0, 1], frame: body}'
+
+
+@pytest.mark.parametrize(('rates', 'powers', 'effects', 'expected'), [
+    # rates that grow with time from 0 turn a body by an angle that goes with its square
+    (lambda t: t, 2.0, [TORQUE], 9.0), (lambda t: t, 3.0, [TORQUE], 27.0),
+    (lambda t: t, 4.0, [TORQUE], 81.0), (lambda t: t, 6.0, [TORQUE], 81.0),
+    (lambda t: t, 0.5, [TORQUE], 9.0), (lambda t: t, 2.0, [], 3.0),
+    # from a rate of 1 to 2 the rate is 4 at three times the time, the angle 6 times as large
+    (lambda t: 1 + t, 1.0, [TORQUE], 6.0),
+    # a rate that rises no more, or rose late, is not taken to rise
+    (lambda t: np.minimum(t, 0.75), 2.0, [TORQUE], 3.0),
+    (lambda t: np.maximum(t, 0.75), 2.0, [TORQUE], 3.0), (lambda t: 0 * t, 2.0, [TORQUE], 3.0)])
+def test_errors_go_with_the_angle_or_its_square_where_a_drive_speeds_a_body_up(
+        rates, powers, effects, expected):
+    times = forecasts.looks(1.0)
+    states = np.zeros((LOOKS, 14))
+    states[:, 7] = rates(times)
+    found = forecasts.later(scene(effects=effects), states, times ** powers, 3.0)
+    assert found == pytest.approx(expected)
+
+
 def test_rounding_is_half_an_ulp_of_the_angle_at_the_largest_rate_so_far():
     states = np.zeros((4, 14))
     states[:, 7] = 3.0, 6.0, 1.0, 2.0
