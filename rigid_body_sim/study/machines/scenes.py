@@ -19,6 +19,10 @@ RODS = """
 SPHERES = """
   parts: [{mass: 0.3, shape: {solid_sphere: {radius: 0.11}}, at: [0.1, 0.2, 0.3]},
           {mass: 0.3, shape: {spherical_shell: {radius: 0.07}}, at: [-0.1, -0.2, -0.3]}]"""
+NEEDLE = """{mass: 2.0, inertia_about: origin, center_of_mass: [0.06, -0.064, 0.048],
+  inertia: [[0.0192000204, 0.01151999424, -0.00863999568],
+            [0.01151999424, 0.017712015744, 0.009215988192],
+            [-0.00863999568, 0.009215988192, 0.023088008856]]}"""
 WEIGHT = '[gravity: {g: 9.81}]'
 TABLE = '[sliding_friction: {mu: 0.213, g: 9.81}]'
 BALL = '{mass: 0.17, shape: {solid_sphere: {radius: 0.028575}}}'
@@ -87,6 +91,18 @@ AWKWARD = {
         COMPOSITE, 'free',
         '[strike: {impulse: [0.3, -0.2, 0.5], point: [0.1, 0.2, -0.3], time: 0.25, frame: body}]',
         '{angular_velocity: [0.3, 2.0, -0.2]}'),
+    'thrown_and_pushed': (
+        SKEW, 'free',
+        '[gravity: {g: 9.81}, force: {value: [0.3, 0.1, -0.7], at: [0.1, 0.2, 0.05]}]',
+        '{angular_velocity: [1, 2, 3], velocity: [5, 0, 4]}'),
+    'skew_needle': (
+        NEEDLE, 'pivot', WEIGHT,
+        '{orientation: [0.1, 0.5, -0.2, 0.8], angular_velocity: [3.0, -7.0, 4.0]}'),
+    'struck_needle': (
+        NEEDLE, 'pivot',
+        '[gravity: {g: 9.81},'
+        ' strike: {impulse: [3.0e-5, -2.0e-5, 5.0e-5], point: [0.01, 0.02, 0.05], time: 0.1}]',
+        '{orientation: [0.1, 0.5, -0.2, 0.8], angular_velocity: [3.0, -7.0, 4.0]}'),
 }
 """Body, constraint, effects and initial conditions by name."""
 
