@@ -280,6 +280,21 @@ class PlaneCourse:
         self._bound.rates.rate(smooth, y, row)
         return row[NORMAL] > 0.0
 
+    def _is_at_paradox(self, p, y):
+        """Return whether A of a slip has fallen to rounding, beside what it is without friction.
+
+        Where the direction of the slip leads it there, A falls like the root of the time that is
+        left, so that no double lies between it and 0.
+        """
+        if p[MODE] not in (SLIDING, CREEPING):
+            return False
+        row, smooth = np.empty((2, ROW.size))
+        self._bound.rates.rate(p, y, row)
+        alone = p.copy()
+        alone[MODE] = GLIDING
+        self._bound.rates.rate(alone, y, smooth)
+        return row[FIRMNESS] <= ROUNDING * smooth[FIRMNESS]
+
     def _is_lifted(self, p, y):
         """Return whether rolling friction lifts a body that falls back without it."""
         if not p[VISCOUS] + p[FILM] > 0.0:
@@ -354,6 +369,8 @@ class PlaneCourse:
             why = contact_march.STOPPED
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
+        if why == contact_march.FAILED and self._is_at_paradox(p, y):
+            why = contact_march.PARADOX
         if why == contact_march.FAILED:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
                                f't = {time!r} s')
