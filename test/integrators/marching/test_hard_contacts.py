@@ -318,6 +318,21 @@ def test_a_slip_that_dies_beside_the_paradox_is_no_paradox(accuracy):
     assert sim.events[-1].time == pytest.approx(0.99311457976744, abs=accuracy + 2e-13)
 
 
+@pytest.mark.parametrize('accuracy', [1e-9, 1e-12])
+def test_the_last_step_of_a_slip_that_dies_beside_the_paradox_is_no_event(accuracy):
+    """It turned a slip of 1e-17 of the speeds around, by a step that grew it to 1e-5."""
+    sim = simulation(
+        '{mass: 50.0, inertia: [1.4588098303773814e-05, 0.0003029009112552686, '
+        '0.00031446944916566625], center_of_mass: [0.000152664, 0.000146469, 1.67487e-06], '
+        'surface: {ellipsoid: {semi_axes: [0.0005340088516507073, 0.015417054165754625, '
+        '0.009375910006723404]}}}', 'sliding_friction: {mu: 1.0}',
+        '{euler_zyz: [0.3, 1.5707963257948965, 0.2], '
+        'angular_velocity: [6.65719, -3.93922, 14.9624]}',
+        '{table: {normal: [-0.304, -0.078, 1]}}', accuracy)
+    sim.advance(330)
+    assert sim.events[-1].name == 'rolling began'
+
+
 def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     """The rod is dragged; the strike pushes it the other way."""
     sim = simulation(ROD, 'sliding_friction: {mu: 2.5}, strike: {impulse: [-8, 0, 0], '
