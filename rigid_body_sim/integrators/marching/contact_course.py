@@ -246,8 +246,12 @@ class PlaneCourse:
             way = a, b
 
     def _creep_off(self, p, y):
+        """Let a slip begin, or end the course where no slip can: the contact does not stick."""
         y[SLIP] = 0.0, 0.0
-        p[MODE], row = CREEPING, np.empty(ROW.size)
+        p[MODE], row = ROLLING, np.empty(ROW.size)
+        self._bound.rates.rate(p, y, row)
+        sticks = row[GRIP] >= -HOLDS * p[MU] * row[NORMAL]
+        p[MODE] = CREEPING
         p[SWIFT] = self._scales.speed(y)
         p[CREEP] = self._scales.creep * p[SWIFT]
         self._rolling.begin(p, y, is_held(p))
@@ -256,6 +260,8 @@ class PlaneCourse:
             self._end(y)
         elif not row[NORMAL] > 0.0:
             self._fly(p, y)
+        elif row[SLIP][0] < 0.0 and not sticks:
+            self._end(y)
         else:
             self._open(CREEPING, p, y)
 

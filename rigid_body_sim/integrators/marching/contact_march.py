@@ -143,7 +143,12 @@ def march(p, w, phase, sizes, front, meta, target):
             meta[STATUS] = STUCK
             break
         if ends != NOTHING:
-            step_from(p, w, y, lost, part)
+            bad = step_from(p, w, y, lost, part)
+            # a part may err by more than the step, whose error happens to be small
+            if bad > 0.0 or error_of(
+                    w, part, (meta[RATE], meta[SPEED], meta[LENGTH])) > allowed:
+                meta[PLANNED] = 0.5 * part
+                continue
         _keep(phase, front, meta)
         sizes[int(meta[STEPS])] = part
         meta[STEPS] += 1.0

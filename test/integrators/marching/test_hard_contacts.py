@@ -333,6 +333,35 @@ def test_the_last_step_of_a_slip_that_dies_beside_the_paradox_is_no_event(accura
     assert sim.events[-1].name == 'rolling began'
 
 
+def test_a_slip_begins_along_a_direction_beside_the_paradox():
+    """Newton's method missed it: slip began along one in which it dies, every 4e-45 s."""
+    times = []
+    for accuracy in (1e-9, 1e-12):
+        sim = simulation(
+            '{mass: 0.001, inertia: [2.421734937069718e-07, 5.496113254957697e-10, '
+            '2.417560270894058e-07], center_of_mass: [0.00769682, 0.0120721, -0.00599798], '
+            'surface: {sphere: {radius: 0.05}}}', 'sliding_friction: {mu: 0.302}',
+            '{euler_zyz: [0, 0.1425, 0], '
+            'angular_velocity: [-7.58459e-06, 1.3105e-05, -2.23653e-06], rolling: true}',
+            '{table: {normal: [0.756, -0.542, 1]}}', accuracy, horizon=1.0)
+        sim.states([0.1])
+        with pytest.raises(NotConverged, match="Painleve's paradox at t = ") as error:
+            sim.states([0.2])
+        times.append(float(re.search(r't = (\S+) s', str(error.value)).group(1)))
+    assert times == pytest.approx([0.10990416803934] * 2, rel=1e-9)    # measured: 5e-14
+
+
+def test_a_contact_that_neither_sticks_nor_lets_a_slip_begin_ends_the_run():
+    """No slip grows along any direction: one began and died every 5e-45 s."""
+    with pytest.raises(NotConverged, match=r"Painleve's paradox at t = 0\.0 s"):
+        simulation(
+            '{mass: 1.0, inertia: [7.727750842574427e-07, 6.865020137080503e-07, '
+            '1.002774851384363e-06], surface: {ellipsoid: {semi_axes: [0.018534855082596516, '
+            '0.007641560447726276, 0.010595509000485769]}}}',
+            'sliding_friction: {mu: 1.0}, spinning_friction: {radius: 1.34e-07}',
+            '{rolling: true}', '{table: {normal: [-0.629, 0.198, 1], restitution: 0.5}}', 1e-9)
+
+
 def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     """The rod is dragged; the strike pushes it the other way."""
     sim = simulation(ROD, 'sliding_friction: {mu: 2.5}, strike: {impulse: [-8, 0, 0], '
