@@ -321,6 +321,15 @@ def _rolling(c, at, push, v, speed, film):
 
 
 @compiled_inline
+def _pressing(N, A):
+    """Return the watched N of a slip: where A < 0 it is the paradox that turns its sign.
+
+    N grows without bound as A falls to 0, and only what lifts off leads it through 0.
+    """
+    return N if A >= 0.0 else -N
+
+
+@compiled_inline
 def _slipping(c, now, at, push, v, speed, film):
     """Return the Contact of a body that is GLIDING or SLIDING."""
     dx, dy, mu, pace = 1.0, 0.0, 0.0, 1.0
@@ -336,8 +345,8 @@ def _slipping(c, now, at, push, v, speed, film):
             dx, dy = now.u[0] / pace, now.u[1] / pace
     f, growth, A = slipping_force(c, at, push, mu, dx, dy)
     slid, spun = _shared(c, mu * f[2] * pace, dx, dy)
-    return Contact(f, push, growth, (now.u[0], now.u[1], 0.0), v, f[2], 1.0, A * c.mass, speed,
-                   film, slid, spun, pace)
+    return Contact(f, push, growth, (now.u[0], now.u[1], 0.0), v, _pressing(f[2], A), 1.0,
+                   A * c.mass, speed, film, slid, spun, pace)
 
 
 @compiled_inline
@@ -360,7 +369,7 @@ def _creeping(p, c, now, at, push, v, speed, film):
     # it becomes a slip, or it dies again
     grip = c.creep - max(slow, lag * c.swift / LAGS) if slow >= 0.0 else slow
     return Contact((-c.mu * N * d[0], -c.mu * N * d[1], N), push, (growth, 0.0, 0.0), slip,
-                   plus(v, slip), N, grip, A * c.mass, speed, film, slid, spun, 1.0)
+                   plus(v, slip), _pressing(N, A), grip, A * c.mass, speed, film, slid, spun, 1.0)
 
 
 @compiled_inline

@@ -70,7 +70,7 @@ class Watched(NamedTuple):
     Attributes
     ----------
     normal : float
-        N, of a flight the gap.
+        N, of a flight the gap. Of a slip in the paradox, where A < 0, it is -N.
     grip : float
         What friction could hold less what it holds, N; of a creep how much slower it is than a
         slip, m/s, or its speed where that is negative.

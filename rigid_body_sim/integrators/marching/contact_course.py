@@ -246,8 +246,12 @@ class PlaneCourse:
             way = a, b
 
     def _creep_off(self, p, y):
+        """Let a slip begin, or end the course where no slip can: the contact does not stick."""
         y[SLIP] = 0.0, 0.0
-        p[MODE], row = CREEPING, np.empty(ROW.size)
+        p[MODE], row = ROLLING, np.empty(ROW.size)
+        self._bound.rates.rate(p, y, row)
+        sticks = row[GRIP] >= -HOLDS * p[MU] * row[NORMAL]
+        p[MODE] = CREEPING
         p[SWIFT] = self._scales.speed(y)
         p[CREEP] = self._scales.creep * p[SWIFT]
         self._rolling.begin(p, y, is_held(p))
@@ -256,6 +260,8 @@ class PlaneCourse:
             self._end(y)
         elif not row[NORMAL] > 0.0:
             self._fly(p, y)
+        elif row[SLIP][0] < 0.0 and not sticks:
+            self._end(y)
         else:
             self._open(CREEPING, p, y)
 
@@ -279,6 +285,21 @@ class PlaneCourse:
         smooth[MODE] = GLIDING
         self._bound.rates.rate(smooth, y, row)
         return row[NORMAL] > 0.0
+
+    def _is_at_paradox(self, p, y):
+        """Return whether A of a slip has fallen to rounding, beside what it is without friction.
+
+        Where the direction of the slip leads it there, A falls like the root of the time that is
+        left, so that no double lies between it and 0.
+        """
+        if p[MODE] not in (SLIDING, CREEPING):
+            return False
+        row, smooth = np.empty((2, ROW.size))
+        self._bound.rates.rate(p, y, row)
+        alone = p.copy()
+        alone[MODE] = GLIDING
+        self._bound.rates.rate(alone, y, smooth)
+        return row[FIRMNESS] <= ROUNDING * smooth[FIRMNESS]
 
     def _is_lifted(self, p, y):
         """Return whether rolling friction lifts a body that falls back without it."""
@@ -354,6 +375,8 @@ class PlaneCourse:
             why = contact_march.STOPPED
         if why in (contact_march.LOST_CONTACT, contact_march.PARADOX) and _died(p, y):
             why = contact_march.STUCK
+        if why == contact_march.FAILED and self._is_at_paradox(p, y):
+            why = contact_march.PARADOX
         if why == contact_march.FAILED:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
                                f't = {time!r} s')

@@ -139,8 +139,16 @@ def march(p, w, phase, sizes, front, meta, target):
                 rate(p, w[FRESH], w[END])
                 if 0.0 < at <= part:
                     part, ends = at, k
+        if ends in (NORMAL, FIRMNESS) and _dies(p, w, y):
+            meta[STATUS] = STUCK
+            break
         if ends != NOTHING:
-            step_from(p, w, y, lost, part)
+            bad = step_from(p, w, y, lost, part)
+            # a part may err by more than the step, whose error happens to be small
+            if bad > 0.0 or error_of(
+                    w, part, (meta[RATE], meta[SPEED], meta[LENGTH])) > allowed:
+                meta[PLANNED] = 0.5 * part
+                continue
         _keep(phase, front, meta)
         sizes[int(meta[STEPS])] = part
         meta[STEPS] += 1.0
@@ -170,6 +178,17 @@ def march(p, w, phase, sizes, front, meta, target):
         if meta[STATUS] == RUNNING:
             for n in range(ROW_SIZE):
                 w[0, n] = w[END, n]
+
+
+@compiled_inline
+def _dies(p, w, y):
+    """Return whether a step begins with a slip that shrinks and is no more than its error may be.
+
+    The step may turn what is left of it around. What the laws say of a slip the other way is then
+    no event: the slip is over.
+    """
+    return p[MODE] == SLIDING and w[0, PACE] <= DYING * p[SWIFT] and (
+        dot(load_u(w[0]), load_u(y)) < 0.0)
 
 
 @compiled_inline

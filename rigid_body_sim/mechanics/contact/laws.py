@@ -34,6 +34,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 
 NEWTON = 50         # most Newton steps for a direction
 SECTORS = 32        # directions that are tried where they fail
+HALVINGS = 30       # of a sector in which such a direction lies
 CLOSE = 1e-16       # rad: a step that short is the last
 MOST_LAG = 1e-2     # rad: by which a slip that has just begun may lag
 
@@ -96,17 +97,52 @@ def departure(system, mu, dx, dy):
         return dx, dy, growth
     best = dx, dy, growth if good else -math.inf
     for k in range(SECTORS):
-        # points of a square, made unit vectors: no two are far apart
-        part = 8.0 * k / SECTORS
-        side = int(part / 2.0)
-        along = part - 2.0 * side - 1.0
-        x, y = (1.0, along) if side == 0 else (-along, 1.0) if side == 1 else \
-            (-1.0, -along) if side == 2 else (along, -1.0)
-        size = hypot(x, y)
-        x, y, growth, good = _refined(system, mu, x / size, y / size)
+        x, y = _between(system, mu, _around(k), _around(k + 1))
+        x, y, growth, good = _refined(system, mu, x, y)
         if good and growth > best[2]:
             best = x, y, growth
     return best
+
+
+@compiled
+def _around(k):
+    """Return the direction k of SECTORS: points of a square, made unit vectors."""
+    part = 8.0 * (k % SECTORS) / SECTORS
+    side = int(part / 2.0)
+    along = part - 2.0 * side - 1.0
+    x, y = (1.0, along) if side == 0 else (-along, 1.0) if side == 1 else \
+        (-1.0, -along) if side == 2 else (along, -1.0)
+    size = hypot(x, y)
+    return x / size, y / size
+
+
+@compiled
+def _between(system, mu, first, second):
+    """Return a direction between two where u' is parallel to it, or the first if none shows.
+
+    The part of u' across d has a pole where A = 0, beside which Newton's method misses a zero;
+    times A it has none.
+    """
+    low = _across(system, mu, first)
+    if not low * _across(system, mu, second) < 0.0:
+        return first
+    left, right = first, second
+    for _ in range(HALVINGS):
+        x, y = left[0] + right[0], left[1] + right[1]
+        size = hypot(x, y)
+        middle = x / size, y / size
+        if low * _across(system, mu, middle) > 0.0:
+            left = middle
+        else:
+            right = middle
+    return left
+
+
+@compiled
+def _across(system, mu, d):
+    """Return A times the part of u' across d."""
+    _, turns, _, A = turning(system, mu, d[0], d[1])
+    return A * turns
 
 
 @compiled

@@ -61,7 +61,7 @@ ACCURACY = 1e-12
 class Phase:
     """One phase of the made-up body, with the parabolas that are watched, k -> (a, b, c)."""
 
-    def __init__(self, mode=ROLLING, kept=512, **watched):
+    def __init__(self, mode=ROLLING, kept=512, slip=1.0, **watched):
         self.p = np.zeros(CONTACT.size + 3 * WATCHES)
         self.p[contact_march.MODE], self.p[contact_march.SWIFT] = mode, 1.0
         for k in range(WATCHES):
@@ -76,7 +76,7 @@ class Phase:
         self.cursor = np.empty((2, contact_march.POINT))
         y = np.zeros(SIZE)
         y[3] = y[OMEGA] = y[PLACE] = 1.0
-        y[U] = 1.0 if mode == SLIDING else 0.0
+        y[U] = slip if mode == SLIDING else 0.0
         STEP.rate(self.p, y, self.w[0])
         KERNELS.begin(self.p, self.w[0], self.front, self.meta, y)
 
@@ -121,6 +121,16 @@ def test_the_first_of_two_events_in_a_step_ends_the_phase():
         phase = Phase(**{f'watch{first}': early, f'watch{second}': late})
         assert phase.march(1.0) == why
         assert phase.front[TIME] == pytest.approx(0.1, abs=1e-16)
+
+
+@pytest.mark.parametrize(('k', 'why'), [
+    (0, contact_march.LOST_CONTACT), (2, contact_march.PARADOX), (3, contact_march.JUMP)])
+def test_a_slip_that_dies_meets_no_event_of_a_slip_the_other_way(k, why):
+    for slip, found in ((1e-12, why), (1e-16, contact_march.JUMP if k == 3 else
+                                       contact_march.STUCK)):
+        phase = Phase(SLIDING, slip=slip, **{f'watch{k}': (1.0, -2.0 / slip, 0.0)})
+        assert phase.march(1.0) == found
+        assert 0.0 <= phase.front[TIME] <= 0.51 * slip
 
 
 def test_what_begins_at_zero_and_rises_is_no_event_but_what_stops_is():

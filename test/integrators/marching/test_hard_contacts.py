@@ -8,6 +8,7 @@ one compilation.
 """
 
 import math
+import re
 
 import mpmath as mp
 import numpy as np
@@ -317,6 +318,50 @@ def test_a_slip_that_dies_beside_the_paradox_is_no_paradox(accuracy):
     assert sim.events[-1].time == pytest.approx(0.99311457976744, abs=accuracy + 2e-13)
 
 
+@pytest.mark.parametrize('accuracy', [1e-9, 1e-12])
+def test_the_last_step_of_a_slip_that_dies_beside_the_paradox_is_no_event(accuracy):
+    """It turned a slip of 1e-17 of the speeds around, by a step that grew it to 1e-5."""
+    sim = simulation(
+        '{mass: 50.0, inertia: [1.4588098303773814e-05, 0.0003029009112552686, '
+        '0.00031446944916566625], center_of_mass: [0.000152664, 0.000146469, 1.67487e-06], '
+        'surface: {ellipsoid: {semi_axes: [0.0005340088516507073, 0.015417054165754625, '
+        '0.009375910006723404]}}}', 'sliding_friction: {mu: 1.0}',
+        '{euler_zyz: [0.3, 1.5707963257948965, 0.2], '
+        'angular_velocity: [6.65719, -3.93922, 14.9624]}',
+        '{table: {normal: [-0.304, -0.078, 1]}}', accuracy)
+    sim.advance(330)
+    assert sim.events[-1].name == 'rolling began'
+
+
+def test_a_slip_begins_along_a_direction_beside_the_paradox():
+    """Newton's method missed it: slip began along one in which it dies, every 4e-45 s."""
+    times = []
+    for accuracy in (1e-9, 1e-12):
+        sim = simulation(
+            '{mass: 0.001, inertia: [2.421734937069718e-07, 5.496113254957697e-10, '
+            '2.417560270894058e-07], center_of_mass: [0.00769682, 0.0120721, -0.00599798], '
+            'surface: {sphere: {radius: 0.05}}}', 'sliding_friction: {mu: 0.302}',
+            '{euler_zyz: [0, 0.1425, 0], '
+            'angular_velocity: [-7.58459e-06, 1.3105e-05, -2.23653e-06], rolling: true}',
+            '{table: {normal: [0.756, -0.542, 1]}}', accuracy, horizon=1.0)
+        sim.states([0.1])
+        with pytest.raises(NotConverged, match="Painleve's paradox at t = ") as error:
+            sim.states([0.2])
+        times.append(float(re.search(r't = (\S+) s', str(error.value)).group(1)))
+    assert times == pytest.approx([0.10990416803934] * 2, rel=1e-9)    # measured: 5e-14
+
+
+def test_a_contact_that_neither_sticks_nor_lets_a_slip_begin_ends_the_run():
+    """No slip grows along any direction: one began and died every 5e-45 s."""
+    with pytest.raises(NotConverged, match=r"Painleve's paradox at t = 0\.0 s"):
+        simulation(
+            '{mass: 1.0, inertia: [7.727750842574427e-07, 6.865020137080503e-07, '
+            '1.002774851384363e-06], surface: {ellipsoid: {semi_axes: [0.018534855082596516, '
+            '0.007641560447726276, 0.010595509000485769]}}}',
+            'sliding_friction: {mu: 1.0}, spinning_friction: {radius: 1.34e-07}',
+            '{rolling: true}', '{table: {normal: [-0.629, 0.198, 1], restitution: 0.5}}', 1e-9)
+
+
 def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     """The rod is dragged; the strike pushes it the other way."""
     sim = simulation(ROD, 'sliding_friction: {mu: 2.5}, strike: {impulse: [-8, 0, 0], '
@@ -331,6 +376,46 @@ def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     assert '\n' not in str(error.value)
     assert sim.time == 0.009    # what can be said is kept
     assert np.isfinite(sim.vector).all()
+
+
+INTO_THE_PARADOX = {
+    'ellipsoid': (
+        '{mass: 1.0, inertia: [2.705318977635444e-07, 6.713395096572897e-07, '
+        '6.816440379649026e-07], surface: {ellipsoid: {semi_axes: [0.004169891449125548, '
+        '0.0015968861737440567, 0.0026735185721027867]}}}',
+        'sliding_friction: {mu: 1.0}, rolling_friction: {dry: 5.26e-06, viscous: 1.32e-08}',
+        '{euler_zyz: [2.6441, 0.6523, 0.8371], angular_velocity: [1.61855, 1.25898, 0.584144]}',
+        'table', 6.3083817735177e-05),
+    'offset sphere': (
+        '{mass: 1.0, inertia: [1.456854700328873e-06, 1.0370910978262565e-06, '
+        '1.7667106069190764e-06], center_of_mass: [0.00841081, -0.00546418, -0.00076352], '
+        'surface: {sphere: {radius: 0.02}}}',
+        'sliding_friction: {mu: 0.989}, rolling_friction: {dry: 0.000695, viscous: 6.92e-06}',
+        '{angular_velocity: [9.68304e-06, 1.12321e-05, 1.13116e-06], '
+        'velocity: [0.118, -0.139, 0]}',
+        'table', 0.009524563056909),
+    'disk': (
+        '{mass: 1.0, inertia: [0.0005496551373514943, 0.0005496551373514943, '
+        '0.0010982109644282858], center_of_mass: [-0.023402, 0.0221735, 0], '
+        'surface: {disk: {radius: 0.05}}}',
+        'sliding_friction: {mu: 0.994}, air_film: {viscosity: 0.000294083}', '{}',
+        '{table: {normal: [-0.926, 0.489, 1], restitution: 0.5}}', 0.3039164719267)}
+
+
+@pytest.mark.parametrize('accuracy', [1e-7, 1e-9, 1e-10, 1e-12])
+@pytest.mark.parametrize('name', INTO_THE_PARADOX)
+def test_a_slip_that_turns_into_the_paradox_ends_the_run_at_every_accuracy(name, accuracy):
+    """A falls to 0 like the root of the time that is left, and N rises without bound.
+
+    Behind that N is negative, as A is: rounding said whether it was the paradox, a lift-off, or
+    a step that no size made small enough.
+    """
+    body, effects, initial, table, time = INTO_THE_PARADOX[name]
+    sim = simulation(body, effects, initial, table, accuracy, horizon=1.0)
+    with pytest.raises(NotConverged, match="Painleve's paradox at t = ") as error:
+        sim.states([0.5])
+    found = float(re.search(r't = (\S+) s', str(error.value)).group(1))
+    assert found == pytest.approx(time, rel=1e-12 + accuracy)    # measured: 8e-14; 5e-11 at 1e-7
 
 
 @pytest.mark.without_numba
