@@ -18,6 +18,7 @@ import math
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
+from rigid_body_sim.integrators.equations.contact_rest import lies_low
 from rigid_body_sim.integrators.equations.contact_states import write
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
@@ -28,7 +29,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     Watched,
 )
 from rigid_body_sim.integrators.marching import contact_step
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, LOW
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.numerics.functions import hypot, power
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.surfaces import TORUS
@@ -162,7 +163,7 @@ def march(p, w, phase, sizes, front, meta, target):
         fades = mode == SLIDING and w[END, PACE] <= FADES * p[SWIFT]
         meta[FADED] = meta[FADED] + 1.0 if fades else 0.0
         low = w[END, WATCHED + STOPS]
-        if stalls or (jams and low < LOW and (
+        if stalls or (jams and lies_low(p, y) and (
                 took * meta[RATE] < TOO_SHORT * math.sqrt(abs(low)))):
             meta[CROWDED] += 1.0
         else:

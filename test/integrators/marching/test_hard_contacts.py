@@ -362,6 +362,21 @@ def test_a_contact_that_neither_sticks_nor_lets_a_slip_begin_ends_the_run():
             '{rolling: true}', '{table: {normal: [-0.629, 0.198, 1], restitution: 0.5}}', 1e-9)
 
 
+def test_a_disk_whose_film_no_step_follows_ends_the_run_where_it_counts_as_low():
+    """Its steps were too short from 1.1e-3 rad on, and it was let slide on its face below 1e-3."""
+    sim = simulation(
+        '{mass: 0.001, inertia: [1.689713678359953e-05, 1.689713678359953e-05, '
+        '3.379427356719906e-07], surface: {disk: {radius: 0.3}}}',
+        'sliding_friction: {mu: 0.0238}, air_film: {viscosity: 0.00769974}',
+        '{euler_zyz: [0.2442, 2.0181, -1.1886], angular_velocity: [0, 0, -69.2315], '
+        'velocity: [0.0219, 0.627, 0]}',
+        '{table: {normal: [-0.533, -0.18, 1], restitution: 0.95}}', 1e-9, rate=20.0)
+    for _ in range(8):
+        sim.advance()    # a million steps in all: each call may take as many
+    with pytest.raises(NotConverged, match=r'at t = 0\.446\d* s the body lies flat and goes on'):
+        sim.advance()
+
+
 def test_a_strike_into_the_paradox_ends_the_run_at_an_event():
     """The rod is dragged; the strike pushes it the other way."""
     sim = simulation(ROD, 'sliding_friction: {mu: 2.5}, strike: {impulse: [-8, 0, 0], '
