@@ -216,6 +216,7 @@ def test_one_effect_cancels_one_other():
     assert len(parse_scene(json.dumps(body | {'effects': sides})).acting) == 2
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('tolerance', [1e-9, 5e-324, 0.0])
 def test_a_body_at_rest_has_a_first_tolerance_to_try(tolerance):
     scene = parse_scene('scene: rest\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'

@@ -123,8 +123,8 @@ def held(given, point=(0.0, 0.0, 0.0)):
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('unequal', 'about'), [
-    (0.0, 'center_of_mass'), (0.5, 'origin'),
-    *(pytest.param(*one, marks=IN_SOAK) for one in ((0.0, 'origin'), (0.5, 'center_of_mass')))])
+    (0.5, 'origin'), *(pytest.param(*one, marks=IN_SOAK) for one in (
+        (0.0, 'center_of_mass'), (0.0, 'origin'), (0.5, 'center_of_mass')))])
 def test_a_needle_swings_as_the_tensor_says(unequal, about):
     mapping = hanging(1e-6, unequal * 1e-6, about)
     scene = parse_scene(json.dumps(mapping))
@@ -244,13 +244,13 @@ STRIKES = {
 
 
 # 40 digits take ten seconds for each needle on a pivot
-ON_PIVOT = ('two', True, 'pivot'), ('world', False, 'pivot')
+ON_PIVOT = 'two', True, 'pivot'
 
 
 @pytest.mark.parametrize(('strikes', 'skew', 'constraint'), [
-    *((strikes, skew, 'free') for strikes in STRIKES for skew in (True, False)), *ON_PIVOT,
+    *((strikes, skew, 'free') for strikes in STRIKES for skew in (True, False)), ON_PIVOT,
     *(pytest.param(*one, marks=IN_SOAK) for one in itertools.product(
-        STRIKES, (True, False), ['pivot']) if one not in ON_PIVOT)])
+        STRIKES, (True, False), ['pivot']) if one != ON_PIVOT)])
 def test_a_struck_needle_turns_as_the_impulse_says(strikes, skew, constraint):
     mapping = struck(1e-6, constraint, skew)
     blows = [Blow(time, frame, J, on_needle(skew, at, off))
@@ -268,8 +268,8 @@ def test_a_struck_needle_turns_as_the_impulse_says(strikes, skew, constraint):
 
 
 @pytest.mark.parametrize(('frame', 'constraint'), [
-    ('body', 'free'), ('world', 'free'), ('world', 'pivot'),
-    pytest.param('body', 'pivot', marks=IN_SOAK)])
+    ('body', 'free'), ('world', 'free'),
+    *(pytest.param(frame, 'pivot', marks=IN_SOAK) for frame in ('body', 'world'))])
 def test_a_commanded_impulse_on_a_needle_is_turned_into_its_axes_exactly(frame, constraint):
     mapping = struck(1e-6, constraint, True)
     simulation = Simulation(parse_scene(json.dumps(mapping)), rate=10.0, horizon=5.0)

@@ -38,6 +38,7 @@ initial: {angular_velocity: [0, 0, 0]}
 """)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('gap', 'speed', 'watched'), [
     (0.01, -1.0, 0.01), (0.01, 1.0, 0.01), (0.01, 0.0, 0.01), (-1e-18, -1.0, -1e-18),
     (-1e-18, 1e-6, 0.0), (-1e-18, 0.0, 0.0), (-1e-18, -1e-17, 0.0), (0.0, 1.0, 0.0)])
