@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigid_body_sim.choice import measured, settling
-from rigid_body_sim.choice.forecast import Forecast, missed, of_exact
+from rigid_body_sim.choice.exact_forecast import of_exact
+from rigid_body_sim.choice.forecast import Forecast, missed
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.choice import forecast, measured
+from rigid_body_sim.choice import comparison, forecast, measured, runs
 from rigid_body_sim.choice.trial import HELPS, Trial
 from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
 from rigid_body_sim.errors import NotConverged
@@ -182,11 +182,11 @@ def _nutation_lost(scene, prototype, horizon):
     if rate == 0.0:
         return 0.0
     part = min(horizon, RADIANS / rate)
-    times = forecast.looks(part)
-    best = Stepped(scene, GENERAL.NAME, max(FINEST, forecast.FINER * prototype.accuracy),
+    times = runs.looks(part)
+    best = Stepped(scene, GENERAL.NAME, max(FINEST, comparison.FINER * prototype.accuracy),
                    horizon=part)
     try:
-        states, others = (forecast.run(scene, one, start, times) for one in (prototype, best))
+        states, others = (runs.run(scene, one, start, times) for one in (prototype, best))
     except TooMuchWork:
         return 0.0
-    return min(1.0, float(forecast.rates_apart(states, others).max()) * (horizon / part))
+    return min(1.0, float(comparison.rates_apart(states, others).max()) * (horizon / part))

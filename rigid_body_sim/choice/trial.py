@@ -8,7 +8,7 @@ Tolerances are powers of two, so that nothing depends on the last digit of a dif
 angular momentum of a slim body errs more than its attitude, by the quotient of its moments, and
 the flight of a body that hardly turns errs where its attitude does not: angular momentum and
 velocity count too, so that the ledger balances. Both runs lose the same digits of the start; what
-that does to the attitude is computed when somebody asks for the expected error (forecast.py).
+that does to the attitude is computed when somebody asks for the expected error (rounding.py).
 
 A trial does not pay for a body that turns little, is not slim and is moved by no force. Such a
 body gets an eighth of the tolerance of the table, to be safe: the table has other scenes.
@@ -18,8 +18,8 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.choice import forecast, measured
-from rigid_body_sim.choice.forecast import FINER
+from rigid_body_sim.choice import comparison, forecast, measured, rounding, runs
+from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
@@ -68,9 +68,9 @@ class Trial:
         self._beyond = {}    # what a run that took too much work said
         self._allowed = []    # (tolerance, error, since): what runs allowed themselves
         self._flies = _flies(scene)
-        pace, push = measured.pace(scene) + forecast.struck_rate(scene), drive(scene, None)
+        pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
         time = min(horizon, _span(scene, pace, push, horizon))
-        self._longer, self._times = horizon / time, forecast.looks(time)
+        self._longer, self._times = horizon / time, runs.looks(time)
         self._radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
         most = patience * (1 if others else ALONE) * (STEPS + int(
             min(STEPS_PER_RADIAN * self._radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
@@ -156,7 +156,7 @@ class Trial:
         finer = self._reference(tolerance)
         rounded = float(self._apart(tolerance, finer).max()) / ROUNDED
         try:
-            lost = forecast.lost(self._scene, self.prototype.at(finer, self._most), self._times,
+            lost = rounding.lost(self._scene, self.prototype.at(finer, self._most), self._times,
                                  self._states(finer), enough=rounded)
         except TooMuchWork:
             return 0.0    # nothing tells
@@ -166,7 +166,7 @@ class Trial:
         """Return the Forecast of a choice."""
         accuracy, horizon, times = self._accuracy, self._horizon, self._times
         finer = self._reference(tolerance)
-        errors = None if finer is None else forecast.apart(
+        errors = None if finer is None else comparison.apart(
             self._states(tolerance), self._states(self._below(finer, tolerance)))
         if errors is None or not float(errors[0]) < math.inf:
             if self._promised is None:
@@ -176,10 +176,10 @@ class Trial:
         here, last = self._states(tolerance), 0.0
         if float(errors.max()) < MAGNIFIED:
             best = self._states(finer)
-            lost = forecast.lost(self._scene, self.prototype.at(finer, self._most), times, best)
+            lost = rounding.lost(self._scene, self.prototype.at(finer, self._most), times, best)
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,
-                       self._later(best, forecast.rounding(self._scene, best, times)))
+                       self._later(best, rounding.of_angle_turned(self._scene, best, times)))
         else:
             lost = np.zeros(len(times))
         for one, error, since in self._allowed:
@@ -201,7 +201,7 @@ class Trial:
         It is 0 for a tolerance that is not below what rounding does.
         """
         states = self._states(tolerance)
-        lost = self._later(states, forecast.rounding(self._scene, states, self._times))
+        lost = self._later(states, rounding.of_angle_turned(self._scene, states, self._times))
         return ROUNDED * lost if tolerance <= lost else 0.0
 
     def _grid(self, tolerance):
@@ -224,8 +224,8 @@ class Trial:
     def _run(self, tolerance, most):
         """Return the states of a run that takes at most so many steps."""
         found = []
-        states = forecast.run(self._scene, self.prototype.at(tolerance, most),
-                              self._scene.initial.vector, self._times, found)
+        states = runs.run(self._scene, self.prototype.at(tolerance, most),
+                          self._scene.initial.vector, self._times, found)
         self._allowed += [(tolerance, *one) for one in found]
         return states
 
@@ -250,7 +250,7 @@ class Trial:
         from a finer run may be the error of that one, which only its tolerance bounds.
         """
         here = self._states(tolerance)
-        while float(forecast.apart(here, self._states(finer)).max()) < finer:
+        while float(comparison.apart(here, self._states(finer)).max()) < finer:
             more = self._reference(finer)
             if more is None:
                 break
@@ -267,10 +267,10 @@ class Trial:
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""
         here, best = self._states(tolerance), self._states(finer)
-        shares = forecast.momenta_apart(self._scene, here, best)
+        shares = comparison.momenta_apart(self._scene, here, best)
         if self._flies:
-            shares = np.maximum(shares, forecast.velocities_apart(here, best))
-        return np.maximum(forecast.apart(here, best), MOMENTA * shares)
+            shares = np.maximum(shares, comparison.velocities_apart(here, best))
+        return np.maximum(comparison.apart(here, best), MOMENTA * shares)
 
     def _later(self, states, errors):
         """Return the error (rad) at the horizon after those of a run."""
@@ -307,7 +307,7 @@ def _span(scene, rate, acceleration, horizon):
 
     It goes on to a strike that comes later, within the horizon, and then for that angle again.
     """
-    times = [strike.time for strike in forecast.strikes(scene) if strike.time < horizon]
+    times = [strike.time for strike in runs.strikes(scene) if strike.time < horizon]
     own = RADIANS / rate if rate else math.inf
     if acceleration:
         own = 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))

@@ -9,7 +9,7 @@ numba.
 
 import math
 
-from rigid_body_sim.choice.forecast import FINER
+from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
 from rigid_body_sim.integrators.marching.contact_course import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork

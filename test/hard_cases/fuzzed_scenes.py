@@ -20,7 +20,7 @@ import warnings
 
 import numpy as np
 
-from rigid_body_sim.choice import forecast, trial
+from rigid_body_sim.choice import rounding, runs, trial
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.families import scipy_methods
 from rigid_body_sim.integrators.marching import contact_course, switched, work
@@ -420,7 +420,7 @@ def main(first, end):
     switched.DEAR = scipy_methods.COST = work.SLOWER = 1
     quadrature.MOST, quadrature.EVENLY = 2 ** 10, 2 ** 4
     trial.STEPS, trial.STEPS_PER_RADIAN, trial.RADIANS, events.LOOKS_A_TICK = 20, 5, 0.5, 20
-    forecast.SIGNS, forecast.MOVED, forecast.LOOKS = forecast.SIGNS[:1], forecast.MOVED[:1], 3
+    rounding.SIGNS, rounding.MOVED, runs.LOOKS = rounding.SIGNS[:1], rounding.MOVED[:1], 3
     signal.signal(signal.SIGVTALRM, alarm)
     bad = 0
     for seed in range(first, end):

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far two runs of a scene are apart."""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.mechanics.energy import DIAGNOSIS
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.numerics.rotations import angles_between
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
+
+FINER = 2.0 ** -7    # share of a tolerance: that of the finer run, which tells the error
+
+
+def apart(states, others):
+    """Return the angles between the attitudes of two runs (rad), shape (n,); infinite for NaN."""
+    angles = np.empty(len(states))
+    angles_between(states[:, ORIENTATION], others[:, ORIENTATION], angles)
+    return np.where(np.isnan(angles), math.inf, angles)
+
+
+def momenta_apart(scene, states, others):
+    """Return the differences of the angular momenta of two runs, shape (n,); infinite for NaN.
+
+    They are relative to the largest momentum so far.
+    """
+    found = []
+    for vectors in (states, others):
+        out = np.empty((len(vectors), DIAGNOSIS.size))
+        energies(scene).diagnose_many(parameters(scene), vectors, out)
+        found.append(out[:, DIAGNOSIS.part('momentum').places])
+    return _shares(*found)
+
+
+def velocities_apart(states, others):
+    """Return the differences of the velocities of two runs, shape (n,); infinite for NaN.
+
+    They are relative to the largest speed so far.
+    """
+    return _shares(states[:, VELOCITY], others[:, VELOCITY])
+
+
+def rates_apart(states, others):
+    """Return the differences of the angular velocities of two runs, shape (n,), as above."""
+    return _shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY])
+
+
+def _shares(one, other):
+    """Return the lengths of differences as shares of the largest length so far, shape (n,)."""
+    sizes, apart = np.maximum.accumulate(_lengths(one)), _lengths(one - other)
+    shares = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
+    return np.where(np.isnan(apart) | np.isnan(sizes), math.inf, shares)
+
+
+def _lengths(vectors):
+    """Return the lengths of vectors (n, 3), shape (n,); NaN where a component is not finite."""
+    sizes = np.abs(vectors).max(axis=1)
+    x, y, z = np.divide(vectors.T, sizes, out=np.zeros((3, len(vectors))), where=sizes != 0.0)
+    return sizes * np.sqrt(x * x + y * y + z * z)

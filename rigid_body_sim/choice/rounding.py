@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What rounding does to a run: the rounding of the angle turned, and how a motion magnifies it.
+
+A motion magnifies rounding errors, whatever method solves it. Moving the start shows by how much:
+with G the derivative of the attitude by the start, and D half an ulp of each of its numbers,
+
+    conditioning = |G D| (Frobenius) = sqrt(mean |G D s|^2) over signs s
+
+which is estimated by finite differences along a few orthogonal rows of signs.
+"""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.choice.comparison import apart
+from rigid_body_sim.choice.measured import HALF_ULP
+from rigid_body_sim.choice.runs import run, strikes
+from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import matrix, normalised
+from rigid_body_sim.numerics.vectors import apply, transposed
+from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION
+
+SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
+         (1, -1, -1, 1, 1, -1, -1))
+"""Rows of a Hadamard matrix of 8, for the four numbers of q and the three of omega."""
+OF_Q, OF_OMEGA = slice(0, 4), slice(4, 7)
+MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start is moved
+FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
+FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
+AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
+LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
+
+
+def of_angle_turned(scene, states, times):
+    """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,).
+
+    A rate that a torque adds counts twice, since the moment of inertia is rounded, too. On a hinge
+    the attitude is the product of that of the start and of a turn, each of them rounded.
+    """
+    rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
+    fastest = np.maximum.accumulate(rates)
+    if drive(scene, None) > 0.0:
+        first = hypot3(*scene.initial.vector[ANGULAR_VELOCITY].tolist())
+        fastest = fastest + np.maximum(0.0, fastest - first)
+    numbers = 4.0 if scene.constraint.axis is None else 8.0
+    return HALF_ULP * (numbers + fastest * times)
+
+
+def conditioning(scene, prototype, times, states, enough=math.inf):
+    """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run from the scene's own start.
+    enough : float, optional
+        rad. It is given where the only question is whether the change reaches it. The start is
+        then moved by half an ulp alone, and no more often than it takes to see that. A change that
+        is no longer proportional to its cause counts as having reached it. One that a far larger
+        move leaves as it is comes of other steps, whose errors it shows, and counts as none.
+    """
+    start, found = scene.initial.vector, np.full(len(times), math.inf)
+    least = min(enough, LINEAR) if enough < math.inf else math.inf
+    for many in MOVED if enough == math.inf else MOVED[-1:]:
+        squares = np.zeros(len(times))
+        for signs in SIGNS:
+            moved = run(scene, prototype, _moved(scene, start, signs, many), times)
+            change = apart(moved, states)
+            squares += np.square(change)
+            if squares.max() >= len(SIGNS) * least * least:
+                moved = run(scene, prototype, _moved(scene, start, signs, FAR), times)
+                far = float(apart(moved, states).max())
+                if far < min(LINEAR, FARTHER * float(change.max())):
+                    return np.zeros(len(times))
+                return np.maximum(enough, np.sqrt(squares))
+        change = np.sqrt(squares / len(SIGNS))
+        small = np.maximum.accumulate(change) <= LINEAR
+        found = np.where(small & (found == math.inf), change / many, found)
+        if small.all():
+            break
+    return np.where(found == math.inf, change, found)
+
+
+def lost(scene, prototype, times, states, enough=math.inf):
+    """Return the error of the attitude of a run by rounding, rad, shape (n,).
+
+    Each strike starts the motion anew, with roundings of its own, which grow from then on: squares
+    add up.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run from the scene's own start.
+    enough : float, optional
+        rad. As in :func:`conditioning`.
+    """
+    found = of_angle_turned(scene, states, times)
+    if not float(found.max()) >= enough:
+        found = np.maximum(found, conditioning(scene, prototype, times, states, enough))
+    squares = np.square(found)
+    for strike in strikes(scene):
+        since = 1.0 - max(strike.time, 0.0) / times
+        squares += np.where(since >= 0.0, np.square(found * since) + AGAIN * AGAIN, 0.0)
+    return np.sqrt(squares)
+
+
+def _moved(scene, start, signs, many):
+    """Return a start moved by so many half ulps of its numbers, with signs."""
+    vector, by = start.copy(), HALF_ULP * many * np.array(signs, dtype=float)
+    vector[ORIENTATION] = normalised(*(vector[ORIENTATION] + by[OF_Q]).tolist())
+    if scene.constraint.axis is not None:
+        vector[ANGULAR_VELOCITY] *= 1.0 + by[OF_OMEGA][0]    # the rotation stays along the hinge
+    else:
+        vector[ANGULAR_VELOCITY] += _rounded(scene, vector[ANGULAR_VELOCITY], by[OF_OMEGA])
+    return vector
+
+
+def _rounded(scene, omega, by):
+    """Return what relative errors `by` of components along the principal axes do to a rate, rad/s.
+
+    A component along a principal axis rounds with the products that it is the sum of. About an
+    axis of zero moment nothing turns.
+    """
+    inertia = scene.constraint.inertia(scene.body)
+    if tuple(inertia.axes) == IDENTITY:
+        return by * np.abs(omega)
+    axes = matrix(*inertia.axes)
+    mixing = [[abs(entry) for entry in row] for row in transposed(axes)]
+    sizes = apply(mixing, np.abs(omega).tolist())
+    moved = [one * size if moment > 0.0 else 0.0
+             for one, size, moment in zip(by.tolist(), sizes, inertia.moments, strict=True)]
+    return np.array(apply(axes, moved))

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of a scene with its strikes, by a method that is prepared for it."""
+
+import math
+
+import numpy as np
+
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.mechanics import impulse
+from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE
+
+LOOKS = 64    # times at which runs are compared
+
+
+def looks(time):
+    """Return the times (s) up to one at which runs are compared, shape (LOOKS,)."""
+    return time * (np.arange(1, LOOKS + 1) / LOOKS)
+
+
+def run(scene, prototype, vector, times, allowances=None):
+    """Return the states at rising times (s), shape (n, 14), with the strikes of the scene.
+
+    They are NaN where the run did not converge.
+
+    Parameters
+    ----------
+    prototype : Solver
+    vector : array (14,)
+        The start.
+    allowances : list, optional
+        What solvers have allowed themselves (Solver.allowance) is appended to it.
+
+    Raises
+    ------
+    TooMuchWork
+    """
+    def allowed(solver, until):
+        found = solver.allowance(until)
+        if found and allowances is not None:
+            allowances.append(found)
+
+    out = np.full((len(times), STATE_SIZE), math.nan)
+    try:
+        solver, first = prototype.start(vector), 0
+        for strike in strikes(scene):
+            if strike.time > times[-1]:
+                break
+            last = int(np.searchsorted(times, strike.time))
+            solver.states(times[first:last], out[first:last])
+            struck, first = prototype.start(_struck(scene, strike, solver)), last
+            allowed(solver, strike.time)
+            solver = struck
+        solver.states(times[first:], out[first:])
+        allowed(solver, float(times[-1]))
+    except TooMuchWork:
+        raise
+    except NotConverged:
+        out[:] = math.nan
+    return out
+
+
+def strikes(scene):
+    """Return the strikes of a scene in the order of their times."""
+    struck = (effect for effect in scene.effects if effect.as_impulse is not None)
+    return sorted(struck, key=lambda effect: effect.time)
+
+
+def _struck(scene, strike, solver):
+    """Return the state just after a strike."""
+    vector = np.empty(STATE_SIZE)
+    solver.state(max(strike.time, 0.0), vector)
+    return _pushed(scene, strike, vector)
+
+
+def _pushed(scene, strike, vector):
+    impulse.push(parameters(scene), vector, *strike.as_impulse(scene.body, vector),
+                 np.zeros(ENTRIES_SIZE))
+    return vector
+
+
+def struck_rate(scene):
+    """Return approximately what the strikes of a scene add to the rate of its body (rad/s)."""
+    total, start = 0.0, scene.initial.vector
+    for strike in strikes(scene):
+        after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
+        total += hypot3(*(after - start[ANGULAR_VELOCITY]).tolist())
+    return total

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What rounding does to a run, computed by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from choice.known_bodies import Coasting, coasting_scene
+
+from rigid_body_sim.choice import rounding, runs
+from rigid_body_sim.scene.scene import parse_scene
+
+TIMES = np.array([1.0, 2.0, 3.0, 4.0])
+HALF_ULP = 2.0 ** -53
+
+
+def test_rounding_is_half_an_ulp_of_the_angle_at_the_largest_rate_so_far():
+    states = np.zeros((4, 14))
+    states[:, 7] = 3.0, 6.0, 1.0, 2.0
+    found = rounding.of_angle_turned(coasting_scene(), states, TIMES)
+    assert found == pytest.approx(HALF_ULP * (4.0 + np.array([3.0, 12.0, 18.0, 24.0])))
+    # what a torque added counts twice
+    driven = coasting_scene(effects=('torque: {value: [0, 0, 1]}',))
+    found = rounding.of_angle_turned(driven, states, TIMES)
+    assert found == pytest.approx(HALF_ULP * (4.0 + np.array([3.0, 18.0, 27.0, 36.0])))
+
+
+def test_conditioning_is_what_half_an_ulp_of_the_start_does():
+    """A body that coasts about z: each number of q counts, and omega by its size times time.
+
+    |G D|^2 = 4 h^2 |dq|^2 + (3 h t)^2 with half an ulp h on each number; what is along q is lost,
+    and of the signs of a Hadamard matrix the mixed terms cancel.
+    """
+    one = coasting_scene()
+    prototype = Coasting()
+    states = runs.run(one, prototype, one.initial.vector, TIMES)
+    found = rounding.conditioning(one, prototype, TIMES, states)
+    expected = HALF_ULP * np.sqrt(4.0 * 3.0 + (3.0 * TIMES) ** 2)
+    assert found == pytest.approx(expected, rel=0.3)
+    lost = rounding.lost(one, prototype, TIMES, states)
+    assert lost == pytest.approx(np.maximum(found, rounding.of_angle_turned(one, states, TIMES)))
+    struck = coasting_scene((1.5, 1e-12), (3.0, 1e-12))
+    twice = rounding.lost(struck, prototype, TIMES, states) / lost
+    # what each strike rounds grows from then on
+    again = np.square([[0.0, 0.25, 0.5, 0.625], [0.0, 0.0, 0.0, 0.25]]).sum(axis=0)
+    again += np.square(4.0 * HALF_ULP / lost) * [0, 1, 2, 2]
+    assert twice == pytest.approx(np.sqrt(1.0 + again))
+
+
+def test_a_start_is_moved_by_half_ulps_of_its_numbers():
+    one = coasting_scene()
+    start = one.initial.vector
+    moved = rounding._moved(one, start, (1, 1, -1, 1, 1, -1, -1), 2.0 ** 20)
+    by = HALF_ULP * 2.0 ** 20
+    assert moved[1:4] == pytest.approx([by, by, -by], rel=1e-6)
+    assert np.linalg.norm(moved[1:5]) == pytest.approx(1.0, abs=1e-15)
+    assert moved[5:8] - start[5:8] == pytest.approx([0.0, 0.0, -3.0 * by])
+    hinged = parse_scene('scene: s\nbody: {mass: 2, inertia: [1, 2, 2.5]}\n'
+                         'constraint: {hinge: {axis: [1, 2, 2]}}\neffects: []\n'
+                         'initial: {rate: 3}\n')
+    moved = rounding._moved(hinged, hinged.initial.vector, (1,) * 7, 2.0 ** 20)
+    assert moved[5:8] == pytest.approx(hinged.initial.vector[5:8] * (1.0 + by), rel=1e-15)
+
+
+@pytest.mark.parametrize('turn', [0.6, 1e-9])
+def test_on_skew_axes_a_rate_is_moved_by_half_ulps_of_the_products_that_mix(turn):
+    cos, sin = math.cos(turn), math.sin(turn)
+    axes = np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])    # body from principal
+    tensor = axes @ np.diag([1.0, 2.0, 2.5]) @ axes.T
+    moved = _rate_moved((0.5 * (tensor + tensor.T)).tolist(), [3.0, 2.0, 0.01])
+    expected = [3.0, cos * 2.0 + sin * 0.01, sin * 2.0 + cos * 0.01]
+    assert np.abs(axes.T @ moved) == pytest.approx(expected, rel=1e-6)
+
+
+def test_about_a_skew_axis_of_zero_moment_no_rate_is_moved():
+    moved = _rate_moved([[2, 0, 0], [0, 1, -1], [0, -1, 1]], [3.0, 2.0, -2.0])
+    assert moved[1] == pytest.approx(-moved[2]) and abs(moved[1]) == pytest.approx(2.0)
+
+
+def _rate_moved(inertia, rate):
+    """Return the move of a rate by half ulps with equal signs, in half ulps of 1 rad/s."""
+    one = parse_scene(f'scene: s\nbody: {{mass: 2, inertia: {inertia}}}\n'
+                      'constraint: free\neffects: []\n'
+                      f'initial: {{angular_velocity: {rate}}}\n')
+    many = 2.0 ** 30
+    moved = rounding._moved(one, one.initial.vector, (1,) * 7, many)
+    return (moved - one.initial.vector)[5:8] / (HALF_ULP * many)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs with strikes, beside a body that coasts."""
+
+import math
+
+import numpy as np
+import pytest
+from choice.known_bodies import Coasting, coasting_scene
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.choice import runs
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+
+TIMES = np.array([1.0, 2.0, 3.0, 4.0])
+
+
+def test_looks_are_spread_evenly_up_to_the_time():
+    found = runs.looks(6.0)
+    assert len(found) == runs.LOOKS
+    assert found[-1] == 6.0
+    assert np.diff([0.0, *found]) == pytest.approx(np.full(runs.LOOKS, 6.0 / runs.LOOKS))
+
+
+def test_a_run_begins_anew_at_each_strike():
+    """J at y = 1 along x takes J/4 from the rate about z; one after the last look does nothing."""
+    one = coasting_scene((2.5, -4.0), (1.0, 8.0), (9.0, 1.0))
+    assert [strike.time for strike in runs.strikes(one)] == [1.0, 2.5, 9.0]
+    prototype = Coasting()
+    states = runs.run(one, prototype, one.initial.vector, TIMES)
+    assert [start[0] for start in prototype.starts] == [0.0, 1.0, 2.5]
+    assert [start[7] for start in prototype.starts] == pytest.approx([3.0, 1.0, 2.0])
+    # a look at the time of a strike sees the state after it
+    assert states[:, 7] == pytest.approx([1.0, 1.0, 2.0, 2.0])
+    angles = Rotation.from_quat(states[:, 1:5]).as_rotvec()[:, 2] % (2.0 * math.pi)
+    assert angles == pytest.approx([3.0, 4.0, 5.5, 7.5 - 2.0 * math.pi])
+    assert runs.struck_rate(one) == pytest.approx(2.0 + 1.0 + 0.25)
+
+
+def test_what_does_not_converge_is_not_a_number_and_too_much_work_is_said():
+    still = coasting_scene()
+    found = runs.run(still, Coasting(2.5), still.initial.vector, TIMES)
+    assert np.isnan(found).all()
+    with pytest.raises(TooMuchWork):
+        runs.run(still, Coasting(2.5, TooMuchWork), still.initial.vector, TIMES)
