@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from random_scenes.laws import Laws
-from random_scenes.truth import Truth
+from random_scenes.truth import TOLERANCE, Truth
 from random_scenes.wide import WIDE
 
 SHARE = 0.3              # rad, of a step: no switch changes twice within
@@ -57,7 +57,7 @@ class _Copy(Truth):
             pace = max(rate + math.sqrt(growth), self._fastest)
             h = min(2 * h, WIDE(SHARE / pace), end - self.t)
             after, error = self._extrapolated(y, k, h)
-            while error > 1e-17 and h > 1e-9:
+            while error > TOLERANCE and h > 1e-9:
                 h = h / 2
                 after, error = self._extrapolated(y, k, h)
             changed = self._changed(after, h)

@@ -14,7 +14,8 @@ from random_scenes.wide import WIDE, angle, back, cross, inverse, rotated, times
 
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
 LINEAR = 0.1             # rad
-LEVELS = 9               # levels of the extrapolation
+LEVELS = 7               # levels of the extrapolation: nine magnify rounding ten times as much
+TOLERANCE = 1e-18        # of a step, relative
 WAITS = 8                # steps after one that was too long before a longer one is tried
 
 
@@ -51,17 +52,17 @@ class Truth:
         self.y[:, :4] /= np.sqrt((self.y[:, :4] ** 2).sum(1))[:, None]
         self.arm = np.zeros(3, dtype=WIDE)
         if kind != 'free':
-            self.arm = np.array(scene.constraint.arm(body), dtype=float).astype(WIDE)
-            r = self.arm
+            point = scene.constraint.point(body)
+            self.arm = r = _wide(body.center_of_mass) - _wide(point)
             tensors = tensors + self.mass * ((r @ r) * np.eye(3, dtype=WIDE) - np.outer(r, r))
         self.I, self.inverse = tensors, inverse(tensors)
         if kind == 'hinge':
-            n = np.array(scene.constraint.axis, dtype=float).astype(WIDE)
+            n = _wide(scene.constraint.axis)
             self.axis = n / np.sqrt(n @ n)
             self.about = times(tensors, self.axis[None]) @ self.axis
         # the velocity of the centre of mass
         q, w = self.y[:, :4], self.y[:, 4:7]
-        center = np.array(body.center_of_mass, dtype=float).astype(WIDE)
+        center = _wide(body.center_of_mass)
         self.y[:, 7:10] += rotated(q, cross(w, center[None]))
         self.y[:, 10:] += rotated(q, center[None] + 0 * w)
         self.center, self.t, self.struck = center, WIDE(0), set()
@@ -124,7 +125,7 @@ class Truth:
             h = min(2 * h if since > WAITS else h, WIDE(1 / max(fastest, 1e-3)), end - self.t)
             while True:
                 after, error = self._extrapolated(y, k, h)
-                if error < 1e-17 or h < 1e-9:
+                if error < TOLERANCE or h < 1e-9:
                     break
                 h, since = h * 0.5, 0
             after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
@@ -183,3 +184,8 @@ class Truth:
         if max(apart) > LINEAR:    # no longer in proportion to the change
             return math.inf
         return math.sqrt(math.fsum(x * x for x in apart)) / MOVED
+
+
+def _wide(vector):
+    """Return a vector of doubles in 80-bit numbers."""
+    return np.array(vector, dtype=float).astype(WIDE)
