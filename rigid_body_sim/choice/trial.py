@@ -156,8 +156,9 @@ class Trial:
         finer = self._reference(tolerance)
         rounded = float(self._apart(tolerance, finer).max()) / ROUNDED
         try:
-            lost = rounding.lost(self._scene, self.prototype.at(finer, self._most), self._times,
-                                 self._states(finer), enough=rounded)
+            lost = rounding.lost_in_steps(
+                self._scene, self.prototype.at(finer, self._most), self._times,
+                self._states(finer), enough=rounded)
         except TooMuchWork:
             return 0.0    # nothing tells
         return error if float(lost.max()) < rounded else 0.0
@@ -176,7 +177,8 @@ class Trial:
         here, last = self._states(tolerance), 0.0
         if float(errors.max()) < MAGNIFIED:
             best = self._states(finer)
-            lost = rounding.lost(self._scene, self.prototype.at(finer, self._most), times, best)
+            lost = rounding.lost_in_steps(
+                self._scene, self.prototype.at(finer, self._most), times, best)
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,
                        self._later(best, rounding.of_angle_turned(self._scene, best, times)))
