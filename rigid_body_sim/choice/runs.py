@@ -75,10 +75,11 @@ def _struck(scene, strike, solver):
     """Return the state just after a strike."""
     vector = np.empty(STATE_SIZE)
     solver.state(max(strike.time, 0.0), vector)
-    return _pushed(scene, strike, vector)
+    return pushed(scene, strike, vector)
 
 
-def _pushed(scene, strike, vector):
+def pushed(scene, strike, vector):
+    """Change a state, shape (14,), to that just after a strike, and return it."""
     impulse.push(parameters(scene), vector, *strike.as_impulse(scene.body, vector),
                  np.zeros(ENTRIES_SIZE))
     return vector
@@ -88,6 +89,6 @@ def struck_rate(scene):
     """Return approximately what the strikes of a scene add to the rate of its body (rad/s)."""
     total, start = 0.0, scene.initial.vector
     for strike in strikes(scene):
-        after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
+        after = pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
         total += hypot3(*(after - start[ANGULAR_VELOCITY]).tolist())
     return total
