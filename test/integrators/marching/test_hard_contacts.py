@@ -390,6 +390,37 @@ def test_a_patch_that_sticks_without_friction_may_begin_to_roll_and_slip():
     assert sim.states([1e-4])[0].time == 1e-4
 
 
+@pytest.mark.parametrize('accuracy', [1e-9, 1e-12])
+def test_a_slip_that_begins_within_rounding_of_the_grip_is_no_paradox(accuracy):
+    """The slip grew by -1e-14 m/s^2 where the grip had gone by 2e-12 of it, and the run ended."""
+    sim = simulation(
+        '{mass: 3.82, inertia: [5.38617e-05, 4.33056e-05, 5.30843e-05], center_of_mass: '
+        '[-0.004388, 0.0008451, -7.391e-05], surface: {ellipsoid: {semi_axes: [0.01966, 0.02615, '
+        '0.0156]}}}', 'sliding_friction: {mu: 7.26}',
+        '{euler_zyz: [-1.47, 1.644, 2.502], rolling: true}',
+        '{table: {normal: [-0.7153, 0.199, 1.0]}}', accuracy, horizon=0.2)
+    sim.advance(180)
+    assert [event.name for event in sim.events] == ['sliding began', 'lift-off', 'impact']
+    assert sim.events[-1].time == pytest.approx(0.169780657228, abs=accuracy)
+
+
+def test_a_slip_that_jams_where_a_falls_evenly_ends_the_run_at_the_paradox():
+    """N grows like 1/A and draws the direction so strongly that steps went on without end."""
+    times = []
+    for accuracy in (1e-9, 1e-12):
+        sim = simulation(
+            '{mass: 6.82, inertia: [5.36967e-06, 8.72698e-06, 8.3977e-06], surface: '
+            '{ellipsoid: {semi_axes: [0.01103, 0.01168, 0.001095]}}}',
+            'sliding_friction: {mu: 2.705}', '{euler_zyz: [-2.657, 0.3583, 1.29], '
+            'angular_velocity: [-0.62, 5.143, -6.533], rolling: true}',
+            '{table: {normal: [0.2942, -1.038, 1.0], restitution: 0.5}}', accuracy, horizon=0.1)
+        with pytest.raises(NotConverged, match="Painleve's paradox at t = ") as error:
+            sim.states([0.1])
+        times.append(float(re.search(r't = (\S+) s', str(error.value)).group(1)))
+    # measured: 6e-12
+    assert times == pytest.approx([0.0508575925553] * 2, abs=1e-10)
+
+
 def test_a_disk_whose_film_no_step_follows_ends_the_run_where_it_counts_as_low():
     """Its steps were too short from 1.1e-3 rad on, and it was let slide on its face below 1e-3."""
     sim = simulation(
