@@ -273,7 +273,8 @@ def _parting(p, c, now, at, push, slow):
     patch = patch_of(c, at, push)
     friction, _ = patch_sticking(patch)
     size = math.sqrt(dot(friction, friction))
-    d, _ = patch_departure(patch, c.mu, scaled(-1.0 / size, friction))
+    guess = scaled(-1.0 / size, friction) if size > 0.0 else (1.0, 0.0, 0.0)
+    d, _ = patch_departure(patch, c.mu, guess)
     _, N, _ = patch_slipping(patch, c.mu, d)
     f = -c.mu * N * d[0], -c.mu * N * d[1], N
     twist = scaled(-c.mu * N * c.patch * d[2], at.axes[2])

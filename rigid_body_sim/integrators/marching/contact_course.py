@@ -256,11 +256,13 @@ class PlaneCourse:
         p[CREEP] = self._scales.creep * p[SWIFT]
         self._rolling.begin(p, y, is_held(p))
         self._bound.rates.rate(p, y, row)
+        # accelerations of the contact by forces, beside which that of the slip is rounding
+        forced = max(1.0, row[FIRMNESS]) * p[SWIFT] * p[SWIFT] / self._scales.length
         if not row[FIRMNESS] > 0.0:
             self._end(y)
         elif not row[NORMAL] > 0.0:
             self._fly(p, y)
-        elif row[SLIP][0] < 0.0 and not sticks:
+        elif row[SLIP][0] < -HOLDS * forced and not sticks:
             self._end(y)
         else:
             self._open(CREEPING, p, y)
@@ -313,10 +315,12 @@ class PlaneCourse:
         self._bound.rates.rate(alone, y, row)
         return row[NORMAL] > (0.0 if has_fallen else HOLDS * p[MASS] * self._scales.heaviness)
 
-    def _end(self, y, why=PARADOX):
-        """End the course: no law of contact says how it goes on."""
-        self._over, self._why = float(y[TIME]), why
-        self._events.append((self._begin + self._over, 'end', {}))
+    def _end(self, y, why=PARADOX, ahead=0.0):
+        """End the course: no law of contact says how it goes on `ahead` (s) of what is known."""
+        self._over = float(y[TIME])
+        time = self._begin + (self._over + ahead)
+        self._why = why.format(repr(time))
+        self._events.append((time, 'end', {}))
 
     def _stop(self, p, y, time):
         """Let a body rest that lies flat or is held by friction, else let it roll on."""
@@ -381,7 +385,7 @@ class PlaneCourse:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
                                f't = {time!r} s')
         if why == contact_march.PARADOX:
-            self._end(y)
+            self._end(y, ahead=phase.ahead)
             return
         if why == contact_march.TOUCHED:
             self._impact(p, y)
@@ -427,8 +431,7 @@ class PlaneCourse:
             self._steps.count(EVENT, float(self._phases[-1].front[TIME]), elapsed)
             self._follow(self._phases[-1])
         if self._over is not None and (elapsed > self._over or not self._phases):
-            raise NotConverged(f'{self._bound.scene.name}: '
-                               + self._why.format(repr(self._begin + self._over)))
+            raise NotConverged(f'{self._bound.scene.name}: {self._why}')
 
     def state(self, time, out):
         """Fill `out` with the state at a time not before the start.

@@ -57,12 +57,13 @@ LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
 KEPT = 4096                  # points of a phase; beyond, every other one is dropped
 (COUNT, STRIDE, STORED, STATUS, TOLERANCE, RATE, SPEED, LENGTH, PLANNED, STEPS,
- PLACED, CROWDED, FADED) = range(13)
+ PLACED, CROWDED, FADED, JAMMED, AHEAD) = range(15)
 """Numbers of a phase: points passed, steps from one kept point to the next, points kept, why it
 ended, tolerance per second, scales (rad/s, m/s, m), the step planned, steps made, the number of
-the point at which the cursor stands, how many of the last steps were all too short, and how many
-were all of a slip that fades."""
-META = 13
+the point at which the cursor stands, how many of the last steps were all too short, how many were
+all of a slip that fades, and how many all too short for a slip that jams; the time from the front
+to the event that no step reaches (s)."""
+META = 15
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
  STOPPED, HELD) = range(11)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
@@ -79,6 +80,8 @@ TOO_SHORT = 1e-5             # share of the time in which a ring that is almost 
 CROWD = 25000                # so many steps in a row that short: friction leaves no motion
 STALLED = 2000               # and so many in a row of a slip that dies: it is dead
 FADES = 1e-3                 # share of the speeds below which a slip fades
+JAMS = 1e-3                  # m A below which a slip jams where A goes on falling
+HASTE = 1e-3                 # share of the time until A = 0: a step below that is too short
 PACED = 2.0 ** -52           # rounding of its pace, by which it may err after STALLED such steps
 
 
@@ -97,6 +100,7 @@ def begin(p, row, front, meta, y):
     meta[PLANNED] = power(meta[TOLERANCE], 1.0 / ORDER) / fastest
     meta[COUNT], meta[STRIDE], meta[STORED], meta[STATUS] = 0.0, 1.0, 0.0, RUNNING
     meta[STEPS], meta[PLACED], meta[CROWDED], meta[FADED] = 0.0, -1.0, 0.0, 0.0
+    meta[JAMMED], meta[AHEAD] = 0.0, 0.0
 
 
 @compiled
@@ -168,12 +172,16 @@ def march(p, w, phase, sizes, front, meta, target):
             meta[CROWDED] += 1.0
         else:
             meta[CROWDED] = 0.0
+        ahead = _until_jam(w, took) if mode == SLIDING else 0.0
+        meta[JAMMED] = meta[JAMMED] + 1.0 if took < HASTE * ahead else 0.0
         if ends != NOTHING:
             meta[STATUS] = _named(mode, ends)
         elif died:
             meta[STATUS] = STUCK
         elif meta[CROWDED] > (STALLED if stalls else CROWD):
             meta[STATUS] = STUCK if stalls else FAILED
+        elif meta[JAMMED] > STALLED:
+            meta[STATUS], meta[AHEAD] = PARADOX, ahead
         omega = load_omega(y)
         meta[RATE] = max(meta[RATE], math.sqrt(dot(omega, omega)))
         if meta[STATUS] == RUNNING:
@@ -190,6 +198,19 @@ def _dies(p, w, y):
     """
     return p[MODE] == SLIDING and w[0, PACE] <= DYING * p[SWIFT] and (
         dot(load_u(w[0]), load_u(y)) < 0.0)
+
+
+@compiled_inline
+def _until_jam(w, took):
+    """Return the time (s) from the end of a step until A = 0, if it is small and falls; else 0.
+
+    There N grows like 1/A, and the direction of the slip relaxes at a rate like N/A, which no
+    step follows to the end: A falls at an even rate, which tells the time.
+    """
+    before, after = w[0, WATCHED + FIRMNESS], w[END, WATCHED + FIRMNESS]
+    if not 0.0 < after < before < JAMS:
+        return 0.0
+    return took * after / (before - after)
 
 
 @compiled_inline

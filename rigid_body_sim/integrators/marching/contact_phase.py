@@ -45,6 +45,11 @@ class Phase:
         """Why the phase ended; RUNNING if it did not yet."""
         return self._meta[contact_march.STATUS]
 
+    @property
+    def ahead(self):
+        """The time from the front to the event that ended the phase, s."""
+        return float(self._meta[contact_march.AHEAD])
+
     def reach(self, elapsed, work):
         """March until the time is passed or the phase ends; return whether it ends before.
 

@@ -30,7 +30,8 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.functions import hypot
-from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
+from rigid_body_sim.numerics.sextic import zeros_of_sextic
+from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 
 NEWTON = 50         # most Newton steps for a direction
 SECTORS = 32        # directions that are tried where they fail
@@ -254,18 +255,46 @@ def patch_slipping(patch, mu, d):
 
 @compiled
 def patch_departure(patch, mu, d):
-    """Return (d, growth): the direction along which the slip of a patch leaves, as `departure`."""
+    """Return (d, growth): the direction along which the slip of a patch leaves, as `departure`.
+
+    With v' = x |N| d the direction follows from x > 0: as 1/N = -A/b_n,
+
+        (x + H) d = k,   H = +-mu (M - b n/b_n),   k = +-(c - b n_n/b_n),
+
+    with + for a body that is pressed on the plane (b_n < 0), and - for one that is not. So
+    |d| = 1 is a polynomial in x, |adj(x + H) k|^2 = det(x + H)^2, of which all zeros are found.
+    Newton's method leaves of its error the rounding of v'.
+    """
     found, growth, good = _patch_refined(patch, mu, d)
-    if good and growth > 0.0:
+    if (good and growth > 0.0) or patch.bn == 0.0:
         return found, growth
     best, most = found, growth if good else -math.inf
-    for k in range(27):
-        x, y, z = k // 9 - 1.0, k // 3 % 3 - 1.0, k % 3 - 1.0
-        size = math.sqrt(x * x + y * y + z * z)
+    sign = -math.copysign(1.0, patch.bn)
+    rated = scaled(-1.0 / patch.bn, patch.b)
+    k = scaled(sign, plus(patch.c, scaled(patch.nn, rated)))
+    push, rows = scaled(sign * mu, patch.n), patch.M
+    H = (plus(scaled(sign * mu, rows[0]), scaled(rated[0], push)),
+         plus(scaled(sign * mu, rows[1]), scaled(rated[1], push)),
+         plus(scaled(sign * mu, rows[2]), scaled(rated[2], push)))
+    # adj(x + H) k = x^2 k + x f + a,   det(x + H) = x^3 + trace x^2 + minors x + det
+    first, second, third = cross(H[1], H[2]), cross(H[2], H[0]), cross(H[0], H[1])
+    trace, det = H[0][0] + H[1][1] + H[2][2], dot(H[0], first)
+    minors = first[0] + second[1] + third[2]
+    f = minus(scaled(trace, k), apply(H, k))
+    a = plus(plus(scaled(k[0], first), scaled(k[1], second)), scaled(k[2], third))
+    size = dot(H[0], H[0]) + dot(H[1], H[1]) + dot(H[2], H[2])
+    places = zeros_of_sextic((
+        det * det - dot(a, a), 2.0 * (minors * det - dot(f, a)),
+        minors * minors + 2.0 * (trace * det - dot(k, a)) - dot(f, f),
+        2.0 * (det + trace * minors - dot(k, f)), trace * trace + 2.0 * minors - dot(k, k),
+        2.0 * trace, 1.0), math.sqrt(size) + math.sqrt(dot(k, k)))
+    for x in places:
+        d = scaled(det + x * (minors + x * (trace + x)), plus(a, scaled(x, plus(f, scaled(x, k)))))
+        size = math.sqrt(dot(d, d))
         if size > 0.0:
-            found, growth, good = _patch_refined(patch, mu, (x / size, y / size, z / size))
+            d, growth, good = _patch_refined(patch, mu, scaled(1.0 / size, d))
             if good and growth > most:
-                best, most = found, growth
+                best, most = d, growth
     return best, most
 
 
