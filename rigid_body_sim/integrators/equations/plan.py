@@ -5,6 +5,7 @@ Trees are first written with the operations that have recurrences, then listed s
 marching/recurrences.py has the recurrences.
 """
 
+import functools
 import math
 import operator
 
@@ -26,7 +27,9 @@ def rewritten(trees, definitions, parameters):
     """Return trees with names replaced by definitions, made of operations with recurrences.
 
     Whole powers are multiplied out; a tangent is a quotient, and a power of a changing exponent an
-    exponential.
+    exponential. What does not change stands before a product, and a sign before that: equal
+    products of series, as those of the attitude in all that it turns, are one then, whatever
+    multiplies them.
     """
     found = {}
 
@@ -47,8 +50,80 @@ def rewritten(trees, definitions, parameters):
     return [of(one) for one in trees]
 
 
-RULES = {'+': tree.plus, '-': tree.minus, '*': tree.times, '/': tree.over,
-         'negative': tree.negative}
+def _plus(a, b):
+    """Return a + b; a sign, and a share of both, stand before the sum."""
+    if b.op == 'negative':
+        return _minus(a, *b.args)
+    if a.op == 'negative':
+        return _minus(b, *a.args)
+    share, (one, other) = _common(a, b)
+    return _scaled(share, tree.plus(one, other))
+
+
+def _minus(a, b):
+    """Return a - b, as `_plus`."""
+    if b.op == 'negative':
+        return _plus(a, *b.args)
+    if a.op == 'negative':
+        return tree.negative(_plus(*a.args, b))
+    share, (one, other) = _common(a, b)
+    return _scaled(share, tree.minus(one, other))
+
+
+def _common(a, b):
+    """Return the share that two terms have in common, and what it multiplies."""
+    (share, one), (other_share, other) = _parted(a), _parted(b)
+    if share is other_share and one is not None and other is not None:
+        return share, (one, other)
+    return tree.ONE, (a, b)
+
+
+def _parted(one):
+    """Return the share of a term, which does not change, and the rest: None if nothing does."""
+    if not _changes(one):
+        return one, None
+    if one.op == '*' and not _changes(one.args[0]):
+        return one.args
+    return tree.ONE, one
+
+
+def _scaled(share, one):
+    """Return a term times what does not change; the sign stands first."""
+    if one.op == 'negative':
+        return tree.negative(_scaled(share, *one.args))
+    if share.op == 'negative' or (share.op == 'number' and share.args[0] < 0.0):
+        return tree.negative(_scaled(tree.negative(share), one))
+    inner, rest = _parted(one)
+    return _folded(share, one) if rest is None else tree.times(_folded(share, inner), rest)
+
+
+def _folded(a, b):
+    """Return the product of two terms that do not change; that of two numbers is a number."""
+    if a.op == b.op == 'number':
+        return tree.number(a.args[0] * b.args[0])
+    return tree.times(a, b)
+
+
+def _times(a, b):
+    """Return a b: the shares, then the product of what changes."""
+    if a.op == 'negative':
+        return tree.negative(_times(*a.args, b))
+    if b.op == 'negative':
+        return tree.negative(_times(a, *b.args))
+    (share, one), (other_share, other) = _parted(a), _parted(b)
+    if one is None or other is None:
+        return _scaled(share, b) if one is None else _scaled(other_share, a)
+    return _scaled(_folded(share, other_share), tree.times(one, other))
+
+
+def _over(a, b):
+    """Return a/b."""
+    if _changes(b) or not _changes(a):
+        return tree.over(a, b)
+    return _scaled(tree.over(tree.ONE, b), a)
+
+
+RULES = {'+': _plus, '-': _minus, '*': _times, '/': _over, 'negative': tree.negative}
 
 
 def _remade(op, args):
@@ -93,11 +168,13 @@ def _whole_power(base, exponent):
     if exponent == 1:
         return base
     half = _whole_power(base, exponent // 2)
-    square = tree.times(half, half)
-    return tree.times(square, base) if exponent % 2 else square
+    square = _times(half, half)
+    return _times(square, base) if exponent % 2 else square
 
 
+@functools.lru_cache(maxsize=100_000)
 def _changes(one):
+    """Return whether an unknown stands in a term."""
     return any(name.startswith(UNKNOWN) for name in tree.names(one))
 
 
@@ -157,6 +234,8 @@ class Plan:
         match op:
             case 'name':
                 self._put(one, 'unknown', int(one.args[0].removeprefix(UNKNOWN)))
+            case '*' if (turned := tree.term('*', *reversed(one.args))) in self._place:
+                self._place[one] = self._place[turned]
             case '*' if min(operands) < 0:
                 self._put(one, 'scaled', max(operands), min(operands))
             case '/' if operands[1] < 0:

@@ -38,7 +38,8 @@ BASED = UNBOUND
 PLACES = UNBOUND
 ROOM = UNBOUND
 
-CHANGE = 0.9               # largest change of a base within a step, relative to the base
+CHANGE = 0.9               # largest change or fall of a base within a step, relative to the base
+SHORTER = 0.75             # of a step in which a base falls too far, what is tried next
 LEAST = 2.0 ** -25         # the step over the zero of a base, as a share of the planned step
 TICKS = 2.0 ** -50         # and, if that is longer, of the time
 LOW = 2                    # order of the series of that step
@@ -67,6 +68,15 @@ def change(S, base, h):
 
 
 @compiled
+def fall(S, base, h):
+    """Return by how much a base can fall within a step, at most: what rises does no harm."""
+    found = 0.0
+    for k in range(ORDER, 1, -1):
+        found = h * (found + max(-k * S[PLACES * k + base], 0.0))
+    return found
+
+
+@compiled
 def expanded(p, control, y, t, planned):
     """Fill S; return the length of the step where a base is about to pass zero, else 0.
 
@@ -90,14 +100,17 @@ def expanded(p, control, y, t, planned):
 def within(S, h, step, last, over):
     """Return a step within which all bases stay positive, h at most, and the plan for the next.
 
+    Zeros of a base beside the real line shorten a step by the error of the series, as all that
+    ends its convergence does.
+
     `over` is what `expanded` returned; the plan, `step` or the `last` one, knows nothing of bases.
     """
     chosen_one = h
     if over > 0.0:
         h = min(h, over)
     for base in range(SIZE, SIZE + (BASED if over == 0.0 else 0)):
-        while h > 0.0 and not change(S, base, h) <= CHANGE * S[PLACES + base]:
-            h *= 0.5
+        while h > 0.0 and not fall(S, base, h) <= CHANGE * S[PLACES + base]:
+            h *= SHORTER
     return h, last if h < chosen_one and last > 0.0 else step
 
 

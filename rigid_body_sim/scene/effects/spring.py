@@ -25,7 +25,7 @@ class Spring(Effect):
 
         U = k (|d| - l)^2/2,    F = -c (d . v/|d|) d/|d|
 
-    where v is the velocity of the point; U is booked as potential, what c takes as heat. Without
+    where v is the velocity of the point, all in body axes; U is booked as potential, what c takes as heat. Without
     a `length` U = k d^2/2, and c damps all of v. A scene may list several.
 
     ``spring: {stiffness: k, angle: phi, damping: c}`` on a hinge is a torsion spring, k in N m/rad
@@ -70,10 +70,11 @@ class Spring(Effect):
                                'needed: at, anchor, stiffness')
         x, y, z = map(float, settings['at'])
         body_at = vectors.constant((x, y, z))
-        d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(body_at)),
-                               vectors.constant(settings['anchor']))
-        carried = vectors.to_world(vectors.cross(vectors.named(RATES), body_at))
-        v = vectors.total(vectors.named(VELOCITY), carried)
+        to_origin = vectors.difference(vectors.named(PLACE),
+                                       vectors.constant(settings['anchor']))
+        d = vectors.total(vectors.to_body(to_origin), body_at)
+        v = vectors.total(vectors.to_body(vectors.named(VELOCITY)),
+                          vectors.cross(vectors.named(RATES), body_at))
         square, pull = vectors.dot(d, d), tree.number(-k)
         if l:
             pull = tree.times(pull, tree.minus(
@@ -94,10 +95,10 @@ class Spring(Effect):
                 return pulls
             return *pulls, actions.torque(self.damper, 'body', (), frame, 'heat')
         # the moment of the force, not a derivative by the attitude, whose terms cancel
-        pulls = actions.force(self.pull, 'world', (), self.at, frame, 'potential')
+        pulls = actions.force(self.pull, 'body', (), self.at, frame, 'potential')
         if not self.damper:
             return pulls
-        return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
+        return *pulls, *actions.force(self.damper, 'body', (), self.at, frame, 'heat')
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the pull with the damping."""
@@ -106,7 +107,7 @@ class Spring(Effect):
             damper = formulas.torque(self.damper or formulas.NONE, 'body', (), frame)
             return Pull(formulas=found.formulas + damper.formulas)
         both = vectors.total(self.pull, self.damper or formulas.NONE)
-        return formulas.force(both, 'world', (), self.at, frame)
+        return formulas.force(both, 'body', (), self.at, frame)
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""
