@@ -18,14 +18,13 @@ import numpy as np
 
 from rigid_body_sim.choice.comparison import apart
 from rigid_body_sim.choice.measured import HALF_ULP
-from rigid_body_sim.choice.runs import pushed, run, strikes
+from rigid_body_sim.choice.runs import run, strikes
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import matrix, normalised, rotate_back
+from rigid_body_sim.numerics.rotations import matrix, normalised
 from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.principal_axes import is_slim
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION
 
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
@@ -36,7 +35,6 @@ MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start 
 FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
-TURNED = 2.0 * HALF_ULP  # share of an impulse that its components lose in the turn to the body
 HASTE = 1.5              # factor on its rate, from one state to the next that is moved
 SLOW = 0.25              # share of its largest rate: rounding of slower states hardly counts
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
@@ -98,7 +96,7 @@ def lost(scene, prototype, times, states, enough=math.inf):
     """Return the error of the attitude of a run by rounding, rad, shape (n,).
 
     Each strike starts the motion anew, with roundings of its own, which grow from then on: squares
-    add up, and so does what rounding takes from the rate that the strike adds.
+    add up.
 
     Parameters
     ----------
@@ -114,31 +112,8 @@ def lost(scene, prototype, times, states, enough=math.inf):
     squares = np.square(found)
     for strike in strikes(scene):
         since = 1.0 - max(strike.time, 0.0) / times
-        turned = _rate_lost(scene, strike, times, states) * times * since
-        again = np.square(found * since) + AGAIN * AGAIN + np.square(turned)
-        squares += np.where(since >= 0.0, again, 0.0)
+        squares += np.where(since >= 0.0, np.square(found * since) + AGAIN * AGAIN, 0.0)
     return np.sqrt(squares)
-
-
-def _rate_lost(scene, strike, times, states):
-    """Return what rounding takes from the rate that a strike adds, rad/s, about.
-
-    The impulse of torque rounds by a share of its size where it is turned into the body, and its
-    part along an axis is divided by the moment there, which may be small. That of a slim body is
-    turned with 32 digits. The strike is taken to be at the last look before it.
-    """
-    before = int(np.searchsorted(times, strike.time))
-    vector = states[before - 1] if before else scene.initial.vector
-    added = (pushed(scene, strike, vector.copy()) - vector)[ANGULAR_VELOCITY].tolist()
-    inertia = scene.constraint.inertia(scene.body)
-    if scene.constraint.axis is not None:
-        return TURNED * hypot3(*added)
-    if is_slim(inertia.moments):
-        return 0.0
-    along = rotate_back(*inertia.axes, *added)
-    size = hypot3(*(moment * part for moment, part in zip(inertia.moments, along, strict=True)))
-    return TURNED * size * hypot3(*(1.0 / moment if moment > 0.0 else 0.0
-                                    for moment in inertia.moments))
 
 
 def lost_in_steps(scene, prototype, times, states, enough=math.inf):

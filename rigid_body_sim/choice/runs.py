@@ -75,11 +75,10 @@ def _struck(scene, strike, solver):
     """Return the state just after a strike."""
     vector = np.empty(STATE_SIZE)
     solver.state(max(strike.time, 0.0), vector)
-    return pushed(scene, strike, vector)
+    return _pushed(scene, strike, vector)
 
 
-def pushed(scene, strike, vector):
-    """Change a state, shape (14,), to that just after a strike, and return it."""
+def _pushed(scene, strike, vector):
     impulse.push(parameters(scene), vector, *strike.as_impulse(scene.body, vector),
                  np.zeros(ENTRIES_SIZE))
     return vector
@@ -89,6 +88,6 @@ def struck_rate(scene):
     """Return approximately what the strikes of a scene add to the rate of its body (rad/s)."""
     total, start = 0.0, scene.initial.vector
     for strike in strikes(scene):
-        after = pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
+        after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
         total += hypot3(*(after - start[ANGULAR_VELOCITY]).tolist())
     return total
