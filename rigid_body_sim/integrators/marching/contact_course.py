@@ -32,6 +32,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
     GLIDING,
+    PIVOTING,
     RESTING,
     ROLLING,
     ROW,
@@ -55,10 +56,10 @@ HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-(MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY, VISCOUS,
- FILM) = (CONTACT.part(name).first for name in (
-     'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
-     'level', 'rolling', 'rolling_viscous', 'film'))
+(MODE, SWIFT, CREEP, SIDE, LAG, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY,
+ VISCOUS, FILM) = (CONTACT.part(name).first for name in (
+     'mode', 'swift', 'creep', 'side', 'lag', 'until', 'mu', 'inclined', 'mass', 'began', 'onset',
+     'rim', 'level', 'rolling', 'rolling_viscous', 'film'))
 ORIGIN, SIZES, WAY = (CONTACT.part(name).places for name in ('origin', 'size', 'way'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
@@ -151,6 +152,9 @@ class PlaneCourse:
                                'follow each other without end')
         # no step is asked to resolve the rounding of forces that cancel
         tolerance = max(self._tolerance, CANCELS * self._scales.heaviness / p[SWIFT])
+        p[LAG] = tolerance * self._scales.length
+        if mode == PIVOTING:
+            p[SIDE] = math.copysign(1.0, spins(p, y))
         self._phases.append(Phase(self._bound, p, y, tolerance, self._work, self._scales.length))
         self._begins.append(self._phases[-1].begin)
 
@@ -159,7 +163,8 @@ class PlaneCourse:
         y[U] = *u, 0.0
         y[GAP] = 0.0
         mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
-        slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > self._scales.rounding(y)
+        slides = u[0] != 0.0 or u[1] != 0.0 or (
+            abs(spins(p, y)) > self._scales.rounding(y))
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
         self._rolling.begin(p, y, is_held(p))
         slow = self._scales.rounding(y) / self._scales.length
@@ -361,6 +366,16 @@ class PlaneCourse:
         if p[LEVEL] > 0.0:
             y[GAP] -= rise(p, y)
             p[LEVEL] = 0.0
+        if why == contact_march.SETTLED:
+            self._open(PIVOTING, p, y)
+            return
+        if p[MODE] == PIVOTING:
+            p[MODE] = SLIDING    # it is a slip, whose events are these
+            if why == contact_march.FASTER and p[SIDE] * spins(p, y) <= 0.0:
+                why = contact_march.STUCK
+                grip_patch(p, y)
+            elif why == contact_march.FAILED:
+                why = contact_march.FASTER
         if why == contact_march.FAILED and self._rolling.goes_on_tipping(p, y):
             self._open(int(p[MODE]), p, y)
             return
@@ -386,7 +401,7 @@ class PlaneCourse:
         if why == contact_march.TOUCHED:
             self._impact(p, y)
             return
-        if why == contact_march.FASTER and y[SLIP][0] <= 0.0:
+        if why == contact_march.FASTER and p[MODE] == CREEPING and y[SLIP][0] <= 0.0:
             why = contact_march.STUCK    # the slip that began has died again
             grip_patch(p, y)
         if why in BEGAN:
