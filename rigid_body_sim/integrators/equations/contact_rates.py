@@ -115,7 +115,6 @@ ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
 LAGS = 1e4               # rad: lag with which a creep ends, over its share of the speeds then
 SHORT = 1e-6             # time of a difference, over the time in which the body moves by its size
-WIDE = 3e-3              # and of one of a slip that pivots, whose forces cancel to rounding
 ZERO = (0.0, 0.0, 0.0)
 
 load_contact, load_unknowns, store_row = CONTACT.load, UNKNOWNS.load, ROW.store
@@ -347,19 +346,13 @@ def _balance(c, at, push, growth):
     return Balance(slip, growth, friction, (friction[0], friction[1], N), touch)
 
 
-@compiled_inline
-def _wide(c):
-    """Return the time step of a difference of a slip that pivots, s."""
-    return WIDE * c.size[0] / c.swift
-
-
 @compiled
 def _settled(p, c, now, at, push, slip, since):
     """Return the Balance of a patch whose u' is the rate of the slip without u'.
 
     The rate is a difference to both sides. `slip` and `since` are those of `_later`.
     """
-    still, wide = _balance(c, at, push, ZERO), _wide(c)
+    still, wide = _balance(c, at, push, ZERO), c.wide
     ahead = _later(p, c, now, at, still.f, still.touch, slip, since, wide)
     after = _balance(c, ahead, _pushed(p, c, now, ahead, slip, since + wide), ZERO)
     behind = _later(p, c, now, at, still.f, still.touch, slip, since, -wide)
@@ -383,7 +376,7 @@ def _pivoting(p, c, now, at, push, v, speed, film):
     The rate of its slip is a difference of the fourth order of slips whose own error is of the
     second order in the time of relaxation.
     """
-    slip, wide = (now.u[0], now.u[1], 0.0), _wide(c)
+    slip, wide = (now.u[0], now.u[1], 0.0), c.wide
     settled = _settled(p, c, now, at, push, slip, 0.0)
     near = minus(_beside(p, c, now, at, slip, settled, wide),
                  _beside(p, c, now, at, slip, settled, -wide))

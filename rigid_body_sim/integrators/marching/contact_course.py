@@ -56,10 +56,10 @@ HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-(MODE, SWIFT, CREEP, SIDE, LAG, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY,
+(MODE, SWIFT, CREEP, SIDE, LAG, WIDE, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY,
  VISCOUS, FILM) = (CONTACT.part(name).first for name in (
-     'mode', 'swift', 'creep', 'side', 'lag', 'until', 'mu', 'inclined', 'mass', 'began', 'onset',
-     'rim', 'level', 'rolling', 'rolling_viscous', 'film'))
+     'mode', 'swift', 'creep', 'side', 'lag', 'wide', 'until', 'mu', 'inclined', 'mass', 'began',
+     'onset', 'rim', 'level', 'rolling', 'rolling_viscous', 'film'))
 ORIGIN, SIZES, WAY = (CONTACT.part(name).places for name in ('origin', 'size', 'way'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
@@ -80,6 +80,11 @@ SLIDES = ('at t = {} s the body lies flat and goes on sliding or spinning on its
           'plane lets it rest')
 TIMED = ('at t = {} s the body lies flat under an effect that depends on time, which may move it '
          'again at a time that is not looked for; pieces in time are followed')
+WIDEST = 3e-3            # time of a difference, over that in which a body moves by its length
+NARROWEST = 1e-6
+SLIP_ROUNDS = 2.0 ** -44 # share of the spin by which forces that cancel round the slip of a pivot
+NARROWS = 0.125          # times it where the slip of a pivot changes faster,
+SOON = 8                 # which then ends after so many steps
 TURNS = 50               # corrections of the way in which a flat ring tips
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
@@ -96,7 +101,7 @@ class PlaneCourse:
         self._work = np.zeros(bound.work_shape)
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
                            comes_to_rest=True)
-        self._phases, self._begins = [], []
+        self._phases, self._begins, self._wide = [], [], WIDEST
         self._events, self._over, self._why = [], None, ''
         y = np.empty(SIZE)
         x, yy, height = read(bound.parameters(self._begin), self._start, y)
@@ -153,6 +158,8 @@ class PlaneCourse:
         # no step is asked to resolve the rounding of forces that cancel
         tolerance = max(self._tolerance, CANCELS * self._scales.heaviness / p[SWIFT])
         p[LAG] = tolerance * self._scales.length
+        noise = abs(spins(p, y)) * SLIP_ROUNDS / p[LAG]
+        p[WIDE] = min(WIDEST, max(self._wide, noise)) * self._scales.length / p[SWIFT]
         if mode == PIVOTING:
             p[SIDE] = math.copysign(1.0, spins(p, y))
         self._phases.append(Phase(self._bound, p, y, tolerance, self._work, self._scales.length))
@@ -371,6 +378,8 @@ class PlaneCourse:
             return
         if p[MODE] == PIVOTING:
             p[MODE] = SLIDING    # it is a slip, whose events are these
+            soon = phase.steps <= SOON
+            self._wide = max(NARROWS * self._wide, NARROWEST) if soon else WIDEST
             if why == contact_march.FASTER and p[SIDE] * spins(p, y) <= 0.0:
                 why = contact_march.STUCK
                 grip_patch(p, y)

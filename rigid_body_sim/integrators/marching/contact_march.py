@@ -80,7 +80,7 @@ TOO_SHORT = 1e-5             # share of the time in which a ring that is almost 
 CROWD = 25000                # so many steps in a row that short: friction leaves no motion
 STALLED = 2000               # and so many in a row of a slip that dies: it is dead
 FADES = 1e-3                 # share of the speeds below which a slip fades
-SETTLES = 0.5                # share of the lag allowed that what begins to pivot leaves free
+SETTLES = 0.5                # share of spin and lag allowed that what begins to pivot leaves free
 PACED = 2.0 ** -52           # rounding of its pace, by which it may err after STALLED such steps
 
 
@@ -199,10 +199,11 @@ def _dies(p, w, y):
 @compiled_inline
 def _settles(p, w, y):
     """Return whether a slip that fades pivots: it is the one that its friction asks for."""
-    p[MODE], p[SIDE] = PIVOTING, math.copysign(1.0, spins(p, y))
+    spin = spins(p, y)
+    p[MODE], p[SIDE] = PIVOTING, math.copysign(1.0, spin)
     rate(p, y, w[FRESH])
     p[MODE], p[SIDE] = SLIDING, 0.0
-    return w[FRESH, WATCHED + GRIP] > SETTLES * p[LAG]
+    return w[FRESH, WATCHED + GRIP] > SETTLES * min(abs(spin), p[LAG])
 
 
 @compiled_inline

@@ -45,6 +45,11 @@ class Phase:
         """Why the phase ended; RUNNING if it did not yet."""
         return self._meta[contact_march.STATUS]
 
+    @property
+    def steps(self):
+        """How many steps it has made."""
+        return int(self._meta[contact_march.STEPS])
+
     def reach(self, elapsed, work):
         """March until the time is passed or the phase ends; return whether it ends before.
 

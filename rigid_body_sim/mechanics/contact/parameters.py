@@ -54,6 +54,8 @@ class ContactParameters(NamedTuple):
         Sign of the spin of a patch that pivots; 0 in other phases.
     lag : float
         By how much its slip may differ from that of Coulomb's law, m/s.
+    wide : float
+        Time of a difference of its slip, s.
     onset : float
         Speed up to which the friction against a rolling that has just begun is along `way`, which
         turns, m/s; 0 in other phases.
@@ -98,6 +100,7 @@ class ContactParameters(NamedTuple):
     creep: float
     side: float
     lag: float
+    wide: float
     onset: float
     turn: float
     since: float
