@@ -17,6 +17,11 @@ along the axes of the plane.
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
               behind that direction is corrected to the first order in |u| |omega|/(mu g). It
               ends, as a SLIDING, where it is fast or lags far
+    PIVOTING  a SLIDING of a patch so small that u relaxes in no time: u is, but for a lag, the
+              one that Coulomb's law has for the force that u' asks for. u' is the rate of that u
+              to the second order in its time of relaxation, and u is drawn to it at the pace of
+              the body, so that force, heat and v are those of one motion. It ends where the spin
+              does, or, as a SLIDING, where the lag is more than the accuracy lets it be
 
 In each phase of contact dry rolling friction may hold the lowest point where it is on the body
 (p.way): a couple without power keeps it there, as long as its force is at most C N. Such a body
@@ -37,6 +42,7 @@ from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
+    PIVOTING,
     RESTING,
     ROLLING,
     ROW,
@@ -73,7 +79,9 @@ from rigid_body_sim.mechanics.contact.laws import (
     MOST_LAG,
     departure,
     patch_departure,
+    patch_following,
     patch_lagging,
+    patch_pivoting,
     patch_slipping,
     patch_sticking,
     slipping,
@@ -100,6 +108,8 @@ from rigid_body_sim.scene.surfaces import TORUS
 applied = UNBOUND
 # a line HOLDS = True for a scene with dry rolling friction, else HOLDS = False
 HOLDS = UNBOUND
+# a line PATCHED = True for a scene with a patch of contact, else PATCHED = False
+PATCHED = UNBOUND
 
 ROUNDING = 2.0 ** -50    # of a normal velocity, relative to the speeds
 SLID = 1e-3              # share of the radius: a shorter slide is part of coming to rest
@@ -219,22 +229,42 @@ def _short(c):
 
 
 @compiled
-def _ahead(p, c, now, at, f, touch):
-    """Return Posture and Push a short time later under a force and a couple of the contact."""
-    acts = _applied(p, c, now, at, at.omega, scaled(-1.0, apply(at.axes, at.carried)), 0.0)
+def _later(p, c, now, at, f, touch, slip, since, short):
+    """Return the Posture a short time later under a force and a couple of the contact.
+
+    More than eight arguments: those of a rate, and what the contact does in the meantime.
+
+    Parameters
+    ----------
+    slip : Vector
+        The velocity of the lowest point that counts, m/s.
+    since, short : float
+        The time of the Posture after that of the unknowns, and by how much later, s.
+    """
+    acts = _applied(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
     torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
     grown = _hastened(c, at, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
-    short = _short(c)
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
     half = 0.5 * short
     q = normalised(at.q[0] + half * x, at.q[1] + half * y, at.q[2] + half * z,
                    at.q[3] + half * w)
-    omega = plus(at.omega, scaled(short, grown))
-    later = _posture(c, q, omega)
-    acts = _applied(p, c, now, later, omega, scaled(-1.0, apply(later.axes, later.carried)), short)
-    viscous, wrung, _, _ = _couples(c, later, now.time + short)
-    torque = minus(plus(acts.couple, viscous), cross(omega, apply(c.inertia, omega)))
-    return later, Push(acts.force, torque, viscous, wrung)
+    return _posture(c, q, plus(at.omega, scaled(short, grown)))
+
+
+@compiled
+def _pushed(p, c, now, at, slip, since):
+    """Return the Push on a Posture, a time after that of the unknowns; `slip` as in `_later`."""
+    acts = _applied(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
+    viscous, wrung, _, _ = _couples(c, at, now.time + since)
+    torque = minus(plus(acts.couple, viscous), cross(at.omega, apply(c.inertia, at.omega)))
+    return Push(acts.force, torque, viscous, wrung)
+
+
+@compiled
+def _ahead(p, c, now, at, f, touch, slip, since):
+    """Return Posture and Push after the time of a difference; the arguments are `_later`'s."""
+    later = _later(p, c, now, at, f, touch, slip, since, _short(c))
+    return later, _pushed(p, c, now, later, slip, since + _short(c))
 
 
 @compiled
@@ -253,7 +283,7 @@ def _lagging(p, c, now, at, push, slow):
     dx, dy = leaving(system, c.mu)
     _, _, N, _ = slipping(system, c.mu, dx, dy)
     f = -c.mu * N * dx, -c.mu * N * dy, N
-    later, pushed = _ahead(p, c, now, at, f, plus(push.viscous, scaled(N, push.wrung)))
+    later, pushed = _ahead(p, c, now, at, f, plus(push.viscous, scaled(N, push.wrung)), ZERO, 0.0)
     ex, ey, _ = departure(system_of(c, later, pushed), c.mu, dx, dy)
     _, _, slope, _ = turning(system, c.mu, dx, dy)
     if not slope < 0.0:
@@ -279,9 +309,92 @@ def _parting(p, c, now, at, push, slow):
     f = -c.mu * N * d[0], -c.mu * N * d[1], N
     twist = scaled(-c.mu * N * c.patch * d[2], at.axes[2])
     later, pushed = _ahead(p, c, now, at, f,
-                           plus(plus(push.viscous, scaled(N, push.wrung)), twist))
+                           plus(plus(push.viscous, scaled(N, push.wrung)), twist), ZERO, 0.0)
     ahead, _ = patch_departure(patch_of(c, later, pushed), c.mu, d)
     return patch_lagging(patch, c.mu, d, scaled(slow / _short(c), minus(ahead, d)))
+
+
+class Balance(NamedTuple):
+    """A patch that pivots, with the friction that some u' asks for.
+
+    Attributes
+    ----------
+    slip, growth : Vector
+        The slip u that Coulomb's law has for this friction, m/s, and u', m/s^2.
+    friction : Vector
+        Its three components, N; the third is 0 where friction cannot hold u'.
+    f, touch : Vector
+        Force and couple of the contact (axes of the plane, of the body), N and N m.
+    """
+
+    slip: Vector
+    growth: Vector
+    friction: Vector
+    f: Vector
+    touch: Vector
+
+
+@compiled
+def _balance(c, at, push, growth):
+    """Return the Balance of a patch whose slip grows by a vector (m/s^2)."""
+    friction, N = patch_pivoting(patch_of(c, at, push), c.mu, c.side, growth)
+    slip = ZERO
+    if friction[2] != 0.0:
+        share = c.patch * dot(at.axes[2], at.omega) / friction[2]
+        slip = share * friction[0], share * friction[1], 0.0
+    touch = plus(plus(push.viscous, scaled(N, push.wrung)),
+                 scaled(c.patch * friction[2], at.axes[2]))
+    return Balance(slip, growth, friction, (friction[0], friction[1], N), touch)
+
+
+@compiled
+def _settled(p, c, now, at, push, slip, since):
+    """Return the Balance of a patch whose u' is the rate of the slip without u'.
+
+    The rate is a difference to both sides. `slip` and `since` are those of `_later`.
+    """
+    still, wide = _balance(c, at, push, ZERO), c.wide
+    ahead = _later(p, c, now, at, still.f, still.touch, slip, since, wide)
+    after = _balance(c, ahead, _pushed(p, c, now, ahead, slip, since + wide), ZERO)
+    behind = _later(p, c, now, at, still.f, still.touch, slip, since, -wide)
+    before = _balance(c, behind, _pushed(p, c, now, behind, slip, since - wide), ZERO)
+    return _balance(c, at, push, scaled(0.5 / wide, minus(after.slip, before.slip)))
+
+
+@compiled
+def _beside(p, c, now, at, slip, settled, short):
+    """Return the slip of the Balance `settled` a short time (s) later."""
+    later = _later(p, c, now, at, settled.f, settled.touch, slip, 0.0, short)
+    slipped = plus(slip, scaled(short, settled.growth))
+    pushed = _pushed(p, c, now, later, slipped, short)
+    return _settled(p, c, now, later, pushed, slipped, short).slip
+
+
+@compiled
+def _pivoting(p, c, now, at, push, v, speed, film):
+    """Return the Contact of a patch that is PIVOTING.
+
+    The rate of its slip is a difference of the fourth order of slips whose own error is of the
+    second order in the time of relaxation.
+    """
+    slip, wide = (now.u[0], now.u[1], 0.0), c.wide
+    settled = _settled(p, c, now, at, push, slip, 0.0)
+    near = minus(_beside(p, c, now, at, slip, settled, wide),
+                 _beside(p, c, now, at, slip, settled, -wide))
+    far = minus(_beside(p, c, now, at, slip, settled, 2.0 * wide),
+                _beside(p, c, now, at, slip, settled, -2.0 * wide))
+    rate = scaled(1.0 / (12.0 * wide), minus(scaled(8.0, near), far))
+    drawn = scaled(c.swift / c.size[0], minus(slip, settled.slip))
+    goes = _balance(c, at, push, minus(rate, drawn))
+    friction, N, spin = goes.friction, goes.f[2], c.patch * dot(at.axes[2], at.omega)
+    off, lag = minus(slip, goes.slip), c.swift
+    if friction[2] != 0.0 and patch_following(patch_of(c, at, push), c.mu,
+                                              scaled(-1.0 / (c.mu * N), friction)):
+        lag = hypot(off[0], off[1])
+    couple = scaled(c.patch * friction[2], at.axes[2])
+    push = Push(push.force, plus(push.torque, couple), plus(push.viscous, couple), push.wrung)
+    return Contact(goes.f, push, goes.growth, slip, v, N, min(c.side * spin, c.lag - lag), 1.0,
+                   speed, film, -dot(friction, slip), -friction[2] * spin, 1.0)
 
 
 @compiled_inline
@@ -455,6 +568,8 @@ def rate(p, y, k):
             contact = _rolling(c, at, push, v, speed, film)
         elif c.mode == CREEPING:
             contact = _creeping(p, c, now, at, push, v, speed, film)
+        elif PATCHED and c.mode == PIVOTING:
+            contact = _pivoting(p, c, now, at, push, v, speed, film)
         else:
             contact = _slipping(c, now, at, push, v, speed, film)
         along = along_way(c, at, way_at(c, now.time), speed) if HOLDS else speed

@@ -45,9 +45,9 @@ store_impulse, STRUCK = LEDGER.part('impulse').store, LEDGER.part('struck').firs
 
 @compiled
 def spins(p, y):
-    """Return the speed at which a patch of contact spins on the plane, m/s."""
+    """Return the velocity rho w at which a patch of contact spins on the plane, m/s."""
     c, now = load_contact(p), load_unknowns(y)
-    return c.patch * abs(dot(matrix(*now.q)[2], now.omega))
+    return c.patch * dot(matrix(*now.q)[2], now.omega)
 
 
 @compiled

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 
-FLIGHT, SLIDING, ROLLING, GLIDING, CREEPING, RESTING = range(6)    # phases (contact_rates.py)
+# phases (contact_rates.py)
+FLIGHT, SLIDING, ROLLING, GLIDING, CREEPING, RESTING, PIVOTING = range(7)
 
 
 class Ledger(NamedTuple):
@@ -73,7 +74,8 @@ class Watched(NamedTuple):
         N, of a flight the gap. Of a slip in the paradox, where A < 0, it is -N.
     grip : float
         What friction could hold less what it holds, N; of a creep how much slower it is than a
-        slip, m/s, or its speed where that is negative.
+        slip, m/s, or its speed where that is negative; of a patch that pivots its spin, m/s, or
+        how much less its slip errs than it may, if that is less.
     firmness : float
         m A (mechanics/contact/laws.py): where it is not positive, no force meets the laws.
     jump : float

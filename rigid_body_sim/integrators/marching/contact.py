@@ -62,7 +62,8 @@ class OnPlane:
                            'pieces in time, or viscous rolling friction')
         source = equations.applied_source(acting, CONTACT.size)
         holds = f'HOLDS = {scene.contact.rolling > 0.0}\n'
-        self.rates = specialise(contact_rates, applied=source, HOLDS=holds)
+        patched = f'PATCHED = {scene.contact.patch > 0.0}\n'
+        self.rates = specialise(contact_rates, applied=source, HOLDS=holds, PATCHED=patched)
         rate = f'{self.rates.__name__}:rate'
         self.kernels = march_of(rate, specialise(contact_step, rate=rate).__name__)
         self.work_shape = contact_step.WORK_ROWS, ROW.size

@@ -32,6 +32,7 @@ from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
     GLIDING,
+    PIVOTING,
     RESTING,
     ROLLING,
     ROW,
@@ -55,10 +56,10 @@ HOLDS = 1e-12            # share of the grip: so much beyond it is rounding
 CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may leave
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
-(MODE, SWIFT, CREEP, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY, VISCOUS,
- FILM) = (CONTACT.part(name).first for name in (
-     'mode', 'swift', 'creep', 'until', 'mu', 'inclined', 'mass', 'began', 'onset', 'rim',
-     'level', 'rolling', 'rolling_viscous', 'film'))
+(MODE, SWIFT, CREEP, SIDE, LAG, WIDE, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY,
+ VISCOUS, FILM) = (CONTACT.part(name).first for name in (
+     'mode', 'swift', 'creep', 'side', 'lag', 'wide', 'until', 'mu', 'inclined', 'mass', 'began',
+     'onset', 'rim', 'level', 'rolling', 'rolling_viscous', 'film'))
 ORIGIN, SIZES, WAY = (CONTACT.part(name).places for name in ('origin', 'size', 'way'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
@@ -79,6 +80,11 @@ SLIDES = ('at t = {} s the body lies flat and goes on sliding or spinning on its
           'plane lets it rest')
 TIMED = ('at t = {} s the body lies flat under an effect that depends on time, which may move it '
          'again at a time that is not looked for; pieces in time are followed')
+WIDEST = 3e-3            # time of a difference, over that in which a body moves by its length
+NARROWEST = 1e-6
+SLIP_ROUNDS = 2.0 ** -44 # share of the spin by which forces that cancel round the slip of a pivot
+NARROWS = 0.125          # times it where the slip of a pivot changes faster,
+SOON = 8                 # which then ends after so many steps
 TURNS = 50               # corrections of the way in which a flat ring tips
 ROWS = 4096              # states of one call of a kernel
 FIRST = np.array([0])    # the only row
@@ -95,7 +101,7 @@ class PlaneCourse:
         self._work = np.zeros(bound.work_shape)
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
                            comes_to_rest=True)
-        self._phases, self._begins = [], []
+        self._phases, self._begins, self._wide = [], [], WIDEST
         self._events, self._over, self._why = [], None, ''
         y = np.empty(SIZE)
         x, yy, height = read(bound.parameters(self._begin), self._start, y)
@@ -151,6 +157,11 @@ class PlaneCourse:
                                'follow each other without end')
         # no step is asked to resolve the rounding of forces that cancel
         tolerance = max(self._tolerance, CANCELS * self._scales.heaviness / p[SWIFT])
+        p[LAG] = tolerance * self._scales.length
+        noise = abs(spins(p, y)) * SLIP_ROUNDS / p[LAG]
+        p[WIDE] = min(WIDEST, max(self._wide, noise)) * self._scales.length / p[SWIFT]
+        if mode == PIVOTING:
+            p[SIDE] = math.copysign(1.0, spins(p, y))
         self._phases.append(Phase(self._bound, p, y, tolerance, self._work, self._scales.length))
         self._begins.append(self._phases[-1].begin)
 
@@ -159,7 +170,8 @@ class PlaneCourse:
         y[U] = *u, 0.0
         y[GAP] = 0.0
         mu, row, rates = p[MU], np.empty(ROW.size), self._bound.rates
-        slides = u[0] != 0.0 or u[1] != 0.0 or spins(p, y) > self._scales.rounding(y)
+        slides = u[0] != 0.0 or u[1] != 0.0 or (
+            abs(spins(p, y)) > self._scales.rounding(y))
         p[MODE] = GLIDING if mu == 0.0 else SLIDING if slides and mu < IDEAL else ROLLING
         self._rolling.begin(p, y, is_held(p))
         slow = self._scales.rounding(y) / self._scales.length
@@ -365,6 +377,18 @@ class PlaneCourse:
         if p[LEVEL] > 0.0:
             y[GAP] -= rise(p, y)
             p[LEVEL] = 0.0
+        if why == contact_march.SETTLED:
+            self._open(PIVOTING, p, y)
+            return
+        if p[MODE] == PIVOTING:
+            p[MODE] = SLIDING    # it is a slip, whose events are these
+            soon = phase.steps <= SOON
+            self._wide = max(NARROWS * self._wide, NARROWEST) if soon else WIDEST
+            if why == contact_march.FASTER and p[SIDE] * spins(p, y) <= 0.0:
+                why = contact_march.STUCK
+                grip_patch(p, y)
+            elif why == contact_march.FAILED:
+                why = contact_march.FASTER
         if why == contact_march.FAILED and self._rolling.goes_on_tipping(p, y):
             self._open(int(p[MODE]), p, y)
             return
@@ -390,7 +414,7 @@ class PlaneCourse:
         if why == contact_march.TOUCHED:
             self._impact(p, y)
             return
-        if why == contact_march.FASTER and y[SLIP][0] <= 0.0:
+        if why == contact_march.FASTER and p[MODE] == CREEPING and y[SLIP][0] <= 0.0:
             why = contact_march.STUCK    # the slip that began has died again
             grip_patch(p, y)
         if why in BEGAN:

@@ -18,11 +18,12 @@ import math
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.contact_rest import lies_low
+from rigid_body_sim.integrators.equations.contact_rest import lies_low, spins
 from rigid_body_sim.integrators.equations.contact_states import write
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
+    PIVOTING,
     ROW,
     SLIDING,
     UNKNOWNS,
@@ -50,8 +51,8 @@ NORMAL, GRIP, FIRMNESS, JUMPS, STOPS, ROLLS = (
     layout(Watched).part(name).first for name in Watched._fields)
 NOTHING = -1    # none does
 load_omega, load_u = UNKNOWNS.part('omega').load, UNKNOWNS.part('u').load
-MODE, SWIFT, KIND, DRY, VISCOUS, FILM = (CONTACT.part(name).first for name in (
-    'mode', 'swift', 'kind', 'rolling', 'rolling_viscous', 'film'))
+MODE, SWIFT, KIND, DRY, VISCOUS, FILM, PATCH, SIDE, LAG = (CONTACT.part(name).first for name in (
+    'mode', 'swift', 'kind', 'rolling', 'rolling_viscous', 'film', 'patch', 'side', 'lag'))
 
 LOST = SIZE                  # place in a point of what the sums have lost
 POINT = 2 * SIZE
@@ -65,11 +66,11 @@ all of a slip that fades, and how many all too short for a slip that jams; the t
 to the event that no step reaches (s)."""
 META = 15
 (RUNNING, LOST_CONTACT, LET_GO, STUCK, PARADOX, JUMP, TOUCHED, FAILED, FASTER,
- STOPPED, HELD) = range(11)
+ STOPPED, HELD, SETTLED) = range(12)
 """Why a phase ends: N = 0, the grip or the creep ends, the slip is dead, A = 0, what acts jumps,
-the body comes down; no step is small enough; a creep has become a slip; a ring lies flat, is flat
-in a flight, or a body no longer rolls; dry friction holds the rolling of a disk, or lets a body
-roll."""
+the body comes down; no step is small enough; a creep has become a slip, or a pivot ends; a ring
+lies flat, is flat in a flight, or a body no longer rolls; dry friction holds the rolling of a
+disk, or lets a body roll; a slip of a patch pivots."""
 GROWTH, SHRINK, SAFETY, TRIALS = 4.0, 0.1, 0.9, 60
 FLOOR = 2e-17                # smallest error that is asked for
 CLOSE = 0.1                  # share of a watched number that is looked at more closely
@@ -82,6 +83,7 @@ STALLED = 2000               # and so many in a row of a slip that dies: it is d
 FADES = 1e-3                 # share of the speeds below which a slip fades
 JAMS = 1e-3                  # m A below which a slip jams where A goes on falling
 HASTE = 1e-3                 # share of the time until A = 0: a step below that is too short
+SETTLES = 0.5                # share of spin and lag allowed that what begins to pivot leaves free
 PACED = 2.0 ** -52           # rounding of its pace, by which it may err after STALLED such steps
 
 
@@ -182,6 +184,8 @@ def march(p, w, phase, sizes, front, meta, target):
             meta[STATUS] = STUCK if stalls else FAILED
         elif meta[JAMMED] > STALLED:
             meta[STATUS], meta[AHEAD] = PARADOX, ahead
+        elif p[PATCH] > 0.0 and fades and meta[FADED] % STALLED == 0.0 and _settles(p, w, y):
+            meta[STATUS] = SETTLED
         omega = load_omega(y)
         meta[RATE] = max(meta[RATE], math.sqrt(dot(omega, omega)))
         if meta[STATUS] == RUNNING:
@@ -211,6 +215,16 @@ def _until_jam(w, took):
     if not 0.0 < after < before < JAMS:
         return 0.0
     return took * after / (before - after)
+
+
+@compiled_inline
+def _settles(p, w, y):
+    """Return whether a slip that fades pivots: it is the one that its friction asks for."""
+    spin = spins(p, y)
+    p[MODE], p[SIDE] = PIVOTING, math.copysign(1.0, spin)
+    rate(p, y, w[FRESH])
+    p[MODE], p[SIDE] = SLIDING, 0.0
+    return w[FRESH, WATCHED + GRIP] > SETTLES * min(abs(spin), p[LAG])
 
 
 @compiled_inline
@@ -263,7 +277,7 @@ def _named(mode, k):
     if k == NORMAL:
         return TOUCHED if mode == FLIGHT else LOST_CONTACT
     if k == GRIP:
-        return FASTER if mode == CREEPING else LET_GO
+        return FASTER if mode in (CREEPING, PIVOTING) else LET_GO
     return (PARADOX if k == FIRMNESS else JUMP if k == JUMPS else STOPPED if k == STOPS
             else HELD)
 

@@ -50,6 +50,11 @@ class Phase:
         """The time from the front to the event that ended the phase, s."""
         return float(self._meta[contact_march.AHEAD])
 
+    @property
+    def steps(self):
+        """How many steps it has made."""
+        return int(self._meta[contact_march.STEPS])
+
     def reach(self, elapsed, work):
         """March until the time is passed or the phase ends; return whether it ends before.
 

@@ -16,7 +16,11 @@ in place of b: Newton's restitution e, and Coulomb's law for the impulses.
 
 A patch of contact of radius rho resists a spin w about the normal: Coulomb's law then holds for
 (u, rho w) in three dimensions, and the couple about n over rho is the third component of friction
-(class Patch).
+(class Patch). A patch so small that its slip relaxes at once pivots: friction gives what u' needs,
+and the rest of mu N goes against the spin, f_3 = -sgn(w) sqrt((mu N)^2 - |F_t|^2). The slip that
+Coulomb's law has for this friction is
+
+    u = F_t rho w/f_3
 
 Slip that begins leaves along a direction d that it keeps at first: u' is parallel to d.
 
@@ -369,6 +373,56 @@ def _patch_slope(patch, mu, along, pushed, N, A):
     """Return the derivative of v' by d along a direction across it."""
     push = scaled(-mu, along)
     return plus(scaled(-N / A * dot(patch.n, push), pushed), scaled(N, apply(patch.M, push)))
+
+
+@compiled
+def patch_pivoting(patch, mu, side, growth):
+    """Return (friction, N) of a patch that pivots, or no friction where there is none.
+
+    N and the friction along the plane go with f_3 in a straight line, so that |friction| = mu N is
+    a quadratic equation for it. It has one solution on either side if friction can hold a patch
+    that does not resist its spin.
+
+    Parameters
+    ----------
+    side : float
+        Sign of the spin.
+    growth : tuple of 2 floats
+        u', m/s^2.
+    """
+    M, c, n, nn, b, bn = patch
+    along = System(((M[0][0], M[0][1], c[0]), (M[1][0], M[1][1], c[1]), (n[0], n[1], nn)),
+                   (b[0] - growth[0], b[1] - growth[1], bn))
+    fx, fy, N = sticking(along)
+    gx, gy, more = sticking(System(along.G, (M[0][2], M[1][2], n[2])))
+    square = 1.0 + gx * gx + gy * gy - mu * mu * more * more
+    half = -side * (fx * gx + fy * gy - mu * mu * N * more)
+    rest = fx * fx + fy * fy - mu * mu * N * N
+    if not (square > 0.0 and rest < 0.0):
+        return (0.0, 0.0, 0.0), N
+    root = math.sqrt(half * half - square * rest)
+    size = -rest / (half + root) if half > 0.0 else (root - half) / square
+    third = -side * size
+    return (fx + third * gx, fy + third * gy, third), N + third * more
+
+
+@compiled
+def patch_following(patch, mu, d):
+    """Return whether the slip u of a patch that pivots is drawn to that of Coulomb's law.
+
+    Then u' falls as u grows: the eigenvalues of du'/du have negative real parts.
+
+    Parameters
+    ----------
+    d : Vector
+        Unit vector along (u, rho w).
+    """
+    _, N, A = patch_slipping(patch, mu, d)
+    pushed = plus(apply(patch.M, scaled(-mu, d)), patch.c)
+    one = _patch_slope(patch, mu, plus((1.0, 0.0, 0.0), scaled(-d[0], d)), pushed, N, A)
+    other = _patch_slope(patch, mu, plus((0.0, 1.0, 0.0), scaled(-d[1], d)), pushed, N, A)
+    return A > 0.0 and N > 0.0 and one[0] + other[1] < 0.0 and (
+        one[0] * other[1] > one[1] * other[0])
 
 
 @compiled

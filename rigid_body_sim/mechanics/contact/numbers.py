@@ -30,8 +30,8 @@ def contact_parameters(scene):
         inclined=float(plane.axes != IDENTITY), plane=plane.axes,
         mu=laws.mu, restitution=plane.restitution, rolling=laws.rolling,
         rolling_viscous=laws.rolling_viscous, film=laws.film, patch=laws.patch,
-        way=(1.0, 0.0), swift=0.0, creep=0.0, onset=0.0, turn=0.0, since=0.0, slack=0.0,
-        rim=0.0, level=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
+        way=(1.0, 0.0), swift=0.0, creep=0.0, side=0.0, lag=0.0, wide=0.0, onset=0.0, turn=0.0,
+        since=0.0, slack=0.0, rim=0.0, level=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
     return p
 
 

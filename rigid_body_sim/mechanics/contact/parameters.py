@@ -50,6 +50,12 @@ class ContactParameters(NamedTuple):
         A speed beside which what is left of a slip is rounding, m/s.
     creep : float
         Largest speed of a slip that has just begun and follows its direction, m/s.
+    side : float
+        Sign of the spin of a patch that pivots; 0 in other phases.
+    lag : float
+        By how much its slip may differ from that of Coulomb's law, m/s.
+    wide : float
+        Time of a difference of its slip, s.
     onset : float
         Speed up to which the friction against a rolling that has just begun is along `way`, which
         turns, m/s; 0 in other phases.
@@ -92,6 +98,9 @@ class ContactParameters(NamedTuple):
     way: Pair
     swift: float
     creep: float
+    side: float
+    lag: float
+    wide: float
     onset: float
     turn: float
     since: float

@@ -25,6 +25,7 @@ from rigid_body_sim.mechanics.contact.holding import (
 from rigid_body_sim.mechanics.contact.laws import (
     departure,
     patch_departure,
+    patch_pivoting,
     patch_slipping,
     patch_sticking,
     slipping,
@@ -45,6 +46,7 @@ from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled, tra
 from rigid_body_sim.scene.surfaces import TORUS
 
 TOUCHES = 1e-11    # a gap, a slip, a speed below that share of lengths and speeds is rounding
+PIVOTS = 1e-8      # share of the speeds below which the slip of a patch that spins is its balance
 BEGINS = 1e-7      # share of the speeds below which a rolling has no direction of its own
 NOTHING = (0.0, 0.0, 0.0)
 
@@ -204,6 +206,11 @@ class Standing:
         """Return force (axes of the plane) and couple about the normal of a patch of contact."""
         mu, rho = self._c.mu, self._c.patch
         slip = hypot3(u[0], u[1], rho * spin)
+        if slip <= PIVOTS * speed and spin != 0.0:
+            # what a state tells of so small a slip is rounding; of a spin it is not
+            friction, N = patch_pivoting(patch, mu, math.copysign(1.0, spin), (0.0, 0.0))
+            if N > 0.0 > friction[2] * spin and self._is_balance(u, spin, speed, friction):
+                return (friction[0], friction[1], N), rho * friction[2]
         if slip > TOUCHES * speed:
             d = u[0] / slip, u[1] / slip, rho * spin / slip
         else:
@@ -216,6 +223,16 @@ class Standing:
             d, _ = patch_departure(patch, mu, scaled(-1.0 / size, friction))
         _, N, _ = patch_slipping(patch, mu, d)
         return (-mu * N * d[0], -mu * N * d[1], N), -mu * N * rho * d[2]
+
+    def _is_balance(self, u, spin, speed, friction):
+        """Return whether a slip is the one that Coulomb's law has for a friction, to rounding.
+
+        A body that holds does not spin by more than rounding.
+        """
+        share = self._c.patch * spin / friction[2]
+        off = hypot(u[0] - share * friction[0], u[1] - share * friction[1])
+        return off <= TOUCHES * speed and (
+            abs(spin) * self._c.size[0] > TOUCHES * speed)
 
     def _force(self, system, u, speed):
         """Return the force of the contact, axes of the plane."""

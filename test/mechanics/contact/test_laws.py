@@ -13,6 +13,8 @@ from rigid_body_sim.mechanics.contact.laws import (
     departure,
     impulse,
     patch_departure,
+    patch_following,
+    patch_pivoting,
     patch_slipping,
     patch_sticking,
     slipping,
@@ -263,3 +265,66 @@ def test_a_patch_that_is_not_pressed_leaves_as_far_as_a_plane_that_pulls_lets_it
     patch = patch_with(np.diag([2.0, 1.0, 0.5]), c, c, 0.5, (3.0, 0.5, 1.0), 0.1)
     for guess in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)):
         assert leaves(patch, 2.0, *patch_departure(patch, 2.0, guess))
+
+
+# -- a patch that pivots ------------------------------------------------------------------------
+
+
+def drawn_patch(seed, asymmetric=0.2):
+    """Return a random Patch: M positive definite, pressed on the plane."""
+    draw = np.random.default_rng(seed)
+    root = draw.normal(size=(4, 4))
+    whole = root @ root.T + 0.5 * np.eye(4)
+    whole[:3, 3] += asymmetric * draw.normal(size=3)    # the couple that goes with N
+    b = draw.normal(size=3)
+    rows = tuple(map(tuple, whole[:3, :3].tolist()))
+    return Patch(rows, tuple(whole[:3, 3].tolist()), tuple(whole[3, :3].tolist()),
+                 float(whole[3, 3]), tuple(b.tolist()), -40.0)
+
+
+@pytest.mark.parametrize('side', [1.0, -1.0])
+@pytest.mark.parametrize('seed', [1, 2, 3, 4, 6, 7])    # friction holds these
+def test_a_patch_that_pivots_slips_as_it_is_said_and_goes_on_the_cone(seed, side):
+    """Friction of size mu N against the spin, and u' as it is asked for.
+
+    Coulomb's law of a slip along its direction gives the same force and the same v'.
+    """
+    patch, mu, growth = drawn_patch(seed), 0.8, (0.3, -0.2)
+    friction, N = patch_pivoting(patch, mu, side, growth)
+    assert N > 0.0 > side * friction[2]
+    assert math.hypot(*friction) == pytest.approx(mu * N, rel=1e-13)
+    moved = np.array(patch.M) @ friction + N * np.array(patch.c) + patch.b
+    assert moved[:2] == pytest.approx(growth, abs=1e-12)
+    assert np.dot(patch.n, friction) + N * patch.nn + patch.bn == pytest.approx(0.0, abs=1e-12)
+    d = tuple((np.array(friction) / (-mu * N)).tolist())
+    slipped, same, _ = patch_slipping(patch, mu, d)
+    assert same == pytest.approx(N, rel=1e-12)
+    assert slipped == pytest.approx(moved, abs=1e-11)
+    # u = F_t rho w/f_3 is along d
+    assert d[0] / d[2] == pytest.approx(friction[0] / friction[2], rel=1e-14)
+
+
+def test_a_patch_that_friction_cannot_hold_does_not_pivot():
+    patch = drawn_patch(3)._replace(b=(40.0, 0.0, 0.0), bn=-1.0)
+    assert patch_pivoting(patch, 0.1, 1.0, (0.0, 0.0))[0] == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_a_slip_is_drawn_to_its_balance_where_the_matrix_of_its_rate_says(seed):
+    """The eigenvalues of du'/du by differences; some of these seeds are not drawn."""
+    patch, W, h = drawn_patch(seed, 3.0), 1.0, 1e-6
+    draw = np.random.default_rng(seed)
+    mu, u = draw.uniform(0.1, 1.5), draw.normal(size=2)
+
+    def direction(x, y):
+        return tuple((np.array([x, y, W]) / math.hypot(x, y, W)).tolist())
+
+    def rate(x, y):
+        return np.array(patch_slipping(patch, mu, direction(x, y))[0][:2])
+
+    columns = [(rate(u[0] + h, u[1]) - rate(u[0] - h, u[1])) / (2.0 * h),
+               (rate(u[0], u[1] + h) - rate(u[0], u[1] - h)) / (2.0 * h)]
+    d = direction(*u)
+    drawn_to = max(np.linalg.eigvals(np.array(columns)).real) < 0.0
+    _, N, A = patch_slipping(patch, mu, d)
+    assert patch_following(patch, mu, d) == (drawn_to and N > 0.0 and A > 0.0)

@@ -114,6 +114,26 @@ def test_where_friction_cannot_hold_it_slip_begins_along_its_own_change(seed):
                                                           abs=1e-6)
 
 
+@pytest.mark.parametrize('seed', range(6))
+def test_a_small_patch_that_spins_while_its_body_rolls_holds_with_what_the_spin_leaves(seed):
+    """Its slip is the one of Coulomb's law, but for rounding, or below the rounding of a state."""
+    mu, slip = 3.0, np.zeros(3)
+    for rho in (1e-13, 1e-9):
+        state = touching(seed, slip)
+        turn, omega, _, velocity = state
+        force, couple, _ = on_body(standing(
+            f', sliding_friction: {{mu: {mu}}}, spinning_friction: {{radius: {rho}}}'), *state)
+        N, gamma = force @ NORMAL, turn.inv().apply(NORMAL)
+        along = force - N * NORMAL
+        left, spin = (mu * N) ** 2 - along @ along, gamma @ omega
+        assert N > 0.0 < left
+        assert change_of_slip(turn, omega, velocity, force, couple) == pytest.approx(
+            np.zeros(3), abs=1e-6)
+        against = -math.copysign(rho * math.sqrt(left), spin)
+        assert couple == pytest.approx(against * gamma, rel=1e-7)
+        slip = -1e-9 * abs(spin) / math.sqrt(left) * along
+
+
 def test_without_friction_the_plane_pushes_along_its_normal():
     turn, omega, position, velocity = touching(1)
     force, couple, _ = on_body(standing(), turn, omega, position, velocity)

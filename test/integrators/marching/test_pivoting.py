@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A small patch of contact that spins while its body rolls: the phase PIVOTING.
+
+Steps that follow how its slip relaxes take no time: each of these scenes took steps without end.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rigid_body_sim.integrators.equations.contact_views import PIVOTING, ROLLING, SLIDING
+from rigid_body_sim.integrators.marching.contact_march import STEPS
+from rigid_body_sim.integrators.marching.contact_phase import MODE
+from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+G, RADIUS, MU, SINE, COSINE = 9.81, 0.02, 0.6, 0.6, 0.8
+
+
+def simulation(effects, initial, table, accuracy, horizon):
+    """Return a Simulation of a ball of 1 kg under gravity by dop8."""
+    return Simulation(parse_scene(
+        f'scene: pivots\nbody: {{mass: 1.0, shape: {{solid_sphere: {{radius: {RADIUS}}}}}, '
+        f'surface: {{sphere: {{radius: {RADIUS}}}}}}}\nconstraint: {table}\n'
+        f'effects: [gravity: {{g: {G}}}, sliding_friction: {{mu: {MU}}}, {effects}]\n'
+        f'initial: {initial}\n'), 'dop8', accuracy, horizon=horizon)
+
+
+def phases_of(sim):
+    """Return (mode, steps) of the phases of the course that a simulation is on."""
+    return [(int(phase.p[MODE]), int(phase._meta[STEPS]))
+            for phase in sim._spans[-1].solver._course._phases]
+
+
+def on_a_slope(patch, spin, accuracy, horizon):
+    """Return a ball that rolls down a slope and spins about its normal, and its closed form.
+
+    With W = rho w, x = u/W down the slope and S = W sqrt(1 + x^2), friction is mu N x W/S up the
+    slope and mu N rho W/S about the normal, so that, with B = 7/2 mu g cos a and
+    D = 5/2 mu g cos a rho^2/R^2,
+
+        u' = g sin a - B x/sqrt(1 + x^2)        W' = -D/sqrt(1 + x^2)
+
+    u' = x W' for the constant x = g sin a/sqrt((B - D)^2 - (g sin a)^2): W falls evenly to 0, and
+    from v = R omega + u, v' = g sin a - F/m, 2/5 m R^2 omega' = F R the ball goes down with
+    v' = (5 g sin a + 2 u')/7.
+
+    Returns
+    -------
+    Simulation
+    end : float
+        When the spin dies, s.
+    along : callable
+        Time up to then (s) -> distance down the slope (m), speed (m/s).
+    """
+    fast, slow = 3.5 * MU * G * COSINE, 2.5 * MU * G * COSINE * (patch / RADIUS) ** 2
+    x = G * SINE / math.sqrt((fast - slow) ** 2 - (G * SINE) ** 2)
+    pace, slip = slow / math.sqrt(1.0 + x * x), x * patch * spin
+    grown = (5.0 * G * SINE - 2.0 * x * pace) / 7.0
+    sim = simulation(
+        f'spinning_friction: {{radius: {patch}}}',
+        f'{{angular_velocity_world: [0, {SINE * spin!r}, {COSINE * spin!r}], '
+        f'velocity: [0, {COSINE * slip!r}, {-SINE * slip!r}]}}',
+        f'{{table: {{normal: [0, {SINE}, {COSINE}]}}}}', accuracy, horizon)
+    return sim, patch * spin / pace, lambda t: (
+        slip * t + 0.5 * grown * t * t, slip + grown * t)
+
+
+@pytest.mark.parametrize(('patch', 'spin', 'accuracy', 'bound'), [
+    (1e-6, 0.01, 1e-9, 3e-12),      # measured: 4e-13
+    (1e-6, 0.01, 1e-12, 3e-14),     # 3e-15
+    (1e-7, 1e-3, 1e-12, 6e-14)])    # 9e-15
+def test_a_ball_goes_down_a_slope_while_its_spin_dies_as_its_closed_form_says(
+        patch, spin, accuracy, bound):
+    sim, end, along = on_a_slope(patch, spin, accuracy, 8.0)
+    event = sim.at_event('rolling began', within=8.0)
+    assert event.time == pytest.approx(end, rel=bound)
+    phases = phases_of(sim)
+    assert [mode for mode, _ in phases] == [SLIDING, PIVOTING, ROLLING]
+    assert sum(steps for _, steps in phases) < 4000    # 2354; 9e7 if all of it were slip
+    way = np.array([0.0, COSINE, -SINE])
+    for share in (0.01, 0.5, 0.99):
+        (state,) = sim.states([share * end])
+        place, speed = along(share * end)
+        assert state.position @ way == pytest.approx(place, abs=bound)
+        assert state.velocity @ way == pytest.approx(speed, abs=bound)
+    sim.advance(400)
+    ledger = sim.ledger()
+    assert abs(ledger['energy_residual']) < bound
+    # all that the spin had, 1/5 m R^2 w^2, and what the slip takes beside it, mu N u^2/S
+    assert ledger['dissipated_spinning'] == pytest.approx(0.2 * (RADIUS * spin) ** 2, rel=1e-11)
+
+
+def test_one_jump_through_a_pivot_has_the_bits_of_many_calls():
+    times = np.linspace(0.0, 0.4, 41)
+    far, near = (on_a_slope(1e-6, 0.01, 1e-9, 8.0)[0] for _ in range(2))
+    rows = far.states(times).vector
+    for k in (3, 17, 18, 29, 36, 40):
+        assert near.states([times[k]]).vector.tolist() == rows[[k]].tolist()
+
+
+@pytest.mark.without_numba
+def test_a_pivot_whose_friction_reaches_the_cone_slips_when_its_equations_say():
+    """A force k t along a level table: friction follows it up to mu m g, and no further.
+
+    With W = rho w, x = u/W, S = W sqrt(1 + x^2): u' = k t/m - 7/2 mu g u/S and
+    W' = -5/2 mu g rho^2/R^2 W/S; v' = k t/m - mu g u/S. They are solved in (u, W).
+    """
+    patch, spin, k, end = 1e-6, 0.01, 400.0, 0.07
+    sim = simulation(f'spinning_friction: {{radius: {patch}}}, '
+                     f'force: {{value: ["{k}*t", 0, 0], frame: world}}',
+                     f'{{angular_velocity: [0, 0, {spin}]}}', 'table', 1e-9, 1.0)
+    slip, spun = 3.5 * MU * G, 2.5 * MU * G * (patch / RADIUS) ** 2
+
+    def rates(t, y):
+        size = math.hypot(y[0], y[1])
+        return [k * t - slip * y[0] / size, -spun * y[1] / size, k * t - MU * G * y[0] / size]
+
+    solved = solve_ivp(rates, (0.0, end), [0.0, patch * spin, 0.0], 'Radau', rtol=1e-10,
+                       atol=[1e-18, 1e-18, 1e-13])
+    (state,) = sim.states([end])
+    assert [mode for mode, _ in phases_of(sim)][:3] == [SLIDING, PIVOTING, SLIDING]
+    assert sum(steps for _, steps in phases_of(sim)) < 20000    # measured: 6900
+    turn = rotate(*state.orientation, *state.angular_velocity)
+    assert state.velocity[0] == pytest.approx(solved.y[2, -1], abs=3e-12)    # measured: 3e-13
+    assert state.velocity[0] - RADIUS * turn[1] == pytest.approx(solved.y[0, -1], abs=3e-11)
+    sim.advance(70)
+    assert abs(sim.ledger()['energy_residual']) < 1e-11    # measured: 1e-12
