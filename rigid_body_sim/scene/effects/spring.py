@@ -25,8 +25,8 @@ class Spring(Effect):
 
         U = k (|d| - l)^2/2,    F = -c (d . v/|d|) d/|d|
 
-    where v is the velocity of the point, all in body axes; U is booked as potential, what c takes as heat. Without
-    a `length` U = k d^2/2, and c damps all of v. A scene may list several.
+    where v is the velocity of the point, all in body axes; U is booked as potential, what c takes
+    as heat. Without a `length` U = k d^2/2, and c damps all of v. A scene may list several.
 
     ``spring: {stiffness: k, angle: phi, damping: c}`` on a hinge is a torsion spring, k in N m/rad
     and c in N m s: U = k (angle - phi)^2/2, and the torque -c rate about the axis.
