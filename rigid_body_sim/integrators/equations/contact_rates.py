@@ -21,7 +21,8 @@ along the axes of the plane.
               one that Coulomb's law has for the force that u' asks for. u' is the rate of that u
               to the second order in its time of relaxation, and u is drawn to it at the pace of
               the body, so that force, heat and v are those of one motion. It ends where the spin
-              does, or, as a SLIDING, where the lag is more than the accuracy lets it be
+              does, or, as a SLIDING, where the lag is more than the accuracy lets it be, or
+              where a ring lies low
 
 In each phase of contact dry rolling friction may hold the lowest point where it is on the body
 (p.way): a couple without power keeps it there, as long as its force is at most C N. Such a body
@@ -388,7 +389,8 @@ def _pivoting(p, c, now, at, push, v, speed, film):
     goes = _balance(c, at, push, minus(rate, drawn))
     friction, N, spin = goes.friction, goes.f[2], c.patch * dot(at.axes[2], at.omega)
     off, lag = minus(slip, goes.slip), c.swift
-    if friction[2] != 0.0 and patch_following(patch_of(c, at, push), c.mu,
+    low = c.kind == TORUS and inclination(at.axes[2]) < LOW    # its lowest point may jump
+    if not low and friction[2] != 0.0 and patch_following(patch_of(c, at, push), c.mu,
                                               scaled(-1.0 / (c.mu * N), friction)):
         lag = hypot(off[0], off[1])
     couple = scaled(c.patch * friction[2], at.axes[2])

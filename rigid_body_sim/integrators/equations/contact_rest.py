@@ -51,6 +51,12 @@ def spins(p, y):
 
 
 @compiled
+def hastens(row, y):
+    """Return the rate of the spin about the normal, rad/s^2; `row` holds the rates."""
+    return dot(matrix(*load_unknowns(y).q)[2], load_omega(row))
+
+
+@compiled
 def grip_patch(p, y):
     """Take what is left of the spin of a patch of contact whose slip has died.
 

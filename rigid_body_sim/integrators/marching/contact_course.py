@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.equations.contact_rest import (
     comes_down,
     grip_patch,
     halt,
+    hastens,
     is_clamped,
     lay,
     lies,
@@ -384,7 +385,10 @@ class PlaneCourse:
             p[MODE] = SLIDING    # it is a slip, whose events are these
             soon = phase.steps <= SOON
             self._wide = max(NARROWS * self._wide, NARROWEST) if soon else WIDEST
-            if why == contact_march.FASTER and p[SIDE] * spins(p, y) <= 0.0:
+            if why == contact_march.FASTER and p[SIDE] * spins(p, y) < 0.0:
+                if self._spins_on(p, y):
+                    self._open(PIVOTING, p, y)
+                    return
                 why = contact_march.STUCK
                 grip_patch(p, y)
             elif why == contact_march.FAILED:
@@ -442,6 +446,13 @@ class PlaneCourse:
             self._wake(y, time)
         else:
             self._open(int(p[MODE]), p, y)
+
+    def _spins_on(self, p, y):
+        """Return whether the spin of a patch that pivots goes on through 0: nothing stops it."""
+        on, row = p.copy(), np.empty(ROW.size)
+        on[MODE], on[SIDE] = PIVOTING, -p[SIDE]
+        self._bound.rates.rate(on, y, row)
+        return on[SIDE] * hastens(row, y) > 0.0
 
     def _wake(self, y, time):
         """Let a body stay at rest if it is held under what acts from now on, else let it move."""

@@ -8,8 +8,10 @@ import math
 
 import numpy as np
 import pytest
+from numba_only import LONG_IN_PYTHON
 from scipy.integrate import solve_ivp
 
+from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_views import PIVOTING, ROLLING, SLIDING
 from rigid_body_sim.integrators.marching.contact_march import STEPS
 from rigid_body_sim.integrators.marching.contact_phase import MODE
@@ -129,3 +131,78 @@ def test_a_pivot_whose_friction_reaches_the_cone_slips_when_its_equations_say():
     assert state.velocity[0] - RADIUS * turn[1] == pytest.approx(solved.y[0, -1], abs=3e-11)
     sim.advance(70)
     assert abs(sim.ledger()['energy_residual']) < 1e-11    # measured: 1e-12
+
+
+def drawn(body, table, effects, initial, accuracy, horizon):
+    """Return a Simulation of one of the scenes that a fuzz has drawn."""
+    return Simulation(parse_scene(
+        f'scene: pivots\nbody: {body}\nconstraint: {table}\neffects: [gravity: {{g: {G}}}, '
+        f'{effects}]\ninitial: {initial}\n'), 'dop8', accuracy, horizon=horizon)
+
+
+@LONG_IN_PYTHON
+@pytest.mark.parametrize(('body', 'table', 'effects', 'initial', 'end', 'most'), [
+    # friction comes near the cone fast, where differences have to be short: 3e4 steps, 8e5 if not
+    ('{mass: 1.68, shape: {disk: {radius: 0.1141}}}', 'table',
+     'sliding_friction: {mu: 0.2864}, spinning_friction: {radius: 1.593e-09}',
+     '{euler_zyz: [0.07869, 0.4601, 1.677], angular_velocity: [7.018, 2.358, 6.346], '
+     'rolling: true}', 0.8, 1e5),
+    # the accuracy lets it pivot at times; too short a difference is noise: 3e4 steps, 4e5 then
+    ('{mass: 1.173, inertia: [3.134e-05, 3.134e-05, 3.095e-05], '
+     'center_of_mass: [0, 0, -5.296e-4], surface: {sphere: {radius: 0.008173}}}',
+     '{table: {normal: [-0.2981, -0.07737, 1]}}',
+     'sliding_friction: {mu: 0.1211}, spinning_friction: {radius: 7.508e-07}',
+     '{euler_zyz: [5.529, 2.082, 2.621], angular_velocity: [3.563, 1.454, -75.49], '
+     'rolling: true}', 0.23, 1e5),
+    # the spin is less than the accuracy lets the slip err by: 2e4 steps, 1e8 if it does not pivot
+    ('{mass: 0.02039, shape: {torus: {radius: 0.01231, tube: 0.003857}}}',
+     '{table: {normal: [-0.2647, 0.0122, 1]}}',
+     'sliding_friction: {mu: 0.2148}, spinning_friction: {radius: 3.472e-10}',
+     '{euler_zyz: [1.57, 1.332, 0.1538], angular_velocity: [0.3056, -1.303, 3.031], '
+     'rolling: true}', 0.28, 1e5)])
+def test_a_body_that_pivots_takes_few_steps_and_errs_by_less_than_is_asked(
+        body, table, effects, initial, end, most):
+    ends = []
+    for accuracy in (1e-9, 1e-12):
+        sim = drawn(body, table, effects, initial, accuracy, end)
+        ends.append(sim.states([end]).vector[0])
+        assert PIVOTING in [mode for mode, _ in phases_of(sim)]
+        assert sum(steps for _, steps in phases_of(sim)) < most
+        sim.advance(math.floor(1000.0 * end))
+        # measured: up to 6e-12 and 3e-15
+        assert abs(sim.ledger()['energy_residual']) < 0.1 * accuracy
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+
+
+@LONG_IN_PYTHON
+def test_a_ring_that_pivots_and_falls_flat_ends_its_run_with_the_line_of_one_that_spins_there():
+    """Its lowest point runs around it ever faster; differences across that led nowhere."""
+    sim = drawn('{mass: 2.923, shape: {torus: {radius: 0.3043, tube: 0.1428}}}',
+                '{table: {normal: [-0.1084, -0.2869, 1]}}',
+                'sliding_friction: {mu: 0.9169}, rolling_friction: {viscous: 0.7814}, '
+                'spinning_friction: {radius: 4.65e-09}',
+                '{euler_zyz: [5.463, 0.8471, 0.5653], angular_velocity: [0.192, 1.033, 0.5213], '
+                'rolling: true}', 1e-9, 1.4)
+    with pytest.raises(NotConverged, match='the body lies flat and goes on sliding or spinning'):
+        sim.states([1.4])
+    assert sum(steps for _, steps in phases_of(sim)) < 2e5    # measured: 7e4
+
+
+def test_a_spin_that_friction_cannot_stop_goes_on_through_0_without_an_event():
+    """The body turns its spin about the normal around: a creep that began there erred by 3e-9."""
+    ends = []
+    for accuracy in (1e-9, 1e-12):
+        sim = drawn('{mass: 1.227, '
+                    'shape: {ellipsoid: {semi_axes: [0.003868, 0.002704, 0.003353]}}}',
+                    '{table: {normal: [0.07471, 0.2683, 1.0]}}',
+                    'sliding_friction: {mu: 0.297}, spinning_friction: {radius: 1.196e-10}',
+                    '{euler_zyz: [4.921, 1.128, 0.5745], angular_velocity: [17.13, 2.212, 12.04], '
+                    'rolling: true}', accuracy, 0.16)
+        ends.append(sim.states([0.158]).vector[0])
+        assert [mode for mode, _ in phases_of(sim)][:3] == [SLIDING, PIVOTING, PIVOTING]
+        assert sum(steps for _, steps in phases_of(sim)) < 1e5
+        sim.advance(158)
+        assert not sim.events
+        # measured: 1e-12 and 2e-15
+        assert abs(sim.ledger()['energy_residual']) < 0.03 * accuracy
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9)
