@@ -2,14 +2,15 @@
 """A small patch of contact that spins while its body rolls: the phase PIVOTING.
 
 Steps that follow how its slip relaxes take no time: each of these scenes took steps without end.
+Compiling a contact with a patch takes half a minute, so `make test` runs what plain Python can.
 """
 
 import math
 
 import numpy as np
 import pytest
-from numba_only import LONG_IN_PYTHON
 from scipy.integrate import solve_ivp
+from soak import IN_SOAK
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.contact_views import PIVOTING, ROLLING, SLIDING
@@ -72,9 +73,9 @@ def on_a_slope(patch, spin, accuracy, horizon):
 
 
 @pytest.mark.parametrize(('patch', 'spin', 'accuracy', 'bound'), [
-    (1e-6, 0.01, 1e-9, 3e-12),      # measured: 4e-13
-    (1e-6, 0.01, 1e-12, 3e-14),     # 3e-15
-    (1e-7, 1e-3, 1e-12, 6e-14)])    # 9e-15
+    pytest.param(1e-6, 0.01, 1e-9, 3e-12, marks=pytest.mark.without_numba),    # measured: 4e-13
+    pytest.param(1e-6, 0.01, 1e-12, 3e-14, marks=IN_SOAK),     # 3e-15
+    pytest.param(1e-7, 1e-3, 1e-12, 6e-14, marks=IN_SOAK)])    # 9e-15
 def test_a_ball_goes_down_a_slope_while_its_spin_dies_as_its_closed_form_says(
         patch, spin, accuracy, bound):
     sim, end, along = on_a_slope(patch, spin, accuracy, 8.0)
@@ -96,6 +97,7 @@ def test_a_ball_goes_down_a_slope_while_its_spin_dies_as_its_closed_form_says(
     assert ledger['dissipated_spinning'] == pytest.approx(0.2 * (RADIUS * spin) ** 2, rel=1e-11)
 
 
+@IN_SOAK
 def test_one_jump_through_a_pivot_has_the_bits_of_many_calls():
     times = np.linspace(0.0, 0.4, 41)
     far, near = (on_a_slope(1e-6, 0.01, 1e-9, 8.0)[0] for _ in range(2))
@@ -104,7 +106,7 @@ def test_one_jump_through_a_pivot_has_the_bits_of_many_calls():
         assert near.states([times[k]]).vector.tolist() == rows[[k]].tolist()
 
 
-@pytest.mark.without_numba
+@IN_SOAK
 def test_a_pivot_whose_friction_reaches_the_cone_slips_when_its_equations_say():
     """A force k t along a level table: friction follows it up to mu m g, and no further.
 
@@ -140,7 +142,7 @@ def drawn(body, table, effects, initial, accuracy, horizon):
         f'{effects}]\ninitial: {initial}\n'), 'dop8', accuracy, horizon=horizon)
 
 
-@LONG_IN_PYTHON
+@IN_SOAK
 @pytest.mark.parametrize(('body', 'table', 'effects', 'initial', 'end', 'most'), [
     # friction comes near the cone fast, where differences have to be short: 3e4 steps, 8e5 if not
     ('{mass: 1.68, shape: {disk: {radius: 0.1141}}}', 'table',
@@ -174,7 +176,7 @@ def test_a_body_that_pivots_takes_few_steps_and_errs_by_less_than_is_asked(
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
 
-@LONG_IN_PYTHON
+@IN_SOAK
 def test_a_ring_that_pivots_and_falls_flat_ends_its_run_with_the_line_of_one_that_spins_there():
     """Its lowest point runs around it ever faster; differences across that led nowhere."""
     sim = drawn('{mass: 2.923, shape: {torus: {radius: 0.3043, tube: 0.1428}}}',
@@ -188,6 +190,7 @@ def test_a_ring_that_pivots_and_falls_flat_ends_its_run_with_the_line_of_one_tha
     assert sum(steps for _, steps in phases_of(sim)) < 2e5    # measured: 7e4
 
 
+@IN_SOAK
 def test_a_spin_that_friction_cannot_stop_goes_on_through_0_without_an_event():
     """The body turns its spin about the normal around: a creep that began there erred by 3e-9."""
     ends = []
