@@ -56,7 +56,7 @@ def test_what_stands_before_a_product_keeps_its_sign_and_size(text, value):
 
 
 def test_a_top_that_a_spring_ties_takes_no_more_products_than_its_equations():
-    """q' 12, omega' 3; nine of R; three squares of d, its root, 1/root; two components of pull d.
+    """Q' 12, omega' 3; nine of R; three squares of d, its root, 1/root; two components of pull d.
 
     The tie acts at a point of the third axis, so the third component turns nothing.
     """
