@@ -74,4 +74,5 @@ def test_a_velocity_that_rises_shortens_no_step():
     started = Stepped(problem.scene, 'taylor', 1e-3).start(problem.scene.initial.vector)
     started.state(1.0, np.empty(14))
     course = started._course
-    assert course._bound.steps_of(course._pieces[0]) < 50    # measured: 37; 68 where a rise counted
+    # measured: 37; 68 where a rise counted
+    assert course._bound.steps_of(course._pieces[0]) < 50
