@@ -38,7 +38,8 @@ BASED = UNBOUND
 PLACES = UNBOUND
 ROOM = UNBOUND
 
-CHANGE = 0.9               # largest change or fall of a base within a step, relative to the base
+FALL = 0.9                 # largest fall of a base within a step, relative to the base
+RISE = 3.0                 # and largest change
 SHORTER = 0.75             # of a step in which a base falls too far, what is tried next
 LEAST = 2.0 ** -25         # the step over the zero of a base, as a share of the planned step
 TICKS = 2.0 ** -50         # and, if that is longer, of the time
@@ -57,23 +58,15 @@ def begin(p, control, point):
 
 @compiled
 def change(S, base, h):
-    """Return by how much a base can change within a step, at most.
+    """Return by how much a base can change within a step, and by how much it can fall, at most.
 
     Bases are what roots and powers are taken of; S has their integrals after the unknowns.
     """
-    found = 0.0
+    changed = fallen = 0.0
     for k in range(ORDER, 1, -1):
-        found = h * (found + k * abs(S[PLACES * k + base]))
-    return found
-
-
-@compiled
-def fall(S, base, h):
-    """Return by how much a base can fall within a step, at most: what rises does no harm."""
-    found = 0.0
-    for k in range(ORDER, 1, -1):
-        found = h * (found + max(-k * S[PLACES * k + base], 0.0))
-    return found
+        grown = k * S[PLACES * k + base]
+        changed, fallen = h * (changed + abs(grown)), h * (fallen + max(-grown, 0.0))
+    return changed, fallen
 
 
 @compiled
@@ -90,7 +83,7 @@ def expanded(p, control, y, t, planned):
         return 0.0
     least = max(LEAST * max(planned, UNMOVED), TICKS * abs(t))
     for base in range(SIZE, SIZE + BASED):
-        if not change(S, base, least) <= CHANGE * S[PLACES + base]:
+        if not change(S, base, least)[0] <= FALL * S[PLACES + base]:
             S[PLACES * (LOW + 1):PLACES * (ORDER + 1)] = 0.0
             return least
     return 0.0
@@ -100,16 +93,19 @@ def expanded(p, control, y, t, planned):
 def within(S, h, step, last, over):
     """Return a step within which all bases stay positive, h at most, and the plan for the next.
 
-    Zeros of a base beside the real line shorten a step by the error of the series, as all that
-    ends its convergence does.
-
+    A base that is a square and rises to four times has a zero as far behind as the step leads
+    ahead: farther on the rounding of its coefficients would be magnified, which the series of the
+    root times the root hides. Other zeros beside the real line show in the last terms.
     `over` is what `expanded` returned; the plan, `step` or the `last` one, knows nothing of bases.
     """
     chosen_one = h
     if over > 0.0:
         h = min(h, over)
     for base in range(SIZE, SIZE + (BASED if over == 0.0 else 0)):
-        while h > 0.0 and not fall(S, base, h) <= CHANGE * S[PLACES + base]:
+        while h > 0.0:
+            changed, fallen = change(S, base, h)
+            if changed <= RISE * S[PLACES + base] and fallen <= FALL * S[PLACES + base]:
+                break
             h *= SHORTER
     return h, last if h < chosen_one and last > 0.0 else step
 

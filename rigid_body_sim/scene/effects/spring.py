@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Spring: between a point of the body and a point of the world, with damping along it."""
 
+import functools
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -25,8 +26,8 @@ class Spring(Effect):
 
         U = k (|d| - l)^2/2,    F = -c (d . v/|d|) d/|d|
 
-    where v is the velocity of the point, all in body axes; U is booked as potential, what c takes
-    as heat. Without a `length` U = k d^2/2, and c damps all of v. A scene may list several.
+    where v is the velocity of the point; U is booked as potential, what c takes as heat. Without
+    a `length` U = k d^2/2, and c damps all of v. A scene may list several.
 
     ``spring: {stiffness: k, angle: phi, damping: c}`` on a hinge is a torsion spring, k in N m/rad
     and c in N m s: U = k (angle - phi)^2/2, and the torque -c rate about the axis.
@@ -36,6 +37,7 @@ class Spring(Effect):
     pull: tuple[tree.Term, ...]
     damper: tuple[tree.Term, ...]
     at: tuple[float, float, float] | None    # None of a torsion spring
+    held: tuple[tree.Term, ...] = ()         # pull and damper in body axes
     name: ClassVar[str] = 'spring'
     SCHEMA: ClassVar[dict] = described(mapping_of(
         ['stiffness'],
@@ -69,23 +71,10 @@ class Spring(Effect):
                 raise BadInput(where, f'the key {key!r} is missing',
                                'needed: at, anchor, stiffness')
         x, y, z = map(float, settings['at'])
-        body_at = vectors.constant((x, y, z))
-        to_origin = vectors.difference(vectors.named(PLACE),
-                                       vectors.constant(settings['anchor']))
-        d = vectors.total(vectors.to_body(to_origin), body_at)
-        v = vectors.total(vectors.to_body(vectors.named(VELOCITY)),
-                          vectors.cross(vectors.named(RATES), body_at))
-        square, pull = vectors.dot(d, d), tree.number(-k)
-        if l:
-            pull = tree.times(pull, tree.minus(
-                tree.number(1.0), tree.over(tree.number(l), tree.term('sqrt', square))))
-            stretch = tree.minus(tree.term('sqrt', square), tree.number(l))
-            square = tree.times(stretch, stretch)
-            along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
-            v = tuple(tree.times(along, part) for part in d)
-        damper = tuple(tree.times(tree.number(-c), part) for part in v) if c else ()
-        return cls(tree.times(tree.number(0.5 * k), square),
-                   tuple(tree.times(pull, part) for part in d), damper, (x, y, z))
+        law = functools.partial(_law, (x, y, z), settings['anchor'], k, c, l)
+        energy, pull, damper = law('world')
+        _, *held = law('body')
+        return cls(energy, pull, damper, (x, y, z), vectors.total(*held) if c else held[0])
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the pull and the damping."""
@@ -95,10 +84,10 @@ class Spring(Effect):
                 return pulls
             return *pulls, actions.torque(self.damper, 'body', (), frame, 'heat')
         # the moment of the force, not a derivative by the attitude, whose terms cancel
-        pulls = actions.force(self.pull, 'body', (), self.at, frame, 'potential')
+        pulls = actions.force(self.pull, 'world', (), self.at, frame, 'potential')
         if not self.damper:
             return pulls
-        return *pulls, *actions.force(self.damper, 'body', (), self.at, frame, 'heat')
+        return *pulls, *actions.force(self.damper, 'world', (), self.at, frame, 'heat')
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the pull with the damping."""
@@ -106,12 +95,38 @@ class Spring(Effect):
             found = formulas.pulls(self.energy, (), frame)
             damper = formulas.torque(self.damper or formulas.NONE, 'body', (), frame)
             return Pull(formulas=found.formulas + damper.formulas)
+        # only the moment acts at a pivot: body axes spare turning the force; a hinge turns all alike
+        if not frame.moves and frame.hinge is None:
+            return formulas.force(self.held, 'body', (), self.at, frame)
         both = vectors.total(self.pull, self.damper or formulas.NONE)
-        return formulas.force(both, 'body', (), self.at, frame)
+        return formulas.force(both, 'world', (), self.at, frame)
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""
         return actions.potential(self.energy, (), frame)
+
+
+def _law(at, anchor, k, c, l, axes):
+    """Return U, the pull and the damper (none without c), components along the axes, as trees."""
+    at, anchor = vectors.constant(at), vectors.constant(anchor)
+    carried = vectors.cross(vectors.named(RATES), at)
+    if axes == 'world':
+        d = vectors.difference(vectors.total(vectors.named(PLACE), vectors.to_world(at)), anchor)
+        v = vectors.total(vectors.named(VELOCITY), vectors.to_world(carried))
+    else:
+        to_origin = vectors.difference(vectors.named(PLACE), anchor)
+        d = vectors.total(vectors.to_body(to_origin), at)
+        v = vectors.total(vectors.to_body(vectors.named(VELOCITY)), carried)
+    square, pull = vectors.dot(d, d), tree.number(-k)
+    if l:
+        pull = tree.times(pull, tree.minus(
+            tree.number(1.0), tree.over(tree.number(l), tree.term('sqrt', square))))
+        stretch = tree.minus(tree.term('sqrt', square), tree.number(l))
+        square = tree.times(stretch, stretch)
+        along = tree.over(vectors.dot(d, v), vectors.dot(d, d))
+        v = vectors.scaled(along, d)
+    return (tree.times(tree.number(0.5 * k), square), vectors.scaled(pull, d),
+            vectors.scaled(tree.number(-c), v) if c else ())
 
 
 def _torsion(k, c, angle, axis):
