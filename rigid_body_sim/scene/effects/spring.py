@@ -95,7 +95,7 @@ class Spring(Effect):
             found = formulas.pulls(self.energy, (), frame)
             damper = formulas.torque(self.damper or formulas.NONE, 'body', (), frame)
             return Pull(formulas=found.formulas + damper.formulas)
-        # only the moment acts at a pivot: body axes spare turning the force; a hinge turns all alike
+        # only the moment acts at a pivot: body axes spare turning the force
         if not frame.moves and frame.hinge is None:
             return formulas.force(self.held, 'body', (), self.at, frame)
         both = vectors.total(self.pull, self.damper or formulas.NONE)

@@ -78,8 +78,9 @@ def state(scene, time, method='taylor', **control):
 @pytest.mark.parametrize('name', SCENES)
 def test_taylor_and_dop8_agree(name):
     scene = scene_of(SKEW, *SCENES[name])
-    found, other = (state(scene, 1.0, method, accuracy=1e-13) for method in ('taylor', 'dop8'))
-    assert np.abs(found - other).max() < 2e-14    # measured: 6e-15
+    # at 1e-13 the two may differ by 2e-13; at 3e-14 what is left is mostly rounding
+    found, other = (state(scene, 1.0, method, accuracy=3e-14) for method in ('taylor', 'dop8'))
+    assert np.abs(found - other).max() < 2e-14    # measured: 7e-15
 
 
 def test_weight_on_a_hinge_takes_no_product_of_series():
