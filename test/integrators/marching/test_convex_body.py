@@ -664,7 +664,8 @@ def test_a_ring_that_falls_flat_and_slides_on_ends_the_run_in_one_line(body, eff
 @LONG_IN_PYTHON
 @pytest.mark.parametrize(('body', 'effects', 'initial', 'time', 'last'), [
     (DISK, [VISCOUS], WHIRL, 1.2, 'rest'), (DISK, [PATCH], WHIRL, 3.1, 'sliding began'),
-    (LONG, [PATCH, VISCOUS], ROLL, 2.5, 'rolling began'),
+    # its spin goes through 0 eight times, and nothing begins there
+    (LONG, [PATCH, VISCOUS], ROLL, 2.5, 'impact'),
     (LONG, [], ROLL, 2.5, 'rolling began'), (THIN, [VISCOUS], WHIRL, 2.5, 'rolling began')])
 def test_energy_never_grows_under_friction(body, effects, initial, time, last):
     """Steps without end, and 1e79 rad/s, were the answers where a slip had just begun or died."""
