@@ -390,8 +390,8 @@ def _pivoting(p, c, now, at, push, v, speed, film):
     friction, N, spin = goes.friction, goes.f[2], c.patch * dot(at.axes[2], at.omega)
     off, lag = minus(slip, goes.slip), c.swift
     low = c.kind == TORUS and inclination(at.axes[2]) < LOW    # its lowest point may jump
-    if not low and friction[2] != 0.0 and patch_following(patch_of(c, at, push), c.mu,
-                                              scaled(-1.0 / (c.mu * N), friction)):
+    if not low and friction[2] != 0.0 and patch_following(
+            patch_of(c, at, push), c.mu, scaled(-1.0 / (c.mu * N), friction)):
         lag = hypot(off[0], off[1])
     couple = scaled(c.patch * friction[2], at.axes[2])
     push = Push(push.force, plus(push.torque, couple), plus(push.viscous, couple), push.wrung)
