@@ -29,11 +29,8 @@ import itertools
 import linecache
 import typing
 
-from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.compilation.jit import inlined
 
-# plain Python computes with numpy's numbers three times as long as with its own
-NUMBER = 'array[at + {}]' if HAVE_NUMBA else 'float(array[at + {}])'
 Pair = tuple[float, float]                          # a double-double number, or a plane vector
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]      # x, y, z, w
@@ -143,7 +140,7 @@ def _leaves(kind, name):
 def _written(kind, name, places, views):
     """Return the expression that reads a value; `views` collects the classes it names."""
     if kind is float:
-        return NUMBER.format(next(places))
+        return f'array[at + {next(places)}]'
     parts = _parts(kind, name)
     inside = ''.join(f'{_written(part, name, places, views)}, ' for _, part in parts)
     if typing.get_origin(kind) is tuple:

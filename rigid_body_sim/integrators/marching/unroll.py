@@ -11,8 +11,6 @@ values are formed.
 import functools
 import itertools
 
-from rigid_body_sim.compilation.layout import NUMBER
-
 ROUNDING = 2.0 ** -49    # share of an increment: rounding of the sums of error estimates
 # rad/s: below this angular speed relative rates are meaningless, since the body is still starting
 # from rest
@@ -137,7 +135,7 @@ def load_source(name, size):
         [
             '@compiled',
             f'def {name}(array, at):',
-            f'    return ({"".join(f"{NUMBER.format(u)}, " for u in range(size))})',
+            f'    return ({"".join(f"array[at + {u}], " for u in range(size))})',
             '',
         ]
     )
