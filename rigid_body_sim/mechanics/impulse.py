@@ -34,7 +34,6 @@ from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, product, sc
 from rigid_body_sim.scene.state import STATE
 
 ZERO = (0.0, 0.0, 0.0)
-NO_ARM = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0))    # in pairs
 
 
 class Response(NamedTuple):
@@ -103,18 +102,16 @@ def apply_impulse(p, state, force, couple, out):
     """
     scene, now = load_scene(p), load_state(state)
     q, omega = now.orientation, now.angular_velocity
-    J = (force[0], force[1], force[2])
-    arm = _arm(scene)
-    G = _with_moment(rotate_back(*q, couple[0], couple[1], couple[2]), arm, rotate_back(*q, *J))
+    J, arm = (force[0], force[1], force[2]), _arm(scene)
+    moment = _moment(scene, q, force, couple)
+    G = (moment[0][0], moment[1][0], moment[2][0])
     solvable, turns = True, G
     if scene.kind == HINGE:
         along = dot(scene.hinge_axis, G)
         d = scaled(along / scene.hinge_moment, scene.hinge_axis)
         turns = scaled(along, scene.hinge_axis)
-    elif scene.slim != 0.0:
-        d = _jump_of_slim(scene, load_slim(p, len(p) - SLIM_SIZE), q, force, couple)
     else:
-        solvable, d = _jump(scene, G)
+        solvable, d = _jump(p, scene, moment)
     # the work of an impulse goes with the mean of the velocities before and after
     work = dot(turns, plus(omega, scaled(0.5, d)))
     store_omega(state, plus(omega, d))
@@ -180,10 +177,12 @@ def _arm(scene):
 
 
 @compiled
-def _with_moment(torque, r, f):
-    """Return torque + r x f, summed from the left."""
-    return (torque[0] + r[1] * f[2] - r[2] * f[1], torque[1] + r[2] * f[0] - r[0] * f[2],
-            torque[2] + r[0] * f[1] - r[1] * f[0])
+def _moment(scene, q, force, couple):
+    """Return G, the moment of the impulses about the point of reference, in pairs."""
+    J, K = turned_back(*q, _in_pairs(force)), turned_back(*q, _in_pairs(couple))
+    if scene.kind == FREE or scene.kind == TABLE:
+        return K
+    return plus_pairs(K, cross_pairs(difference(scene.center, scene.through), J))
 
 
 @compiled
@@ -201,12 +200,14 @@ def _push_center(scene, now, state, J, d):
 
 
 @compiled
-def _jump(scene, G):
-    """Return (whether G has no part along an axis of zero moment, I^-1 G of the rest)."""
-    along = rotate_back(*scene.axes, *G)
-    # rounding along an axis by turning to the world and back: 1e-15 of G, 3e-15 of the moment of a
-    # force (300,000 random ones)
-    slack = 1e-14 * (abs(G[0]) + abs(G[1]) + abs(G[2]))
+def _jump(p, scene, moment):
+    """Return (whether G has no part along an axis of zero moment, I^-1 G of the rest).
+
+    `moment` is G in pairs.
+    """
+    along = _along_axes(p, scene, moment)
+    # rounding of the axes and of given numbers: 1e-15 of G (300,000 random ones)
+    slack = 1e-14 * (abs(moment[0][0]) + abs(moment[1][0]) + abs(moment[2][0]))
     I1, I2, I3 = scene.moments
     solvable = (_turns(I1, along[0], slack) and _turns(I2, along[1], slack)
                 and _turns(I3, along[2], slack))
@@ -215,21 +216,15 @@ def _jump(scene, G):
 
 
 @compiled
-def _jump_of_slim(scene, axes, q, force, couple):
-    """Return I^-1 G of a slim body with what rounding would take from G along it.
-
-    `axes` are its SlimAxes.
-    """
-    arm = difference(scene.center, scene.through) if scene.kind != FREE else NO_ARM
-    J, K = turned_back(*q, _in_pairs(force)), turned_back(*q, _in_pairs(couple))
-    G = plus_pairs(K, cross_pairs(arm, J))
-    I1, I2, I3 = scene.moments
-    first, second, third = axes.rows
-    of_first, of_second, of_third = axes.lost
-    d1 = dot_pairs(with_low(first, of_first), G)[0] / I1
-    d2 = dot_pairs(with_low(second, of_second), G)[0] / I2
-    d3 = dot_pairs(with_low(third, of_third), G)[0] / I3
-    return plus(plus(scaled(d1, first), scaled(d2, second)), scaled(d3, third))
+def _along_axes(p, scene, moment):
+    """Return the components of a vector of pairs along the principal axes, rounded."""
+    if scene.slim != 0.0:    # its axes are known with 32 digits
+        axes = load_slim(p, len(p) - SLIM_SIZE)
+        return (dot_pairs(with_low(axes.rows[0], axes.lost[0]), moment)[0],
+                dot_pairs(with_low(axes.rows[1], axes.lost[1]), moment)[0],
+                dot_pairs(with_low(axes.rows[2], axes.lost[2]), moment)[0])
+    along = turned_back(*scene.axes, moment)
+    return along[0][0], along[1][0], along[2][0]
 
 
 @compiled
