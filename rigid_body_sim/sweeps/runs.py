@@ -14,6 +14,7 @@ import numpy as np
 from rigid_body_sim.compilation.threads import one_core
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.schema import LARGEST
 from rigid_body_sim.scene.state import ORIENTATION, STATE_SIZE
 from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.sweeps import plan as plans
@@ -128,9 +129,7 @@ class _Work:
             elif part == ORIENTATION:
                 values, unit = _units(values)
                 good = good & unit
-            finite = np.isfinite(values)
-            if not finite.all():
-                good = good & finite.all(axis=1)
+            good = good & (np.abs(values) <= LARGEST).all(axis=1)    # a scene takes no others
             starts[:, part] = values
         if not np.all(good):
             places = self.block.places(where)

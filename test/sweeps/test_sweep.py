@@ -146,6 +146,17 @@ def test_refused_run_is_nan_and_the_others_go_on():
     assert not any(good['status_text'].values.ravel())
 
 
+@pytest.mark.parametrize('key', ['position', 'velocity'])
+def test_a_start_that_a_scene_refuses_is_refused_in_a_sweep_and_the_others_go_on(key):
+    starts = [[0.0, 0.0, 0.0], [2e75, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    found = sweep({'scene': 'tennis_racket', 'times': [1.0], 'keep': ['final'],
+                   'vary': {f'initial.{key}': starts}})
+    assert found['status'].values.tolist() == [0, 2, 0]
+    assert 'got 2e+75; needs a number from' in str(found['status_text'].values[1])
+    assert np.isnan(found['final_orientation'].values[1]).all()
+    assert np.isfinite(found['final_orientation'].values[[0, 2]]).all()
+
+
 def test_run_that_a_method_gives_up_is_nan():
     # a million turns a second: doubles cannot count the radians until the end
     spec = TOP | {'integrator': 'dop8', 'accuracy': 1e-6, 'times': [2.0], 'keep': ['final'],
