@@ -92,11 +92,12 @@ def pivot(p, c, now, at, push):
     """
     slip, wide = (now.u[0], now.u[1], 0.0), c.wide
     settled = _settled(p, c, now, at, push, slip, 0.0)
-    near = minus(_beside(p, c, now, at, slip, settled, wide),
-                 _beside(p, c, now, at, slip, settled, -wide))
-    far = minus(_beside(p, c, now, at, slip, settled, 2.0 * wide),
-                _beside(p, c, now, at, slip, settled, -2.0 * wide))
-    rate = scaled(1.0 / (12.0 * wide), minus(scaled(8.0, near), far))
+    first, second, third, last = ZERO, ZERO, ZERO, ZERO
+    for times in (-2.0, -1.0, 1.0, 2.0):    # a loop, so that compiled code has its body once
+        first, second, third, last = second, third, last, _beside(
+            p, c, now, at, slip, settled, times * wide)
+    rate = scaled(1.0 / (12.0 * wide),
+                  minus(scaled(8.0, minus(third, second)), minus(last, first)))
     drawn = scaled(c.swift / c.size[0], minus(slip, settled.slip))
     goes = _balance(c, at, push, minus(rate, drawn))
     friction, N = goes.friction, goes.f[2]
