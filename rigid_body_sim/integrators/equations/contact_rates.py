@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: the equations of a convex body on a plane, in each of its phases.
 
-It is bound to the sum of what acts besides the contact. Symbols: mechanics/contact/laws.py; the
-forces are in mechanics/contact/forces.py, the views in contact_views.py. All vectors but omega are
-along the axes of the plane.
+It is bound to what acts besides the contact (contact_acting.py) and to the slip of a patch that
+pivots (contact_pivoting.py). Symbols: mechanics/contact/laws.py; the forces are in
+mechanics/contact/forces.py, the views in contact_views.py. All vectors but omega are along the
+axes of the plane.
 
     FLIGHT    no contact: x'' = F/m
     SLIDING   u != 0 (with a patch of contact: or a spin about the normal): f = N (n - mu u/|u|).
@@ -17,12 +18,9 @@ along the axes of the plane.
     CREEPING  slip that has just begun, along the direction for which u' is parallel to u; its lag
               behind that direction is corrected to the first order in |u| |omega|/(mu g). It
               ends, as a SLIDING, where it is fast or lags far
-    PIVOTING  a SLIDING of a patch so small that u relaxes in no time: u is, but for a lag, the
-              one that Coulomb's law has for the force that u' asks for. u' is the rate of that u
-              to the second order in its time of relaxation, and u is drawn to it at the pace of
-              the body, so that force, heat and v are those of one motion. It ends where the spin
-              does, or, as a SLIDING, where the lag is more than the accuracy lets it be, or
-              where a ring lies low
+    PIVOTING  a SLIDING of a patch so small that u relaxes in no time. It ends where the spin
+              does, or, as a SLIDING, where u lags behind that of a balance by more than the
+              accuracy lets it, or where a ring lies low
 
 In each phase of contact dry rolling friction may hold the lowest point where it is on the body
 (p.way): a couple without power keeps it there, as long as its force is at most C N. Such a body
@@ -69,44 +67,38 @@ from rigid_body_sim.mechanics.contact.forces import (
 from rigid_body_sim.mechanics.contact.holding import (
     along_way,
     burden,
-    gripped,
     gripping,
     holds_still,
-    rolling_couples,
     tips,
     way_at,
 )
-from rigid_body_sim.mechanics.contact.laws import (
-    MOST_LAG,
-    departure,
+from rigid_body_sim.mechanics.contact.laws import MOST_LAG, departure, slipping, sticking, turning
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, SLOW
+from rigid_body_sim.mechanics.contact.patch import (
     patch_departure,
-    patch_following,
     patch_lagging,
-    patch_pivoting,
     patch_slipping,
     patch_sticking,
-    slipping,
-    sticking,
-    turning,
 )
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, SLOW
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
-    couples,
     gap_of,
-    grips,
     inclination,
     is_disk,
     tangent,
 )
 from rigid_body_sim.numerics.functions import hypot
-from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
+from rigid_body_sim.numerics.rotations import multiply
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 from rigid_body_sim.scene.surfaces import TORUS
 
-# (p, q, omega, v of the centre of mass, time and place of it) -> force (world), couple (body),
-# power of work and heat, and the part of the couple from within the body
-applied = UNBOUND
+applied_at = UNBOUND       # contact_acting.py
+posture_at = UNBOUND
+couples_at = UNBOUND
+hastened = UNBOUND
+posture_after = UNBOUND
+push_on = UNBOUND
+pivot = UNBOUND            # contact_pivoting.py
 # a line HOLDS = True for a scene with dry rolling friction, else HOLDS = False
 HOLDS = UNBOUND
 # a line PATCHED = True for a scene with a patch of contact, else PATCHED = False
@@ -160,69 +152,6 @@ class Contact(NamedTuple):
     pace: float
 
 
-class Applied(NamedTuple):
-    """What acts besides the contact.
-
-    Attributes
-    ----------
-    force : Vector
-        Axes of the plane, N.
-    couple, inner : Vector
-        About the centre of mass, body axes, N m, and its part against parts inside the body.
-    work, heat : float
-        Powers, W.
-    """
-
-    force: Vector
-    couple: Vector
-    work: float
-    heat: float
-    inner: Vector
-
-
-@compiled_inline
-def _applied(p, c, now, at, omega, v, ahead):
-    """Return the Applied at an attitude, with velocities, a time `ahead` (s) of the unknowns."""
-    time = c.began + now.time + ahead
-    # the height is that of the attitude: the gap less r . n
-    gap = gap_of(c, now.gap, at.axes[2]) if c.mode == FLIGHT else 0.0
-    height = gap - dot(at.axes[2], at.r)
-    place = (c.origin[0] + now.place[0] + ahead * v[0],
-             c.origin[1] + now.place[1] + ahead * v[1], height)
-    if c.inclined == 0.0:
-        fx, fy, fz, tx, ty, tz, work, heat, ix, iy, iz = applied(
-            p, *at.q, *omega, *v, time, *place)
-        return Applied((fx, fy, fz), (tx, ty, tz), work, heat, (ix, iy, iz))
-    fx, fy, fz, tx, ty, tz, work, heat, ix, iy, iz = applied(
-        p, *multiply(*c.plane, *at.q), *omega, *rotate(*c.plane, *v), time,
-        *rotate(*c.plane, *place))
-    return Applied(rotate_back(*c.plane, fx, fy, fz), (tx, ty, tz), work, heat, (ix, iy, iz))
-
-
-@compiled_inline
-def _posture(c, q, omega):
-    """Return the Posture, of a body whose rolling friction may hold."""
-    at = posture(c, q, omega)
-    if HOLDS and grips(c):
-        at = gripped(c, at)
-    return at
-
-
-@compiled_inline
-def _couples(c, at, time):
-    """Return the couples of rolling friction, as touch.couples does."""
-    return rolling_couples(c, at, way_at(c, time)) if HOLDS else couples(c, at.axes[2], at.moved)
-
-
-@compiled_inline
-def _hastened(c, at, torque):
-    """Return omega' under a couple about the centre of mass, body axes, rad/s^2."""
-    grown = apply(at.inverse, torque)
-    if HOLDS and grips(c):
-        grown = plus(grown, at.shift)
-    return grown
-
-
 @compiled_inline
 def _short(c):
     """Return the time step of a finite difference, s."""
@@ -230,42 +159,11 @@ def _short(c):
 
 
 @compiled
-def _later(p, c, now, at, f, touch, slip, since, short):
-    """Return the Posture a short time later under a force and a couple of the contact.
-
-    More than eight arguments: those of a rate, and what the contact does in the meantime.
-
-    Parameters
-    ----------
-    slip : Vector
-        The velocity of the lowest point that counts, m/s.
-    since, short : float
-        The time of the Posture after that of the unknowns, and by how much later, s.
-    """
-    acts = _applied(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
-    torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
-    grown = _hastened(c, at, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
-    x, y, z, w = multiply(*at.q, *at.omega, 0.0)
-    half = 0.5 * short
-    q = normalised(at.q[0] + half * x, at.q[1] + half * y, at.q[2] + half * z,
-                   at.q[3] + half * w)
-    return _posture(c, q, plus(at.omega, scaled(short, grown)))
-
-
-@compiled
-def _pushed(p, c, now, at, slip, since):
-    """Return the Push on a Posture, a time after that of the unknowns; `slip` as in `_later`."""
-    acts = _applied(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
-    viscous, wrung, _, _ = _couples(c, at, now.time + since)
-    torque = minus(plus(acts.couple, viscous), cross(at.omega, apply(c.inertia, at.omega)))
-    return Push(acts.force, torque, viscous, wrung)
-
-
-@compiled
-def _ahead(p, c, now, at, f, touch, slip, since):
-    """Return Posture and Push after the time of a difference; the arguments are `_later`'s."""
-    later = _later(p, c, now, at, f, touch, slip, since, _short(c))
-    return later, _pushed(p, c, now, later, slip, since + _short(c))
+def _ahead(p, c, now, at, f, touch):
+    """Return Posture and Push after the time of a difference; the arguments: `posture_after`."""
+    short = _short(c)
+    later = posture_after(p, c, now, at, f, touch, ZERO, 0.0, short)
+    return later, push_on(p, c, now, later, ZERO, short)
 
 
 @compiled
@@ -284,7 +182,7 @@ def _lagging(p, c, now, at, push, slow):
     dx, dy = leaving(system, c.mu)
     _, _, N, _ = slipping(system, c.mu, dx, dy)
     f = -c.mu * N * dx, -c.mu * N * dy, N
-    later, pushed = _ahead(p, c, now, at, f, plus(push.viscous, scaled(N, push.wrung)), ZERO, 0.0)
+    later, pushed = _ahead(p, c, now, at, f, plus(push.viscous, scaled(N, push.wrung)))
     ex, ey, _ = departure(system_of(c, later, pushed), c.mu, dx, dy)
     _, _, slope, _ = turning(system, c.mu, dx, dy)
     if not slope < 0.0:
@@ -310,93 +208,9 @@ def _parting(p, c, now, at, push, slow):
     f = -c.mu * N * d[0], -c.mu * N * d[1], N
     twist = scaled(-c.mu * N * c.patch * d[2], at.axes[2])
     later, pushed = _ahead(p, c, now, at, f,
-                           plus(plus(push.viscous, scaled(N, push.wrung)), twist), ZERO, 0.0)
+                           plus(plus(push.viscous, scaled(N, push.wrung)), twist))
     ahead, _ = patch_departure(patch_of(c, later, pushed), c.mu, d)
     return patch_lagging(patch, c.mu, d, scaled(slow / _short(c), minus(ahead, d)))
-
-
-class Balance(NamedTuple):
-    """A patch that pivots, with the friction that some u' asks for.
-
-    Attributes
-    ----------
-    slip, growth : Vector
-        The slip u that Coulomb's law has for this friction, m/s, and u', m/s^2.
-    friction : Vector
-        Its three components, N; the third is 0 where friction cannot hold u'.
-    f, touch : Vector
-        Force and couple of the contact (axes of the plane, of the body), N and N m.
-    """
-
-    slip: Vector
-    growth: Vector
-    friction: Vector
-    f: Vector
-    touch: Vector
-
-
-@compiled
-def _balance(c, at, push, growth):
-    """Return the Balance of a patch whose slip grows by a vector (m/s^2)."""
-    friction, N = patch_pivoting(patch_of(c, at, push), c.mu, c.side, growth)
-    slip = ZERO
-    if friction[2] != 0.0:
-        share = c.patch * dot(at.axes[2], at.omega) / friction[2]
-        slip = share * friction[0], share * friction[1], 0.0
-    touch = plus(plus(push.viscous, scaled(N, push.wrung)),
-                 scaled(c.patch * friction[2], at.axes[2]))
-    return Balance(slip, growth, friction, (friction[0], friction[1], N), touch)
-
-
-@compiled
-def _settled(p, c, now, at, push, slip, since):
-    """Return the Balance of a patch whose u' is the rate of the slip without u'.
-
-    The rate is a difference to both sides. `slip` and `since` are those of `_later`.
-    """
-    still, wide = _balance(c, at, push, ZERO), c.wide
-    ahead = _later(p, c, now, at, still.f, still.touch, slip, since, wide)
-    after = _balance(c, ahead, _pushed(p, c, now, ahead, slip, since + wide), ZERO)
-    behind = _later(p, c, now, at, still.f, still.touch, slip, since, -wide)
-    before = _balance(c, behind, _pushed(p, c, now, behind, slip, since - wide), ZERO)
-    return _balance(c, at, push, scaled(0.5 / wide, minus(after.slip, before.slip)))
-
-
-@compiled
-def _beside(p, c, now, at, slip, settled, short):
-    """Return the slip of the Balance `settled` a short time (s) later."""
-    later = _later(p, c, now, at, settled.f, settled.touch, slip, 0.0, short)
-    slipped = plus(slip, scaled(short, settled.growth))
-    pushed = _pushed(p, c, now, later, slipped, short)
-    return _settled(p, c, now, later, pushed, slipped, short).slip
-
-
-@compiled
-def _pivoting(p, c, now, at, push, v, speed, film):
-    """Return the Contact of a patch that is PIVOTING.
-
-    The rate of its slip is a difference of the fourth order of slips whose own error is of the
-    second order in the time of relaxation.
-    """
-    slip, wide = (now.u[0], now.u[1], 0.0), c.wide
-    settled = _settled(p, c, now, at, push, slip, 0.0)
-    near = minus(_beside(p, c, now, at, slip, settled, wide),
-                 _beside(p, c, now, at, slip, settled, -wide))
-    far = minus(_beside(p, c, now, at, slip, settled, 2.0 * wide),
-                _beside(p, c, now, at, slip, settled, -2.0 * wide))
-    rate = scaled(1.0 / (12.0 * wide), minus(scaled(8.0, near), far))
-    drawn = scaled(c.swift / c.size[0], minus(slip, settled.slip))
-    goes = _balance(c, at, push, minus(rate, drawn))
-    friction, N, spin = goes.friction, goes.f[2], c.patch * dot(at.axes[2], at.omega)
-    off, lag = minus(slip, goes.slip), c.swift
-    low = c.kind == TORUS and inclination(at.axes[2]) < LOW    # its lowest point may jump
-    if not low and friction[2] != 0.0 and patch_following(
-            patch_of(c, at, push), c.mu, scaled(-1.0 / (c.mu * N), friction)):
-        lag = hypot(off[0], off[1])
-    couple = scaled(c.patch * friction[2], at.axes[2])
-    push = Push(push.force, plus(push.torque, couple), plus(push.viscous, couple), push.wrung)
-    return Contact(goes.f, push, goes.growth, slip, v, N, min(c.side * spin, c.lag - lag), 1.0,
-                   speed, film, -dot(friction, slip), -friction[2] * spin, 1.0)
 
 
 @compiled_inline
@@ -465,6 +279,18 @@ def _slipping(c, now, at, push, v, speed, film):
                    A * c.mass, speed, film, slid, spun, pace)
 
 
+@compiled
+def _pivoting(p, c, now, at, push, v, speed, film):
+    """Return the Contact of a patch that is PIVOTING."""
+    slip, spin = (now.u[0], now.u[1], 0.0), c.patch * dot(at.axes[2], at.omega)
+    goes, lag = pivot(p, c, now, at, push)
+    couple = scaled(c.patch * goes.friction[2], at.axes[2])
+    push = Push(push.force, plus(push.torque, couple), plus(push.viscous, couple), push.wrung)
+    return Contact(goes.f, push, goes.growth, slip, v, goes.f[2],
+                   min(c.side * spin, c.lag - lag), 1.0, speed, film, -dot(goes.friction, slip),
+                   -goes.friction[2] * spin, 1.0)
+
+
 @compiled_inline
 def _creeping(p, c, now, at, push, v, speed, film):
     """Return the Contact of a body that is CREEPING, at the speed u[0]."""
@@ -517,7 +343,7 @@ def _centre(c, now, at):
 @compiled_inline
 def _resting(p, c, now, at):
     """Return the Row of a body that rests: the contact balances what else acts."""
-    acts = _applied(p, c, now, at, at.omega, _centre(c, now, at), 0.0)
+    acts = applied_at(p, c, now, at, at.omega, _centre(c, now, at), 0.0)
     # the plane holds body and rotors: it takes what a motor gives to its rotor
     held_back = scaled(-1.0, apply(at.axes, acts.inner))
     nothing = Ledger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, held_back, 0.0)
@@ -550,13 +376,13 @@ def rate(p, y, k):
     once more, half a second.
     """
     c, now = load_contact(p), load_unknowns(y)
-    at = _posture(c, now.q, now.omega)
+    at = posture_at(c, now.q, now.omega)
     e3 = at.axes[2]
     if c.mode == RESTING:
         store_row(k, _resting(p, c, now, at))
         return
     v = _centre(c, now, at)
-    F, T, work, heat, inner = _applied(p, c, now, at, at.omega, v, 0.0)
+    F, T, work, heat, inner = applied_at(p, c, now, at, at.omega, v, 0.0)
     torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
     gap, motion, rolling, along = 0.0, 1.0, 1.0, 0.0
     if c.mode == FLIGHT:
@@ -564,7 +390,7 @@ def rate(p, y, k):
         gap = v[2] + dot(e3, cross(at.omega, c.middle) if c.level > 0.0 else at.carried)
         motion = 1.0 if c.level > 0.0 else above_flat(c, e3)
     else:
-        viscous, wrung, speed, film = _couples(c, at, now.time)
+        viscous, wrung, speed, film = couples_at(c, at, now.time)
         push = Push(F, plus(torque, viscous), viscous, wrung)
         if c.mode == ROLLING:
             contact = _rolling(c, at, push, v, speed, film)
@@ -579,7 +405,7 @@ def rate(p, y, k):
         torque = plus(contact.push.torque,
                       plus(cross(at.r, along_body(at.axes, contact.f)),
                            scaled(contact.f[2], contact.push.wrung)))
-    grown = _hastened(c, at, torque)
+    grown = hastened(c, at, torque)
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
     if HOLDS and c.mode != FLIGHT:
         holds, rolling = _gripped(c, at, torque, grown, contact.f[2])
@@ -603,21 +429,25 @@ def rate(p, y, k):
             k[place] *= contact.pace
 
 
+@compiled_inline
+def _still(p, y):
+    """Return parameters, unknowns and Posture of a body, and what acts on it where it is still."""
+    c, now = load_contact(p), load_unknowns(y)
+    at = posture(c, now.q, now.omega)
+    return c, now, at, applied_at(p, c, now, at, ZERO, ZERO, 0.0)
+
+
 @compiled
 def stays(p, y):
     """Return whether a body that has almost stopped is at rest (mechanics/contact/forces.py)."""
-    c, now = load_contact(p), load_unknowns(y)
-    at = posture(c, now.q, now.omega)
-    acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
+    c, _, at, acts = _still(p, y)
     return holds_still(c, at, acts.force, acts.couple)
 
 
 @compiled
 def load_of(p, y):
     """Return the Burden (mechanics/contact/holding.py) of a ring that lies flat and rests."""
-    c, now = load_contact(p), load_unknowns(y)
-    at = posture(c, now.q, now.omega)
-    acts = _applied(p, c, now, at, ZERO, ZERO, 0.0)
+    c, _, at, acts = _still(p, y)
     return burden(c, at, acts.force, acts.couple)
 
 
@@ -627,11 +457,10 @@ def slides_on(p, y):
 
     Friction stops one that does not within SLID of its radius, where the plane holds it at all.
     """
-    c, now = load_contact(p), load_unknowns(y)
-    at = posture(c, now.q, now.omega)
+    c, now, at, acts = _still(p, y)
     if c.kind != TORUS or inclination(at.axes[2]) > LOW:
         return False
-    held = scaled(-1.0, _applied(p, c, now, at, ZERO, ZERO, 0.0).force)
+    held = scaled(-1.0, acts.force)
     v, radius = _centre(c, now, at), c.size[0]
     speed = hypot(v[0], v[1]) + abs(dot(at.axes[2], now.omega)) * radius
     braking = c.mu * held[2] - hypot(held[0], held[1])

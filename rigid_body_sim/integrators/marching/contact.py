@@ -11,13 +11,29 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.equations import contact_rates, equations
+from rigid_body_sim.integrators.equations import (
+    contact_acting,
+    contact_pivoting,
+    contact_rates,
+    equations,
+)
 from rigid_body_sim.integrators.equations.contact_views import ROW
 from rigid_body_sim.integrators.marching import contact_march, contact_step, contact_zero
 from rigid_body_sim.integrators.marching.contact_course import PlaneCourse
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.scene.effects.wrench import Wrench
+
+
+def rates_of(applied, holds, patched):
+    """Return contact_rates.py bound to what acts: source lines `applied`, `HOLDS`, `PATCHED`."""
+    acting = specialise(contact_acting, applied=applied, HOLDS=holds).__name__
+    moved = {name: f'{acting}:{name}' for name in ('posture_after', 'push_on')}
+    pivoting = specialise(contact_pivoting, **moved).__name__
+    now = {name: f'{acting}:{name}' for name in (
+        'applied_at', 'posture_at', 'couples_at', 'hastened')}
+    return specialise(contact_rates, pivot=f'{pivoting}:pivot', HOLDS=holds, PATCHED=patched,
+                      **moved, **now)
 
 
 def march_of(rate, step):
@@ -63,7 +79,7 @@ class OnPlane:
         source = equations.applied_source(acting, CONTACT.size)
         holds = f'HOLDS = {scene.contact.rolling > 0.0}\n'
         patched = f'PATCHED = {scene.contact.patch > 0.0}\n'
-        self.rates = specialise(contact_rates, applied=source, HOLDS=holds, PATCHED=patched)
+        self.rates = rates_of(source, holds, patched)
         rate = f'{self.rates.__name__}:rate'
         self.kernels = march_of(rate, specialise(contact_step, rate=rate).__name__)
         self.work_shape = contact_step.WORK_ROWS, ROW.size

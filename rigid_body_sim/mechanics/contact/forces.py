@@ -10,13 +10,8 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, inlined
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector
-from rigid_body_sim.mechanics.contact.laws import (
-    System,
-    departure,
-    patch_sticking,
-    patch_system,
-    sticking,
-)
+from rigid_body_sim.mechanics.contact.laws import System, departure, sticking
+from rigid_body_sim.mechanics.contact.patch import patch_sticking, patch_system
 from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix

@@ -22,17 +22,15 @@ from rigid_body_sim.mechanics.contact.holding import (
     tips,
     way_out,
 )
-from rigid_body_sim.mechanics.contact.laws import (
-    departure,
+from rigid_body_sim.mechanics.contact.laws import departure, slipping, sticking
+from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, TIPS
+from rigid_body_sim.mechanics.contact.patch import (
     patch_departure,
     patch_pivoting,
     patch_slipping,
     patch_sticking,
-    slipping,
-    sticking,
 )
-from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD, LOW, TIPS
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
     couples,

@@ -73,8 +73,8 @@ def test_a_moment_later_the_body_has_turned_and_its_rates_have_grown():
     omega, short = tuple(y[OMEGA:U].tolist()), SHORT * c.size[0] / c.swift
     at, force, none = posture(c, tuple(y[:4].tolist()), omega), FORCE.load(row), (0.0, 0.0, 0.0)
     unknowns = UNKNOWNS.load(y)
-    _, now = rates._ahead(p, c._replace(swift=1e30), unknowns, at, force, none, none, 0.0)
-    later, pushed = rates._ahead(p, c, unknowns, at, force, none, none, 0.0)
+    _, now = rates._ahead(p, c._replace(swift=1e30), unknowns, at, force, none)
+    later, pushed = rates._ahead(p, c, unknowns, at, force, none)
     slopes = (np.array(later.axes) - np.array(at.axes)) / short
     assert slopes == pytest.approx(np.array([cross(axis, omega) for axis in at.axes]), abs=1e-4)
     assert later == posture(c, later.q, later.omega)
