@@ -63,6 +63,15 @@ def test_a_scene_has_a_kind(constraint, effects, kind):
     assert measured.kind(scene(constraint, effects)) == kind
 
 
+@pytest.mark.parametrize(('drag', 'collocates'), [
+    ('angular: 0.1', True), ('angular_quadratic: 0.1', False),
+    ('angular: 1e8, angular_quadratic: 0.1', True)])
+def test_collocation_is_not_taken_on_roots_unless_the_scene_is_stiff(drag, collocates):
+    damped = scene('free', f'drag: {{{drag}}}')
+    assert measured.on_such(damped, 'gauss16') == collocates
+    assert measured.on_such(damped, 'dop8')
+
+
 def test_a_kind_that_was_not_measured_is_taken_as_if_it_made_no_heat(table):
     assert measured.rows(scene('free', 'drag: {angular: 1}')) is ROWS
 

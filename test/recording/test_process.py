@@ -218,6 +218,20 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
     )
 
 
+def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path):
+    process = RecorderProcess(-1, lambda line: True)
+    process._buffer = setup(tmp_path / 'bag') + ticks(0, 3)
+    process._take_packets()
+
+    def full(*arguments):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+    process._writer.message = process._writer.flush = full
+    process._buffer = end(8)
+    process._take_packets()
+    assert 'No space left' in process.report.error
+    assert process.report.dropped == 5
+
+
 def _die_after(path, *sent):
     """Record packets up to a flush and then die without a word.
 

@@ -104,6 +104,16 @@ def test_axes_are_the_nearest_to_the_input_axes():
     assert Rotation.from_quat(inertia.axes).magnitude() == near(turn.magnitude(), 1e-13)
 
 
+def test_a_ball_whose_tensor_was_rounded_is_a_ball():
+    turn = Rotation.from_rotvec([0.2, -0.1, 0.3]).as_matrix()
+    matrix = turn @ np.diag([0.4] * 3) @ turn.T
+    assert np.count_nonzero(matrix - np.diag(np.diagonal(matrix)))
+    inertia = bodies.Inertia.of_matrix((matrix + matrix.T) / 2)
+    assert inertia.moments == near([0.4] * 3, 4 * EPS)
+    assert len(set(inertia.moments)) == 1
+    assert inertia.axes == (0.0, 0.0, 0.0, 1.0)
+
+
 def test_equal_moments_keep_the_input_axes():
     turn = Rotation.from_rotvec([0.0, 0.0, 0.7])
     # a disk turned about its own axis is the same disk; rounding of the turn must not turn its
