@@ -102,7 +102,7 @@ def posture_after(p, c, now, at, f, touch, slip, since, short):
     """
     acts = applied_at(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
     torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
-    grown = hastened(c, at, minus(torque, cross(at.omega, apply(c.inertia, at.omega))))
+    grown = hastened(c, at, minus(torque, cross(at.omega, apply(c.uneven, at.omega))))
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
     half = 0.5 * short
     q = normalised(at.q[0] + half * x, at.q[1] + half * y, at.q[2] + half * z,
@@ -118,5 +118,5 @@ def push_on(p, c, now, at, slip, since):
     """
     acts = applied_at(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
     viscous, wrung, _, _ = couples_at(c, at, now.time + since)
-    torque = minus(plus(acts.couple, viscous), cross(at.omega, apply(c.inertia, at.omega)))
+    torque = minus(plus(acts.couple, viscous), cross(at.omega, apply(c.uneven, at.omega)))
     return Push(acts.force, torque, viscous, wrung)

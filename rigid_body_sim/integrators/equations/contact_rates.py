@@ -383,7 +383,7 @@ def rate(p, y, k):
         return
     v = _centre(c, now, at)
     F, T, work, heat, inner = applied_at(p, c, now, at, at.omega, v, 0.0)
-    torque = minus(T, cross(at.omega, apply(c.inertia, at.omega)))
+    torque = minus(T, cross(at.omega, apply(c.uneven, at.omega)))
     gap, motion, rolling, along = 0.0, 1.0, 1.0, 0.0
     if c.mode == FLIGHT:
         contact = _in_flight(c, now, at, Push(F, torque, ZERO, ZERO))

@@ -3,9 +3,10 @@
 
 The equations are those of contact_rates.py under a uniform field, in a form with few products of
 series. Symbols: mechanics/contact/laws.py, scene/surfaces.py. Besides, R is the matrix of q, with
-the rows e1, e2, e3 = gamma; c = omega x r, h = I omega, V velocity of the centre of mass, F the
-weight; f, r, c, omega and h have components along the axes of the body. Primes are derivatives by
-the variable of the phase: the time t, or where the body slides s with dt = P ds, P = |u|.
+the rows e1, e2, e3 = gamma; c = omega x r, h = (I - i 1) omega, which has the gyroscopic torque of
+I omega (mechanics/contact/parameters.py: uneven), V velocity of the centre of mass, F the weight;
+f, r, c, omega and h have components along the axes of the body. Primes are derivatives by the
+variable of the phase: the time t, or where the body slides s with dt = P ds, P = |u|.
 
     FLIGHT    q' = q omega/2,  I omega' = h x omega,  m V' = F,  gap from z + gamma . r
     ROLLING   q' = q omega/2,  f = -m (c' + omega x c) - R^T F,  I omega' = r x f + h x omega
@@ -82,7 +83,7 @@ q, omega, r, carried = at.q, at.omega, at.r, at.carried
 e1, e2, e3 = at.axes
 Fx, Fy, Fz = p[-3], p[-2], p[-1]
 lightness = 1.0 / c.mass
-h = apply(c.inertia, omega)
+h = apply(c.uneven, omega)
 """
 OF_SURFACE = {ELLIPSOID: """
 pulled = product(product(c.size, c.size), e3)
@@ -263,7 +264,7 @@ class Recurrences:
 
 
 SPIN = [Part(f'omega[{i}]', f'omega{i}') for i in range(3)]
-MOMENTUM = [Part(f'h[{i}]', f'h{i}') for i in range(3)]
+UNEVEN = [Part(f'h[{i}]', f'h{i}') for i in range(3)]
 
 
 def _transformed(matrix, texts):
@@ -421,9 +422,9 @@ def flight(kind, friction):
     made = Recurrences()
     w = made.late(SPIN)
     q = _turned(made, w)
-    gyro = [made.let(text) for text in made.crossed(MOMENTUM, w)]
+    gyro = [made.let(text) for text in made.crossed(UNEVEN, w)]
     omega = made.put('omega', _halved(_transformed('c.inverse', gyro)))
-    made.put('h', _transformed('c.inertia', omega))
+    made.put('h', _transformed('c.uneven', omega))
     gamma, = _axes(made, q, 1)
     r, outline = _lever(made, kind, gamma)
     _incline(made, kind, outline)
@@ -455,10 +456,10 @@ def rolling(kind, friction):
              for one, other, down in zip(part, turned, weight, strict=True)]
     torque = [made.let(text + more)
               for text, more in zip(made.crossed(r, known), couple, strict=True)]
-    gyro = [made.let(text) for text in made.crossed(MOMENTUM, w)]
+    gyro = [made.let(text) for text in made.crossed(UNEVEN, w)]
     omega = made.put('omega', _halved(_transformed(
         'solved', [f'({one} + {other})' for one, other in zip(torque, gyro, strict=True)])))
-    made.put('h', _transformed('c.inertia', omega))
+    made.put('h', _transformed('c.uneven', omega))
     grown = [made.let(text) for text in _grown(omega)]
     made.put('c', [f'{one} + {more}' for one, more in zip(part, grown, strict=True)])
     push = [made.let(f'-c.mass * k * {more}') for more in grown]
@@ -496,7 +497,7 @@ def sliding(kind, friction):
     force = [made.let(made.summed(column, g, made.before)) for column in zip(*axes, strict=True)]
     torque = [made.let(text + more)
               for text, more in zip(made.crossed(r, force), couple, strict=True)]
-    gyro = made.crossed(MOMENTUM, w)
+    gyro = made.crossed(UNEVEN, w)
     spun = [made.let(text) for text in _halved(_transformed('c.inverse', [
         made.let(f'{one} + {other}') for one, other in zip(torque, gyro, strict=True)]))]
     carried = [made.let(f'{one} + {more}')
@@ -513,7 +514,7 @@ def sliding(kind, friction):
             found[one] = made.let(f'{one} + normal * {share}{name}[{i}]')
     made.replace(found)
     omega = made.put('omega', [found[one] for one in spun])
-    made.put('h', _transformed('c.inertia', omega))
+    made.put('h', _transformed('c.uneven', omega))
     made.put('u', [f'share * lightness * ({found[g[i]]} + {late_pace} * {weight}) + '
                    f'{found[rolled[i]]}' for i, weight in enumerate(('Fx', 'Fy'))])
     root = made.root(made.summed(u, u, made.product), 'pace', 'half_pace')

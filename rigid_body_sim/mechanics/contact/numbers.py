@@ -26,13 +26,20 @@ def contact_parameters(scene):
     CONTACT.store(p, ContactParameters(
         mode=0.0, mass=body.mass, center=body.center_of_mass,
         middle=minus(surface.center, body.center_of_mass), kind=KINDS[surface.kind],
-        size=surface.size, inertia=inertia, inverse=inverse_of(inertia),
+        size=surface.size, inertia=inertia, inverse=inverse_of(inertia), uneven=_uneven(inertia),
         inclined=float(plane.axes != IDENTITY), plane=plane.axes,
         mu=laws.mu, restitution=plane.restitution, rolling=laws.rolling,
         rolling_viscous=laws.rolling_viscous, film=laws.film, patch=laws.patch,
         way=(1.0, 0.0), swift=0.0, creep=0.0, side=0.0, lag=0.0, wide=0.0, onset=0.0, turn=0.0,
         since=0.0, slack=0.0, rim=0.0, level=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
     return p
+
+
+def _uneven(inertia):
+    """Return a tensor less the unit matrix times the middle one of its diagonal entries."""
+    middle = sorted(inertia[k][k] for k in range(3))[1]
+    return tuple(tuple(entry - middle if i == j else entry for j, entry in enumerate(row))
+                 for i, row in enumerate(inertia))
 
 
 def weight(scene):

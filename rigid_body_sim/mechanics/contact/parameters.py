@@ -31,6 +31,9 @@ class ContactParameters(NamedTuple):
         Those of the surface (surfaces.py).
     inertia, inverse : Matrix
         I about the centre of mass, and its inverse, body axes.
+    uneven : Matrix
+        I - i 1 with the middle one i of the diagonal entries of I. The gyroscopic torque -omega x
+        I omega is that of this matrix; the part along a slim body would cancel with I.
     inclined : float
         1 if the plane is not level, else 0.
     plane : Quaternion
@@ -87,6 +90,7 @@ class ContactParameters(NamedTuple):
     size: Vector
     inertia: Matrix
     inverse: Matrix
+    uneven: Matrix
     inclined: float
     plane: Quaternion
     mu: float

@@ -103,7 +103,7 @@ class Standing:
                 stands, rotate_back(*c.plane, *force), couple):
             force = scaled(-1.0, force)
             return force, scaled(-1.0, plus(couple, cross(r, apply(columns, force)))), r
-        free = plus(couple, scaled(-1.0, cross(omega, apply(c.inertia, omega))))
+        free = plus(couple, scaled(-1.0, cross(omega, apply(c.uneven, omega))))
         f, touch = self._touch(stands, (rotate_back(*c.plane, *force), free), (u, speed))
         if not f[2] > 0.0:
             return NOTHING, NOTHING, r
