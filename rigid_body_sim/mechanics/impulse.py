@@ -206,7 +206,7 @@ def _jump(p, scene, moment):
     `moment` is G in pairs.
     """
     along = _along_axes(p, scene, moment)
-    # rounding of the axes and of given numbers: 1e-15 of G (300,000 random ones)
+    # rounding of a given torque, or of an arm along the axis: 5e-16 of G (20,000 random ones each)
     slack = 1e-14 * (abs(moment[0][0]) + abs(moment[1][0]) + abs(moment[2][0]))
     I1, I2, I3 = scene.moments
     solvable = (_turns(I1, along[0], slack) and _turns(I2, along[1], slack)
