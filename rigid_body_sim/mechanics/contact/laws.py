@@ -26,11 +26,10 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.functions import hypot
+from rigid_body_sim.numerics.polynomial import zeros_up_to
 from rigid_body_sim.numerics.vectors import cross, dot, scaled
 
 NEWTON = 50         # most Newton steps for a direction
-SECTORS = 32        # directions that are tried where they fail
-HALVINGS = 30       # of a sector in which such a direction lies
 CLOSE = 1e-16       # rad: a step that short is the last
 MOST_LAG = 1e-2     # rad: by which a slip that has just begun may lag
 
@@ -80,7 +79,14 @@ def departure(system, mu, dx, dy):
     """Return (d, growth): the direction along which slip leaves, and how fast it grows.
 
     Newton's method from a first guess d; where that does not find a growing slip, all directions
-    are looked at.
+    are looked at. With u' = x |N| d, x > 0, and 1/N = -A/b_n,
+
+        (x + H) d = k,   H = +-mu (G_tt - b_t n_t/b_n),   k = +-(G_tn - b_t G_nn/b_n),
+
+    where n_t is how friction changes u_n, with + for a body that is pressed on the plane
+    (b_n < 0), and - for one that is not. So |d| = 1 is a polynomial in x, |adj(x + H) k|^2 =
+    det(x + H)^2, of which all zeros are found. Newton's method leaves of their error the rounding
+    of u'.
 
     Returns
     -------
@@ -89,56 +95,32 @@ def departure(system, mu, dx, dy):
         d . u', m/s^2.
     """
     dx, dy, growth, good = _refined(system, mu, dx, dy)
-    if good and growth > 0.0:
+    if (good and growth > 0.0) or system.b[2] == 0.0:
         return dx, dy, growth
     best = dx, dy, growth if good else -math.inf
-    for k in range(SECTORS):
-        x, y = _between(system, mu, _around(k), _around(k + 1))
-        x, y, growth, good = _refined(system, mu, x, y)
-        if good and growth > best[2]:
-            best = x, y, growth
+    (g11, g12, c1), (g21, g22, c2), (n1, n2, nn) = system.G
+    sign = -math.copysign(1.0, system.b[2])
+    b1, b2 = -system.b[0] / system.b[2], -system.b[1] / system.b[2]
+    k1, k2 = sign * (c1 + b1 * nn), sign * (c2 + b2 * nn)
+    share = sign * mu
+    h11, h12 = share * (g11 + b1 * n1), share * (g12 + b1 * n2)
+    h21, h22 = share * (g21 + b2 * n1), share * (g22 + b2 * n2)
+    # adj(x + H) k = x k + a,   det(x + H) = x^2 + trace x + det
+    a1, a2 = h22 * k1 - h12 * k2, h11 * k2 - h21 * k1
+    trace, det = h11 + h22, h11 * h22 - h12 * h21
+    size = hypot(hypot(h11, h12), hypot(h21, h22)) + hypot(k1, k2)
+    polynomial = (
+        det * det - (a1 * a1 + a2 * a2), 2.0 * (trace * det - (k1 * a1 + k2 * a2)),
+        trace * trace + 2.0 * det - (k1 * k1 + k2 * k2), 2.0 * trace, 1.0, 0.0, 0.0)
+    for x in zeros_up_to(polynomial, size):
+        turn = det + x * (trace + x)
+        dx, dy = turn * (a1 + x * k1), turn * (a2 + x * k2)
+        size = hypot(dx, dy)
+        if size > 0.0:
+            dx, dy, growth, good = _refined(system, mu, dx / size, dy / size)
+            if good and growth > best[2]:
+                best = dx, dy, growth
     return best
-
-
-@compiled
-def _around(k):
-    """Return the direction k of SECTORS: points of a square, made unit vectors."""
-    part = 8.0 * (k % SECTORS) / SECTORS
-    side = int(part / 2.0)
-    along = part - 2.0 * side - 1.0
-    x, y = (1.0, along) if side == 0 else (-along, 1.0) if side == 1 else \
-        (-1.0, -along) if side == 2 else (along, -1.0)
-    size = hypot(x, y)
-    return x / size, y / size
-
-
-@compiled
-def _between(system, mu, first, second):
-    """Return a direction between two where u' is parallel to it, or the first if none shows.
-
-    The part of u' across d has a pole where A = 0, beside which Newton's method misses a zero;
-    times A it has none.
-    """
-    low = _across(system, mu, first)
-    if not low * _across(system, mu, second) < 0.0:
-        return first
-    left, right = first, second
-    for _ in range(HALVINGS):
-        x, y = left[0] + right[0], left[1] + right[1]
-        size = hypot(x, y)
-        middle = x / size, y / size
-        if low * _across(system, mu, middle) > 0.0:
-            left = middle
-        else:
-            right = middle
-    return left
-
-
-@compiled
-def _across(system, mu, d):
-    """Return A times the part of u' across d."""
-    _, turns, _, A = turning(system, mu, d[0], d[1])
-    return A * turns
 
 
 @compiled

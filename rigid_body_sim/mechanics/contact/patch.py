@@ -16,7 +16,7 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.mechanics.contact.laws import CLOSE, MOST_LAG, NEWTON, System, sticking
-from rigid_body_sim.numerics.sextic import zeros_of_sextic
+from rigid_body_sim.numerics.polynomial import zeros_up_to
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
 
 
@@ -114,7 +114,7 @@ def patch_departure(patch, mu, d):
     f = minus(scaled(trace, k), apply(H, k))
     a = plus(plus(scaled(k[0], first), scaled(k[1], second)), scaled(k[2], third))
     size = dot(H[0], H[0]) + dot(H[1], H[1]) + dot(H[2], H[2])
-    places = zeros_of_sextic((
+    places = zeros_up_to((
         det * det - dot(a, a), 2.0 * (minors * det - dot(f, a)),
         minors * minors + 2.0 * (trace * det - dot(k, a)) - dot(f, f),
         2.0 * (det + trace * minors - dot(k, f)), trace * trace + 2.0 * minors - dot(k, k),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The zeros of a polynomial of degree six in an interval.
+"""The zeros of a polynomial of degree six, or less, in an interval.
 
 Between two neighbouring zeros of its derivative a polynomial is monotone, so bisection finds the
 one zero that may lie there. The zeros of the derivative are found in the same way, down to the
@@ -12,8 +12,8 @@ HALVINGS = 120    # of an interval: zeros that are 1e20 times smaller than it ke
 
 
 @compiled
-def zeros_of_sextic(p, end):
-    """Return the places in (0, end] at which a polynomial of degree six may be zero.
+def zeros_up_to(p, end):
+    """Return the places in (0, end] at which a polynomial of degree six at most may be zero.
 
     All its zeros there are among them, but such as touch zero without a change of sign need not
     be. The other places are zeros of its derivatives, and the end.
@@ -21,7 +21,7 @@ def zeros_of_sextic(p, end):
     Parameters
     ----------
     p : tuple of 7 floats
-        Its coefficients, that of the constant first.
+        Its coefficients, that of the constant first; the last ones are 0 of a lower degree.
     end : float
 
     Returns
