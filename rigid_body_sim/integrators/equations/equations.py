@@ -71,6 +71,8 @@ class Equations:
         Whether anything depends on time or place; then the time is the last unknown.
     timed : bool
         Whether anything depends on time.
+    polynomial : bool
+        Whether all that acts is polynomials of the unknowns.
     makes_heat : bool
         Whether anything depends on velocities: what books heat, and what declares it.
 
@@ -114,6 +116,7 @@ class Equations:
         self.parameter_count = count + (len(path.values) if path is not None else 0)
         self.in_field = in_field
         self.timed = path is not None or any(one.timed for one in acting)
+        self.polynomial = path is None and all(one.polynomial for one in acting)
         self.modes, self.gripping, self.grip = [], [], 0.0
         at = fixed
         for one in acting:

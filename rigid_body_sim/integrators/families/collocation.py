@@ -56,7 +56,7 @@ def march(method, equations, adapts):
     size, kernels = equations.kind.UNKNOWNS, equations.kernels.__name__
     return specialise(
         gauss_march, rate=f'{kernels}:rate', settled=f'{kernels}:settled',
-        relax=_relax(equations.relaxations, _places(size)),
+        relax=_relax(equations.relaxations, _places(size)), hidden=_hidden(equations.polynomial),
         FLOOR=f'FLOOR = {RELAXED_FLOOR if equations.relaxations else FLOOR!r}\n',
         CLOCK=f'CLOCK = {CLOCK if equations.timed else 0.0!r}\n',
         SETTLED=f'SETTLED = {RELAXED_SETTLED if equations.relaxations else 0.0!r}\n',
@@ -85,11 +85,23 @@ def _places(size):
     """Return the counts and places of gauss_march.py for `size` unknowns."""
     last, rates, square = VALUES + 2 * size, STAGES * size, STAGES * STAGES
     matrix = rates + STAGES * size
-    predictor, steps = matrix + square, matrix + 2 * square
+    predictor, between, steps = (matrix + k * square for k in (1, 2, 3))
+    curve = steps + 5
     return {'SIZE': size, 'LAST': last, 'SWEEPS': last + 1, 'KEPT': last + 2,
-            'RATES': rates, 'MATRIX': matrix, 'PREDICTOR': predictor, 'FOR': steps,
-            'FOR_STEP': steps + 1, 'FOR_BEFORE': steps + 2, 'FOR_POINT': steps + 3,
-            'TAIL': steps + 4, 'CURVE': steps + 5}
+            'RATES': rates, 'MATRIX': matrix, 'PREDICTOR': predictor, 'BETWEEN': between,
+            'FOR': steps, 'FOR_STEP': steps + 1, 'FOR_BEFORE': steps + 2, 'FOR_POINT': steps + 3,
+            'TAIL': steps + 4, 'CURVE': curve, 'ASIDE': curve + TERMS * size}
+
+
+def _end(places):
+    """Return the place behind what gauss_march.py keeps in S."""
+    return places['ASIDE'] + STAGES * places['SIZE']
+
+
+def _hidden(polynomial):
+    """Return the binding of `hidden` in gauss_march.py: polynomials hide nothing."""
+    arguments = 'p, S, y, h, mean, pull, scales, time'
+    return _function(f'hidden({arguments})', [], '0.0' if polynomial else f'rough({arguments})')
 
 
 def _relax(found, places):
@@ -99,7 +111,7 @@ def _relax(found, places):
     """
     if not found:
         return _function('relax(S, y, h, fresh)', ['pass'])
-    first = places['CURVE'] + TERMS * places['SIZE']
+    first = _end(places)
     blocks = tuple((one.first, len(one.rates), first + k * relaxing.PART)
                    for k, one in enumerate(found))
     bound = specialise(relaxing, BLOCKS=f'BLOCKS = {blocks!r}\n',
@@ -110,7 +122,7 @@ def _relax(found, places):
 def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
     found = stiff_relaxations(stepped.scene, march.SIZE)
-    first = march.WORK + march.CURVE + TERMS * march.SIZE
+    first = march.WORK + _end(_places(march.SIZE))
     control = np.zeros(first + relaxing.PART * len(found))
     for k, one in enumerate(found):
         part, n = control[first + k * relaxing.PART:], len(one.rates)

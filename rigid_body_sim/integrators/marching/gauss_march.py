@@ -15,6 +15,8 @@ at the stages.
     FOR         the step of the matrix; FOR_STEP, FOR_BEFORE: the two steps of the predictor
     FOR_POINT   the time of the point whose step has its curve kept
     TAIL        the size of the curve's last coefficients
+    BETWEEN     the same as MATRIX for points between the stages, and the rates at the stages while
+                rates at these points stand in their place
     CURVE       the curve: coefficients of P_0 ... P_16, unknown by unknown; after it what
                 relaxing.py needs where drag is stiff
 """
@@ -23,7 +25,17 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.gauss_nodes import AHEAD, DENSE, STAGES, TAILS, A, B, C
+from rigid_body_sim.integrators.marching.gauss_nodes import (
+    AHEAD,
+    DENSE,
+    HIGHEST,
+    STAGES,
+    TAILS,
+    A,
+    B,
+    C,
+)
+from rigid_body_sim.integrators.marching.gauss_nodes import BETWEEN as TO_BETWEEN
 from rigid_body_sim.integrators.marching.points import (
     CONTROL,
     FIXED,
@@ -47,6 +59,7 @@ load_scales = UNBOUND
 put_scales = UNBOUND
 stage_rates = UNBOUND
 relax = UNBOUND         # what stiff drag asks for between two sweeps: relaxing.py, or nothing
+hidden = UNBOUND        # the error that a rough term hides: `rough`, or 0 where nothing is rough
 spread = UNBOUND
 combined = UNBOUND
 advanced = UNBOUND
@@ -76,6 +89,8 @@ FOR_BEFORE = UNBOUND
 FOR_POINT = UNBOUND
 TAIL = UNBOUND
 CURVE = UNBOUND
+BETWEEN = UNBOUND
+ASIDE = UNBOUND
 
 SWING = CONTROL.size      # places in `control`
 WORK = SWING + 1
@@ -154,6 +169,7 @@ def _prepare(S, h, last):
         for j in range(STAGES):
             for i in range(STAGES):
                 S[MATRIX + STAGES * j + i] = h * A[i, j]
+                S[BETWEEN + STAGES * j + i] = h * TO_BETWEEN[i, j]
     if last > 0.0 and (S[FOR_STEP] != h or S[FOR_BEFORE] != last):
         S[FOR_STEP], S[FOR_BEFORE] = h, last
         for i in range(STAGES):
@@ -240,16 +256,13 @@ def _judged(S, h, mean, pull, scales, time):
 
     (0, 0) where the coefficients are only rounding. Each group of unknowns errs by its own fastest
     motion: the torque of the weight turns in body axes twice as fast as q does, so omega may err
-    most where its changes are small. What acts with time is as rough as its rounding makes the
-    fastest motion that the step resolves.
+    most where its changes are small.
     """
+    noise = _noise(h, mean, pull, scales, time)
     c7 = by_group(combined(S, TAILS[0]), scales)
     c6 = by_group(combined(S, TAILS[1]), scales)
     c5 = by_group(combined(S, TAILS[2]), scales)
     c4 = by_group(combined(S, TAILS[3]), scales)
-    size = measure(mean, mean, 0.0, scales) + pull * pull / (h * h)
-    rough = max(NOISE, CLOCK * time * LONGEST / h)
-    noise = max(rough * rough * size, FLOOR * FLOOR / (h * h))
     error, s7, s6, s5, s4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(c7)):
         s7, s6, s5, s4 = s7 + c7[k], s6 + c6[k], s5 + c5[k], s4 + c4[k]
@@ -261,6 +274,37 @@ def _judged(S, h, mean, pull, scales, time):
     if s5 + s4 <= noise:
         return error, 0.0
     return error, math.sqrt(_fastest_square(s7, s6, s5, s4, noise))
+
+
+@compiled
+def _noise(h, mean, pull, scales, time):
+    """Return the square of a coefficient of the rates that may be rounding.
+
+    What acts with time is as rough as its rounding makes the fastest motion that the step
+    resolves.
+    """
+    size = measure(mean, mean, 0.0, scales) + pull * pull / (h * h)
+    rounding = max(NOISE, CLOCK * time * LONGEST / h)
+    return max(rounding * rounding * size, FLOOR * FLOOR / (h * h))
+
+
+@compiled
+def rough(p, S, y, h, mean, pull, scales, time):
+    """Return the error of a step by terms that are too small to show in its first coefficients.
+
+    The rates along the curve of the step, at the stages and between them, give the coefficients of
+    P_14 and P_15: what of a rough term eight stages do not see is about as large.
+    """
+    for k in range(STAGES * SIZE):
+        S[ASIDE + k] = S[RATES + k]
+    last, before = combined(S, HIGHEST[0, 0]), combined(S, HIGHEST[1, 0])
+    spread(S, y, BETWEEN)
+    stage_rates(p, S)
+    square = (measure(last, combined(S, HIGHEST[0, 1]), -1.0, scales)
+              + measure(before, combined(S, HIGHEST[1, 1]), -1.0, scales))
+    for k in range(STAGES * SIZE):
+        S[RATES + k] = S[ASIDE + k]
+    return h * math.sqrt(square) if square > _noise(h, mean, pull, scales, time) else 0.0
 
 
 @compiled
@@ -337,6 +381,8 @@ def _step(p, control, here, end):
         error, x, converged = 0.0, 0.0, good
         if converged:
             error, x = _judged(S, h, mean, pull, scales, abs(t1))
+            if error <= allowed:
+                error = max(error, hidden(p, S, here.y, h, mean, pull, scales, abs(t1)))
             good = error <= allowed and x <= LONGEST and t1 > here.time
         factor = _factor(error, x, allowed, used, converged, good)
         next_step = h if good and t1 < end and 1.0 <= factor < WORTH else h * factor

@@ -5,6 +5,7 @@ They are formed once, with 60 digits, and correct to the last bit of a double.
 """
 
 from decimal import Decimal, localcontext
+from itertools import pairwise
 from math import comb
 
 import numpy as np
@@ -63,6 +64,17 @@ def _in_legendre(polynomial):
     return result
 
 
+def _halves(nodes):
+    """Return the middles between neighbouring nodes, and between 0, 1 and the nodes next to them.
+
+    The one in the middle of all is left out: there are as many as nodes.
+    """
+    ends = [Decimal(0), *nodes, Decimal(1)]
+    middles = [(low + high) / 2 for low, high in pairwise(ends)]
+    del middles[len(nodes) // 2]
+    return middles
+
+
 def _floats(rows):
     return np.array([[float(x) for x in row] for row in rows])
 
@@ -87,6 +99,15 @@ with localcontext(CONTEXT):
     DENSE = _floats(
         [_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)]
     )
+    # BETWEEN[i, j]: the same as A up to points between the nodes
+    _BETWEEN = _halves(_C)
+    BETWEEN = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _BETWEEN])
+    # HIGHEST[k]: the coefficients of P_15 (k = 0) and P_14 of a function, from its values at the
+    # nodes and then at the points between them
+    _DEGREES = [_in_legendre(polynomial)
+                for polynomial in _through([2 * c - 1 for c in _C + _BETWEEN])]
+    HIGHEST = _floats([[coefficients[2 * STAGES - k] for coefficients in _DEGREES]
+                       for k in (1, 2)]).reshape(2, 2, STAGES)
     # TAILS: rows that give the last four Legendre coefficients, the last one first, of a function
     # from its values at the nodes
     TAILS = _floats([[(2 * n + 1) * b * value(legendre(n), c) for b, c in zip(_B, _C, strict=True)]

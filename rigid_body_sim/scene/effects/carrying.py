@@ -51,7 +51,8 @@ class Carrying(Effect):
                       if one.gives == 'torque')
         # a motion in closed form sees that something acts, even if it turns nothing
         return found or (Acting('rigid_body_sim.scene.effects.elementary:constant',
-                                (0.0, 0.0, 0.0), 'torque', 'work'),)
+                                (0.0, 0.0, 0.0), 'torque', 'work',
+                                polynomial=True),)
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the torque."""

@@ -67,12 +67,14 @@ class Drag(Effect):
             return self._shaped.acting(frame, time)
         acting = []
         if self.linear and frame.moves:
-            acting.append(Acting(f'{__name__}:force', (self.linear,), 'force', 'heat'))
+            acting.append(Acting(f'{__name__}:force', (self.linear,), 'force', 'heat',
+                                 polynomial=True))
         elif self.linear and any(frame.arm):
             values = self.linear, *frame.arm
-            acting.append(Acting(f'{__name__}:moment', values, 'torque', 'heat'))
+            acting.append(Acting(f'{__name__}:moment', values, 'torque', 'heat', polynomial=True))
         if self.angular:
-            acting.append(Acting(f'{__name__}:couple', (self.angular,), 'torque', 'heat'))
+            acting.append(Acting(f'{__name__}:couple', (self.angular,), 'torque', 'heat',
+                                 polynomial=True))
         return tuple(acting)
 
     @property
@@ -174,20 +176,20 @@ class ShapedDrag(Effect):
             if frame.path is not None:
                 values = *values, *frame.arm
                 acting += [Acting(f'{__name__}:carried_force', values, 'force', 'heat',
-                                  rooted=rooted),
+                                  rooted=rooted, polynomial=not rooted),
                            Acting(f'{__name__}:carried_moment', values, 'torque', 'heat',
-                                  rooted=rooted)]
+                                  rooted=rooted, polynomial=not rooted)]
             elif frame.moves:
                 acting.append(Acting(f'{__name__}:shaped_force', values, 'force', 'heat',
-                                     rooted=rooted))
+                                     rooted=rooted, polynomial=not rooted))
             elif any(frame.arm):
                 acting.append(Acting(f'{__name__}:shaped_moment', (*values, *frame.arm),
-                                     'torque', 'heat', rooted=rooted))
+                                     'torque', 'heat', rooted=rooted, polynomial=not rooted))
         for matrix, square in ((self.angular, 0.0), (self.angular_quadratic, 1.0)):
             if any(map(any, matrix)):
-                values = square, *_flat(matrix, frame)
+                values, rooted = (square, *_flat(matrix, frame)), square == 1.0
                 acting.append(Acting(f'{__name__}:shaped_couple', values, 'torque', 'heat',
-                                     rooted=square == 1.0))
+                                     rooted=rooted, polynomial=not rooted))
         return tuple(acting)
 
     def series(self, frame: Frame, time: float) -> Pull:

@@ -65,11 +65,11 @@ class Gravity(Effect):
         found = []
         if frame.pushed:
             found.append(Acting('rigid_body_sim.scene.effects.elementary:constant',
-                                (0.0, 0.0, -weight), 'force', 'potential'))
+                                (0.0, 0.0, -weight), 'force', 'potential', polynomial=True))
         if any(frame.arm):
             values = tuple(weight * r for r in frame.arm)
             found.append(Acting('rigid_body_sim.scene.effects.elementary:moment_of_weight',
-                                values, 'torque', 'potential'))
+                                values, 'torque', 'potential', polynomial=True))
         return tuple(found)
 
     def series(self, frame: Frame, time: float) -> Pull:
@@ -133,10 +133,10 @@ class GravityVector(Effect):
         found = []
         if frame.pushed:
             found.append(Acting('rigid_body_sim.scene.effects.elementary:constant', weight,
-                                'force', 'potential'))
+                                'force', 'potential', polynomial=True))
         if any(frame.arm):
             found.append(Acting(f'{__name__}:moment', (*frame.arm, *weight), 'torque',
-                                'potential'))
+                                'potential', polynomial=True))
         return tuple(found)
 
     def series(self, frame: Frame, time: float) -> Pull:

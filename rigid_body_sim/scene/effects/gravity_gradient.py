@@ -123,12 +123,14 @@ class GravityGradient(Effect):
                 return Acting(f'{__name__}:tensor_torque_on_orbit',
                               (*values, *self.ahead, self.rate), 'torque', 'work', in_field=True,
                               timed=True),
-            return Acting(f'{__name__}:tensor_torque', values, 'torque', 'potential'),
+            return Acting(f'{__name__}:tensor_torque', values, 'torque', 'potential',
+                          polynomial=True),
         if self.energy is None:
             values = *pulled, *self.toward, *self.ahead, self.rate
             return Acting(f'{__name__}:torque_on_orbit', values, 'torque', 'work', in_field=True,
                           timed=True),
-        return Acting(f'{__name__}:torque', (*pulled, *self.toward), 'torque', 'potential'),
+        return Acting(f'{__name__}:torque', (*pulled, *self.toward), 'torque', 'potential',
+                      polynomial=True),
 
     def _differences(self, frame: Frame) -> tuple[float, float, float]:
         """Return a, b, c of the torque (a n2 n3, b n3 n1, c n1 n2), N m."""

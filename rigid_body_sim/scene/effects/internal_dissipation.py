@@ -62,7 +62,8 @@ class InternalDissipation(Effect):
         if len(set(frame.moments)) == 1:
             return ()
         values = self.coefficient, *frame.moments
-        return Acting(f'{__name__}:turning', values, 'turning', 'heat'),
+        return Acting(f'{__name__}:turning', values, 'turning', 'heat',
+                      polynomial=True),
 
 
 @compiled

@@ -69,6 +69,9 @@ class Acting:
     rooted : bool
         True if it takes a root or a fractional power of a quantity that changes: where that comes
         near zero, as |v| does, it is nearly a kink.
+    polynomial : bool
+        True if it is a polynomial of attitude, velocities and time: then it is no rougher than the
+        motion itself. Anything else may hide a rough term that is too small to show in the motion.
     winding : bool
         True if it jumps where the angle of a hinge goes on from its other end, two turns away. The
         jump is a kink where ``frame.hinge.winds``.
@@ -90,6 +93,7 @@ class Acting:
     rooted: bool = False
     winding: bool = False
     both_ways: bool = False
+    polynomial: bool = False
 
 
 @dataclass(frozen=True)

@@ -102,12 +102,14 @@ class Rotor(Effect):
         if self.torque:
             acting.append(Acting(f'{__name__}:gyroscopic_driven',
                                  (self.momentum_at_start, self.torque, *axis), 'torque', 'work',
-                                 in_field=True, of_motion=True, inner=True, timed=True))
+                                 in_field=True, of_motion=True, inner=True, timed=True,
+                                 polynomial=True))
             acting.append(Acting('rigid_body_sim.scene.effects.elementary:constant',
-                                 scaled(-self.torque, axis), 'torque', 'work', inner=True))
+                                 scaled(-self.torque, axis), 'torque', 'work', inner=True,
+                                 polynomial=True))
         elif self.momentum_at_start:
             acting.append(Acting(f'{__name__}:gyroscopic', scaled(self.momentum_at_start, axis),
-                                 'torque', 'work', of_motion=True, inner=True))
+                                 'torque', 'work', of_motion=True, inner=True, polynomial=True))
         return tuple(acting)
 
     def series(self, frame: Frame, time: float) -> Pull:

@@ -99,9 +99,9 @@ class Torque(Effect):
         value = self.value(time)
         if self.frame == 'world':
             return Acting('rigid_body_sim.scene.effects.elementary:to_frame', value, 'torque',
-                          self.books),
+                          self.books, polynomial=True),
         return Acting('rigid_body_sim.scene.effects.elementary:constant', frame.from_body(value),
-                      'torque', self.books),
+                      'torque', self.books, polynomial=True),
 
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple."""

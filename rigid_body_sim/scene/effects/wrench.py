@@ -45,10 +45,11 @@ class Wrench:
         world_force, world_torque = (ZERO, ZERO) if in_body else given
         force, torque = map(frame.from_body, given) if in_body else (ZERO, ZERO)
         if frame.moves:
-            return (Acting(f'{ELEMENTARY}:held_force', (*world_force, *force), 'force', 'work'),
+            return (Acting(f'{ELEMENTARY}:held_force', (*world_force, *force), 'force', 'work',
+                           polynomial=True),
                     Acting(f'{ELEMENTARY}:held_torque', (*world_torque, *torque), 'torque',
-                           'work'))
+                           'work', polynomial=True))
         (rx, ry, rz), (fx, fy, fz), (tx, ty, tz) = frame.arm, force, torque
         about_point = ry * fz - rz * fy + tx, rz * fx - rx * fz + ty, rx * fy - ry * fx + tz
         values = *frame.arm, *world_force, *world_torque, *about_point
-        return Acting(f'{ELEMENTARY}:held_about_point', values, 'torque', 'work'),
+        return Acting(f'{ELEMENTARY}:held_about_point', values, 'torque', 'work', polynomial=True),
