@@ -8,10 +8,11 @@ import numpy as np
 from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
-from rigid_body_sim.numerics.rotations import angles_between
+from rigid_body_sim.numerics.rotations import angles_between, normalised
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
 FINER = 2.0 ** -7    # share of a tolerance: that of the finer run, which tells the error
+ROUNDINGS = 2.0 ** 10    # times half an ulp of the start: errors up to there may be rounding
 
 
 def apart(states, others):
@@ -19,6 +20,28 @@ def apart(states, others):
     angles = np.empty(len(states))
     angles_between(states[:, ORIENTATION], others[:, ORIENTATION], angles)
     return np.where(np.isnan(angles), math.inf, angles)
+
+
+def apart_from_mean(states, finer):
+    """Return the angles between the attitudes of a run and the mean ones of finer runs, (n,).
+
+    A finer run takes more steps and errs more by rounding. The rounding of several runs is
+    independent, so that their mean errs less than each of them.
+
+    Parameters
+    ----------
+    finer : list of array (n, 14)
+        Those that are not finite are left out.
+    """
+    best, total, many = finer[0][:, ORIENTATION], np.zeros((len(states), 4)), 0
+    for one in (other[:, ORIENTATION] for other in finer):
+        if np.isfinite(one).all():
+            same = (best * one).sum(axis=1) >= 0.0    # q and -q are the same attitude
+            total, many = total + np.where(same[:, None], one, -one), many + 1
+    mean = finer[0].copy()
+    if many:
+        mean[:, ORIENTATION] = [normalised(*row) for row in total.tolist()]
+    return apart(states, mean)
 
 
 def momenta_apart(scene, states, others):

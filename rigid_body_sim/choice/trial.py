@@ -14,6 +14,7 @@ A trial does not pay for a body that turns little, is not slim and is moved by n
 body gets an eighth of the tolerance of the table, to be safe: the table has other scenes.
 """
 
+import contextlib
 import math
 
 import numpy as np
@@ -38,6 +39,8 @@ COARSER = 8.0   # factor between the tolerance of the table and that of a scene,
 LIKELY, MEASURED = 2.0, 100.0    # factor on the tolerance of the table up to such an angle (rad)
 NEAR = 2.0 ** -4     # largest such share: a run that is less fine does not tell the error
 FINER_ONES = FINER, NEAR, 0.25    # shares that are tried in turn where runs take too much work
+AROUND = 4      # finer runs whose mean rounds half as much as each of them
+PAIR = 2        # least number of them
 TRIES = 6       # largest number of tolerances
 GROWTH = 1.1    # power of the tolerance with which errors grow, until two are known
 GROWTHS = 0.5, 2.0
@@ -167,8 +170,9 @@ class Trial:
         """Return the Forecast of a choice."""
         accuracy, horizon, times = self._accuracy, self._horizon, self._times
         finer = self._reference(tolerance)
-        errors = None if finer is None else comparison.apart(
-            self._states(tolerance), self._states(self._below(finer, tolerance)))
+        below = None if finer is None else self._below(finer, tolerance)
+        errors = None if below is None else comparison.apart(
+            self._states(tolerance), self._states(below))
         if errors is None or not float(errors[0]) < math.inf:
             if self._promised is None:
                 return forecast.Forecast(None, None)
@@ -182,6 +186,9 @@ class Trial:
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,
                        self._later(best, rounding.of_angle_turned(self._scene, best, times)))
+            if float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
+                around = self._around(below, tolerance)
+                errors = comparison.apart_from_mean(here, around) if around else errors
         else:
             lost = np.zeros(len(times))
         for one, error, since in self._allowed:
@@ -258,6 +265,24 @@ class Trial:
                 break
             finer = more
         return finer
+
+    def _around(self, finer, tolerance):
+        """Return the states of a finer run, and of others with tolerances a little larger.
+
+        Runs that take the same steps as one before count once: beside the finest tolerance there
+        are many. Where no two others are finer, coarser ones are taken.
+        """
+        here, found = self._states(tolerance), []
+        while finer <= FINER_ONES[-1] * tolerance or (
+                len(found) < PAIR and finer <= COARSER * tolerance):
+            with contextlib.suppress(TooMuchWork):
+                states = self._states(finer)
+                if not any(np.array_equal(states, one) for one in (here, *found)):
+                    found.append(states)
+            if len(found) == AROUND:
+                break
+            finer *= 2.0
+        return found
 
     def _error(self, tolerance):
         """Return the error at a tolerance at the horizon, rad, or None if nothing tells it."""

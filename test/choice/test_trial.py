@@ -208,3 +208,16 @@ def test_no_more_runs_are_made_than_show_that_an_error_may_be_rounding(
     monkeypatch.setattr(rounding, 'run', run)
     assert (tried.excess(2.0 ** -30) == 0.0) == excused
     assert len(made) == many
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('finest', 'expected'), [
+    (-60, {-37, -36, -35, -34}), (-35, {-35, -34, -33, -32}), (-32, {-32, -31}),
+    (-30, {-29, -28}), (-20, set())],
+    ids=['many', 'some take the same steps', 'two', 'none is finer', 'all take the same steps'])
+def test_a_finer_run_is_not_the_only_one_that_tells_the_error(finest, expected, monkeypatch):
+    """Each run rounds on its own way: finer than 2^finest all take the same steps."""
+    tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
+    monkeypatch.setattr(tried, '_states', lambda one: np.array([max(one, 2.0 ** finest)]))
+    found = tried._around(2.0 ** -37, 2.0 ** -30)
+    assert {float(np.log2(one[0])) for one in found} == expected
