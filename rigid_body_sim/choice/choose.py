@@ -20,8 +20,8 @@ from rigid_body_sim.choice.forecast import Forecast, missed
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
-from rigid_body_sim.integrators.protocols import Solver
-from rigid_body_sim.integrators.solver import FINEST, Stepped
+from rigid_body_sim.integrators.protocols import FINEST, Solver
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
 from rigid_body_sim.motions.nearly import differ, nearly_absorbing, takes_any_moments

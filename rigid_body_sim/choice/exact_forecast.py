@@ -5,7 +5,7 @@ from rigid_body_sim.choice.comparison import FINER, apart
 from rigid_body_sim.choice.forecast import forecast
 from rigid_body_sim.choice.rounding import lost
 from rigid_body_sim.choice.runs import looks, run, strikes
-from rigid_body_sim.integrators.solver import FINEST
+from rigid_body_sim.integrators.protocols import FINEST
 
 
 class _Continued:

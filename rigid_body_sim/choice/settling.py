@@ -13,7 +13,8 @@ from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators import GENERAL
 from rigid_body_sim.integrators.marching.work import TooMuchWork
-from rigid_body_sim.integrators.solver import FINEST, Stepped
+from rigid_body_sim.integrators.protocols import FINEST
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
@@ -93,11 +94,12 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     a long horizon, and errors are taken to grow in proportion to time.
 
     A method that takes many more steps than the motion asks for does not suit the scene, and the
-    next one is tried. If none suits, all of them are tried again with more patience, since what
-    acts may be faster than the body, and from the coarsest tolerance on, since rounding of what
-    acts may be more than a fine one allows. If the table has no method that meets the accuracy,
-    its most accurate one is taken. If a trial shows that a method errs by more than the accuracy
-    and by more than rounding, the next one is tried too, and the most accurate one is taken.
+    next one is tried. If none suits, or none meets the accuracy in so many steps, all of them are
+    tried again with more patience, since what acts may be faster than the body, and from the
+    coarsest tolerance on, since rounding of what acts may be more than a fine one allows. If the
+    table has no method that meets the accuracy, its most accurate one is taken. If a trial shows
+    that a method errs by more than the accuracy and by more than rounding, the next one is tried
+    too, and the most accurate one is taken.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     measured_ones = [name for name in able if measured.on_such(scene, name)]
     failed = 'none'
     for patience in PATIENCE:
-        left, least, best = measured_ones.copy(), math.inf, None
+        left, least, best, cut_short = measured_ones.copy(), math.inf, None, False
         while left:
             method, tolerance, promised = measured.pick(scene, left, accuracy, horizon)
             trial = kind(scene, accuracy, horizon, method, promised, patience,
@@ -119,8 +121,9 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
                 found = trial.take(tolerance)
                 excess = trial.excess(found, least) if left or best else 0.0
             except TooMuchWork as error:
-                failed = error
+                failed, cut_short = error, True
                 continue
+            cut_short = cut_short or trial.is_cut_short
             if best is None or excess < HELPS * least:
                 least = excess
                 tolerance = min(found, coarsest)    # the forecast is that of the run
@@ -128,8 +131,10 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
                                find=functools.partial(trial.forecast, tolerance))
             if not excess > 0.0:
                 break
-        if best:
+        if best and (not least > 0.0 or not cut_short):
             return best
+    if best:
+        return best
     raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
 
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from rigid_body_sim.choice import comparison, forecast, measured, rounding, runs
 from rigid_body_sim.choice.comparison import FINER
+from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
@@ -79,7 +80,8 @@ class Trial:
             min(STEPS_PER_RADIAN * self._radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         rows = measured.rows(scene)
         known = [entry['tolerance'] for entry in rows.get(method) or rows['dop8']]
-        self._finest, self._coarsest = min(known), max(known)
+        self._finest = max(min(known), METHODS[method].FAMILY.FINEST)
+        self._coarsest = max(known)
         self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
 
     def take(self, tolerance):
@@ -146,13 +148,15 @@ class Trial:
         """Return the error at a tolerance, rad, where another method may do better; else 0.
 
         Another one may where the error is more than is asked, and more than rounding does to any
-        method. A method tried before errs by `least`: an error beyond that is not excused by
-        rounding.
+        method, and where nothing tells the error: then it is infinite. A method tried before
+        errs by `least`: an error beyond that is not excused by rounding.
         """
         if tolerance not in self._runs:
             return 0.0    # it was not tried
         error = self._error(tolerance)
-        if error is None or error <= self._accuracy:
+        if error is None:
+            return math.inf
+        if error <= self._accuracy:
             return 0.0
         if error >= least:
             return error
@@ -166,27 +170,31 @@ class Trial:
             return 0.0    # nothing tells
         return error if float(lost.max()) < rounded else 0.0
 
+    @property
+    def is_cut_short(self):
+        """Whether any of its runs took too much work: more patience may tell more."""
+        return bool(self._beyond)
+
     def forecast(self, tolerance):
         """Return the Forecast of a choice."""
         accuracy, horizon, times = self._accuracy, self._horizon, self._times
         finer = self._reference(tolerance)
         below = None if finer is None else self._below(finer, tolerance)
-        errors = None if below is None else comparison.apart(
-            self._states(tolerance), self._states(below))
+        errors = self._errors(tolerance, below)
         if errors is None or not float(errors[0]) < math.inf:
             if self._promised is None:
                 return forecast.Forecast(None, None)
             return forecast.Forecast(
                 self._promised, horizon if self._promised <= accuracy else 0.0)
-        here, last = self._states(tolerance), 0.0
+        here, last, finest = self._states(tolerance), 0.0, finer or tolerance
         if float(errors.max()) < MAGNIFIED:
-            best = self._states(finer)
+            best = self._states(finest)
             lost = rounding.lost_in_steps(
-                self._scene, self.prototype.at(finer, self._most), times, best)
+                self._scene, self.prototype.at(finest, self._most), times, best)
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,
                        self._later(best, rounding.of_angle_turned(self._scene, best, times)))
-            if float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
+            if below and float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
                 around = self._around(below, tolerance)
                 errors = comparison.apart_from_mean(here, around) if around else errors
         else:
@@ -196,6 +204,23 @@ class Trial:
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
         last = max(last, self._later(here, errors))
         return forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon, last)
+
+    def _errors(self, tolerance, below):
+        """Return the errors at looks, rad, beside a run that errs less; None if nothing tells.
+
+        Where there is none, a coarser run is taken. It errs by COARSER times as much as this one,
+        or as much where both err by rounding; the middle is told.
+        """
+        coarser = self._grid(COARSER * tolerance)
+        if below is None and coarser == tolerance:
+            return None
+        try:
+            here = self._states(tolerance)
+            if below is None:
+                return comparison.apart(here, self._states(coarser)) / math.sqrt(COARSER)
+            return comparison.apart(here, self._states(below))
+        except TooMuchWork:
+            return None
 
     def _likely(self, tolerance):
         """Return a tolerance that is likely to do where the table has the one given.
@@ -285,11 +310,17 @@ class Trial:
         return found
 
     def _error(self, tolerance):
-        """Return the error at a tolerance at the horizon, rad, or None if nothing tells it."""
-        finer = self._reference(tolerance)
+        """Return the error at a tolerance at the horizon, rad, or None if nothing tells it.
+
+        Raises
+        ------
+        TooMuchWork
+            The run itself is too long.
+        """
+        here, finer = self._states(tolerance), self._reference(tolerance)
         if finer is None:
             return None
-        return self._later(self._states(tolerance), self._apart(tolerance, finer))
+        return self._later(here, self._apart(tolerance, finer))
 
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""

@@ -10,6 +10,8 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+FINEST = 1e-15
+"""The finest accuracy (rad) that doubles allow."""
 Event = tuple[float, str, dict]
 """Time (s) and name of an event, and numbers that belong to it, by name."""
 
@@ -161,6 +163,8 @@ class Family(Protocol):
         those of Method.
     TABLE : bool
         Whether its methods may declare TABLE.
+    FINEST : float
+        The finest accuracy that makes a difference, rad: a finer one gives the same run.
     """
 
     ASKS: dict[str, tuple[str, ...]]
@@ -169,6 +173,7 @@ class Family(Protocol):
     LANES: bool
     KINKS: bool
     ROOTS: bool
+    FINEST: float
 
     def bind(self, method: Method, stepped: Any) -> 'Bound':
         """Return the method's kernels on a scene's equations.

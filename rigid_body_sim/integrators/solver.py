@@ -25,6 +25,7 @@ from rigid_body_sim.integrators import GENERAL, METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
+from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
 from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
@@ -34,7 +35,6 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 from rigid_body_sim.scene.winding import may_reach_ends
 
-FINEST = 1e-15          # smallest accuracy that doubles allow
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
 SLACK = 1e-2            # share of the tolerance: jumps between steps that the ledger ignores

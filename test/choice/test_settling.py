@@ -29,6 +29,23 @@ def test_another_method_is_tried_where_one_errs_by_more_than_rounding(errors, ta
     assert found.method == (first if taken == 'first' else taken)
 
 
+@pytest.mark.parametrize(('cut_short', 'excess', 'patiences'), [
+    (True, 1e-8, {1, 16}), (False, 1e-8, {1}), (True, 0.0, {1}), (True, np.inf, {1, 16})])
+def test_a_miss_for_want_of_steps_asks_for_patience(cut_short, excess, patiences, monkeypatch):
+    """A needle that is spun up takes more steps than its first rate asks for."""
+    scene, seen = parse_scene(SLOW.replace('EFFECTS', TORQUE)), set()
+
+    def take(self, tolerance):
+        seen.add(self._patience)
+        return tolerance
+    monkeypatch.setattr(Trial, 'take', take)
+    monkeypatch.setattr(Trial, 'is_cut_short', cut_short)
+    monkeypatch.setattr(
+        Trial, 'excess', lambda self, *_: excess if self._patience == 1 else 0.0)
+    settling.settle(scene, ['dop8', 'gauss16'], 1e-11, 6.0)
+    assert seen == patiences
+
+
 FALLING = """
 scene: falling
 body: {mass: 1.0, inertia: [0.2, 0.3, 0.4]}

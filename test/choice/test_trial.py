@@ -14,7 +14,10 @@ from choice.known_bodies import SLOW, TORQUE
 
 from rigid_body_sim.choice import comparison, rounding, runs, trial
 from rigid_body_sim.choice.trial import Trial
+from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.integrators.protocols import FINEST
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
@@ -142,8 +145,8 @@ def test_one_finer_tolerance_that_does_not_help_is_not_the_last(error, most, mon
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('accuracy', 'error', 'expected'), [
-    (1e-11, 1e-8, 1e-8), (1e-11, 1e-12, 0.0), (1e-18, 1e-16, 0.0), (1e-11, None, 0.0)])
-def test_only_an_error_beyond_rounding_asks_for_another_method(
+    (1e-11, 1e-8, 1e-8), (1e-11, 1e-12, 0.0), (1e-18, 1e-16, 0.0), (1e-11, None, math.inf)])
+def test_only_an_error_beyond_rounding_or_an_unknown_one_asks_for_another_method(
         accuracy, error, expected, monkeypatch):
     scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
     tried = Trial(scene, accuracy, 6.0, 'dop8', 1e-12, 1, True)
@@ -152,6 +155,42 @@ def test_only_an_error_beyond_rounding_asks_for_another_method(
     monkeypatch.setattr(tried, '_error', lambda tolerance: error)
     monkeypatch.setattr(tried, '_apart', lambda tolerance, finer: np.array([error]))
     assert tried.excess(2.0 ** -30) == expected
+
+
+@pytest.mark.without_numba
+def test_a_run_that_is_too_long_tells_no_error_and_its_method_is_left(monkeypatch):
+    """Auto once took lsoda, which had not run at all, and told the error of the table."""
+    tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
+
+    def give_up(tolerance, most):
+        raise TooMuchWork('too long')
+    monkeypatch.setattr(tried, '_run', give_up)
+    assert not tried.is_cut_short
+    with pytest.raises(TooMuchWork):
+        tried.tolerance_from(tried._finest)
+    assert tried.is_cut_short
+
+
+@pytest.mark.without_numba
+def test_a_method_is_not_tried_finer_than_it_goes():
+    """Finer runs of lsoda than 2.2e-14 are all the same, not right."""
+    scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
+    tried = Trial(scene, 1e-11, 6.0, 'lsoda', 1e-12, 1, True)
+    assert tried._finest == METHODS['lsoda'].FAMILY.FINEST > FINEST
+    assert tried._reference(tried._finest) is None
+
+
+@pytest.mark.without_numba
+def test_where_nothing_is_finer_a_coarser_run_tells_the_error(monkeypatch):
+    tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
+    tried._finest = 2.0 ** -30
+    told = tried.forecast(2.0 ** -30).error
+    best = Stepped(tried._scene, 'dop8', 1e-13, horizon=6.0)
+    states = runs.run(tried._scene, best, tried._scene.initial.vector, tried._times)
+    error = float(comparison.apart(tried._states(2.0 ** -30), states).max())
+    assert error / 3.0 <= told <= 3.0 * error    # measured: 2.3 times the error
+    tried._coarsest = 2.0 ** -30
+    assert tried.forecast(2.0 ** -30).error == 1e-12    # nothing tells more than the table
 
 
 @pytest.mark.without_numba

@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
 from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
+from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 from rigid_body_sim.mechanics.bounds import swing_rate
 
 ASKS = {'accuracy': (), 'step': ()}

@@ -41,6 +41,7 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     march,
 )
 from rigid_body_sim.integrators.marching import composed
+from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 
 # what every composition declares as a method (integrators/protocols.py), for its page to import;
 # HEAT is that of the higher orders

@@ -20,6 +20,7 @@ from rigid_body_sim.integrators.families.one_step import (  # noqa: F401
     equations_of,
     march,
 )
+from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 
 ASKS = {'step': ()}
 TABLE = False

@@ -23,6 +23,7 @@ from rigid_body_sim.integrators.marching import (
     unroll,
 )
 from rigid_body_sim.integrators.marching.points import CONTROL, Control
+from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ASKS = {'accuracy': (), 'step': ()}

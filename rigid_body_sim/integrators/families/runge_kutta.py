@@ -8,6 +8,7 @@ A method is a module with a table of coefficients A, B, and E3, E5 if it estimat
 from rigid_body_sim.integrators.families import one_step
 from rigid_body_sim.integrators.families.one_step import begin, equations_of, march  # noqa: F401
 from rigid_body_sim.integrators.marching import table, unroll
+from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ASKS = {'accuracy': ('A', 'B', 'E5', 'E3'), 'step': ('A', 'B')}
