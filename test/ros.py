@@ -21,7 +21,8 @@ FIRST_DOMAIN, LAST_DOMAIN = 1, 101
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # They are read when rclpy and the message classes are imported, so conftest.py sets them for this
-# process too.
+# process too, and the profile for this process only.
+PROFILE = {'FASTDDS_DEFAULT_PROFILES_FILE': str(ROOT / 'test' / 'fastdds.xml')}
 SETTINGS = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_PYTHON_CHECK_FIELDS': '1'}
 
 
@@ -77,9 +78,9 @@ def held_domain(log_folder):
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 continue
-            yield Domain(domain_id,
-                         {**os.environ, **SETTINGS, 'ROS_DOMAIN_ID': str(domain_id),
-                          'ROS_LOG_DIR': str(log_folder)})
+            inherited = {key: value for key, value in os.environ.items() if key not in PROFILE}
+            yield Domain(domain_id, {**inherited, **SETTINGS, 'ROS_DOMAIN_ID': str(domain_id),
+                                     'ROS_LOG_DIR': str(log_folder)})
             return
     raise RuntimeError(f'all domain ids from {FIRST_DOMAIN} to {LAST_DOMAIN} are in use by tests: '
                        'wait for other test runs to end')
