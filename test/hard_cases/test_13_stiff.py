@@ -280,10 +280,10 @@ def test_a_pivot_that_leaves_what_doubles_hold_is_told(method):
 def test_a_torque_that_grows_no_further_than_it_can_be_followed_is_followed(monkeypatch):
     body = scene('free', body=BODY, effects=[{'torque': {'value': ['exp(3*t)', 0, 0]}}],
                  initial={'angular_velocity': [1, 2, 3]})
-    states = np.empty((64, 14))
+    states = np.empty((2, 14))
     solver = Stepped(body, 'dop8', 1e-6, horizon=3.0, most=5000).start(body.initial.vector)
     made = counted(monkeypatch)
-    solver.states(np.linspace(0.0, 3.0, 65)[1:], states)
+    solver.states(np.array([1.5, 3.0]), states)
     assert np.isfinite(states).all()
     assert sum(made) > 500
 

@@ -21,7 +21,7 @@ from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.functions import log
 
-SLICE = 32              # steps of the first slice
+SLICE = 64              # steps of the first slice
 FIRST_LOOK = 1 << 17    # steps before the first look at what lies ahead; then at each doubling
 MOST = 3e8              # steps between two times that are asked for: minutes
 PATIENCE = 1e15         # steps done times steps ahead: beyond, and beyond MOST, a march gives up
@@ -29,7 +29,7 @@ SLOWER = 1 if HAVE_NUMBA else 100    # steps that one costs which is not compile
 EARLY = 1 << 9          # steps before the first look of a run under a bound of its own
 HOPELESS = 100.0        # times its bound: where as many steps lie ahead, it gives up
 GROWING = 2.0           # steps that are so many times longer than those up to the look before
-DOUBLED = 1 << 5        # steps from which on doublings of their number are timed
+DOUBLED = 1 << 6        # steps from which on doublings of their number are timed
 EVEN = 1.05             # times the doubling before: one that takes up to that is no slower
 AGAIN = 4               # doublings in succession that are no slower than the one before
 
