@@ -196,7 +196,8 @@ def _symmetric(scene, equal, off):
         return found
     axes, body = scene.constraint.inertia(scene.body).axes, found.body
     center = minus(body.center_of_mass, rotate(*axes, *off))
-    return dataclasses.replace(found, body=dataclasses.replace(body, center_of_mass=center))
+    return dataclasses.replace(found, body=dataclasses.replace(
+        body, center_of_mass=center, center_lost=(0.0, 0.0, 0.0)))
 
 
 def _with_inertia(scene, moments):

@@ -6,22 +6,24 @@ Symbols: M mass (kg), I1, I2, I3 principal moments (kg m^2).
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property, reduce
+from functools import cached_property
 from operator import add
 
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import from_matrix, rotate
+from rigid_body_sim.numerics.rotations import from_matrix
 from rigid_body_sim.numerics.rotations import matrix as rotation_matrix
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.principal_axes import (
+    SLIM,
     ULPS,
     eigenvectors,
     is_slim,
     nearest_to_the_body,
     nearest_where_equal,
+    without_traces,
 )
 from rigid_body_sim.scene.shapes import SHAPES, SPHERES
 from rigid_body_sim.scene.surfaces import Surface
@@ -63,12 +65,12 @@ class Inertia:
             return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
         entries = tuple(map(tuple, matrix.tolist() if exact is None else exact))
         moments, axes, lost = nearest_to_the_body(*eigenvectors(matrix.tolist()))
+        if exact is not None and min(moments) < SLIM * max(moments):
+            moments, axes, lost = nearest_to_the_body(*without_traces(*eigenvectors(entries)))
         if not is_slim(moments):
             moments, axes = nearest_where_equal(moments, axes)
             return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
                        entries=entries)
-        if exact is not None:
-            moments, axes, lost = nearest_to_the_body(*eigenvectors(entries))
         rows = tuple(tuple(map(add, map(Fraction, row), map(Fraction, less)))
                      for row, less in zip(axes, lost.vectors, strict=True))
         return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
@@ -114,6 +116,8 @@ class Body:
         Radius of a sphere, m; None for every other body.
     surface : Surface or None
         What touches a plane (surfaces.py).
+    center_lost : tuple of 3 floats
+        What the centre of mass is more than the doubles above, m: parts may have theirs anywhere.
     """
 
     mass: float
@@ -122,6 +126,12 @@ class Body:
     about_origin: Inertia
     radius: float | None = None
     surface: Surface | None = None
+    center_lost: tuple = (0.0, 0.0, 0.0)
+
+    @property
+    def exact_center(self):
+        """The centre of mass before it was rounded: Fractions, m."""
+        return tuple(map(add, map(Fraction, self.center_of_mass), map(Fraction, self.center_lost)))
 
 
 def moved(inertia, M, shift, sign, exactly=None):
@@ -129,7 +139,7 @@ def moved(inertia, M, shift, sign, exactly=None):
 
     It is I + sign M (shift^2 1 - shift shift^T); the sign is +1 away from the centre of mass. No
     moment is then below the least one about the centre. That one replaces a moment that rounding
-    leaves below zero, on a body that is small beside the shift. The shift as Fractions is
+    leaves at zero or below, on a body that is small beside the shift. The shift as Fractions is
     `exactly`, if doubles round it.
     """
     if not any(shift):
@@ -137,8 +147,8 @@ def moved(inertia, M, shift, sign, exactly=None):
     sums = inertia.matrix + sign * M * _of_point(shift)
     exact = _summed(inertia, M, exactly or shift, sign) if np.isfinite(sums).all() else None
     found = Inertia.of_matrix(sums, exact)
-    if sign > 0.0 and min(found.moments) < 0.0:
-        least = max(0.0, min(inertia.moments))
+    least = max(0.0, min(inertia.moments))
+    if sign > 0.0 and (min(found.moments) < 0.0 or min(found.moments) == 0.0 < least):
         return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
     if inertia.axes == found.axes == IDENTITY:
         return replace(found, lost=_lost(inertia, found, M, shift, sign))
@@ -179,7 +189,7 @@ def _turned(tensor, q):
 
 
 def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='center_of_mass',
-              radius=None, where='body'):
+              radius=None, where='body', exact=None, center_lost=(0.0, 0.0, 0.0)):
     """Return the body of a given tensor.
 
     Parameters
@@ -192,6 +202,10 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
         The point that the tensor is about.
     where : str
         Place for the error line.
+    exact : sequence, optional
+        Rows of Fractions: the tensor about the centre of mass, if the one above rounds it.
+    center_lost : sequence of 3 floats
+        As Body has it.
 
     Raises
     ------
@@ -211,11 +225,12 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
                        'a tensor equals its transpose')
     center = tuple(float(x) for x in center_of_mass)
     refuse_beyond(max(float(np.abs(tensor).max()), M * square_of(center)), where)
-    given = Inertia.of_matrix(tensor)
+    given = Inertia.of_matrix(tensor, exact)
+    body = Body(M, center, given, given, radius, center_lost=tuple(center_lost))
     if about == 'origin':
-        body = Body(M, center, moved(given, M, center, -1.0), given, radius)
+        body = replace(body, about_center=moved(given, M, center, -1.0))
     else:
-        body = Body(M, center, given, moved(given, M, center, 1.0), radius)
+        body = replace(body, about_origin=moved(given, M, center, 1.0, body.exact_center))
     _check_moments(body, given, where)
     # a moment below zero there is rounding
     return replace(body, about_center=_not_negative(body.about_center),
@@ -270,54 +285,3 @@ def of_shape(name, M, dimensions, center_of_mass=(0.0, 0.0, 0.0), where='body'):
     """Return the body of a homogeneous shape (a key of SHAPES) with its dimensions in metres."""
     radius = dimensions['radius'] if name in SPHERES else None
     return make_body(M, SHAPES[name](M, **dimensions), center_of_mass, radius=radius, where=where)
-
-
-def hole(part):
-    """Return a part with negative mass and moments, which removes what another one adds."""
-    return Body(-part.mass, part.center_of_mass, _negative(part.about_center),
-                _negative(part.about_origin), part.radius)
-
-
-def _negative(inertia):
-    return Inertia(tuple(-moment for moment in inertia.moments), inertia.axes)
-
-
-def composite(parts, where='body'):
-    """Return the body made of placed parts.
-
-    Parameters
-    ----------
-    parts : sequence of (Body, at, orientation)
-        `at`: the part's origin in the composite's axes, m; `orientation`: the quaternion that
-        turns part axes into the composite's. A part may be a :func:`hole`.
-    where : str
-        Place for the error line.
-
-    Raises
-    ------
-    BadInput
-        If the holes take away more than there is.
-    """
-    # sum() of floats rounds differently from Python 3.12 on: one file would make two bodies
-    M = reduce(add, (part.mass for part, _, _ in parts))
-    if not M > 0.0:
-        raise BadInput(f'{where}.parts', f'have the mass {M!r} kg together',
-                       'holes take away less than there is')
-    centers = [np.add(at, rotate(*orientation, *part.center_of_mass))
-               for part, at, orientation in parts]
-    center = reduce(add, (part.mass * at
-                          for (part, _, _), at in zip(parts, centers, strict=True))) / M
-    with np.errstate(over='ignore', invalid='ignore'):    # make_body refuses what is not finite
-        tensor = _about(center, parts, centers)
-    return make_body(M, (tensor + tensor.T) / 2.0, center, where=where)
-
-
-def _about(center, parts, centers):
-    """Return the tensor of placed parts about a point."""
-    tensor = np.zeros((3, 3))
-    for (part, _, orientation), at in zip(parts, centers, strict=True):
-        own = part.about_center.matrix
-        if tuple(orientation) != IDENTITY:
-            own = _turned(own, orientation)
-        tensor += own + part.mass * _of_point(at - center)
-    return tensor

@@ -7,7 +7,7 @@ A body is given by its tensor, by a shape, or by parts.
 import dataclasses
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene import bodies, shapes
+from rigid_body_sim.scene import bodies, composites, shapes
 from rigid_body_sim.scene.initial import unit_quaternion
 from rigid_body_sim.scene.schema import MATRIX, POSITIVE, QUATERNION, VECTOR, check, mapping_of
 from rigid_body_sim.scene.surfaces import SURFACE, surface_of, surface_of_shape
@@ -62,7 +62,7 @@ def _inert_body(mapping, where):
         if surplus:
             raise BadInput(f'{where}.{surplus[0]}', 'is given together with parts',
                            'a composite takes mass and centre of mass from its parts')
-        return bodies.composite([_part(part, f'{where}.parts.{place}')
+        return composites.composite([_part(part, f'{where}.parts.{place}')
                                  for place, part in enumerate(mapping['parts'])], where)
     M = _mass(mapping, where)
     center = [float(x) for x in mapping.get('center_of_mass', (0.0, 0.0, 0.0))]
@@ -130,7 +130,7 @@ def _part(mapping, where):
                                'point: [x, y, z] says where it is')
         nothing = bodies.Inertia((0.0, 0.0, 0.0))
         part = bodies.Body(abs(M), (0.0, 0.0, 0.0), nothing, nothing)
-        return bodies.hole(part) if M < 0.0 else part, mapping['point'], bodies.IDENTITY
+        return composites.hole(part) if M < 0.0 else part, mapping['point'], bodies.IDENTITY
     turn = unit_quaternion(mapping.get('orientation', bodies.IDENTITY), f'{where}.orientation')
     at = mapping.get('at', (0.0, 0.0, 0.0))
-    return bodies.hole(part) if M < 0.0 else part, at, turn
+    return composites.hole(part) if M < 0.0 else part, at, turn

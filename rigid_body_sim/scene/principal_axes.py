@@ -15,6 +15,7 @@ from rigid_body_sim.numerics.vectors import cross, dot
 PLANES = (0, 1), (0, 2), (1, 2)
 DIGITS, SWEEPS = 40, 20    # digits kept, most sweeps; four suffice for most tensors
 NEGLIGIBLE = Decimal('1e-70')    # square of an entry over the product of the diagonal ones
+TRACE = 1e-36    # of the largest eigenvalue: what rounding leaves of one that is zero, at most
 SLIM = 2.0 ** -10    # smallest moment of a slim body over the largest, at most
 ULPS = 4.0 * np.finfo(float).eps    # a lamina has I3 = I1 + I2, up to the rounding of the input
 
@@ -47,6 +48,15 @@ def eigenvectors(matrix):
         lost = Lost([_lost(a[k][k]) for k in range(3)],
                     [[_lost(x) for x in vector] for vector in vectors])
         return rounded, [[float(x) for x in vector] for vector in vectors], lost
+
+
+def without_traces(moments, vectors, lost):
+    """Return what `eigenvectors` gives; moments that are zero but for its rounding are zero."""
+    least = TRACE * max(moments)
+    rods = [abs(moment) <= least for moment in moments]
+    return ([0.0 if rod else moment for rod, moment in zip(rods, moments, strict=True)], vectors,
+            Lost([0.0 if rod else less for rod, less in zip(rods, lost.moments, strict=True)],
+                 lost.vectors))
 
 
 def _decimal(entry):

@@ -11,7 +11,7 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene import bodies, principal_axes, shapes
+from rigid_body_sim.scene import bodies, composites, principal_axes, shapes
 
 EPS = np.finfo(float).eps
 
@@ -127,7 +127,7 @@ def test_equal_moments_keep_the_input_axes():
 def test_dumbbell_of_two_balls_and_a_rod():
     ball = bodies.of_shape('solid_sphere', 2.0, {'radius': 0.1})
     rod = bodies.of_shape('rod', 1.0, {'length': 1.0})
-    body = bodies.composite([
+    body = composites.composite([
         (rod, (0, 0, 0), bodies.IDENTITY), (ball, (0, 0, 0.5), bodies.IDENTITY),
         (ball, (0, 0, -0.5), bodies.IDENTITY)])
     across = 1 / 12 + 2 * (0.4 * 2.0 * 0.01 + 2.0 * 0.25)
@@ -140,7 +140,7 @@ def test_composite_keeps_its_own_axes_and_origin():
     parts = [(bodies.of_shape('box', 1.0, {'size': (0.1, 0.2, 0.3)}), (0.3, 0.1, 0.0),
               (0.0, 0.0, math.sin(0.2), math.cos(0.2))),
              (bodies.of_shape('disk', 2.0, {'radius': 0.1}), (-0.2, 0.0, 0.1), bodies.IDENTITY)]
-    body = bodies.composite(parts)
+    body = composites.composite(parts)
     assert body.center_of_mass == pytest.approx((-0.1 / 3, 0.1 / 3, 0.2 / 3), abs=1e-16)
     # the tensor about the origin is the sum of the parts' tensors about the origin
     tensor = np.zeros((3, 3))
@@ -197,7 +197,7 @@ def test_a_moment_that_rounding_makes_negative_is_zero():
     light = bodies.make_body(0.016218724248853164, [1e-30, 1e-30, 1e-30])
     for far in (1e74, 1e30, 3e15):
         for across in np.random.default_rng(8).normal(size=20) * 200.0:
-            body = bodies.composite([(light, (across, 0.0, far), bodies.IDENTITY),
+            body = composites.composite([(light, (across, 0.0, far), bodies.IDENTITY),
                                      (heavy, (-0.025, 0.0, -1e-3 * far), bodies.IDENTITY)])
             assert min(body.about_center.moments) >= 0.0
             assert min(body.about_origin.moments) >= 0.0

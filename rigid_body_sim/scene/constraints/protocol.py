@@ -166,6 +166,5 @@ class Constraint(Protocol):
 
     def exact_arm(self, body: Body) -> tuple[Fraction, Fraction, Fraction]:
         """Return the same before it is rounded."""
-        x, y, z = minus(tuple(map(Fraction, body.center_of_mass)),
-                        tuple(map(Fraction, self.point(body))))
+        x, y, z = minus(body.exact_center, tuple(map(Fraction, self.point(body))))
         return x, y, z
