@@ -58,9 +58,9 @@ CANCELS = 2.0 ** -51     # share of the weight that the balance of the plane may
 EVENT = 256              # steps that cost as much as finding one event and what follows it
 MOST_PHASES, AT_ONCE = 4000, 1e-6    # so many within that share of the time of a length: a fault
 (MODE, SWIFT, CREEP, SIDE, LAG, WIDE, UNTIL, MU, INCLINED, MASS, STARTED, ONSET, RIM, LEVEL, DRY,
- VISCOUS, FILM) = (CONTACT.part(name).first for name in (
+ VISCOUS, FILM, PATCH) = (CONTACT.part(name).first for name in (
      'mode', 'swift', 'creep', 'side', 'lag', 'wide', 'until', 'mu', 'inclined', 'mass', 'began',
-     'onset', 'rim', 'level', 'rolling', 'rolling_viscous', 'film'))
+     'onset', 'rim', 'level', 'rolling', 'rolling_viscous', 'film', 'patch'))
 ORIGIN, SIZES, WAY = (CONTACT.part(name).places for name in ('origin', 'size', 'way'))
 SIZE, GAP, TIME = UNKNOWNS.size, UNKNOWNS.part('gap').first, UNKNOWNS.part('time').first
 OMEGA, U = (UNKNOWNS.part(name).places for name in ('omega', 'u'))
@@ -68,7 +68,8 @@ SLIP = slice(U.start, U.start + 2)    # the part of the unknown u along the plan
 VELOCITY, FORCE = (ROW.part(name).places for name in ('velocity', 'force'))
 NORMAL, GRIP, FIRMNESS, MOTION = (WATCHED.part(name).first for name in (
     'normal', 'grip', 'firmness', 'motion'))
-BEGAN = {contact_march.LET_GO: 'sliding began', contact_march.STUCK: 'rolling began'}
+BEGAN = {CREEPING: 'sliding began', ROLLING: 'rolling began', RESTING: 'rolling began',
+         FLIGHT: 'lift-off'}
 PARADOX = ("Painleve's paradox at t = {} s: no force at the contact can keep the body from "
            'sinking into the plane; a smaller mu does not meet it')
 PULLS = ('at t = {} s ideal rolling needs a plane that pulls, since without friction the body '
@@ -421,20 +422,22 @@ class PlaneCourse:
         if why == contact_march.FASTER and p[MODE] == CREEPING and y[SLIP][0] <= 0.0:
             why = contact_march.STUCK    # the slip that began has died again
             grip_patch(p, y)
-        if why in BEGAN:
-            self._events.append((time, BEGAN[why], {}))
         if why == contact_march.LOST_CONTACT:
             self._fly(p, y)
             if self._over is None:
                 self._events.append((time, 'lift-off', {}))
         elif why == contact_march.LET_GO:
+            before = len(self._events)
             self._creep_off(p, y)
+            self._tell(time, before, False)
         elif why == contact_march.STOPPED and p[MODE] != FLIGHT:
             self._stop(p, y, time)
         elif why == contact_march.HELD:
             self._open(int(p[MODE]), p, y, not p[ONSET] + p[RIM] > 0.0, p[RIM] > 0.0, is_held(p))
         elif why == contact_march.STUCK:
+            before = len(self._events)
             self._land(p, y, (0.0, 0.0))
+            self._tell(time, before, True)
             if self._phases[-1].p[MODE] == RESTING and self._events[-1][1] != 'rest':
                 self._events.append((time, 'rest', {}))
         elif why == contact_march.FASTER:
@@ -446,6 +449,25 @@ class PlaneCourse:
             self._wake(y, time)
         else:
             self._open(int(p[MODE]), p, y)
+
+    def _tell(self, time, before, died):
+        """Add the event of a contact that slips no more, or that friction holds no more.
+
+        The phase that follows names it: a slip that has died may turn round. That is where a new
+        one begins, except for a patch: its slip goes through 0 with its spin, and may do so in a
+        phase that pivots, where nothing tells.
+
+        Parameters
+        ----------
+        before : int
+            Number of the events that were before.
+        died : bool
+            Whether a slip has died.
+        """
+        p = self._phases[-1].p
+        turns = died and p[MODE] == CREEPING and p[PATCH] > 0.0
+        if self._over is None and p[MODE] in BEGAN and not turns:
+            self._events.insert(before, (time, BEGAN[p[MODE]], {}))
 
     def _spins_on(self, p, y):
         """Return whether the spin of a patch that pivots goes on through 0: nothing stops it."""
