@@ -92,6 +92,8 @@ def test_ball_rolls_when_and_as_fast_as_predicted(scene, overrides):
     ('kater_pendulum', ['gravity.g=0']), ('symmetric_top', ['initial.angular_velocity=[0, 0, 2]']),
     ('heavy_top', ['gravity.g=0']),
     ('heavy_top', ['body.inertia=[0.03, 0.031, 0.01]']),
+    ('heavy_top', ['body.center_of_mass=[1.0e-3, 0, 0.1]']),
+    ('heavy_top', ['body.center_of_mass=[0, 1.0e-3, 0.1]']),
     ('billiard_center', ['sliding_friction.mu=0']),
     ('billiard_center', ['strike.time=1.0'])])
 def test_where_theory_is_silent_so_is_the_node(scene, overrides):

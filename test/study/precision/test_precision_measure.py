@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The harness: errors that it must find, refusals that it must keep, table, figure and command."""
 
+import dataclasses
 import json
 import sys
 
@@ -187,3 +188,12 @@ def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, m
                       ['--scene', 'nowhere'], ['--scene', 'racket', '--duration', '3']):
         assert work_precision.main(arguments) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_steps_are_shares_of_a_radian_at_the_fastest_rate(racket):
+    problem, truth = racket
+    omega = np.array([[3.0, 0.0, 4.0], [0.0, 1.0, 0.0]]) * 1e3
+    quick = dataclasses.replace(truth, omega=omega)
+    counts = [problem.duration / step for step in runner.steps_for(problem, quick)]
+    assert counts == pytest.approx([32 * round(problem.duration * 5e3 * share / 32)
+                                    for share in runner.STEPS_OF_A_RADIAN], rel=1e-12)
