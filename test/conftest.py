@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of all tests."""
 
-import contextlib
 import fcntl
-import functools
 import gc
 import hashlib
 import json
@@ -18,10 +16,6 @@ import pytest
 import ros
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
-
-if HAVE_NUMBA:
-    from numba.core.compiler_lock import global_compiler_lock
-    from numba.core.dispatcher import Dispatcher
 
 TEST = pathlib.Path(__file__).resolve().parent
 os.environ.update(ros.SETTINGS | ros.PROFILE)
@@ -56,38 +50,10 @@ SHARED = pytest.StashKey()
 def shared(request, tmp_path_factory):
     """Return the folder that the workers share."""
     folder = tmp_path_factory.getbasetemp()
-    if 'PYTEST_XDIST_WORKER' not in os.environ:
-        request.session.stash[SHARED] = folder
-        yield folder
-        return
-    request.session.stash[SHARED] = folder.parent
-    with pytest.MonkeyPatch.context() as patch:
-        if HAVE_NUMBA:
-            patch.setattr(Dispatcher, 'compile', compiled_once(folder.parent, Dispatcher.compile))
-        yield folder.parent
-
-
-def compiled_once(folder, compile_kernel):
-    """Return a numba's `compile` that waits while another worker compiles the kernel.
-
-    It finds the kernel in numba's cache then. A kernel that a kernel calls is compiled inside:
-    its lock is taken after the caller's, so that no two workers wait for each other.
-    """
-    held = set()
-
-    @functools.wraps(compile_kernel)
-    def compile_alone(kernel, types):
-        function = kernel.py_func
-        name = f'{function.__module__}.{function.__qualname__}'
-        with contextlib.ExitStack() as stack:
-            stack.enter_context(global_compiler_lock)    # of this worker's threads
-            if name not in held:
-                lock = stack.enter_context(open(folder / f'{name}.lock', 'w', encoding='utf-8'))
-                fcntl.flock(lock, fcntl.LOCK_EX)
-                held.add(name)
-                stack.callback(held.remove, name)
-            return compile_kernel(kernel, types)
-    return compile_alone
+    if 'PYTEST_XDIST_WORKER' in os.environ:
+        folder = folder.parent
+    request.session.stash[SHARED] = folder
+    return folder
 
 
 def done_once(folder, words, do):
