@@ -13,7 +13,7 @@ from functools import reduce
 from operator import add
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.numerics.vectors import apply, dot, minus, plus, scaled
+from rigid_body_sim.numerics.vectors import apply, dot, minus, plus, product, scaled
 from rigid_body_sim.scene.bodies import IDENTITY, make_body
 
 DIGITS = 60
@@ -58,10 +58,12 @@ def composite(parts, where='body'):
                   for part, at, orientation in parts]
         moment = reduce(plus, (scaled(mass, at) for mass, at, _ in placed))
         center = scaled(1 / reduce(add, (mass for mass, _, _ in placed)), moment)
-        center = _without_traces(center, max(abs(x) for _, at, _ in placed for x in at))
+        center = [_without_trace(x, max(abs(at[k]) for _, at, _ in placed))
+                  for k, x in enumerate(center)]
         tensor = reduce(_sum, (_moved(mass, minus(at, center), own) for mass, at, own in placed))
-        largest = max(tensor[k][k] for k in range(3))
-        tensor = [_without_traces([tensor[min(i, j)][max(i, j)] for j in range(3)], largest)
+        largest = max(abs(tensor[k][k]) for k in range(3))
+        tensor = [[tensor[i][i] if i == j else
+                   _without_trace(tensor[min(i, j)][max(i, j)], largest) for j in range(3)]
                   for i in range(3)]
         rounded = [float(x) for x in center]
         lost = [float(x - Decimal(r)) for x, r in zip(center, rounded, strict=True)]
@@ -91,8 +93,9 @@ def _rotation(q):
 
 def _moved(mass, d, own):
     """Return a tensor moved away from the centre of mass by d: parallel-axis theorem."""
-    square = dot(d, d)
-    return [[own[i][j] + mass * ((square if i == j else 0) - d[i] * d[j]) for j in range(3)]
+    x, y, z = product(d, d)
+    squares = y + z, z + x, x + y    # d^2 - x^2 would lose y and z beside a large x
+    return [[own[i][j] + mass * (squares[i] if i == j else -d[i] * d[j]) for j in range(3)]
             for i in range(3)]
 
 
@@ -100,8 +103,8 @@ def _sum(one, other):
     return [plus(x, y) for x, y in zip(one, other, strict=True)]
 
 
-def _without_traces(numbers, largest):
-    return [x if abs(x) > NOTHING * largest else Decimal(0) for x in numbers]
+def _without_trace(x, largest):
+    return x if abs(x) > NOTHING * largest else Decimal(0)
 
 
 def _decimal(number):

@@ -113,3 +113,15 @@ def test_the_centre_of_mass_is_known_beyond_its_doubles():
         assert abs(body.center_of_mass[0] + mpmath.mpf(body.center_lost[0]) - exact) < 1e-32
     assert body.center_of_mass[1:] == (0.0, 0.0)
     assert math.isclose(body.center_of_mass[0], 0.7 / 3, rel_tol=2 * EPS)
+
+
+def test_what_is_small_beside_a_far_part_is_kept():
+    ball = of_shape('solid_sphere', 1.0, {'radius': 0.1})
+    for x in (0.0, 0.2):
+        body = composites.composite([(ball, (0.1 + x, 0.0, 1e60), IDENTITY),
+                                     (ball, (0.1 - x, 0.0, -1e60), IDENTITY)])
+        assert body.center_of_mass == pytest.approx((0.1, 0.0, 0.0), rel=2 * EPS)
+    across, along = 2.0 * 1e120, 2 * 0.01 * 0.4
+    spins = composites.composite([(ball, (0.0, 0.0, 1e60), IDENTITY),
+                                  (ball, (0.0, 0.0, -1e60), IDENTITY)]).about_center.moments
+    assert spins == pytest.approx((across, across, along), rel=4 * EPS)
