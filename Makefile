@@ -24,7 +24,7 @@ COLCON_FOLDERS = --build-base .cache/colcon/build --install-base .cache/colcon/i
 NO_NOBLE = { echo 'TEST-NOBLE DID NOT RUN: nothing is known about Ubuntu 24.04 from this machine' >&2; exit 1; }
 # worksteal leaves the tests of a file in one process: they share fixtures and compiled kernels;
 # three processes for two cores, since many tests wait for nodes; each process imports and lists all tests
-# a worker that hangs where no signal is heard, in a library, ends
+# the second limit ends a worker that hangs inside a library, where it hears no signal
 PYTEST = python -m pytest --numprocesses 3 --dist worksteal --timeout 300 -o faulthandler_timeout=700 -o faulthandler_exit_on_timeout=true --ignore test/test_installed.py
 
 .PHONY: help run view sweep-demo test lint package unit test-noble test-kilted test-machines test-orders test-cold mutants soak figures docs bench bench-target bench-node bench-choice study study-check study-full pins pins-kilted pins-noble pins-docs clean

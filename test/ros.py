@@ -22,7 +22,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # They are read when rclpy and the message classes are imported, so conftest.py sets them for this
 # process too, and the profile for this process only.
-PROFILE = {'FASTDDS_DEFAULT_PROFILES_FILE': str(ROOT / 'test' / 'fastdds.xml')}
+PROFILE = dict.fromkeys(    # Fast DDS 2 reads the first, Fast DDS 3 the second
+    ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'),
+    str(ROOT / 'test' / 'fastdds.xml'))
 SETTINGS = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_PYTHON_CHECK_FIELDS': '1'}
 
 

@@ -2,6 +2,7 @@
 """The helper of the tests on ROS: no two share a domain, no process outlives its test."""
 
 import os
+import pathlib
 import select
 import subprocess
 import sys
@@ -49,6 +50,22 @@ except RuntimeError:
     with ros.held_domain(tmp_path):
         assert asked() == 'refused'
     assert asked() == 'got it'
+
+
+def test_the_profile_is_read_by_the_library_and_stays_in_this_process(ros_domain, tmp_path):
+    assert ros.PROFILE.items() <= os.environ.items()
+    assert not ros.PROFILE.keys() & ros_domain.environment.keys()
+    wrong = tmp_path / 'wrong.xml'
+    wrong.write_text(pathlib.Path(*set(ros.PROFILE.values())).read_text().replace('OFF', 'NO'))
+
+    def told(profile):
+        script = 'import rclpy; rclpy.init(); rclpy.create_node("node").destroy_node()'
+        done = ros_domain.run('-c', script,
+                              env=ros_domain.environment | dict.fromkeys(ros.PROFILE, profile))
+        assert done.returncode == 0
+        return done.stdout + done.stderr
+    assert str(wrong) in told(str(wrong))    # the library complains of it
+    assert told(next(iter(ros.PROFILE.values()))) == ''
 
 
 def test_the_domain_reaches_this_process_and_its_children(ros_domain):

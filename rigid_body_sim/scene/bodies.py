@@ -18,6 +18,7 @@ from rigid_body_sim.numerics.rotations import matrix as rotation_matrix
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.principal_axes import (
     SLIM,
+    TRACE,
     ULPS,
     eigenvectors,
     is_slim,
@@ -58,11 +59,14 @@ class Inertia:
 
         The principal axes nearest to the body axes are taken, of all orders and signs and of all
         choices within the plane of equal moments. A diagonal tensor is kept to the last bit. Those
-        of a slim body are the axes of the `exact` entries (Fractions), if they are given.
+        of a slim body are the axes of the `exact` entries (Fractions), if they are given; of a
+        diagonal tensor they tell what its doubles lost.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
-            return cls(tuple(float(moment) for moment in np.diagonal(matrix)))
+            moments = tuple(float(moment) for moment in np.diagonal(matrix))
+            return cls(moments) if exact is None else cls(
+                moments, lost=tuple(_lost(moments[k], exact[k][k]) for k in range(3)))
         entries = tuple(map(tuple, matrix.tolist() if exact is None else exact))
         moments, axes, lost = nearest_to_the_body(*eigenvectors(matrix.tolist()))
         if exact is not None and min(moments) < SLIM * max(moments):
@@ -97,6 +101,12 @@ class Inertia:
         if self.axes == IDENTITY:
             return np.diag(self.moments)
         return _turned(np.diag(self.moments), self.axes)
+
+
+def _lost(moment, exact):
+    """Return what an exact moment is more than its double; 0 where only rounding says so."""
+    less = float(Fraction(exact) - Fraction(moment))
+    return less if abs(less) > TRACE * abs(moment) else 0.0
 
 
 @dataclass(frozen=True)
@@ -150,21 +160,7 @@ def moved(inertia, M, shift, sign, exactly=None):
     least = max(0.0, min(inertia.moments))
     if sign > 0.0 and (min(found.moments) < 0.0 or min(found.moments) == 0.0 < least):
         return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
-    if inertia.axes == found.axes == IDENTITY:
-        return replace(found, lost=_lost(inertia, found, M, shift, sign))
     return found
-
-
-def _lost(inertia, found, M, shift, sign):
-    """Return what the rounded sums of diagonal tensors lost, kg m^2."""
-    if not np.isfinite(found.moments).all():
-        return 0.0, 0.0, 0.0
-    x, y, z = (part * part for part in map(Fraction, map(float, shift)))
-    return tuple(float(Fraction(moment) + Fraction(less) + Fraction(sign * M) * square
-                       - Fraction(now))
-                 for moment, less, square, now in zip(
-                     inertia.moments, inertia.lost, (y + z, z + x, x + y), found.moments,
-                     strict=True))
 
 
 def _summed(inertia, M, shift, sign):

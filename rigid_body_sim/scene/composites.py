@@ -17,7 +17,7 @@ from rigid_body_sim.numerics.vectors import apply, dot, minus, plus, product, sc
 from rigid_body_sim.scene.bodies import IDENTITY, make_body
 
 DIGITS = 60
-NOTHING = Decimal('1e-50')    # of the largest: what rounding leaves of an entry that is zero
+TRACE = Decimal('1e-50')    # of the largest: what rounding leaves of an entry that is zero
 
 
 def hole(part):
@@ -104,7 +104,7 @@ def _sum(one, other):
 
 
 def _without_trace(x, largest):
-    return x if abs(x) > NOTHING * largest else Decimal(0)
+    return x if abs(x) > TRACE * largest else Decimal(0)
 
 
 def _decimal(number):

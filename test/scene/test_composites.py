@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Slim bodies made of parts that lie askew: their small moment is as right as the large ones."""
+"""Bodies made of parts: what is small beside the rest is as right as what is large."""
 
 import math
+from dataclasses import replace
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -11,7 +13,8 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.rotations import angle_between, multiply
 from rigid_body_sim.scene import composites
-from rigid_body_sim.scene.bodies import IDENTITY, of_shape
+from rigid_body_sim.scene.bodies import IDENTITY, make_body, of_shape
+from rigid_body_sim.scene.constraints.pivot import Pivot
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -19,15 +22,29 @@ EPS = np.finfo(float).eps
 
 
 def cylinders(source, orientation):
-    """Return three cylinders in one line along the z axis of an orientation, as lists."""
+    """Return three cylinders in one line along the z axis of an orientation; one has a bore.
+
+    Each has a mass, negative for the bore, a radius, a length, a place and the orientation.
+    """
     axis = Rotation.from_quat(orientation).as_matrix()[:, 2]
-    return [(source.uniform(0.1, 3.0), 10.0 ** source.uniform(-4.0, -2.0),
-             source.uniform(0.2, 1.0), (source.uniform(-1.0, 1.0) * axis).tolist(), orientation)
-            for _ in range(3)]
+    found = [(source.uniform(0.1, 3.0), 10.0 ** source.uniform(-4.0, -2.0),
+              source.uniform(0.2, 1.0), (source.uniform(-1.0, 1.0) * axis).tolist(), orientation)
+             for _ in range(3)]
+    M, radius, *rest = found[0]
+    return [*found, (-0.25 * M, 0.5 * radius, *rest)]
 
 
-def exact_moments(parts):
-    """Return the principal moments about the centre of mass, rising, with 50 digits."""
+def body_of(parts):
+    """Return the composite of such cylinders."""
+    made = [of_shape('cylinder', abs(M), {'radius': radius, 'length': length})
+            for M, radius, length, _, _ in parts]
+    return composites.composite([
+        (composites.hole(one) if part[0] < 0.0 else one, *part[3:])
+        for one, part in zip(made, parts, strict=True)])
+
+
+def exact(parts):
+    """Return the moments about the centre of mass, rising, and that centre, with 50 digits."""
     with mpmath.workdps(50):
         placed = []
         for M, radius, length, at, orientation in parts:
@@ -44,30 +61,46 @@ def exact_moments(parts):
         for M, at, own in placed:
             d = at - center
             tensor += own + M * ((d.T * d)[0] * mpmath.eye(3) - d * d.T)
-        return sorted(mpmath.eigsy(tensor, eigvals_only=True))
+        return sorted(mpmath.eigsy(tensor, eigvals_only=True)), center
 
 
 @pytest.mark.parametrize('seed', range(8))
 def test_the_moments_of_skew_cylinders_in_one_line_are_those_of_fifty_digits(seed):
     source = np.random.default_rng(seed)
     parts = cylinders(source, Rotation.random(random_state=seed).as_quat().tolist())
-    inertia = composites.composite([
-        (of_shape('cylinder', M, {'radius': radius, 'length': length}), at, orientation)
-        for M, radius, length, at, orientation in parts]).about_center
-    found, exact = sorted(zip(inertia.moments, inertia.lost, strict=True)), exact_moments(parts)
+    inertia, (truths, _) = body_of(parts).about_center, exact(parts)
+    found = sorted(zip(inertia.moments, inertia.lost, strict=True))
     # the moments of each part are doubles: measured 1e-16; sums of doubles left 1e-10
-    for (moment, less), truth in zip(found, exact, strict=True):
+    for (moment, less), truth in zip(found, truths, strict=True):
         assert abs(mpmath.mpf(moment) + less - truth) <= 2 * EPS * truth
     # I1 - I2, over I3, turns the needle about its axis: measured 4e-28
     (small, _), (middle, d2), (large, d1) = found
-    assert abs((large - middle) + (d1 - d2) - (exact[2] - exact[1])) <= 1e-20 * small
+    assert abs((large - middle) + (d1 - d2) - (truths[2] - truths[1])) <= 1e-20 * small
+
+
+def test_a_pivot_holds_a_skew_needle_by_the_arm_that_its_parts_have():
+    """Off the line of the needle the arm is what rounding of the places left, 1e-17 m.
+
+    Its weight turns the needle about the line: that torque is of the parts, and to their digits.
+    """
+    parts = cylinders(np.random.default_rng(3), Rotation.random(random_state=3).as_quat().tolist())
+    body = body_of(parts)
+    frame, (_, center) = Pivot().frame(body), exact(parts)
+    with mpmath.workdps(50):
+        arm = [sum(mpmath.mpf(x.numerator) / x.denominator * c
+                   for x, c in zip(row, center, strict=True)) for row in frame.rows]
+        along = max(range(3), key=lambda k: abs(arm[k]))
+        for k in range(3):
+            # measured: 1e-16; that of a centre of mass in doubles is another
+            assert abs(frame.arm[k] - arm[k]) <= 1e-14 * abs(arm[k])
+            assert k == along or abs(arm[k]) < 1e-15
 
 
 @pytest.mark.without_numba
 def test_a_skew_composite_moves_as_the_one_along_its_axes():
     """The places of the parts are doubles, off the line by 1e-17 m; the motion does not feel it.
 
-    Each number of the start by half an ulp turns the end by 1e-15.
+    Half an ulp of each number of the start turns the end by up to 4e-15.
     """
     q = Rotation.from_rotvec([0.4, -0.7, 0.2]).as_quat().tolist()
     x, y, z, w = q
@@ -121,7 +154,45 @@ def test_what_is_small_beside_a_far_part_is_kept():
         body = composites.composite([(ball, (0.1 + x, 0.0, 1e60), IDENTITY),
                                      (ball, (0.1 - x, 0.0, -1e60), IDENTITY)])
         assert body.center_of_mass == pytest.approx((0.1, 0.0, 0.0), rel=2 * EPS)
-    across, along = 2.0 * 1e120, 2 * 0.01 * 0.4
-    spins = composites.composite([(ball, (0.0, 0.0, 1e60), IDENTITY),
-                                  (ball, (0.0, 0.0, -1e60), IDENTITY)]).about_center.moments
-    assert spins == pytest.approx((across, across, along), rel=4 * EPS)
+    corners = [(x, 0.0, z) for x in (-0.2, 0.2) for z in (-1e60, 1e60)]
+    moments = composites.composite([(ball, at, IDENTITY) for at in corners]).about_center.moments
+    # 4 M z^2 across the line, 4 (2/5 M r^2 + M x^2) about it
+    assert moments == pytest.approx((4e120, 4e120, 0.016 + 0.16), rel=4 * EPS)
+
+
+def test_what_a_hole_takes_away_is_what_a_part_adds():
+    """A skew tensor in doubles, of a slim part, is taken away to the last digit."""
+    turn = Rotation.from_rotvec([0.4, -0.7, 0.2]).as_matrix()
+    tensor = turn @ np.diag([1.0, 1.0, 1e-6]) @ turn.T
+    skew = make_body(1.0, (tensor + tensor.T) / 2.0)
+    ball = of_shape('solid_sphere', 1.0, {'radius': 0.1})
+    at, orientation = (0.3, 0.1, -0.2), (0.1, 0.5, -0.3, 0.8)
+    left = composites.composite([(ball, (0.0, 0.0, 0.0), IDENTITY), (skew, at, orientation),
+                                 (composites.hole(skew), at, orientation)])
+    assert left == replace(ball, radius=None)
+
+
+def test_what_only_rounding_leaves_is_zero():
+    ball, needle = (of_shape('solid_sphere', 0.3, {'radius': 0.1}),
+                    of_shape('cylinder', 0.7, {'radius': 1e-3, 'length': 0.5}))
+    in_line = composites.composite([(ball, (0.1, 0.1, 0.0), IDENTITY),
+                                    (ball, (-0.2, -0.2, 0.0), IDENTITY),
+                                    (ball, (0.1, 0.1, 0.3), IDENTITY)])
+    assert in_line.center_of_mass[:2] == (0.0, 0.0)
+    eighth = 0.0, 0.0, math.sin(math.pi / 8.0), math.cos(math.pi / 8.0)
+    turned = composites.composite([(needle, (0.0, 0.0, 0.1), eighth),
+                                   (needle, (0.0, 0.0, 0.4), IDENTITY)]).about_center
+    assert (turned.axes, turned.rows) == (IDENTITY, ())
+    assert turned.moments[0] == turned.moments[1]
+
+
+def test_a_slim_composite_along_its_axes_knows_the_difference_of_its_large_moments():
+    """Box edges of 1e-3 beside a length of 1: I1 - I2 over I3 turns the body about its axis."""
+    bars = [((1e-3, 2e-3, 0.7), 0.3, 0.31), ((3e-3, 1e-3, 0.9), 0.9, -0.17)]
+    about = composites.composite([(of_shape('box', M, {'size': size}), (0.0, 0.0, z), IDENTITY)
+                                  for size, M, z in bars]).about_center
+    made = [of_shape('box', M, {'size': size}).about_center.moments for size, M, _ in bars]
+    # both parts lie on the axis: the parallel-axis terms of I1 and I2 are the same
+    exact_difference = sum(Fraction(I1) - Fraction(I2) for I1, I2, _ in made)
+    # measured: 0; 1e-11 of I3 with moments in doubles
+    assert abs(about.differences[2] - exact_difference) <= 1e-20 * about.moments[2]

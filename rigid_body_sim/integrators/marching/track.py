@@ -35,7 +35,8 @@ STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # after COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)
-AT_ONCE = 64                        # steps of a call from Python that asks for a state
+AT_ONCE = 64                        # steps of a call from Python that asks for a state: no more
+                                    # than work.DOUBLED, or Doublings would not see them
 IN_ONE_CALL = 8192                  # steps of a call that asks for a final state
 MOST_TURNS = 1e15                   # rad, of a final state: then somebody else says what is wrong
 load_state = STATE.load
