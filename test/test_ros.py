@@ -68,6 +68,17 @@ def test_the_profile_is_read_by_the_library_and_stays_in_this_process(ros_domain
     assert told(next(iter(ros.PROFILE.values()))) == ''
 
 
+def test_a_node_that_is_left_behind_is_seen(ros_domain):
+    import rclpy
+    before = ros.participants()
+    rclpy.init(domain_id=ros_domain.id)
+    node = rclpy.create_node('node')
+    assert ros.participants() == before + 1
+    node.destroy_node()
+    assert ros.participants() == before
+    rclpy.shutdown()
+
+
 def test_the_domain_reaches_this_process_and_its_children(ros_domain):
     child = ros_domain.run('-c',
                            'import os; print(os.environ["ROS_DOMAIN_ID"], '

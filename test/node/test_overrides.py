@@ -14,12 +14,12 @@ from rigid_body_sim.realtime.shutdown import Stop
 
 
 @pytest.fixture
-def start(tmp_path):
+def start(tmp_path, ros_domain):
     """Return a function that starts a node as a command line says, and returns its Settings.
 
     A source is a rule for -p, or a dict that becomes a file of parameters.
     """
-    contexts = []
+    started = []
 
     def start(*sources, extra=(), name='sim_node'):
         arguments = ['--ros-args', *extra]
@@ -30,16 +30,18 @@ def start(tmp_path):
             path = tmp_path / f'{place}.yaml'
             path.write_text(yaml.safe_dump(source))
             arguments += ['--params-file', str(path)]
-        contexts.append(rclpy.Context())
+        context = rclpy.Context()
         with overrides.settled(arguments) as (settled, shared):
-            rclpy.init(args=['', *settled], context=contexts[-1], domain_id=0)
-        node = rclpy.create_node(name, context=contexts[-1], enable_rosout=False,
+            rclpy.init(args=['', *settled], context=context, domain_id=ros_domain.id)
+        node = rclpy.create_node(name, context=context, enable_rosout=False,
                                  start_parameter_services=False)
+        started.append((node, context))
         node.warned = []
         node.get_logger = lambda: type('Log', (), {'warning': node.warned.append})
         return node, Settings(node, shared=shared)
     yield start
-    for context in contexts:
+    for node, context in started:
+        node.destroy_node()
         context.try_shutdown()
 
 

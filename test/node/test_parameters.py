@@ -5,6 +5,7 @@ import math
 
 import pytest
 import rclpy
+import ros
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
@@ -13,12 +14,13 @@ from rigid_body_sim.node.parameters import TABLE, Settings, table
 
 
 @pytest.fixture(scope='module')
-def context():
-    """Yield an rclpy context; nothing here talks to anybody."""
+def context(tmp_path_factory):
+    """Yield an rclpy context in a domain of its own."""
     context = rclpy.Context()
-    rclpy.init(args=[], context=context, domain_id=0)
-    yield context
-    context.try_shutdown()
+    with ros.held_domain(tmp_path_factory.mktemp('log')) as domain:
+        rclpy.init(args=[], context=context, domain_id=domain.id)
+        yield context
+        context.try_shutdown()
 
 
 @pytest.fixture
