@@ -295,14 +295,17 @@ class Trial:
         """Return the states of a finer run, and of others with tolerances a little larger.
 
         Runs that take the same steps as one before count once: beside the finest tolerance there
-        are many. Where no two others are finer, coarser ones are taken.
+        are many. Where one takes the steps of the run itself, so do all between them. Where no two
+        others are finer, coarser ones are taken.
         """
         here, found = self._states(tolerance), []
         while finer <= FINER_ONES[-1] * tolerance or (
                 len(found) < PAIR and finer <= COARSER * tolerance):
             with contextlib.suppress(TooMuchWork):
                 states = self._states(finer)
-                if not any(np.array_equal(states, one) for one in (here, *found)):
+                if np.array_equal(states, here):
+                    finer = max(finer, tolerance)
+                elif not any(np.array_equal(states, one) for one in found):
                     found.append(states)
             if len(found) == AROUND:
                 break

@@ -67,7 +67,7 @@ def test_strikes_are_marks_and_are_counted_with_the_events(struck):
 def test_so_is_energy_that_commands_and_resets_change(tmp_path):
     made.record(tmp_path / 'run', 'tennis_racket', 400, acts={
         100: [('cmd_impulse', (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 'world')], 300: [('reset',)]})
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     levels = found['energy']['levels']
     assert [level['begun_by'] for level in levels] == ['', 'commands', 'reset']
     assert levels[0]['value'] == levels[2]['value'] != levels[1]['value']
@@ -75,7 +75,7 @@ def test_so_is_energy_that_commands_and_resets_change(tmp_path):
 
 def test_energy_that_nothing_changes_has_one_level(tmp_path):
     made.record(tmp_path / 'run', 'tennis_racket', 50)
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert found['energy']['stretches'] == 1
     assert 'stretches' not in (tmp_path / 'report/report.txt').read_text()
 
@@ -87,7 +87,7 @@ def test_a_level_ends_where_a_wrench_is_held(tmp_path):
         100: [('cmd_wrench', (0.0, 0.0, 0.0), torque, 'body')],
         150: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 'body')],
         200: [('cmd_impulse', (0.0, 0.0, 0.0), torque, 'body')]})
-    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report')
+    [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     levels = found['energy']['levels']
     assert [(level['from'], level['until']) for level in levels] == [
         (0.0, 0.1), (0.15, 0.2), (0.2, None)]
@@ -99,5 +99,5 @@ def test_a_level_ends_where_a_wrench_is_held(tmp_path):
 def test_the_last_level_ends_where_a_wrench_is_held_to_the_end(tmp_path):
     made.record(tmp_path / 'run', 'tennis_racket', 200, acts={
         100: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 0.3, 0.0), 'body')]})
-    analyze(tmp_path / 'run', tmp_path / 'report')
+    analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     assert ' from 0 to 0.1 s; within each ' in (tmp_path / 'report/report.txt').read_text()

@@ -257,6 +257,12 @@ def test_no_more_runs_are_made_than_show_that_an_error_may_be_rounding(
 def test_a_finer_run_is_not_the_only_one_that_tells_the_error(finest, expected, monkeypatch):
     """Each run rounds on its own way: finer than 2^finest all take the same steps."""
     tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
-    monkeypatch.setattr(tried, '_states', lambda one: np.array([max(one, 2.0 ** finest)]))
+    asked = set()
+
+    def states(tolerance):
+        asked.add(tolerance)
+        return np.array([max(tolerance, 2.0 ** finest)])
+    monkeypatch.setattr(tried, '_states', states)
     found = tried._around(2.0 ** -37, 2.0 ** -30)
     assert {float(np.log2(one[0])) for one in found} == expected
+    assert len(asked) <= 8    # where a finer run takes the same steps, none between is made

@@ -77,7 +77,7 @@ def needle():
     """Run a body with drag whose third moment is 1e-100."""
     return followed(scene('free', body={'mass': 1.0, 'inertia': [0.02, 0.02, 1e-100]},
                           effects=[{'drag': {'angular': 0.001}}],
-                          initial={'angular_velocity': [1, 2, 3]}), 0.25)
+                          initial={'angular_velocity': [1, 2, 3]}), 0.1)
 
 
 def departures():
