@@ -138,10 +138,10 @@ def our_run(scene, duration, method, accuracy):
     from rigid_body_sim.numerics.rotations import multiply
     choice, start, out = (choose(scene, method, accuracy, horizon=duration),
                           scene.initial.vector, np.empty(14))
-    axes = scene.frame.axes
+    axes, run = scene.frame.axes, choice.runner()
 
     def act():
-        choice.solver(start, STILL).state(duration, out)
+        run(start, duration, out)
 
     def attitude():
         act()
