@@ -37,7 +37,7 @@ class Axle(NamedTuple):
 
     axis: Exact                # n
     arm: Exact                 # r, m
-    distance: Fraction         # centre of mass to axis, m; 0 to rounding of the scene
+    distance: tuple[int, int]  # centre of mass to axis, m: a quotient; 0 to the scene's rounding
     momentum: Exact            # the tensor about `through` times n, kg m^2
     moment: tuple[int, int]    # about n, kg m^2: the quotient of two integers
 
@@ -71,7 +71,7 @@ def axle_of(axis, center, point, mass, inertia):
 def _unit(axis):
     """Return the unit vector along an axis, exactly."""
     along, one = in_integers(axis)
-    size = root_of(Fraction(dot(along, along), one * one))
+    size = Fraction(*root_of(dot(along, along), one * one))    # in lowest terms: it is kept
     return Exact(scaled(size.denominator, along), one * size.numerator)
 
 
@@ -82,18 +82,16 @@ def swung(axis, center, point):
     (x, y, z, *held), one = in_integers((*center, *point))
     r = Exact(minus((x, y, z), held), one)
     side, over = cross(n.integers, r.integers), n.over * r.over
-    d = root_of(Fraction(dot(side, side), over * over))
-    if d <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
-        d = Fraction(0)         # on the axis, to the rounding of what the scene says
+    d = size, one = root_of(dot(side, side), over * over)
+    if size / one <= principal_axes.ULPS * (hypot3(*center) + hypot3(*point)):
+        d = 0, 1    # on the axis, to the rounding of what the scene says
     return n, r, d, Exact(cross(side, r.integers), over * r.over)
 
 
-def root_of(number):
-    """Return the square root of a Fraction, to 40 digits or more."""
-    if not number:
-        return number
-    shift = max(0, 140 - (number.numerator.bit_length() - number.denominator.bit_length()) // 2)
-    return Fraction(math.isqrt((number.numerator << 2 * shift) // number.denominator), 1 << shift)
+def root_of(a, b):
+    """Return the square root of a/b of two integers, to 40 digits or more, as such a quotient."""
+    shift = max(0, 140 - (a.bit_length() - b.bit_length()) // 2)
+    return math.isqrt((a << 2 * shift) // b), 1 << shift
 
 
 @functools.lru_cache(maxsize=KEPT)

@@ -31,7 +31,7 @@ def upright(scene):
     load = load_of(scene)
     if load is None or not any(load):
         return None
-    size = root_of(dot(load, load))
+    size = Fraction(*root_of(*dot(load, load).as_integer_ratio()))
     return turn_to(*(float(-one / size) for one in load)), size / Fraction(scene.body.mass)
 
 

@@ -114,13 +114,13 @@ load_circle, store_circle = ANCHOR.part('circle').load, ANCHOR.part('circle').st
 @functools.lru_cache(maxsize=KEPT)
 def _directions(axis, center, point):
     """Return n, (n x r)/d and (n (n . r) - r)/d as pairs, the last two 0 where d is."""
-    n, r, d, _ = swung(axis, center, point)
+    n, r, (d, of_d), _ = swung(axis, center, point)
     along = dot(n.integers, r.integers)
     down = vectors.minus(vectors.scaled(along, n.integers),
                          vectors.scaled(n.over * n.over, r.integers))
 
     def over_d(vector, one):
-        return [quotient(component * d.denominator, one * d.numerator) if d else NOTHING
+        return [quotient(component * of_d, one * d) if d else NOTHING
                 for component in vector]
     side, one = cross(n.integers, r.integers), n.over * r.over
     return [quotient(x, n.over) for x in n.integers], over_d(side, one), over_d(down, one * n.over)
@@ -146,10 +146,10 @@ def _numbers(bits, weight, axis, center, point, mass, inertia):
     held = axle_of(axis, center, point, mass, inertia)
     (M, of_M), (g, of_g) = mass.as_integer_ratio(), weight.as_integer_ratio()
     weighs, over = M * g * held.moment[1], of_M * of_g * held.moment[0]    # M g/I
-    d = held.distance
+    d, of_d = held.distance
     numbers = np.zeros(PARAMETER_SIZE)
     PARAMETERS.store(numbers, Parameters(
-        *_directions(axis, center, point), quotient(weighs * d.numerator, over * d.denominator),
+        *_directions(axis, center, point), quotient(weighs * d, over * of_d),
         held.axis.rounded(), point, mass, float(weight), held.arm.rounded(),
         held.momentum.rounded(), weighs / over))
     return numbers
