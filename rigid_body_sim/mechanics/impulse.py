@@ -24,7 +24,7 @@ import numpy as np
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.mechanics.ledger import ENTRIES, Entries
-from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, PIVOT, SCENE, SLIM, TABLE
+from rigid_body_sim.mechanics.parameters import CARRIED, FREE, HINGE, PIVOT, SCENE, SKEW, TABLE
 from rigid_body_sim.numerics.pair_vectors import cross as cross_pairs
 from rigid_body_sim.numerics.pair_vectors import difference, turned_back, with_low
 from rigid_body_sim.numerics.pair_vectors import dot as dot_pairs
@@ -68,8 +68,8 @@ GIVEN_SIZE = GIVEN.size
 load_rounded, load_lost = GIVEN.part('rounded').load, GIVEN.part('lost').load
 RESPONSE_SIZE = RESPONSE.size
 WORK = RESPONSE.part('work').first
-SLIM_SIZE = SLIM.size
-load_scene, load_slim, load_state = SCENE.load, SLIM.load, STATE.load
+SKEW_SIZE = SKEW.size
+load_scene, load_skew, load_state = SCENE.load, SKEW.load, STATE.load
 load_response, store_response = RESPONSE.load, RESPONSE.store
 load_entries, store_entries = ENTRIES.load, ENTRIES.store
 store_omega = STATE.part('angular_velocity').store
@@ -218,13 +218,12 @@ def _jump(p, scene, moment):
 @compiled
 def _along_axes(p, scene, moment):
     """Return the components of a vector of pairs along the principal axes, rounded."""
-    if scene.slim != 0.0:    # its axes are known with 32 digits
-        axes = load_slim(p, len(p) - SLIM_SIZE)
+    if scene.skew != 0.0:
+        axes = load_skew(p, len(p) - SKEW_SIZE)
         return (dot_pairs(with_low(axes.rows[0], axes.lost[0]), moment)[0],
                 dot_pairs(with_low(axes.rows[1], axes.lost[1]), moment)[0],
                 dot_pairs(with_low(axes.rows[2], axes.lost[2]), moment)[0])
-    along = turned_back(*scene.axes, moment)
-    return along[0][0], along[1][0], along[2][0]
+    return moment[0][0], moment[1][0], moment[2][0]
 
 
 @compiled

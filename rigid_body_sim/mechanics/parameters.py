@@ -16,14 +16,12 @@ from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 from rigid_body_sim.numerics.pairs import pair_of
 from rigid_body_sim.numerics.vectors import apply, cross, dot
 from rigid_body_sim.scene.constraints.protocol import Mechanism
-from rigid_body_sim.scene.principal_axes import is_slim
 from rigid_body_sim.scene.scene import kept
 
 FREE, PIVOT, HINGE, TABLE = (int(Mechanism[name]) for name in ('FREE', 'POINT', 'AXIS', 'TABLE'))
 CARRIED = len(Mechanism)    # a pivot that moves
 KINDS = {Mechanism.PLANE: FREE}    # between impacts a body above a plane is free
 NO_AXIS = NOT_HELD = (0.0, 0.0, 0.0)
-OWN_AXES = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 
 
 class SceneParameters(NamedTuple):
@@ -52,9 +50,9 @@ class SceneParameters(NamedTuple):
         Moment of inertia about the hinge, kg m^2; 0 where there is none.
     grip : float
         Largest torque that dry friction at the hinge balances, N m.
-    slim : float
-        1.0 for a slim body, whose SlimAxes stand at the end of the array that `parameters`
-        returns; else 0.0.
+    skew : float
+        1.0 for a body whose principal axes are not its own: its SkewAxes stand at the end of the
+        array that `parameters` returns; else 0.0.
     """
 
     kind: float
@@ -67,17 +65,17 @@ class SceneParameters(NamedTuple):
     through: Vector
     hinge_moment: float
     grip: float
-    slim: float
+    skew: float
 
 
-class SlimAxes(NamedTuple):
-    """The principal axes of a slim body, in rows of body components, with 32 digits."""
+class SkewAxes(NamedTuple):
+    """Principal axes that are not the body's, in rows of body components, with 32 digits."""
 
     rows: Matrix    # rounded
     lost: Matrix    # what rounding took
 
 
-SCENE, SLIM = layout(SceneParameters), layout(SlimAxes)
+SCENE, SKEW = layout(SceneParameters), layout(SkewAxes)
 
 
 @kept
@@ -94,28 +92,28 @@ def scene_parameters(scene):
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
         hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint),
         grip=functools.reduce(operator.add, (effect.grip for effect in scene.effects), 0.0),
-        slim=1.0 if is_slim(inertia.moments) else 0.0)
+        skew=1.0 if inertia.rows else 0.0)
 
 
 def parameters(scene):
     """Return the flat array that kernels take.
 
-    SceneParameters, the values of potentials and parts, and the SlimAxes of a slim body.
+    SceneParameters, the values of potentials and parts, and the SkewAxes if there are any.
     """
     values = [value for one in (*potentials(scene), *momenta(scene)) for value in one.values]
     known, end = scene_parameters(scene), SCENE.size + len(values)
-    p = np.zeros(end + (SLIM.size if known.slim else 0))
+    p = np.zeros(end + (SKEW.size if known.skew else 0))
     SCENE.store(p, known)
     p[SCENE.size:end] = values
-    if known.slim:
-        SLIM.store(p, _slim_axes(scene.constraint.inertia(scene.body).rows or OWN_AXES), end)
+    if known.skew:
+        SKEW.store(p, _skew_axes(scene.constraint.inertia(scene.body).rows), end)
     return p
 
 
-def _slim_axes(rows):
-    """Return the SlimAxes of rows of Fractions or integers."""
+def _skew_axes(rows):
+    """Return the SkewAxes of rows of Fractions."""
     pairs = [[pair_of(entry) for entry in row] for row in rows]
-    return SlimAxes(*(tuple(tuple(pair[k] for pair in row) for row in pairs) for k in range(2)))
+    return SkewAxes(*(tuple(tuple(pair[k] for pair in row) for row in pairs) for k in range(2)))
 
 
 @kept
@@ -136,14 +134,9 @@ def momenta(scene):
 def moment_about_hinge(body, constraint):
     """Return the moment of inertia about the hinge's axis, kg m^2.
 
-    n . I n + M |n x (c - through)|^2, with I about the centre of mass c. That of a slim body
-    whose principal axes are not its own is rounded once.
+    n . I n + M |n x (c - through)|^2, with I about the centre of mass c, rounded once.
     """
-    n = constraint.axis
-    if body.about_center.rows:
-        n, exact = tuple(map(Fraction, n)), body.about_center.exact
-        lever = cross(n, constraint.exact_arm(body))
-        return float(dot(n, apply(exact, n)) + Fraction(body.mass) * dot(lever, lever))
-    lever = cross(n, constraint.arm(body))
-    inertia = body.about_center.matrix.tolist()
-    return dot(n, apply(inertia, n)) + body.mass * dot(lever, lever)
+    n = tuple(map(Fraction, constraint.axis))
+    lever = cross(n, constraint.exact_arm(body))
+    return float(dot(n, apply(body.about_center.exact, n))
+                 + Fraction(body.mass) * dot(lever, lever))

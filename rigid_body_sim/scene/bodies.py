@@ -17,11 +17,9 @@ from rigid_body_sim.numerics.rotations import from_matrix
 from rigid_body_sim.numerics.rotations import matrix as rotation_matrix
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.principal_axes import (
-    SLIM,
     TRACE,
     ULPS,
     eigenvectors,
-    is_slim,
     nearest_to_the_body,
     nearest_where_equal,
     without_traces,
@@ -30,6 +28,7 @@ from rigid_body_sim.scene.shapes import SHAPES, SPHERES
 from rigid_body_sim.scene.surfaces import Surface
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
+OWN_AXES = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 LARGEST_MOMENT = 1e150    # kg m^2: its square fits a double
 SMALLEST_MOMENT = 1e-150  # kg m^2, of a moment that is not zero: quotients by it fit
 SMALLEST_MASS = 1e-75     # kg
@@ -39,12 +38,12 @@ SMALLEST_MASS = 1e-75     # kg
 class Inertia:
     """An inertia tensor: principal moments (kg m^2) and the turn from principal to body axes.
 
-    `lost` (kg m^2) is what the sums of the parallel-axis theorem are more than the moments, which
-    are doubles. In a slim body, whose large moments nearly agree, it counts. There it is also what
-    the eigenvalues of a tensor are more, and `rows`, the principal axes in body axes as Fractions
-    of 32 digits, are given if they are not the body's: the rounding of a vector that lies along
-    the body, over the small moment, turns the body about its axis. `entries` are those of the
-    tensor before it was diagonalised, if it was.
+    `lost` (kg m^2) is what the eigenvalues of a tensor, and the sums of the parallel-axis theorem,
+    are more than the moments, which are doubles: a difference of two large moments, over a small
+    one, turns the body about its axis. `rows`, the principal axes in body axes as Fractions of 32
+    digits, are given if they are not the body's: the rounding of a vector that lies along the
+    body, over the small moment, does the same. `entries` are those of the tensor before it was
+    diagonalised, if it was.
     """
 
     moments: tuple
@@ -58,9 +57,9 @@ class Inertia:
         """Diagonalise a symmetric 3 x 3 tensor.
 
         The principal axes nearest to the body axes are taken, of all orders and signs and of all
-        choices within the plane of equal moments. A diagonal tensor is kept to the last bit. Those
-        of a slim body are the axes of the `exact` entries (Fractions), if they are given; of a
-        diagonal tensor they tell what its doubles lost.
+        choices within the plane of equal moments. They are those of the `exact` entries
+        (Fractions), if they are given. A diagonal tensor is kept to the last bit; of one, the
+        exact entries tell what its doubles lost.
         """
         matrix = np.asarray(matrix, dtype=float)
         if np.count_nonzero(matrix - np.diag(np.diagonal(matrix))) == 0:
@@ -68,15 +67,14 @@ class Inertia:
             return cls(moments) if exact is None else cls(
                 moments, lost=tuple(_lost(moments[k], exact[k][k]) for k in range(3)))
         entries = tuple(map(tuple, matrix.tolist() if exact is None else exact))
-        moments, axes, lost = nearest_to_the_body(*eigenvectors(matrix.tolist()))
-        if exact is not None and min(moments) < SLIM * max(moments):
-            moments, axes, lost = nearest_to_the_body(*without_traces(*eigenvectors(entries)))
-        if not is_slim(moments):
-            moments, axes = nearest_where_equal(moments, axes)
-            return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
-                       entries=entries)
+        found = eigenvectors(entries)
+        moments, axes, lost = nearest_to_the_body(
+            *(found if exact is None else without_traces(*found)))
+        moments, axes, lost = nearest_where_equal(moments, axes, lost)
         rows = tuple(tuple(map(add, map(Fraction, row), map(Fraction, less)))
                      for row, less in zip(axes, lost.vectors, strict=True))
+        if rows == OWN_AXES:
+            return cls(tuple(moments), lost=tuple(lost.moments))
         return cls(tuple(moments), from_matrix(tuple(zip(*axes, strict=True))),
                    tuple(lost.moments), rows, entries)
 
@@ -89,7 +87,7 @@ class Inertia:
     @property
     def exact(self):
         """The tensor in body axes, rows of Fractions: its entries before any rounding."""
-        if self.axes != IDENTITY:
+        if self.entries or self.axes != IDENTITY:
             entries = self.entries or self.matrix.tolist()
             return tuple(tuple(map(Fraction, row)) for row in entries)
         x, y, z = map(add, map(Fraction, self.moments), map(Fraction, self.lost))
@@ -159,7 +157,7 @@ def moved(inertia, M, shift, sign, exactly=None):
     found = Inertia.of_matrix(sums, exact)
     least = max(0.0, min(inertia.moments))
     if sign > 0.0 and (min(found.moments) < 0.0 or min(found.moments) == 0.0 < least):
-        return Inertia(tuple(max(moment, least) for moment in found.moments), found.axes)
+        return _at_least(found, least)
     return found
 
 
@@ -235,9 +233,14 @@ def make_body(M, moments_or_matrix, center_of_mass=(0.0, 0.0, 0.0), about='cente
 
 def _not_negative(inertia):
     """Return an Inertia without negative moments."""
-    if min(inertia.moments) >= 0.0:
-        return inertia
-    return Inertia(tuple(max(moment, 0.0) for moment in inertia.moments), inertia.axes)
+    return inertia if min(inertia.moments) >= 0.0 else _at_least(inertia, 0.0)
+
+
+def _at_least(inertia, least):
+    """Return an Inertia whose moments are at least so much."""
+    return replace(inertia, moments=tuple(max(moment, least) for moment in inertia.moments),
+                   lost=tuple(less if moment >= least else 0.0 for moment, less in zip(
+                       inertia.moments, inertia.lost, strict=True)))
 
 
 def square_of(arm):

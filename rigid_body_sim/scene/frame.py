@@ -62,8 +62,8 @@ class Frame:
     path : Path, optional
         Given for a reference point that moves as the scene says (expressions/path.py).
     rows : tuple of 3 tuples of 3 Fractions
-        The axes of the frame, body components, before they were rounded: given for a slim body
-        where the two differ, else empty.
+        The axes of the frame, body components, before they were rounded: given where the two
+        differ, else empty.
     """
 
     moves: bool

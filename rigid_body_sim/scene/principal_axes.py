@@ -5,11 +5,11 @@ import math
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from fractions import Fraction
 from itertools import permutations, product
+from operator import add
 from typing import NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.vectors import cross, dot
 
 PLANES = (0, 1), (0, 2), (1, 2)
@@ -118,24 +118,32 @@ def is_slim(moments):
     return ULPS * max(moments) < min(moments) < SLIM * max(moments)
 
 
-def nearest_where_equal(moments, axes):
+def nearest_where_equal(moments, axes, lost):
     """Make moments equal that agree to rounding, and turn their axes towards the body axes.
+
+    Nothing is lost of such moments.
 
     The two large moments of a slim body are left as they are: their difference, over the small
     one, turns the body about its axis.
     """
     if is_slim(moments):
-        return moments, axes
+        return moments, axes, lost
     slack = ULPS * max(moments)
     equal = [(i, j) for i, j in PLANES if abs(moments[i] - moments[j]) <= slack]
     if len(equal) > 1:
-        return [(moments[0] + moments[1] + moments[2]) / 3.0] * 3, np.eye(3).tolist()
+        mean = (moments[0] + moments[1] + moments[2]) / 3.0
+        return [mean] * 3, np.eye(3).tolist(), Lost([0.0] * 3, [[0.0] * 3] * 3)
     for i, j in equal:
+        lost.moments[i] = lost.moments[j] = 0.0
         moments[i] = moments[j] = (moments[i] + moments[j]) / 2.0
-        sine, cosine = axes[j][i] - axes[i][j], axes[i][i] + axes[j][j]
-        length = hypot(sine, cosine)
-        sine, cosine = sine / length, cosine / length
-        first, second = axes[i], axes[j]
-        axes[i] = [cosine * x + sine * y for x, y in zip(first, second, strict=True)]
-        axes[j] = [cosine * y - sine * x for x, y in zip(first, second, strict=True)]
-    return moments, axes
+        with localcontext(Context(prec=DIGITS, rounding=ROUND_HALF_EVEN)):
+            first, second = (list(map(add, map(Decimal, axes[k]), map(Decimal, lost.vectors[k])))
+                             for k in (i, j))
+            sine, cosine = second[i] - first[j], first[i] + second[j]
+            length = (sine * sine + cosine * cosine).sqrt()
+            sine, cosine = sine / length, cosine / length
+            for k, vector in (
+                    (i, [cosine * x + sine * y for x, y in zip(first, second, strict=True)]),
+                    (j, [cosine * y - sine * x for x, y in zip(first, second, strict=True)])):
+                axes[k], lost.vectors[k] = list(map(float, vector)), list(map(_lost, vector))
+    return moments, axes, lost

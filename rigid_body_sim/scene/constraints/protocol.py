@@ -139,8 +139,7 @@ class Constraint(Protocol):
         inertia = self.inertia(body)
         arm = 0.0, 0.0, 0.0
         if self.holds_a_point:
-            given = self.exact_arm(body) if inertia.rows else self.arm(body)
-            arm = along(inertia.axes, inertia.rows, given)
+            arm = along(inertia.axes, inertia.rows, self.exact_arm(body))
         return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.differences,
                      inertia.axes, self.point(body), arm, rows=inertia.rows)
 
