@@ -22,7 +22,8 @@ their own: their kernels would take longer to compile than to run, and the bits 
     the error is at most max(asked, 3 floor),
     the expected error is within a factor of 3 of max(error, floor), or says that nothing is known
         of the attitude (above 1e-2 rad),
-    the ledger's residuals are below max(asked, floor) times 10,
+    the ledger's residuals are below max(asked, floor) times 10 (a torsion spring that goes on from
+    the other end of the angle leaves the difference of its energies, and no more),
     nothing hangs (120 s of the processor, 600 in plain Python; the truth may take 1800) and
     nothing is raised.
 """

@@ -30,6 +30,11 @@ class Kinked:
             one.to(time)
 
     @property
+    def jumped(self):
+        """See Truth."""
+        return self._copies[0].jumped
+
+    @property
     def y(self):
         """The unknowns of all copies."""
         return np.concatenate([one.y for one in self._copies])
@@ -68,12 +73,19 @@ class _Copy(Truth):
             self.y = after
             self.t = WIDE(end) if h == end - self.t else self.t + h
             if changed:
+                before = self._wound()
                 for passed in {which, *self._changed(after, 0)}:    # a kink may be met twice
                     sides.modes[passed] *= -1
+                self.jumped += self._wound() - before
                 if which == self.laws.friction:
                     self.y[:, 4:7] = 0
                     self._break_loose()
                 h = WIDE(SHARE / pace) / 4
+
+    def _wound(self):
+        """Return the energy of torsion springs, J."""
+        self.rates(self.y, self.t)
+        return self.laws.wound
 
     def _changed(self, y, h):
         """Return the kinks that are passed at unknowns after a step."""

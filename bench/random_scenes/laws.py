@@ -123,6 +123,7 @@ class Laws:
         self.parameters = {name: WIDE(value) for name, value in parameters.items()}
         self._codes = {}
         self.friction, self.grip = None, None    # its place among the sides; the torque it bears
+        self.wound = 0    # the energy of torsion springs at the last evaluation, J
         self.point = 0    # where the held point is, less its path
         if held.kind != 'free':
             behind, first = (held.arm - held.center)[None], held.y[:1]
@@ -141,6 +142,7 @@ class Laws:
         if held.kind != 'free':
             v = rotated(q, cross(w, held.arm[None])) + moved[1]
         self.sides.begin()
+        self.wound = 0
         for name, one in self.effects:
             if name == 'gravity':
                 g = one['g']
@@ -194,10 +196,10 @@ class Laws:
         return [self._vector(texts, {'t': t + 0 * w[:, 0]}) for texts in self.held.motion]
 
     def _torsion(self, one, q, w):
-        n = self.held.axis
-        rate = (w * n).sum(1)
-        pull = (WIDE(one['stiffness']) * (self.turned(q) - WIDE(one.get('angle', 0.0)))
-                + WIDE(one.get('damping', 0.0)) * rate)
+        n, k = self.held.axis, WIDE(one['stiffness'])
+        turned, rate = self.turned(q) - WIDE(one.get('angle', 0.0)), (w * n).sum(1)
+        self.wound += k / 2 * turned[0] ** 2
+        pull = k * turned + WIDE(one.get('damping', 0.0)) * rate
         return -pull[:, None] * n
 
     def turned(self, q):

@@ -23,7 +23,11 @@ class Truth:
     """Copies of a scene's body, moved on by extrapolation of the modified midpoint rule.
 
     Unknowns: q (4), omega (3, body), velocity and place of the centre of mass (3 and 3, world).
+    `jumped` (J) is the energy that torsion springs got without work, from one end of the angle of
+    a hinge to the other.
     """
+
+    jumped = WIDE(0)
 
     def __init__(self, scene, settings, parameters, motion=None):
         body, kind = scene.body, scene.constraint.kind

@@ -87,3 +87,19 @@ def test_the_arm_of_the_truth_is_that_of_the_scene_not_its_nearest_doubles(judge
     arm = judge.truth_of(scene).arm
     assert [Fraction(*one.as_integer_ratio()) for one in arm] == list(exact)
     assert [Fraction(float(one)) for one in arm] != list(exact)
+
+
+@pytest.mark.without_numba
+def test_the_ledger_shows_the_energy_that_a_torsion_spring_gets_beyond_its_end(judge):
+    """U = k (angle - phi)^2/2 differs by 4 pi k phi where the angle goes on from the other end."""
+    scene = judge.parse_scene("""
+        {scene: wound, parameters: {w0: 1}, body: {mass: 1, inertia: [0.1, 0.1, 0.1]},
+         constraint: {hinge: {axis: [0, 0, 1]}}, effects: [spring: {stiffness: 2, angle: 0.3}],
+         initial: {angle: 0.5, rate: 100}}""")
+    truth = judge.truth_of(scene)
+    truth.to(0.1)
+    jumped = float(truth.jumped)
+    assert jumped == pytest.approx(4 * np.pi * 2 * 0.3, rel=1e-15)
+    simulation = judge.Simulation(scene, rate=10.0, horizon=0.1)
+    assert judge._unbalanced(simulation, jumped) < 2e-15    # measured: 4e-16
+    assert simulation.ledger()['energy_residual'] > 0.01
