@@ -12,6 +12,8 @@ from random_scenes.wide import WIDE, cross, rotated
 class BallTruth:
     """A ball that slides, then rolls: v and omega are linear in time, q by extrapolation."""
 
+    jumped = 0.0    # as Truth has it
+
     def __init__(self, scene, settings, *_):
         one, self.radius = dict(settings)['sliding_friction'], WIDE(scene.body.radius)
         vector, base = scene.initial.vector, WIDE(HALF_ULP * MOVED)
