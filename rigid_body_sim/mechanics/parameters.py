@@ -7,14 +7,14 @@ point of a pivoted body, and the axis of a hinged one.
 
 import functools
 import operator
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
-from rigid_body_sim.numerics.pairs import pair_of
-from rigid_body_sim.numerics.vectors import apply, cross, dot
+from rigid_body_sim.numerics.pairs import in_integers, pair_of
+from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
 
@@ -136,7 +136,15 @@ def moment_about_hinge(body, constraint):
 
     n . I n + M |n x (c - through)|^2, with I about the centre of mass c, rounded once.
     """
-    n = tuple(map(Fraction, constraint.axis))
-    lever = cross(n, constraint.exact_arm(body))
-    return float(dot(n, apply(body.about_center.exact, n))
-                 + Fraction(body.mass) * dot(lever, lever))
+    inertia, (n, one) = body.about_center, in_integers(constraint.axis)
+    if inertia.axes == IDENTITY and not inertia.entries:    # integers cost a tenth of fractions
+        (*moments, x, y, z), over = in_integers((*inertia.moments, *inertia.lost))
+        turned = dot((n[0] * n[0], n[1] * n[1], n[2] * n[2]), plus(moments, (x, y, z)))
+    else:
+        turned, over = dot(n, apply(inertia.exact, n)).as_integer_ratio()
+    (*center, a, b, c, x, y, z), unit = in_integers(
+        (*body.center_of_mass, *body.center_lost, *constraint.point(body)))
+    lever = cross(n, minus(plus(center, (a, b, c)), (x, y, z)))
+    (mass, of_mass), square = body.mass.as_integer_ratio(), unit * unit
+    return (turned * square * of_mass + mass * dot(lever, lever) * over) / (
+        one * one * over * square * of_mass)

@@ -139,7 +139,10 @@ class Constraint(Protocol):
         inertia = self.inertia(body)
         arm = 0.0, 0.0, 0.0
         if self.holds_a_point:
-            arm = along(inertia.axes, inertia.rows, self.exact_arm(body))
+            # doubles lose nothing of a difference of two but its last rounding
+            exactly = inertia.rows or any(body.center_lost)
+            given = self.exact_arm(body) if exactly else self.arm(body)
+            arm = along(inertia.axes, inertia.rows, given)
         return Frame(not self.holds_a_point, body.mass, inertia.moments, inertia.differences,
                      inertia.axes, self.point(body), arm, rows=inertia.rows)
 
