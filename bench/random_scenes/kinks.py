@@ -9,7 +9,9 @@ from random_scenes.laws import Laws
 from random_scenes.truth import TOLERANCE, Truth
 from random_scenes.wide import WIDE
 
-SHARE = 0.3              # rad, of a step: no switch changes twice within
+SHARE = 0.3              # rad, of a step
+DELTA = WIDE(1e-6)       # share of a step after which the slope of a switch is seen
+DIPS = 4                 # looks for the lowest point of a switch within a step
 SECANTS = 80
 WORDS = 'abs(', 'sign(', 'min(', 'max(', 'where(', '<', 'dry_friction'
 """What a scene's text has where it has kinks."""
@@ -65,6 +67,11 @@ class _Copy(Truth):
             while error > TOLERANCE and h > 1e-9:
                 h = h / 2
                 after, error = self._extrapolated(y, k, h)
+            dip = self._dip(y, k, after, h)
+            while dip:    # a switch changes twice within the step, and once up to there
+                h = dip
+                after, _ = self._extrapolated(y, k, h)
+                dip = self._dip(y, k, after, h)
             changed = self._changed(after, h)
             if changed:
                 h, which = min((self._crossing(y, k, h, n), n) for n in changed)
@@ -93,6 +100,34 @@ class _Copy(Truth):
         self.rates(y, self.t + h)
         return [n for n, (mode, value) in enumerate(zip(sides.modes, sides.found, strict=True))
                 if mode * value < 0]
+
+    def _dip(self, y, k, after, h):
+        """Return a time within the step h at which a switch has changed, back at the end; or None.
+
+        It falls at first and rises at the end: a cubic through values and slopes tells where it
+        is lowest.
+        """
+        first, last = self._switches(y, self.t, h), self._switches(after, self.t + h, h)
+        for n, (one, other) in enumerate(zip(first, last, strict=True)):
+            low, high = (WIDE(0), *one), (h, *other)
+            for _ in range(DIPS):
+                if not (low[2] < 0 < high[2] and high[1] > 0):
+                    break
+                part = _lowest(low, high)
+                middle, _ = self._extrapolated(y, k, part)
+                here = (part, *self._switches(middle, self.t + part, h)[n])
+                if here[1] < 0:
+                    return part
+                low, high = (here, high) if here[2] < 0 else (low, here)
+        return None
+
+    def _switches(self, y, t, h):
+        """Return value and slope (1/s) of each switch, above 0 on its side."""
+        sides, later = self.laws.sides, DELTA * h
+        k, values = self.rates(y, t), sides.found
+        self.rates(y + later * k, t + later)
+        return [(mode * one, mode * (other - one) / later) for mode, one, other in zip(
+            sides.modes, values, sides.found, strict=True)]
 
     def _crossing(self, y, k, h, which):
         """Return the time after which a kink is met, within the step h."""
@@ -127,3 +162,14 @@ class _Copy(Truth):
         pull = (self.rates(self.y, self.t)[0, 4:7] @ self.axis) * self.about[0]
         if abs(pull) > self.laws.grip:
             sides.modes[place] = 1 if pull > 0 else -1
+
+
+def _lowest(low, high):
+    """Return where the cubic through two (place, value, slope) is lowest: it falls, then rises."""
+    (a, f, down), (b, g, up) = low, high
+    h = b - a
+    chord = 3 * (g - f) / h
+    # slope: down + 2 u (chord - 2 down - up) + 3 u^2 (down + up - 2 chord/3), u from 0 to 1
+    half, square = chord - 2 * down - up, 3 * (down + up) - 2 * chord
+    root = np.sqrt(half * half - square * down)
+    return a + h * min(max(-down / (half + root), WIDE(0.01)), WIDE(0.99))
