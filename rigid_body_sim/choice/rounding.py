@@ -7,9 +7,6 @@ with G the derivative of the attitude by the start, and D half an ulp of each of
     conditioning = |G D| (Frobenius) = sqrt(mean |G D s|^2) over signs s
 
 which is estimated by finite differences along a few orthogonal rows of signs.
-
-A stepped run rounds on its way, too. Half an ulp of a rate is little where a body starts slowly,
-and more when it turns fast: so states on the way are moved as the start is.
 """
 
 import math
@@ -24,7 +21,6 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import matrix, normalised
 from rigid_body_sim.numerics.vectors import apply, transposed
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION
 
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
@@ -35,8 +31,6 @@ MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start 
 FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
-HASTE = 1.5              # factor on its rate, from one state to the next that is moved
-SLOW = 0.25              # share of its largest rate: rounding of slower states hardly counts
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
 
 
@@ -55,22 +49,20 @@ def of_angle_turned(scene, states, times):
     return HALF_ULP * (numbers + fastest * times)
 
 
-def conditioning(scene, prototype, start, times, states, enough=math.inf):
-    """Return the change of the attitude by half an ulp on each number of a start, rad, (n,).
+def conditioning(scene, prototype, times, states, enough=math.inf):
+    """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
 
     Parameters
     ----------
-    start : array (14,)
-        As in :func:`rigid_body_sim.choice.runs.run`.
     states : array (n, 14)
-        The run from there.
+        The run from the scene's own start.
     enough : float, optional
         rad. It is given where the only question is whether the change reaches it. The start is
         then moved by half an ulp alone, and no more often than it takes to see that. A change that
         is no longer proportional to its cause counts as having reached it. One that a far larger
         move leaves as it is comes of other steps, whose errors it shows, and counts as none.
     """
-    found = np.full(len(times), math.inf)
+    start, found = scene.initial.vector, np.full(len(times), math.inf)
     least = min(enough, LINEAR) if enough < math.inf else math.inf
     for many in MOVED if enough == math.inf else MOVED[-1:]:
         squares = np.zeros(len(times))
@@ -107,47 +99,12 @@ def lost(scene, prototype, times, states, enough=math.inf):
     """
     found = of_angle_turned(scene, states, times)
     if not float(found.max()) >= enough:
-        start = scene.initial.vector
-        found = np.maximum(found, conditioning(scene, prototype, start, times, states, enough))
+        found = np.maximum(found, conditioning(scene, prototype, times, states, enough))
     squares = np.square(found)
     for strike in strikes(scene):
         since = 1.0 - max(strike.time, 0.0) / times
         squares += np.where(since >= 0.0, np.square(found * since) + AGAIN * AGAIN, 0.0)
     return np.sqrt(squares)
-
-
-def lost_in_steps(scene, prototype, times, states, enough=math.inf):
-    """Return the error of the attitude of a stepped run by rounding, rad, shape (n,).
-
-    It is what `lost` returns, or what rounding on the way does where that is more.
-    """
-    found = lost(scene, prototype, times, states, enough)
-    for k in _faster(scene, states):
-        if float(found.max()) >= enough:
-            break
-        rest = times[k + 1:]
-        same = run(scene, prototype, states[k], rest)
-        found[k + 1:] = np.maximum(
-            found[k + 1:], conditioning(scene, prototype, states[k], rest, same, enough))
-    return found
-
-
-def _faster(scene, states):
-    """Return the numbers of the states that turn faster by HASTE than the start and those before.
-
-    The slow ones among them are left out, and all of a body on a plane: what it touches there is
-    not in its state.
-    """
-    if scene.constraint.mechanism is Mechanism.PLANE:
-        return []
-    last = hypot3(*scene.initial.vector[ANGULAR_VELOCITY].tolist())
-    rates = [hypot3(*omega) for omega in states[:-1, ANGULAR_VELOCITY].tolist()]
-    found, last = [], max(last, SLOW * max(rates) / HASTE)
-    for k, rate in enumerate(rates):
-        if rate >= HASTE * last > 0.0:
-            found.append(k)
-            last = rate
-    return found
 
 
 def _moved(scene, start, signs, many):

@@ -11,7 +11,7 @@ from rigid_body_sim.mechanics import impulse
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE, TIME
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE
 
 LOOKS = 64    # times at which runs are compared
 
@@ -30,7 +30,7 @@ def run(scene, prototype, vector, times, allowances=None):
     ----------
     prototype : Solver
     vector : array (14,)
-        The start: at time 0, or a state on the way, just after the strikes up to its time.
+        The start.
     allowances : list, optional
         What solvers have allowed themselves (Solver.allowance) is appended to it.
 
@@ -47,8 +47,6 @@ def run(scene, prototype, vector, times, allowances=None):
     try:
         solver, first = prototype.start(vector), 0
         for strike in strikes(scene):
-            if strike.time <= vector[TIME] != 0.0:
-                continue
             if strike.time > times[-1]:
                 break
             last = int(np.searchsorted(times, strike.time))

@@ -163,9 +163,8 @@ class Trial:
         finer = self._reference(tolerance)
         rounded = float(self._apart(tolerance, finer).max()) / ROUNDED
         try:
-            lost = rounding.lost_in_steps(
-                self._scene, self.prototype.at(finer, self._most), self._times,
-                self._states(finer), enough=rounded)
+            lost = rounding.lost(self._scene, self.prototype.at(finer, self._most), self._times,
+                                 self._states(finer), enough=rounded)
         except TooMuchWork:
             return 0.0    # nothing tells
         return error if float(lost.max()) < rounded else 0.0
@@ -189,7 +188,7 @@ class Trial:
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
         if float(errors.max()) < MAGNIFIED:
             best = self._states(finest)
-            lost = rounding.lost_in_steps(
+            lost = rounding.lost(
                 self._scene, self.prototype.at(finest, self._most), times, best)
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,

@@ -3,7 +3,6 @@
 
 import math
 
-import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import NotConverged
@@ -20,18 +19,14 @@ TORQUE = 'torque: {value: [0.01, 0.02, 0.01], frame: world}'
 
 
 class Coasting:
-    """A body that turns at its rate about z from its start; `most` is the latest time it knows.
+    """A body that turns at its rate about z from its start; `most` is the latest time it knows."""
 
-    The rate grows by `growth` (rad/s^2), and the angle is `gain` times what it adds up to.
-    """
-
-    def __init__(self, most=math.inf, error=NotConverged, growth=0.0, gain=1.0):
+    def __init__(self, most=math.inf, error=NotConverged):
         self.most, self.error, self.starts = most, error, []
-        self.growth, self.gain = growth, gain
 
     def start(self, vector):
         self.starts.append(vector.copy())
-        started = Coasting(self.most, self.error, self.growth, self.gain)
+        started = Coasting(self.most, self.error)
         started.vector = vector.copy()
         return started
 
@@ -39,10 +34,8 @@ class Coasting:
         if time > self.most:
             raise self.error('no further')
         out[:] = self.vector
-        dt, grown = time - self.vector[0], self.growth * np.array([0.0, 0.0, 1.0])
-        turn = Rotation.from_rotvec(self.gain * dt * (self.vector[5:8] + 0.5 * dt * grown))
+        turn = Rotation.from_rotvec((time - self.vector[0]) * self.vector[5:8])
         out[0], out[1:5] = time, (Rotation.from_quat(self.vector[1:5]) * turn).as_quat()
-        out[5:8] += dt * grown
 
     def states(self, times, out):
         for time, row in zip(times, out, strict=True):

@@ -36,14 +36,6 @@ def test_a_run_begins_anew_at_each_strike():
     assert runs.struck_rate(one) == pytest.approx(2.0 + 1.0 + 0.25)
 
 
-def test_a_run_from_a_state_on_the_way_has_the_strikes_that_come():
-    one, prototype = coasting_scene((2.0, -4.0), (1.0, 8.0), (3.5, 12.0)), Coasting()
-    states = runs.run(one, prototype, one.initial.vector, TIMES)
-    later = runs.run(one, prototype, states[1], TIMES[2:])
-    assert later == pytest.approx(states[2:])
-    assert [start[0] for start in prototype.starts[-2:]] == [2.0, 3.5]
-
-
 def test_what_does_not_converge_is_not_a_number_and_too_much_work_is_said():
     still = coasting_scene()
     found = runs.run(still, Coasting(2.5), still.initial.vector, TIMES)

@@ -199,7 +199,7 @@ def test_rounding_is_no_excuse_where_another_method_errs_less(monkeypatch):
     tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
     tried._states(2.0 ** -30)
     monkeypatch.setattr(tried, '_error', lambda tolerance: 1e-8)
-    monkeypatch.setattr(rounding, 'lost_in_steps', lambda *_, enough: np.full(runs.LOOKS, enough))
+    monkeypatch.setattr(rounding, 'lost', lambda *_, enough: np.full(runs.LOOKS, enough))
     assert tried.excess(2.0 ** -30) == 0.0
     assert tried.excess(2.0 ** -30, least=1e-7) == 0.0
     assert tried.excess(2.0 ** -30, least=1e-9) == 1e-8
