@@ -6,8 +6,8 @@ polynomials P_m of 2 theta - 1, theta = (t - t0)/H:
 
     y(theta) = y0 + H sum_m a_m Q_m(theta),   Q_m = integral of P_m from 0 to theta
 
-The nodes are not at 0: what has no direction there, such as a slip that begins, has one at them.
-Where the fixed-point iteration does not converge, as for a stiff slip, Newton's method does.
+A slip that is small or begins has a direction that is stiff, or has none of its own: `Ways` makes
+directions unknowns of their own.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,6 @@ from random_scenes.wide import WIDE
 
 NODES = 20
 ITERATIONS = 40          # of the fixed point
-ROUNDS, TRIES = 5, 8     # Jacobians of Newton's method, and iterations with each
 CLOSE = 4e-19            # change of an iteration, as a share, that is the last
 ROUNDED = 1e-17          # below which a change that no longer falls is rounding
 SMALL = 3e-18            # of what a step leaves out, as a share
@@ -79,8 +78,8 @@ def _tables():
 C, ANALYSIS, A = _tables()
 
 
-def step(rates, begin, y, length, sizes, guess=None):
-    """Return a Step, or None if no iteration converges.
+def step(rates, begin, y, length, sizes):
+    """Return a Step by iterations of the fixed point, or None if they do not converge.
 
     Parameters
     ----------
@@ -88,15 +87,10 @@ def step(rates, begin, y, length, sizes, guess=None):
         (rows of unknowns, times) -> rows of their rates.
     sizes : array
         Beside which a change of each unknown is judged.
-    guess : array or 'newton', optional
-        k at the nodes for Newton's method, or a demand for it.
     """
     times = begin + length * C
-    k = guess
-    if guess is None or isinstance(guess, str):
-        k = np.tile(rates(y[None], np.array([begin])), (NODES, 1))
-    solve = _fixed_point if guess is None else _newton
-    k, good = solve(rates, times, y, length, sizes, k)
+    k = np.tile(rates(y[None], np.array([begin])), (NODES, 1))
+    k, good = _fixed_point(rates, times, y, length, sizes, k)
     return Step(begin, length, y, ANALYSIS @ k) if good else None
 
 
@@ -114,42 +108,107 @@ def _fixed_point(rates, times, y, length, sizes, k):
     return k, False
 
 
-def _newton(rates, times, y, length, sizes, k):
-    """Solve k = rates(y + H A k) by Newton's method; its matrices are of doubles."""
-    n, before, first = len(y), np.inf, None
-    for _ in range(ROUNDS):
-        inverse = _inverse(rates, times, y + length * (A @ k), length, sizes)
-        if inverse is None:
-            return k, False
-        for _ in range(TRIES):
-            off = rates(y + length * (A @ k), times) - k
-            change = float((np.abs(off) * length / sizes).max())
-            first = change if first is None else first
-            if not np.isfinite(change) or change > 1e3 * first + 1e-6:
-                return k, False
+class Ways:
+    """Directions of what slips, as smooth unknowns of their own where it hardly slips.
+
+    A slip s d, |d| = 1, with the rate v' has s' = d . v' and s d' = v' - (d . v') d, which is
+    smooth where s is 0 or small, and stiff: it is solved by Newton's method. Each d is that of the
+    begin plus p_1 b_1 + ..., of unit length, with b_j across it.
+
+    Parameters
+    ----------
+    firsts : list of array
+        Directions at the begin of a step.
+    sizes : list
+        |s| there.
+    """
+
+    def __init__(self, firsts, sizes):
+        self.firsts, self.sizes = firsts, sizes
+        self.across = [basis(d) for d in firsts]
+        self.counts = [len(one) for one in self.across]
+
+    def at(self, p):
+        """Return the directions (n, rows) for parts p (rows, m)."""
+        found, first = [], 0
+        for d, across in zip(self.firsts, self.across, strict=True):
+            raw = d[:, None] + across.T @ p[:, first:first + len(across)].T
+            found.append(raw / np.sqrt((raw * raw).sum(0)))
+            first += len(across)
+        return found
+
+    def turns(self, d, rates, p):
+        """Return the parts across the first directions of v' - (d . v') d, and d . v'."""
+        parts = [across @ (v - (one * v).sum(0) * one)
+                 for across, one, v in zip(self.across, d, rates, strict=True)]
+        return np.concatenate(parts).T, [(one * v).sum(0)
+                                         for one, v in zip(d, rates, strict=True)]
+
+    def step(self, rates, begin, y, length, scales):
+        """Return a Step and the directions at its end, or None.
+
+        Parameters
+        ----------
+        rates : callable
+            (rows of unknowns, times, directions) -> their rates, and a list of v'.
+        """
+        m, h = sum(self.counts), WIDE(1e-9)
+        times, before, swung = begin + length * C, np.inf, np.inf
+        now, _ = rates(y[None], times[:1], [d[:, None] for d in self.firsts])
+        k, turned = np.tile(now, (NODES, 1)), np.zeros((NODES, m), dtype=WIDE)
+        moves = np.concatenate((np.zeros((1, m)), np.eye(m))).astype(WIDE) * h
+        for _ in range(ITERATIONS):
+            p = length * (A @ turned)
+            tried = (p[None] + moves[:, None]).reshape(-1, m)
+            d = self.at(tried)
+            found, grows = rates(np.tile(y + length * (A @ k), (m + 1, 1)),
+                                 np.tile(times, m + 1), d)
+            turns, along = self.turns(d, grows, tried)
+            turns = turns.reshape(m + 1, NODES, m)
+            slope = np.moveaxis((turns[1:] - turns[0]) / h, 0, 2)    # [node, of, by]
+            s = [size + length * (A @ one[:NODES])
+                 for size, one in zip(self.sizes, along, strict=True)]
+            s = np.repeat(np.stack(s, axis=1), self.counts, axis=1)
+            off = turns[0] - s * self._swing([one[:, :NODES] for one in d], turned, p)
+            M = -np.einsum('iab,ij->iajb', slope.astype(float), (length * A).astype(float))
+            M = M.reshape(NODES * m, NODES * m)
+            M[np.diag_indices(NODES * m)] += s.astype(float).reshape(-1)
+            after = found[:NODES]
+            change = float((np.abs(after - k) * length / scales).max())
+            # in a short step the rates change little, whatever the direction
+            change = max(change, swung * float((np.abs(after) * length / scales).max()))
+            if not (np.isfinite(after).all() and np.isfinite(M).all() and np.isfinite(off).all()):
+                return None
+            k = after
             if change < CLOSE or (change < ROUNDED and change >= before):
-                return k, True
-            if change > 0.5 * before:
-                before = change
-                break
+                end = self.at(length * (_integrals(np.ones(1)) @ (ANALYSIS @ turned)))
+                return Step(begin, length, y, ANALYSIS @ k), [one[:, 0] for one in end]
             before = change
-            scaled = (off / sizes).astype(float).reshape(-1)
-            k = k + (inverse @ scaled).reshape(NODES, n).astype(WIDE) * sizes
-    return k, False
-
-
-def _inverse(rates, times, at, length, sizes):
-    """Return the inverse of 1 - H A J in doubles, of unknowns over their sizes."""
-    n = at.shape[1]
-    base, big = rates(at, times), np.eye(NODES * n)
-    moves = sizes * WIDE(1e-9)
-    slip = getattr(rates, 'smallest', None)    # how little of each unknown changes the rates much
-    moves = np.tile(moves, (NODES, 1)) if slip is None else np.minimum(moves, slip(at))
-    rows = np.repeat(at, n, axis=0) + (moves[:, :, None] * np.eye(n, dtype=WIDE)).reshape(-1, n)
-    apart = rates(rows, np.repeat(times, n)).reshape(NODES, n, n) - base[:, None]
-    J = np.swapaxes((apart / moves[:, :, None]), 1, 2)    # J[node, of, by]
-    J = (J * sizes[None, None, :] / sizes[None, :, None] * length).astype(float)
-    if not np.isfinite(J).all():
+            try:
+                move = np.linalg.solve(M, off.astype(float).reshape(-1))
+            except np.linalg.LinAlgError:
+                return None
+            move = move.reshape(NODES, m).astype(WIDE)
+            turned, swung = turned + move, float(np.abs(length * (A @ move)).max())
         return None
-    big -= (A.astype(float)[:, None, :, None] * J[:, :, None, :]).reshape(big.shape)
-    return np.linalg.inv(big)
+
+    def _swing(self, d, turned, p):
+        """Return the parts of d' across the first directions."""
+        parts, first = [], 0
+        for one, start, across in zip(d, self.firsts, self.across, strict=True):
+            own = slice(first, first + len(across))
+            raw = start[:, None] + across.T @ p[:, own].T
+            by = across.T @ turned[:, own].T / np.sqrt((raw * raw).sum(0))
+            parts.append(across @ (by - (one * by).sum(0) * one))
+            first += len(across)
+        return np.concatenate(parts).T
+
+
+def basis(d):
+    """Return unit vectors across a direction, as rows."""
+    if len(d) == 2:
+        return np.array([[-d[1], d[0]]])
+    side = np.eye(3, dtype=WIDE)[int(np.argmin(np.abs(d)))]
+    first = np.cross(d, side)
+    first = first / np.sqrt(first @ first)
+    return np.stack([first, np.cross(d, first)])

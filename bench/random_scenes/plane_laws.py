@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from random_scenes.laws import Laws, array
+from random_scenes.laws import STEP, Laws, array
 from random_scenes.wide import WIDE, inverse
 
 ONE, OTHER = np.array([1, 2, 0]), np.array([2, 0, 1])
@@ -190,6 +190,14 @@ class Body:
         g = at.gamma
         wide = size_of(g[:2])
         return np.stack([-g[1] / wide, g[0] / wide, 0 * wide])
+
+    def rolls(self, at):
+        """Return s' along e1 and e2."""
+        return np.stack([dot(self.e1, at.moved), dot(self.e2, at.moved)])
+
+    def rolling_grows(self, y, rates):
+        """Return how s' grows along e1 and e2, by a step along the imaginary axis."""
+        return self.rolls(self.motion_of(y + 1j * STEP * rates)).imag / STEP
 
     def rim_rate(self, at):
         """Return e . (gamma x omega) of a disk, which is 0 when its rolling is held."""

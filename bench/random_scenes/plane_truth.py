@@ -69,9 +69,9 @@ class PlaneTruth:
         self.body = Body(scene, read)
         self.t, self.events, self.impacts = WIDE(0), [], []
         self.steps, self.known, self.why = [], np.inf, ''
-        self.mode, self.d, self.way, self.left = FLIGHT, None, None, None
+        self.mode, self.d, self.rolling, self.way, self.left = FLIGHT, None, None, None, None
         self.y = self._start(scene.initial.vector, moved)
-        self.next, self.part, self.stiff = self._time(), WIDE(0.5), False
+        self.next, self.part, self.stiff, self.ends = self._time(), WIDE(0.5), False, None
         self.struck = set()
 
     def _start(self, vector, moved):
@@ -165,84 +165,95 @@ class PlaneTruth:
         if mode == FLIGHT:
             return body.rates
         way = self.way if body.is_disk else None
+        return lambda y, t: body.touching(y, t, mode, None, way).rates
 
-        def rates(y, t):
-            return body.touching(y, t, mode, None, way).rates
-        rates.smallest = self._smallest
-        return rates
+    def _by_ways(self, y, t, ways):
+        """Return rates, and the rates of what slips and rolls, along directions given."""
+        body, mode, ways = self.body, self.mode, list(ways)
+        d = ways[0] if mode[0] == SLIDE else None
+        rolls = mode[1] == MOVES and not body.is_disk
+        way = ways[-1][0] * body.e1 + ways[-1][1] * body.e2 if rolls else self.way
+        found = body.touching(y, t, mode, d, way)
+        grows = [found.grows] if mode[0] == SLIDE else []
+        if rolls:
+            grows.append(body.rolling_grows(y, found.rates))
+        return found.rates, grows
 
-    def _smallest(self, y):
-        """Return changes of unknowns that change the direction of a slip little, by row."""
-        body = self.body
-        at = body.motion_of(y)
-        small = np.full(len(y), WIDE(np.inf))
-        if self.mode[0] == SLIDE:
-            small = np.minimum(small, size_of(body.slip(at)))
-        if self.mode[1] == MOVES and not body.is_disk:
-            small = np.minimum(small, size_of(at.moved))
-        small = WIDE(1e-4) * small[:, None]
-        least = np.min(np.abs(np.linalg.eigvalsh(body.about_center[0].astype(float))))
-        turn = WIDE(least) / body.length
-        ones = np.ones((1, 3), dtype=WIDE)
-        far = np.full((len(y), 3), WIDE(1e-9) * body.length)
-        return np.concatenate([small / WIDE(self.speed()) * np.ones((1, 4), dtype=WIDE),
-                               small * turn * ones, small * ones, far], axis=1)
+    def _directions(self):
+        """Return the directions and sizes of what slips and rolls; those that begin are known."""
+        body, ways, sizes = self.body, [], []
+        at = body.motion_of(self.y[None])
+        for moves, begins, v in ((self.mode[0] == SLIDE, self.d, body.slip(at)),
+                                 (self.mode[1] == MOVES and not body.is_disk, self.rolling,
+                                  body.rolls(at))):
+            if moves:
+                size = size_of(v)[0]
+                ways.append(v[:, 0] / size if begins is None else begins)
+                sizes.append(size if begins is None else (v[:, 0] * begins).sum())
+        return ways, sizes
 
     def _step(self, stop):
         """Make one step, up to an event if there is one."""
         if self.mode != FLIGHT:
             self._low()
-        sizes, begins = self._sizes(), self.mode != FLIGHT and self._begins()
-        length = min(self.next, stop - self.t)
-        left = np.inf if begins else self._before_zero()
-        length = min(length, self.part * left)
+        sizes, left = self._sizes(), self._before_zero()
+        length = min(self.next, stop - self.t, self.part * left)
         with np.errstate(all='ignore'):
-            made = self._made(length, sizes, begins)
+            made, ends = self._made(length, sizes)
         self.next = made.length * WIDE(1.3)
         if np.isfinite(left):
             self.part = min(WIDE(1), WIDE(1.3) * made.length / left)
-        self._finish(made, stop)
+        self._finish(made, stop, ends)
 
-    def _made(self, length, sizes, begins):
-        """Return the longest Step up to a length that leaves out nothing.
-
-        The fixed point is tried first; where even a step an eighth as long does not converge, and
-        where a slip begins, Newton's method.
-        """
-        stiff, most = self.stiff, length
+    def _made(self, length, sizes):
+        """Return the longest Step up to a length that leaves out nothing, and directions."""
+        begins = self.d is not None or self.rolling is not None
+        stiff = begins or self.stiff
         while length > SHORTEST:
-            if begins:
-                guess = self._guess(length)
-                ways = [] if guess is None else [(length, guess)]
-            else:
-                ways = [(length, None)]
-                if stiff or length < most / 7:
-                    ways.append((most if not stiff else length, 'newton'))
-            for tried, guess in ways:
-                made = collocation.step(self._rates(), self.t, self.y, tried, sizes, guess)
-                if made is not None and (made.left_out() / sizes).max() < collocation.SMALL:
-                    self.stiff = isinstance(guess, str)
-                    return made
-            if not begins and length < most / 7:
-                most, stiff = length, True
+            if not stiff:
+                made = collocation.step(self._rates(), self.t, self.y, length, sizes)
+                if self._is_whole(made, sizes):
+                    return made, None
+            if self.mode[0] == SLIDE or (self.mode[1] == MOVES and not self.body.is_disk):
+                ways = collocation.Ways(*self._directions())
+                found = ways.step(self._by_ways, self.t, self.y, length, sizes)
+                if found is not None and self._is_whole(found[0], sizes):
+                    self.stiff = True
+                    return found
             length = length / 2
         raise Unknown('no step is short enough')
 
-    def _finish(self, made, stop):
+    @staticmethod
+    def _is_whole(made, sizes):
+        return made is not None and (made.left_out() / sizes).max() < collocation.SMALL
+
+    def _finish(self, made, stop, ends):
         """Keep a step up to its first event, and follow it."""
+        self.ends = ends
         found = self._first(made)
-        if found is None:
-            arrived = made.length == stop - made.begin
-            self._keep(made, WIDE(1))
-            self.t = stop if arrived else made.begin + made.length
-            self.d, self.way = None, self.way if self.body.is_disk else None
-            self._arrive()
-            return
-        share, name = found
+        share, name = (WIDE(1), 'arrive') if found is None else found
         self._keep(made, share)
-        self.t = made.begin + share * made.length
-        self.d = None
+        whole = found is None and made.length == stop - made.begin
+        self.t = stop if whole else made.begin + share * made.length
+        self.d = self.rolling = None
+        if found is None and ends is not None:
+            if self.mode[0] == SLIDE:
+                self.d = ends[0]
+            if self.mode[1] == MOVES and not self.body.is_disk:
+                self.rolling = ends[-1]
+            self._loosens(made)
         getattr(self, '_' + name)()
+
+    def _loosens(self, made):
+        """Look whether slips are so fast that their directions need not be unknowns any more."""
+        now = self._now(None, None)
+        fast = np.inf
+        _, sizes = self._directions()
+        for size in sizes:
+            fast = min(fast, size)
+        weight = size_of(now.rates[:, 7:10].T)[0] + self._forced()
+        if fast > 2 * weight * made.length:
+            self.stiff, self.d, self.rolling = False, None, None
 
     def _keep(self, made, share):
         self.steps.append(made)
@@ -254,25 +265,18 @@ class PlaneTruth:
         if body.shape in ('torus', 'disk') and body.inclination(self.y[None])[0] < LOW:
             raise Unknown('a low ring')
 
-    def _begins(self):
-        """Return whether a slip or a rolling begins here, whose direction is not yet its own."""
-        return self.d is not None or (self.way is not None and not self.body.is_disk)
-
     def _before_zero(self):
         """Return how long a step may be before a slip or a rolling could end, s."""
         body, most = self.body, WIDE(np.inf)
         if self.mode == FLIGHT:
             return most
         at = body.motion_of(self.y[None])
-        now = body.touching(self.y[None], np.array([self.t]), self.mode, None, self.way)
+        now = self._now(None if self.d is None else self.d[:, None])
         if self.mode[0] == SLIDE:
             most = min(most, _time_left(now.slip[:, 0], now.grows[:, 0]))
         if self.mode[1] == MOVES and not body.is_disk:
-            h = WIDE(1e-9)
-            later = self.y + h * now.rates[0] * body.length / WIDE(self.speed())
-            moved = body.motion_of(later[None]).moved[:, 0]
-            growth = (moved - at.moved[:, 0]) / (h * body.length / WIDE(self.speed()))
-            most = min(most, _time_left(at.moved[:, 0], growth))
+            grows = body.rolling_grows(self.y[None], now.rates)
+            most = min(most, _time_left(body.rolls(at)[:, 0], grows[:, 0]))
         return most
 
     # -- watches ------------------------------------------------------------------------------
@@ -293,6 +297,11 @@ class PlaneTruth:
         if self.mode[1] == HELD:
             watched['roll_off'] = (body.dry * found.N - size_of(found.holds)) / (
                 weight * body.length)
+        at = body.motion_of(y)
+        if self.ends is not None and self.mode[0] == SLIDE:    # it goes through 0 smoothly
+            watched['stuck'] = (self.ends[0][:, None] * body.slip(at)).sum(0) / self.speed()
+        if self.ends is not None and self.mode[1] == MOVES and not body.is_disk:
+            watched['hold'] = (self.ends[-1][:, None] * body.rolls(at)).sum(0) / self.speed()
         if self.mode[1] == MOVES and body.is_disk:
             watched['hold'] = -self.way * body.rim_rate(body.motion_of(y)) * (
                 body.length / WIDE(self.speed()))
@@ -331,7 +340,7 @@ class PlaneTruth:
                 if (inner <= 0).any():
                     j = int(np.flatnonzero(inner <= 0)[0])
                     return fine[j - 1], fine[j]
-                if inner.min() < GRAZES:
+                if inner.min() < GRAZES and name not in ('stuck', 'hold'):
                     raise Unknown(f'a watch grazes zero: {name}')
         if first == len(values):
             return None
@@ -367,9 +376,9 @@ class PlaneTruth:
 
     def _stuck(self):
         """A slip has died: the friction holds, or the slip turns round."""
-        now = self.body.touching(self.y[None], np.array([self.t]), self.mode, None, self.way)
+        now = self._now(None if self.ends is None else self.ends[0][:, None])
         left = _time_left(now.slip[:, 0], now.grows[:, 0])
-        if np.isfinite(left):
+        if self.ends is None and np.isfinite(left):
             self.y = self.y + left * now.rates[0]
             self.t = self.t + left
         before = len(self.events)
@@ -460,7 +469,8 @@ class PlaneTruth:
         return after(np.array([angle]))[0][:, 0], False
 
     def _fly(self):
-        self.mode, self.d, self.way, self.left = FLIGHT, None, None, self.t
+        self.mode, self.left, self.stiff = FLIGHT, self.t, False
+        self.d = self.rolling = self.way = None
         self.next = self._time()
         at, h = self.body.motion_of(self.y[None]), WIDE(1e-6) * self._time()
         later = self.body.motion_of(self.y[None] + h * self.body.rates(
@@ -521,7 +531,8 @@ class PlaneTruth:
             Whether friction may hold a slip, and a rolling.
         """
         body, mu = self.body, self.body.mu
-        self.d, self.next = None, self._time()
+        self.d, self.rolling, self.stiff = None, None, False
+        self.next, self.part = self._time(), WIDE(0.5)
         at, speed = body.motion_of(self.y[None]), self.speed()
         self._low()
         if rolls is None:
@@ -557,9 +568,13 @@ class PlaneTruth:
             raise Unknown('a slip and a rolling begin at once')
         (self._slip_begins if held else self._roll_begins)(found)
 
-    def _now(self, d=None, way=None):
-        return self.body.touching(self.y[None], np.array([self.t]), self.mode, d,
-                                  self.way if way is None else way)
+    def _now(self, d=None, rolling=None):
+        """Return Found of the present, along directions given or its own."""
+        rolling = self.rolling if rolling is None else rolling
+        way = self.way
+        if rolling is not None:
+            way = rolling[0] * self.body.e1 + rolling[1] * self.body.e2
+        return self.body.touching(self.y[None], np.array([self.t]), self.mode, d, way)
 
     def _slip_begins(self, found):
         """Begin a slip along the direction in which it grows."""
@@ -608,7 +623,7 @@ class PlaneTruth:
         else:
             d = _away(self._rolls(self.y[None], np.array([self.t])), -h / size_of(h), 2,
                       self._forced())
-            self.way = (d[0] * body.e1 + d[1] * body.e2)
+            self.rolling = d
         self._holds_on(self._now())
 
     def _rolls(self, y, t):
@@ -619,44 +634,9 @@ class PlaneTruth:
             rows = d.shape[1]
             way = d[0] * body.e1 + d[1] * body.e2
             states = np.tile(y, (rows, 1))
-            found = body.touching(states, np.tile(t, rows), self.mode, self.d, way)
-            at = body.motion_of(states)
-            grown = body.drawn(at.gamma, cross(at.gamma, back(at.R, found.turned)))
-            grown = along(at.R, grown)
-            return np.stack([dot(body.e1, grown), dot(body.e2, grown)]), found.N
+            found = body.touching(states, np.tile(t, rows), self.mode, None, way)
+            return body.rolling_grows(states, found.rates), found.N
         return growth
-
-    def _guess(self, length):
-        """Return rates at the nodes of a step in which a slip or a rolling begins.
-
-        The body goes on as if it were held, and at each node slips or rolls along the direction in
-        which it would grow there.
-        """
-        body, mode, d, way = self.body, self.mode, self.d, self.way
-        kept = (STICK if d is not None else mode[0],
-                HELD if way is not None and not body.is_disk else mode[1])
-
-        def rates(y, t):
-            return body.touching(y, t, kept, None, way if body.is_disk else None).rates
-        made = collocation.step(rates, self.t, self.y, length, self._sizes())
-        if made is None:
-            return None
-        y, t, rows = made.at(collocation.C), self.t + length * collocation.C, []
-        for k in range(collocation.NODES):
-            if d is not None:
-                along_d = _refined(self._growth(y[k:k + 1], t[k:k + 1]), d, self._forced())
-                if along_d is None:
-                    return None
-                rows.append(body.touching(y[k:k + 1], t[k:k + 1], mode, along_d[:, None],
-                                          way).rates[0])
-            else:
-                first = np.array([dot(body.e1, way)[0], dot(body.e2, way)[0]])
-                turned = _refined(self._rolls(y[k:k + 1], t[k:k + 1]), first, self._forced())
-                if turned is None:
-                    return None
-                at = turned[0] * body.e1 + turned[1] * body.e2
-                rows.append(body.touching(y[k:k + 1], t[k:k + 1], mode, None, at).rates[0])
-        return np.array(rows)
 
 
 def _time_left(v, growth):
@@ -736,7 +716,7 @@ def _refined(growth, d, least):
     """
     d = np.asarray(d, dtype=WIDE)
     for _ in range(60):
-        across = _basis(d)
+        across = collocation.basis(d)
         h = WIDE(1e-8)
         tried = np.stack([d] + [(d + h * one) / np.sqrt(1 + h * h) for one in across], axis=1)
         rates, N = growth(tried)
@@ -757,13 +737,3 @@ def _refined(growth, d, least):
             rates, N = growth(d[:, None])
             return d if N[0] > 0 and d @ rates[:, 0] >= -1e-12 * least else None
     return None
-
-
-def _basis(d):
-    """Return unit vectors across a direction."""
-    if len(d) == 2:
-        return [np.array([-d[1], d[0]])]
-    side = np.eye(3, dtype=WIDE)[int(np.argmin(np.abs(d)))]
-    first = np.cross(d, side)
-    first = first / np.sqrt(first @ first)
-    return [first, np.cross(d, first)]
