@@ -30,7 +30,7 @@ from random_scenes.wide import WIDE
 
 LOOKS = 24                      # samples of a step, at which its watches are looked at
 FLIGHT = 'flight', FREE
-LOW = 2e-3                      # rad: a ring so low is left alone
+LOW, DAMPED = 2e-3, 3e-2        # rad: a ring so low is left alone; where its rolling has friction
 NOTHING = 1e-15                 # share of the speeds below which a slip has ended
 CHATTERS = 1e-13                # and below which no impact rebounds
 SHORTEST = 1e-20                # s
@@ -197,6 +197,8 @@ class PlaneTruth:
         if self.mode != FLIGHT:
             self._low()
         sizes, left = self._sizes(), self._before_zero()
+        if self.stiff or self.d is not None or self.rolling is not None:
+            left = WIDE(np.inf)
         length = min(self.next, stop - self.t, self.part * left)
         with np.errstate(all='ignore'):
             made, ends = self._made(length, sizes)
@@ -262,7 +264,8 @@ class PlaneTruth:
 
     def _low(self):
         body = self.body
-        if body.shape in ('torus', 'disk') and body.inclination(self.y[None])[0] < LOW:
+        low = DAMPED if body.dry + body.viscous + body.film > 0 else LOW
+        if body.shape in ('torus', 'disk') and body.inclination(self.y[None])[0] < low:
             raise Unknown('a low ring')
 
     def _before_zero(self):
@@ -369,6 +372,8 @@ class PlaneTruth:
         if self.mode == FLIGHT:
             return
         least, at = NOTHING * self.speed(), body.motion_of(self.y[None])
+        if self.ends is not None:    # watches see the zero
+            return
         if self.mode[0] == SLIDE and size_of(body.slip(at))[0] < least:
             self._stuck()
         elif self.mode[1] == MOVES and not body.is_disk and size_of(at.moved)[0] < least:
