@@ -148,16 +148,32 @@ def tried(number, seed, slim=False):
         yield f'{head} floor {known.floors[0]:.1e}', 'senseless', ()
         return
     for accuracy in ACCURACIES:
+        used = None
         for method in ('auto', *NAMED):
-            if method == 'auto' or method in methods_for(scene):
-                line, verdicts = _compared(scene, known, method, accuracy)
-                yield f'{head}{line}{until}', 'auto' if method == 'auto' else 'named', verdicts
+            if method == used or not (method == 'auto' or method in methods_for(scene)):
+                continue    # `auto` has shown it
+            made = _simulation(scene, known, method, accuracy)
+            if made is None:
+                continue
+            used = used or made.choice.method
+            line, verdicts = _compared(made, known, method, accuracy)
+            yield f'{head}{line}{until}', 'auto' if method == 'auto' else 'named', verdicts
 
 
-def _compared(scene, known, method, accuracy):
+def _simulation(scene, known, method, accuracy):
+    """Return a Simulation, None of a method that a paradox the scene may meet rules out."""
+    horizon = float(known.times[-1])
+    try:
+        return Simulation(scene, method, accuracy, horizon=horizon, rate=1.0 / horizon)
+    except BadInput as error:
+        if method == 'auto' or 'may meet' not in str(error):
+            raise
+        return None
+
+
+def _compared(simulation, known, method, accuracy):
     """Return the rest of a line, and verdicts: met, foretold, balanced, events."""
     horizon = float(known.times[-1])
-    simulation = Simulation(scene, method, accuracy, horizon=horizon, rate=1.0 / horizon)
     try:
         states = simulation.states(known.times)
     except NotConverged as error:
