@@ -8,7 +8,7 @@ Scenes are drawn from the whole scene language (random_scenes/draw.py): bodies f
 symmetric, all constraints, gravity along any direction, several torques, drag of numbers and
 matrices, internal dissipation, rotors, friction of a ball and of a hinge, strikes, forces,
 potentials, springs, torsion springs, magnets, gravity gradients, expressions of time and state,
-with kinks too, all ways to say the start. Convex bodies on a plane are not among them. With --new
+with kinks too, all ways to say the start. Convex bodies on a plane are in plane_random.py. With --new
 each has only effects in the scene's own words (random_scenes/new_language.py), on pivots off the
 origin and on a path too.
 

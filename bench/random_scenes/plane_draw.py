@@ -47,6 +47,9 @@ def drawn(number, seed, slim=False):
     surface, inertia = _body(chance, mass, size, slim)
     speed, fall = math.sqrt(G * size), math.sqrt(size / G)
     duration = round(chance.between(*LASTS) * fall, 3)
+    if slim:    # the contact spins a slim body up at once
+        least, *_, most = np.linalg.eigvalsh(inertia)
+        duration = round(5.0 * duration * math.sqrt(least / most), 5)
     mu = chance.choice((0.0, math.inf, *(chance.uniform(0.02, 1.0) for _ in range(6))))
     laws, plane = _laws(chance, mass, size, speed, surface, mu), {}
     if chance.random() < 0.4:
@@ -54,8 +57,9 @@ def drawn(number, seed, slim=False):
     if chance.random() < 0.5:
         plane['restitution'] = chance.uniform(0.0, 0.95)
     effects = [f'gravity: {{g: {G}}}', *laws, *_more(chance, mass, size, speed, inertia, duration)]
+    least = float(min(np.linalg.eigvalsh(inertia)))
     parameters = {'k': chance.uniform(0.2, 2.0), 'w0': chance.uniform(0.2, 2.0) / fall,
-                  's': size, 'f': mass * G, 'T': 0.1 * float(min(np.linalg.eigvalsh(inertia))) / fall ** 2}
+                  's': size, 'f': mass * G, 'T': 0.1 * least / fall ** 2}
     return (f'scene: plane_{number}\nparameters: {json.dumps(parameters)}\n'
             f'body: {{mass: {mass!r}, inertia: {json.dumps(inertia.tolist())}, '
             f'surface: {json.dumps(surface)}}}\n'

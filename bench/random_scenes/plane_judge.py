@@ -70,7 +70,8 @@ class Known:
         self.until = until
         self.ends = self.why.startswith('end:') and until == best.known
         self.times = duration * np.arange(1, LOOKS + 1) / LOOKS
-        self.times = self.times[self.times < until - 1e-6 * fall] if until < duration else self.times
+        if until < duration:
+            self.times = self.times[self.times < until - 1e-6 * fall]
         self.events = [
             (name, time, max(abs(time - one[k][1]) for one in lists[1:]) / MOVED)
             for k, (name, time) in enumerate(lists[0])

@@ -2,13 +2,14 @@
 """A convex body on a plane, for the truth: Newton and Euler in the world frame, 64-bit mantissas.
 
 Symbols: n unit normal of the plane (away from it), e1, e2 along it, gamma = n along the body, r
-from the centre of mass to the lowest point P, s' the velocity of P over the surface, u = v + omega
-x r the velocity of the body's point at P, w = n . omega. Unknowns, a row each: q (4), L (3, angular
+from the centre of mass to the lowest point P, s' the velocity of P over the surface, w = n . omega,
+u = v + omega x r the velocity of the body's point at P. Unknowns, a row each: q (4), L (3, angular
 momentum about the centre of mass), v and x (3 and 3, of the centre of mass), all along the world.
 
 What the plane can exert is a list of loads, each a force at P and a couple: N with all that goes
-with it, and what holds a slip or a rolling. Each load changes the accelerations of P in proportion,
-and the loads are those for which n . u' and what is held stay 0. Vectors are arrays (3, rows).
+with it, and what holds a slip or a rolling. Each load changes the accelerations of P in
+proportion, and the loads are those for which n . u' and what is held stay 0. Vectors are arrays
+(3, rows).
 """
 
 from typing import NamedTuple

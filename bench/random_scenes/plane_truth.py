@@ -20,7 +20,6 @@ from random_scenes.plane_laws import (
     STICK,
     Body,
     along,
-    back,
     cross,
     dot,
     size_of,
@@ -32,6 +31,7 @@ LOOKS = 24                      # samples of a step, at which its watches are lo
 FLIGHT = 'flight', FREE
 LOW, DAMPED = 2e-3, 3e-2        # rad: a ring so low is left alone; where its rolling has friction
 NOTHING = 1e-15                 # share of the speeds below which a slip has ended
+SAME = 1e-10                    # and of a start, which copies have moved a little
 CHATTERS = 1e-13                # and below which no impact rebounds
 SHORTEST = 1e-20                # s
 DIRECTIONS = 720                # of a slip that begins, at first
@@ -97,11 +97,9 @@ class PlaneTruth:
         """Go on to a time, or to where nothing is known."""
         end, body = WIDE(end), self.body
         try:
+            self._strikes(WIDE(0))
             if self.touches_at_start:
-                self._strikes(WIDE(0))
                 self._meet(told=False)
-            else:
-                self._strikes(WIDE(0))
             while self.t < end:
                 later = [WIDE(x) for x in body.jumps if self.t < WIDE(x) <= end]
                 stop = min([*later, end])
@@ -416,11 +414,11 @@ class PlaneTruth:
         self.y[10:] -= gap * body.n[:, 0]
         normal, speed = dot(body.n, at.u)[0], self.speed()
         ideal = not np.isfinite(body.mu)
-        if self.touches_at_start and abs(normal) < 1e-14 * speed:    # rounding of the start
+        if self.touches_at_start and self.t == 0 and abs(normal) < SAME * speed:
             self.y[7:10] -= normal * body.n[:, 0]
             normal = 0 * normal
             slip = size_of(at.u - dot(body.n, at.u) * body.n)[0]
-            if not told and self.t == 0 and slip < 1e-14 * speed:
+            if slip < SAME * speed:    # it rolls
                 self.y[7:10] -= (at.u[:, 0] - dot(body.n, at.u)[0] * body.n[:, 0])
         slip = size_of(body.motion_of(self.y[None]).u)[0]
         if normal > NOTHING * speed:
@@ -470,7 +468,8 @@ class PlaneTruth:
             N = wanted[2] / A
             u = before[:2, None] + N * (G[:2] @ push)
             return N * push, u, A
-        angle = _parallel(lambda angles: after(angles)[1:])
+        with np.errstate(all='ignore'):
+            angle = _parallel(lambda angles: after(angles)[1:])
         return after(np.array([angle]))[0][:, 0], False
 
     def _fly(self):
@@ -492,13 +491,13 @@ class PlaneTruth:
         """N has fallen to 0."""
         body = self.body
         if self._presses(SMOOTH) and not np.isfinite(body.mu):
-            self._end("ideal rolling needs a plane that pulls")
+            self._end('ideal rolling needs a plane that pulls')
         if body.viscous + body.film > 0:
             kept = body.viscous, body.film
             body.viscous, body.film = WIDE(0), WIDE(0)
             N = body.touching(self.y[None], np.array([self.t]), self.mode, None, self.way).N[0]
             body.viscous, body.film = kept
-            if N > 1e-12 * body.mass * WIDE(self.speed()) ** 2 / body.length:
+            if body.mass * self._forced() * 1e-12 < N:
                 self._end('viscous rolling friction lifts the body')
         self._tell('lift-off')
         self._fly()
@@ -560,7 +559,7 @@ class PlaneTruth:
             if slip == STICK and np.isfinite(mu) and self._presses(SMOOTH):
                 holds = False
             elif slip == STICK and not np.isfinite(mu) and self._presses(SMOOTH):
-                self._end("ideal rolling needs a plane that pulls")
+                self._end('ideal rolling needs a plane that pulls')
             else:
                 self._fly()
                 return
@@ -662,7 +661,7 @@ def _parallel(after):
         u, A = after(angles)
         return (np.cos(angles) * u[1] - np.sin(angles) * u[0],
                 (np.cos(angles) * u[0] + np.sin(angles) * u[1] > 0) & (A > 0))
-    values, good = across(angles)
+    values, _ = across(angles)
     found = []
     for k in np.flatnonzero(values[:-1] * values[1:] <= 0):
         low, high, first = angles[k], angles[k + 1], values[k]
