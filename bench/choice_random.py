@@ -8,9 +8,9 @@ Scenes are drawn from the whole scene language (random_scenes/draw.py): bodies f
 symmetric, all constraints, gravity along any direction, several torques, drag of numbers and
 matrices, internal dissipation, rotors, friction of a ball and of a hinge, strikes, forces,
 potentials, springs, torsion springs, magnets, gravity gradients, expressions of time and state,
-with kinks too, all ways to say the start. Convex bodies on a plane are in plane_random.py. With --new
-each has only effects in the scene's own words (random_scenes/new_language.py), on pivots off the
-origin and on a path too.
+with kinks too, all ways to say the start. Convex bodies on a plane are in plane_random.py. With
+--new each has only effects in the scene's own words (random_scenes/new_language.py), on pivots off
+the origin and on a path too.
 
 The truth shares no formula with the package: Newton's and Euler's equations in body axes with the
 full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates the expressions.

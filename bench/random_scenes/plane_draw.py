@@ -130,10 +130,10 @@ def _more(chance, mass, size, speed, inertia, duration):
                        f'{length}}}')
     if chance.random() < 0.12:
         effects.append(chance.choice(IN_WORDS))
-    for _ in range(chance.choice((0, 0, 0, 1, 2))):
-        effects.append(f'strike: {{impulse: {chance.vector(mass * speed * chance.between(0.1, 1))}'
-                       f', point: {chance.vector(0.5 * size)}, '
-                       f'time: {chance.uniform(0.0, duration)!r}}}')
+    effects += [
+        f'strike: {{impulse: {chance.vector(mass * speed * chance.between(0.1, 1))}, point: '
+        f'{chance.vector(0.5 * size)}, time: {chance.uniform(0.0, duration)!r}}}'
+        for _ in range(chance.choice((0, 0, 0, 1, 2)))]
     return effects
 
 

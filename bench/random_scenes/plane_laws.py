@@ -2,9 +2,10 @@
 """A convex body on a plane, for the truth: Newton and Euler in the world frame, 64-bit mantissas.
 
 Symbols: n unit normal of the plane (away from it), e1, e2 along it, gamma = n along the body, r
-from the centre of mass to the lowest point P, s' the velocity of P over the surface, w = n . omega,
-u = v + omega x r the velocity of the body's point at P. Unknowns, a row each: q (4), L (3, angular
-momentum about the centre of mass), v and x (3 and 3, of the centre of mass), all along the world.
+from the centre of mass to the lowest point P, s' the velocity of P over the surface, u = v + omega
+x r the velocity of the body's point at P, w = n . omega. Unknowns, a row each: q (4), L (3,
+angular momentum about the centre of mass), v and x (3 and 3, of the centre of mass), all along the
+world.
 
 What the plane can exert is a list of loads, each a force at P and a couple: N with all that goes
 with it, and what holds a slip or a rolling. Each load changes the accelerations of P in
@@ -117,6 +118,7 @@ class Body:
 
     @property
     def is_disk(self):
+        """Whether the surface is the sharp edge of a disk."""
         return self.shape == 'disk'
 
     @property

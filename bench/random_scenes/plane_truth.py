@@ -378,7 +378,7 @@ class PlaneTruth:
             self._hold()
 
     def _stuck(self):
-        """A slip has died: the friction holds, or the slip turns round."""
+        """Go on behind the end of a slip: friction holds, or the slip turns round."""
         now = self._now(None if self.ends is None else self.ends[0][:, None])
         left = _time_left(now.slip[:, 0], now.grows[:, 0])
         if self.ends is None and np.isfinite(left):
@@ -392,7 +392,7 @@ class PlaneTruth:
         self._rests()
 
     def _hold(self):
-        """A rolling has died: dry friction holds it, or it turns round."""
+        """Go on behind the end of a rolling: dry friction holds it, or it turns round."""
         self._land(slips=self.mode[0] == SLIDE, rolls=False)
         self._rests()
 
@@ -407,7 +407,7 @@ class PlaneTruth:
             self.y[4:10] = 0
 
     def _meet(self, told=True):
-        """The lowest point is on the plane: an impact, a flight, or a landing."""
+        """Go on where the lowest point is on the plane: an impact, a flight, or a landing."""
         body = self.body
         at = body.motion_of(self.y[None])
         gap = dot(body.n, at.x + at.r)[0]
@@ -488,7 +488,7 @@ class PlaneTruth:
         return WIDE(0.05) * self.body.length / WIDE(self.speed())
 
     def _leave(self):
-        """N has fallen to 0."""
+        """Leave the plane, or end: N has fallen to 0."""
         body = self.body
         if self._presses(SMOOTH) and not np.isfinite(body.mu):
             self._end('ideal rolling needs a plane that pulls')
@@ -514,14 +514,14 @@ class PlaneTruth:
         raise Unknown(f'end: {why}')
 
     def _let_go(self):
-        """Friction can hold the point of contact no more."""
+        """Go on where friction can hold the point of contact no more."""
         before = len(self.events)
         self._land(slips=False, holds=False)
         names = {STICK: 'rolling began', SLIDE: 'sliding began', 'flight': 'lift-off'}
         self.events.insert(before, (names[self.mode[0]], float(self.t)))
 
     def _roll_off(self):
-        """Dry friction can hold the rolling no more."""
+        """Go on where dry friction can hold the rolling no more."""
         self._land(slips=self.mode[0] == SLIDE, rolls=False, keeps=False)
 
     def _land(self, slips, rolls=None, holds=True, keeps=True):
