@@ -332,7 +332,7 @@ class PlaneTruth:
 
     def _bracket(self, made, name, shares, values):
         """Return shares between which a watch passes zero for the first time, or None."""
-        low = np.flatnonzero(~(values > 0))
+        low = np.flatnonzero(values <= 0)
         first = int(low[0]) if len(low) else len(values)
         for k in range(1, min(first, len(values) - 1)):
             if values[k] <= values[k - 1] and values[k] <= values[k + 1]:
@@ -352,7 +352,7 @@ class PlaneTruth:
         for _ in range(15):
             inner = np.linspace(low, high, 26, dtype=WIDE)
             values = self._seen(made, inner[1:-1])[name]
-            bad = np.flatnonzero(~(values > 0))
+            bad = np.flatnonzero(values <= 0)
             k = int(bad[0]) + 1 if len(bad) else 25
             low, high = inner[k - 1], inner[k]
             if high - low <= WIDE(2e-19) * high:
@@ -457,7 +457,9 @@ class PlaneTruth:
         """Return the impulse of an impact (e1, e2, n), and whether P sticks."""
         mu, wanted = self.body.mu, -(before + np.array([0, 0, e * before[2]], dtype=WIDE))
         stuck = solved(G[:, :, None], wanted[:, None])[:, 0]
-        if np.sqrt(stuck[0] ** 2 + stuck[1] ** 2) <= mu * stuck[2]:
+        if not np.isfinite(mu) and stuck[2] < 0:
+            self._end('ideal rolling needs a plane that pulls')
+        if not np.isfinite(mu) or np.sqrt(stuck[0] ** 2 + stuck[1] ** 2) <= mu * stuck[2]:
             return stuck, True
         if mu == 0:
             return np.array([0, 0, wanted[2] / G[2, 2]], dtype=WIDE), False

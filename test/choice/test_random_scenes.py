@@ -44,6 +44,31 @@ def test_so_it_is_for_effects_in_the_words_of_a_scene(judge, number):
 
 
 @pytest.mark.without_numba
+def test_the_truth_of_a_plane_starts_and_ends_a_slip_where_closed_forms_do(judge):
+    """A ball slides until 2 u/(7 mu g), and rolls on with 5/7 of its speed."""
+    import yaml
+    from random_scenes.plane_truth import PlaneTruth
+    text = ('scene: ball\nbody: {mass: 1.0, inertia: [0.4, 0.4, 0.4], surface: '
+            '{sphere: {radius: 1.0}}}\nconstraint: {table: {}}\neffects: [gravity: {g: 10.0}, '
+            'sliding_friction: {mu: 0.25}]\ninitial: {velocity: [3.5, 0, 0]}\n')
+    truth = PlaneTruth(judge.parse_scene(text), yaml.safe_load(text))
+    truth.run(1.0)
+    (name, time), = truth.events
+    assert name == 'rolling began'
+    assert abs(time - 0.4) < 1e-15    # 0 to rounding
+    assert abs(float(truth.states([1.0])[0, 7]) - 2.5) < 1e-15
+
+
+@pytest.mark.without_numba
+@IN_SOAK
+@pytest.mark.parametrize('number', [5, 8])
+def test_so_it_is_on_a_plane(judge, number):
+    from random_scenes import plane_judge
+    for line, kind, verdicts in plane_judge.judged(number, 11):
+        assert kind in ('auto', 'named') and all(verdicts), line
+
+
+@pytest.mark.without_numba
 def test_a_wrong_law_is_seen(judge, monkeypatch):
     from random_scenes import laws
     right = laws._dragged
