@@ -44,6 +44,7 @@ def test_so_it_is_for_effects_in_the_words_of_a_scene(judge, number):
 
 
 @pytest.mark.without_numba
+@IN_SOAK
 def test_the_truth_of_a_plane_starts_and_ends_a_slip_where_closed_forms_do(judge):
     """A ball slides until 2 u/(7 mu g), and rolls on with 5/7 of its speed."""
     import yaml
