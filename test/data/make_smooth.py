@@ -105,7 +105,7 @@ class Body:
         self.point = (center if self.kind == 'free' else numbers(constraint.through)
                       if self.kind == 'hinge' else ZERO)
         self.arm = plus(center, times(-1, self.point))    # body axes
-        self.axis = numbers(constraint.axis)
+        self.axis = numbers(constraint.axis) if self.kind == 'hinge' else ZERO
         self.wrench, self.torques = (
             wrench, [effect for effect in scene.effects if effect.name == 'torque'])
         gravity, drag, inner = (

@@ -19,7 +19,7 @@ from rigid_body_sim.scene.expressions import reader
 from rigid_body_sim.scene.expressions.source import OR_ZERO
 from rigid_body_sim.scene.scene import parse_scene
 
-BITS = '0x1.ebe941ccd460ap-1'
+BITS = '0x1.ebe941ccd4609p-1'
 ULP = np.finfo(float).eps
 BY_HAND = {
     # of u = y0 and v = y1; what mpmath makes of them
