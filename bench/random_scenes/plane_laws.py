@@ -37,7 +37,6 @@ def dot(a, b):
     return (a * b).sum(0)
 
 
-
 class Motion(NamedTuple):
     """How a body moves: vectors along the world, and gamma along the body."""
 

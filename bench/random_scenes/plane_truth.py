@@ -11,6 +11,7 @@ says so and ends there (`Unknown`).
 import numpy as np
 
 from random_scenes import collocation
+from random_scenes.plane_directions import Unknown, away, parallel
 from random_scenes.plane_laws import (
     FREE,
     HELD,
@@ -34,12 +35,7 @@ NOTHING = 1e-15                 # share of the speeds below which a slip has end
 SAME = 1e-10                    # and of a start, which copies have moved a little
 CHATTERS = 1e-13                # and below which no impact rebounds
 SHORTEST = 1e-20                # s
-DIRECTIONS = 720                # of a slip that begins, at first
 GRAZES = 1e-9                   # share of the lengths by which a minimum may miss its zero
-
-
-class Unknown(Exception):
-    """The truth does not know how a motion goes on."""
 
 
 class PlaneTruth:
@@ -471,7 +467,7 @@ class PlaneTruth:
             u = before[:2, None] + N * (G[:2] @ push)
             return N * push, u, A
         with np.errstate(all='ignore'):
-            angle = _parallel(lambda angles: after(angles)[1:])
+            angle = parallel(lambda angles: after(angles)[1:])
         return after(np.array([angle]))[0][:, 0], False
 
     def _fly(self):
@@ -586,7 +582,7 @@ class PlaneTruth:
         """Begin a slip along the direction in which it grows."""
         self.mode = SLIDE, self.mode[1]
         f = found.friction
-        d = _away(self._growth(self.y[None], np.array([self.t])), -f / size_of(f), len(f),
+        d = away(self._growth(self.y[None], np.array([self.t])), -f / size_of(f), len(f),
                   self._forced())
         self.d = d
         found = self._now(d[:, None])
@@ -627,7 +623,7 @@ class PlaneTruth:
             # the force that would hold it is against s'
             self.way = -np.sign(h[0, 0])
         else:
-            d = _away(self._rolls(self.y[None], np.array([self.t])), -h / size_of(h), 2,
+            d = away(self._rolls(self.y[None], np.array([self.t])), -h / size_of(h), 2,
                       self._forced())
             self.rolling = d
         self._holds_on(self._now())
@@ -650,96 +646,3 @@ def _time_left(v, growth):
     size = np.sqrt((v * v).sum())
     falls = -(v * growth).sum() / size if size > 0 else WIDE(0)
     return size / falls if falls > 0 else WIDE(np.inf)
-
-
-def _parallel(after):
-    """Return the angle along which the slip after an impact is parallel to its friction.
-
-    Raises Unknown if there is none, or more than one.
-    """
-    angles = 2 * PI * np.arange(DIRECTIONS + 1, dtype=WIDE) / DIRECTIONS
-
-    def across(angles):
-        u, A = after(angles)
-        return (np.cos(angles) * u[1] - np.sin(angles) * u[0],
-                (np.cos(angles) * u[0] + np.sin(angles) * u[1] > 0) & (A > 0))
-    values, _ = across(angles)
-    found = []
-    for k in np.flatnonzero(values[:-1] * values[1:] <= 0):
-        low, high, first = angles[k], angles[k + 1], values[k]
-        for _ in range(16):
-            inner = np.linspace(low, high, 26, dtype=WIDE)
-            signs = across(inner)[0] * first
-            j = int(np.flatnonzero(~(signs[1:] > 0))[0]) + 1 if (signs[1:] <= 0).any() else 25
-            low, high = inner[j - 1], inner[j]
-        off, fine = across(np.array([high]))
-        if fine[0] and abs(off[0]) < 1e-9 * np.abs(values).max():
-            found.append(high)
-    if len(found) != 1:
-        raise Unknown(f'{len(found)} directions of a slip after an impact')
-    return found[0]
-
-
-PI = 4 * np.arctan(WIDE(1))
-
-
-def _away(growth, guess, count, least):
-    """Return the direction along which something that was held grows.
-
-    Newton's method from the guess and from directions all around. Raises Unknown where several
-    grow.
-    """
-    found = _refined(growth, guess[:, 0], least)
-    if found is not None:
-        return found
-    best = []
-    if count == 2:
-        angles = 2 * PI * np.arange(DIRECTIONS, dtype=WIDE) / DIRECTIONS
-        starts = np.stack([np.cos(angles), np.sin(angles)])
-    else:
-        k = np.arange(DIRECTIONS, dtype=WIDE) + WIDE(0.5)
-        z, turn = 1 - 2 * k / DIRECTIONS, k * PI * (1 + np.sqrt(WIDE(5)))
-        wide = np.sqrt(1 - z * z)
-        starts = np.stack([wide * np.cos(turn), wide * np.sin(turn), z])
-    rates, N = growth(starts)
-    off = rates - (rates * starts).sum(0) * starts
-    share = np.sqrt((off * off).sum(0) / (rates * rates).sum(0))
-    share = np.where(((rates * starts).sum(0) > 0) & (N > 0), share, np.inf)
-    for k in np.argsort(share)[:40]:
-        if np.isfinite(share[k]):
-            one = _refined(growth, starts[:, k], least)
-            if one is not None and all(one @ other < 1 - 1e-9 for other in best):
-                best.append(one)
-    if len(best) != 1:
-        raise Unknown(f'{len(best)} directions in which a slip begins')
-    return best[0]
-
-
-def _refined(growth, d, least):
-    """Return the direction near d along which something grows, by Newton's method, or None.
-
-    Beside `least` (m/s^2) times 1e-12 a growth is rounding.
-    """
-    d = np.asarray(d, dtype=WIDE)
-    for _ in range(60):
-        across = collocation.basis(d)
-        h = WIDE(1e-8)
-        tried = np.stack([d] + [(d + h * one) / np.sqrt(1 + h * h) for one in across], axis=1)
-        rates, N = growth(tried)
-        if not np.isfinite(rates).all():
-            return None
-        parts = np.array([[a @ rates[:, j] - (rates[:, j] @ tried[:, j]) * (a @ tried[:, j])
-                           for j in range(len(across) + 1)] for a in across])
-        J = (parts[:, 1:] - parts[:, :1]) / h
-        move = solved(J[:, :, None], -parts[:, :1])[:, 0]
-        far = np.sqrt((move * move).sum())
-        if not np.isfinite(far):
-            return None
-        if far > 0.4:
-            move = move * (WIDE(0.4) / far)
-        d = d + sum(m * a for m, a in zip(move, across, strict=True))
-        d = d / np.sqrt(d @ d)
-        if far < 1e-15:
-            rates, N = growth(d[:, None])
-            return d if N[0] > 0 and d @ rates[:, 0] >= -1e-12 * least else None
-    return None
