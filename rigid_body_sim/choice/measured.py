@@ -9,6 +9,7 @@ for each radian that the body may turn (s).
 
 import functools
 import json
+import math
 import pathlib
 
 from rigid_body_sim.integrators import METHODS
@@ -80,17 +81,30 @@ def on_such(scene, method):
 
     Power series were measured where what acts is given in numbers; formulas of a scene, and the
     phases of a body on a plane, have series of their own, which take seconds to compile.
-    Collocation was measured where what acts
-    is smooth: its error estimate assumes that. Where |v| of quadratic drag nearly passes zero it
-    errs by thousands of times what is asked and does not say so. Stiff drag lets nothing swing
-    through zero; few methods are left there, and it is the only one of high order.
     """
     by_series = METHODS[method].NEEDS == 'series'
     if by_series and (has_formulas(scene) or scene.constraint.mechanism is Mechanism.PLANE):
         return False
-    if _rooted(scene) and not METHODS[method].FAMILY.ROOTS and not is_stiff(scene):
-        return False
-    return bool(rows(scene).get(method))
+    return bool(rows(scene).get(method)) and not _misses_roots(scene, method)
+
+
+def is_doubted(scene, method):
+    """Return whether a method may err on a scene without a sign of it, and is else a good one.
+
+    Collocation was measured where what acts is smooth: its error estimate assumes that. Where |v|
+    of quadratic drag nearly passes zero it errs by thousands of times what is asked and does not
+    say so. Other roots never come near zero, and there it rounds least.
+    """
+    return bool(rows(scene).get(method)) and _misses_roots(scene, method)
+
+
+def _misses_roots(scene, method):
+    """Return whether the steps of a method do not see that a root in a scene comes near zero.
+
+    Stiff drag lets nothing swing through zero; few methods are left there, and collocation is the
+    only one of high order.
+    """
+    return _rooted(scene) and not METHODS[method].FAMILY.ROOTS and not is_stiff(scene)
 
 
 @kept
@@ -104,6 +118,11 @@ def _rooted(scene):
     """Return whether anything that acts takes a root of what moves."""
     return any(one.rooted for effect in scene.effects if effect.acting is not None
                for one in effect.acting(scene.frame, 0.0))
+
+
+def least_error(scene, method):
+    """Return the least error (rad) that a method was measured to have; infinite if it was not."""
+    return min((entry['error'] for entry in rows(scene).get(method, ())), default=math.inf)
 
 
 def pick(scene, able, accuracy, horizon):

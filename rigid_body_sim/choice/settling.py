@@ -24,6 +24,8 @@ from rigid_body_sim.scene.scene import kept
 
 FASTER = 4.0        # times the pace of the body: a nutation that its attitude hardly shows
 RADIANS = 64.0      # of a nutation that are followed, rad
+AGREES = 4.0        # times the expected error of a run: what an accurate one differs from it by
+ALIKE = 1.25        # times the least error of another method: no more accurate than that, about
 PATIENCE = 1, 16    # factors on the steps of trials; the second if no method passes with the first
 
 
@@ -99,7 +101,8 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     coarsest tolerance on, since rounding of what acts may be more than a fine one allows. If the
     table has no method that meets the accuracy, its most accurate one is taken. If a trial shows
     that a method errs by more than the accuracy and by more than rounding, the next one is tried
-    too, and the most accurate one is taken.
+    too, and the most accurate one is taken. If the best one errs by more than the accuracy, be it
+    by rounding, another one that the table has as hardly less accurate is tried as well.
 
     Raises
     ------
@@ -109,7 +112,7 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     kind = TrialOnPlane if scene.constraint.mechanism is Mechanism.PLANE else Trial
     # a method that was not measured on such scenes is for those who name it
     measured_ones = [name for name in able if measured.on_such(scene, name)]
-    failed = 'none'
+    failed, tried = 'none', set()
     for patience in PATIENCE:
         left, least, best, cut_short = measured_ones.copy(), math.inf, None, False
         while left:
@@ -117,6 +120,7 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
             trial = kind(scene, accuracy, horizon, method, promised, patience,
                          len(measured_ones) > 1)
             left.remove(method)
+            tried.add(method)
             try:
                 found = trial.take(tolerance)
                 excess = trial.excess(found, least) if left or best else 0.0
@@ -125,17 +129,43 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
                 continue
             cut_short = cut_short or trial.is_cut_short
             if best is None or excess < HELPS * least:
-                least = excess
-                tolerance = min(found, coarsest)    # the forecast is that of the run
-                best = Settled(method, tolerance, prototype=trial.prototype,
-                               find=functools.partial(trial.forecast, tolerance))
+                least, settled_by = excess, trial
+                best = _settled(trial, min(found, coarsest))    # the forecast is that of the run
             if not excess > 0.0:
                 break
         if best and (not least > 0.0 or not cut_short):
-            return best
-    if best:
+            break
+    if not best:
+        raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
+    untried = [name for name in able if name not in tried
+               and (name in measured_ones or measured.is_doubted(scene, name))]
+    worst = ALIKE * measured.least_error(scene, best.method)
+    others = [name for name in untried if measured.least_error(scene, name) <= worst]
+    if not others or not settled_by.misses(best.tolerance):
         return best
-    raise NotConverged(f'no method follows the scene; the last one tried was {failed}')
+    method, tolerance, promised = measured.pick(scene, others, 0.0, horizon)
+    trial = kind(scene, accuracy, horizon, method, promised, PATIENCE[0], True)
+    return _more_accurate(settled_by, best, trial, tolerance)
+
+
+def _settled(trial, tolerance):
+    """Return the Settled choice of a trial's method with a tolerance."""
+    return Settled(trial.prototype.method.NAME, tolerance, prototype=trial.prototype,
+                   find=functools.partial(trial.forecast, tolerance))
+
+
+def _more_accurate(known, best, trial, tolerance):
+    """Return the choice of a trial if it helps; else `best`, which is that of the trial `known`.
+
+    A method may err without a sign of it, so the two trials must agree.
+    """
+    with contextlib.suppress(TooMuchWork):
+        found = trial.take(tolerance)
+        other, error = _settled(trial, found), best.expected_error
+        if (trial.beside(found, known, best.tolerance) <= AGREES * error
+                and other.expected_error < HELPS * error):
+            return other
+    return best
 
 
 def of_named(scene, prototype, accuracy, horizon):

@@ -169,6 +169,21 @@ class Trial:
             return 0.0    # nothing tells
         return error if float(lost.max()) < rounded else 0.0
 
+    def misses(self, tolerance):
+        """Return whether the run at a tolerance errs by more than is asked, and is not lost.
+
+        Where errors are magnified to more than MAGNIFIED, no method does much better.
+        """
+        if tolerance not in self._runs:
+            return False    # it was not tried
+        error = self._error(tolerance)
+        return error is not None and self._accuracy < error < MAGNIFIED
+
+    def beside(self, tolerance, other, its):
+        """Return how far the run at a tolerance is, at the horizon, from another Trial's, rad."""
+        here = self._states(tolerance)
+        return self._later(here, comparison.apart(here, other._states(its)))
+
     @property
     def is_cut_short(self):
         """Whether any of its runs took too much work: more patience may tell more."""

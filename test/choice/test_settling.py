@@ -5,13 +5,15 @@ import numpy as np
 import pytest
 from choice.known_bodies import SLOW, TORQUE
 
-from rigid_body_sim.choice import comparison, measured, runs, settling
+from rigid_body_sim.choice import comparison, forecast, measured, runs, settling
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.recording import about
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
+
+SMOOTH_ROOT = "torque: {value: ['-0.01/sqrt(1 + wx^2)', 0, 0], frame: body}"
 
 
 @pytest.mark.parametrize(('errors', 'taken'), [
@@ -44,6 +46,42 @@ def test_a_miss_for_want_of_steps_asks_for_patience(cut_short, excess, patiences
         Trial, 'excess', lambda self, *_: excess if self._patience == 1 else 0.0)
     settling.settle(scene, ['dop8', 'gauss16'], 1e-11, 6.0)
     assert seen == patiences
+
+
+OTHER = {
+    # errors told of dop8 and of gauss16, rad; how far they are apart; whether dop8 misses; taken
+    'it rounds less': (8e-11, 2e-11, 8e-11, True, 'gauss16'),
+    'it rounds as much': (8e-11, 6e-11, 8e-11, True, 'dop8'),
+    'it is somewhere else': (8e-11, 2e-11, 4e-10, True, 'dop8'),
+    'what is asked is met': (8e-12, 2e-12, 8e-12, False, 'dop8')}
+
+
+@pytest.mark.parametrize('case', OTHER.values(), ids=OTHER)
+def test_a_method_that_is_doubted_is_tried_where_the_others_miss(case, monkeypatch):
+    """Collocation does not see a root that comes near zero; most roots never do."""
+    *told, apart, misses, taken = case
+    told = dict(zip(('dop8', 'gauss16'), told, strict=True))
+    scene = parse_scene(SLOW.replace('EFFECTS', SMOOTH_ROOT))
+    assert measured.is_doubted(scene, 'gauss16') and not measured.is_doubted(scene, 'dop8')
+    monkeypatch.setattr(Trial, 'take', lambda self, tolerance: tolerance)
+    monkeypatch.setattr(Trial, 'misses', lambda *_: misses)
+    monkeypatch.setattr(Trial, 'beside', lambda *_: apart)
+    monkeypatch.setattr(Trial, 'forecast', lambda self, _: forecast.Forecast(
+        told[self.prototype.method.NAME], 6.0))
+    assert settling.settle(scene, list(told), 1e-11, 6.0).method == taken
+
+
+@pytest.mark.without_numba
+def test_where_one_method_rounds_by_more_than_is_asked_another_one_does_not():
+    """The weights of dop8 have both signs; those of collocation are positive, and round less."""
+    scene = parse_scene(SLOW.replace('EFFECTS', SMOOTH_ROOT).replace(
+        '[0.3, 0.2, 0.1]', '[1.0e-6, 4.0, 1.0e-6]'))    # the middle axis magnifies rounding
+    one, other = (settling.settle(scene, names, 1e-14, 8.0)
+                  for names in (['dop8'], ['dop8', 'gauss16']))
+    assert one.method == 'dop8' and one.expected_error > 1e-14
+    assert other.method == 'gauss16'
+    # measured: 6.8e-14 beside 1.9e-13
+    assert other.expected_error < 0.7 * one.expected_error
 
 
 FALLING = """
