@@ -14,7 +14,7 @@ from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.rotations import angle_between, multiply
 from rigid_body_sim.scene import composites
 from rigid_body_sim.scene.bodies import IDENTITY, make_body, of_shape
-from rigid_body_sim.scene.constraints.pivot import Pivot
+from rigid_body_sim.scene.constraints.pivot import DisplacedPivot, Pivot
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -146,6 +146,21 @@ def test_the_centre_of_mass_is_known_beyond_its_doubles():
         assert abs(body.center_of_mass[0] + mpmath.mpf(body.center_lost[0]) - exact) < 1e-32
     assert body.center_of_mass[1:] == (0.0, 0.0)
     assert math.isclose(body.center_of_mass[0], 0.7 / 3, rel_tol=2 * EPS)
+
+
+@pytest.mark.parametrize('places', [
+    ((0.1, 0.2, -0.7), (0.2, 0.3, 0.1), (0.4, -0.6, 0.3)),
+    ((0.1, 0.0, 0.0), (0.2, 0.0, 0.0), (0.4, 0.0, 0.0))], ids=['askew', 'along its own axes'])
+def test_the_arm_from_a_pivot_beside_the_centre_is_rounded_once(places):
+    """The pivot is the centre as doubles have it: all of the arm is what they lost."""
+    ball = of_shape('solid_sphere', 1.0, {'radius': 0.1})
+    body = composites.composite([(ball, at, IDENTITY) for at in places])
+    exact = [float(sum(map(Fraction, one)) / 3 - Fraction(middle))
+             for one, middle in zip(zip(*places, strict=True), body.center_of_mass, strict=True)]
+    turn = Rotation.from_quat(body.about_center.axes)
+    arm = DisplacedPivot(body.center_of_mass).frame(body).arm
+    assert any(exact)
+    assert arm == pytest.approx(turn.apply(exact, inverse=True), rel=4 * EPS)    # measured 1
 
 
 def test_what_is_small_beside_a_far_part_is_kept():
