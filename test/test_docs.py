@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import pytest
+from near import near
 from soak import IN_SOAK
 
 from rigid_body_sim.cli.subcommands import SUBCOMMANDS
@@ -53,7 +54,7 @@ def test_numbers_of_the_page_are_those_of_check_scenes(path):
 def _same(part, text):
     """Return whether each line of one text is in another, numbers to two units of last place."""
     there = [numbers(line) for line in text.splitlines()]
-    return all(any(words == other and found == pytest.approx(shown, rel=2e-9)
+    return all(any(words == other and found == near(shown, rel=2e-9)
                    for shown, other in there)
                for found, words in map(numbers, part.splitlines()))
 

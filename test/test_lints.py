@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The linters of ROS 2 where they are installed, and the header that each source file has.
+"""The linters of ROS 2 where they are installed, the header of each source file, loose bounds.
 
 ament_copyright is not run: it knows no SPDX header (ament_lint #462).
 """
 
+import ast
 import os
 import pathlib
 import shutil
@@ -11,7 +12,8 @@ import subprocess
 
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+TEST = pathlib.Path(__file__).resolve().parent
+ROOT = TEST.parent
 CLEAN = {name: value for name, value in os.environ.items()
          if name not in ('PYTHONPATH', 'AMENT_PREFIX_PATH')}
 
@@ -51,3 +53,15 @@ def test_every_source_file_has_its_license_on_the_first_line():
         lines = path.read_text().splitlines()
         first = next((line for line in lines if not line.startswith('#!')), None)
         assert not lines or first == '# SPDX-License-Identifier: Apache-2.0', path
+
+
+def test_a_relative_bound_says_what_absolute_one_stands_beside_it():
+    """``pytest.approx(x, rel=1e-15)`` accepts 1e-12 as well: near.py does not."""
+    loose = []
+    for path in sorted(TEST.rglob('*.py')):
+        for part in ast.walk(ast.parse(path.read_text())):
+            if isinstance(part, ast.Call) and ast.unparse(part.func).endswith('approx'):
+                named = {one.arg for one in part.keywords}
+                if 'rel' in named and 'abs' not in named:
+                    loose.append(f'{path.relative_to(TEST)}:{part.lineno}')
+    assert loose == []

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.choice import comparison
@@ -29,10 +30,10 @@ def test_the_mean_of_finer_runs_errs_less_than_each_of_them():
     finer[1] *= -1.0    # the same attitude
     turned = finer[0].copy()
     turned[:, 1:5] = Rotation.from_rotvec([0.0, 0.0, 5e-9]).as_quat()
-    assert comparison.apart_from_mean(true, list(finer)) == pytest.approx(2e-9, rel=1e-7)
-    assert comparison.apart_from_mean(turned, list(finer)) == pytest.approx(3e-9, rel=1e-7)
+    assert comparison.apart_from_mean(true, list(finer)) == near(2e-9, rel=1e-7)
+    assert comparison.apart_from_mean(turned, list(finer)) == near(3e-9, rel=1e-7)
     gave_up = np.full((4, 14), math.nan)
-    assert comparison.apart_from_mean(true, [finer[0], gave_up]) == pytest.approx(1e-9, rel=1e-7)
+    assert comparison.apart_from_mean(true, [finer[0], gave_up]) == near(1e-9, rel=1e-7)
     assert (comparison.apart_from_mean(true, [gave_up]) == math.inf).all()
     gave_up[:3] = finer[0, :3]    # at the last time only
-    assert comparison.apart_from_mean(true, [finer[0], gave_up]) == pytest.approx(1e-9, rel=1e-7)
+    assert comparison.apart_from_mean(true, [finer[0], gave_up]) == near(1e-9, rel=1e-7)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 from rclpy.serialization import deserialize_message
 
 from rigid_body_sim.drawing.body import drawing_of
@@ -164,7 +165,7 @@ def test_marker_of_a_body_without_a_shape_is_a_box_with_its_moments():
     x, y, z = values(marker.scale)
     body = load_scene('free_body').body
     assert (np.array([y * y + z * z, x * x + z * z, x * x + y * y]) * body.mass / 12.0
-            == pytest.approx(body.about_center.moments, rel=1e-12))
+            == near(body.about_center.moments, rel=1e-12))
     assert values(marker.pose.orientation) == STATE.orientation.tolist()
     assert (marker.type, marker.action, marker.color.a) == (1, 0, 1.0)
 

@@ -9,7 +9,6 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-import pytest
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.idl import IdlStruct
@@ -18,6 +17,7 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
+from near import near
 
 CONFIGURATION = """<CycloneDDS><Domain><General>
 <Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false</AllowMulticast>
@@ -102,7 +102,7 @@ def test_cyclone_client_hears_the_node_and_commands_it(run_node):
         steps = np.diff(omega, axis=0)
         [k] = np.flatnonzero(np.abs(steps).max(axis=1) > 1e-9)
         moment = 0.25 / steps[k, 2]
-        assert moment == pytest.approx(SPHERE_MOMENT, rel=1e-14, abs=0.0)
+        assert moment == near(SPHERE_MOMENT, rel=1e-14)
         # two momenta of size 10 (kg m^2/s), each turned to the world: an entry of the matrix is a
         # sum of products of rounded components, a component of the momentum a sum of three of
         # them, 12 roundings of each; measured up to 3.7e-14, at a tick that differs between runs

@@ -36,7 +36,7 @@ SHAPES = [
 def test_shape_has_the_moments_of_its_integral(name, dimensions, moments):
     body = bodies.of_shape(name, 1.0, dimensions)
     # a few roundings: measured 2.2e-16 relative at most
-    assert body.about_center.moments == pytest.approx(moments, rel=4 * EPS, abs=0.0)
+    assert body.about_center.moments == near(moments, rel=4 * EPS)
 
 
 def test_every_shape_is_checked():

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
@@ -28,13 +29,13 @@ def test_orientation_is_the_rotation_that_its_key_names(key, rotation):
 
 def test_roll_alone_turns_about_x():
     found = start('euler: [0.5, 0, 0]').orientation
-    assert found == pytest.approx([np.sin(0.25), 0.0, 0.0, np.cos(0.25)], rel=1e-15)
+    assert found == near([np.sin(0.25), 0.0, 0.0, np.cos(0.25)], rel=1e-15)
 
 
 def test_angular_velocity_of_the_world_is_turned_into_body_axes():
     found = start(f'euler: {ANGLES}, angular_velocity_world: {VECTOR}')
-    assert Rotation.from_quat(found.orientation).apply(found.angular_velocity) == \
-        pytest.approx(VECTOR, rel=1e-15)
+    turned = Rotation.from_quat(found.orientation).apply(found.angular_velocity)
+    assert np.abs(turned - VECTOR).max() < 2e-15      # of 3; measured 4.4e-16
 
 
 @pytest.mark.parametrize(('constraint', 'center'), [
@@ -66,8 +67,7 @@ def test_saying_it_twice_gets_one_line(initial, line):
 
 def test_no_angular_momentum_about_an_axis_without_moment():
     rod = '{mass: 1.0, shape: {rod: {length: 2.0}}}'
-    assert start('angular_momentum: [1, 0, 0]', rod).angular_velocity[0] == \
-        pytest.approx(3.0, rel=1e-15)
+    assert start('angular_momentum: [1, 0, 0]', rod).angular_velocity[0] == near(3.0, rel=1e-15)
     with pytest.raises(BadInput, match='about principal axis 3, whose moment is zero'):
         start('angular_momentum: [1, 0, 0.1]', rod)
 

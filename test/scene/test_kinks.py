@@ -7,6 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from near import near
 from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -51,7 +52,7 @@ def test_kinks_are_where_they_are_and_cost_no_accuracy():
             found, times, entries, _ = followed(scene, time, method)
             times = [one for one in times if one < time * (1 - 1e-12)]
             assert found == pytest.approx(rate, abs=2e-14), (text, method)
-            assert times == pytest.approx(kinks, rel=1e-15), (text, method)
+            assert times == near(kinks, rel=1e-15), (text, method)
             assert entries[4] == pytest.approx(I * (rate - 1.0), abs=2e-14), (text, method)
 
 
@@ -60,8 +61,8 @@ def test_a_well_with_a_sharp_bottom_has_the_period_of_its_parabolas():
     scene = scene_of("[potential: {energy: '2*abs(angle)'}]", '{angle: 0.5}', HINGE)
     period = 4 * math.sqrt(2 * I * 0.5 / 2.0)
     found, kinks, _, _ = followed(scene, 1.25 * period + 0.01)
-    assert np.array(kinks) / period == pytest.approx([0.25, 0.75, 1.25], rel=1e-14)
-    assert found == pytest.approx(-2.0 / I * (period / 4 - 0.01), rel=1e-13)
+    assert np.array(kinks) / period == near([0.25, 0.75, 1.25], rel=1e-14)
+    assert found == near(-2.0 / I * (period / 4 - 0.01), rel=1e-13)
 
 
 @IN_SOAK
@@ -184,7 +185,7 @@ def test_dry_friction_takes_the_same_from_every_swing_and_stops():
     scene = scene_of('[spring: {stiffness: 50}, dry_friction: {torque: 3}]', '{angle: 0.5}', HINGE)
     half, lost = math.pi * math.sqrt(I / 50), 2 * 3 / 50
     _, kinks, entries, end = followed(scene, 2.5)
-    assert kinks == pytest.approx([n * half for n in (1, 2, 3, 4)], rel=2e-15)
+    assert kinks == near([n * half for n in (1, 2, 3, 4)], rel=2e-15)
     out = np.empty((4, 14))
     solver = Stepped(scene, 'dop8', accuracy=1e-13).start(scene.initial.vector)
     solver.states(np.array(kinks), out)
@@ -192,7 +193,7 @@ def test_dry_friction_takes_the_same_from_every_swing_and_stops():
     assert 2 * np.arctan2(out[:, 3], out[:, 4]) == pytest.approx(turns, abs=1e-15)
     assert not end[5:8].any()
     assert 2 * math.atan2(end[3], end[4]) == pytest.approx(turns[-1], abs=1e-15)
-    assert entries[1] == pytest.approx(0.5 * 50 * (0.5 ** 2 - 0.02 ** 2), rel=2e-15)
+    assert entries[1] == near(0.5 * 50 * (0.5 ** 2 - 0.02 ** 2), rel=2e-15)
     found = {round(time / half) for time, name, _ in solver.events(0.0, 2.5)
              if name == 'turning point'}
     assert found >= {1, 2, 3}
@@ -203,13 +204,13 @@ def test_friction_bears_a_torque_until_it_outgrows_it():
     """0.5 t N m break loose from 1 N m at 2 s: I rate = (t - 2)^2/4 from there on."""
     scene = scene_of("[torque: {value: [0, 0, '0.5*t']}, dry_friction: {torque: 1}]", '{}', HINGE)
     rate, (loose,), _, _ = followed(scene, 3.0, accuracy=1e-11)
-    assert loose == pytest.approx(2.0, rel=1e-15)
-    assert rate == pytest.approx(0.25 / I, rel=1e-11)
+    assert loose == near(2.0, rel=1e-15)
+    assert rate == near(0.25 / I, rel=1e-11)
     for torque, moves in ((0.9, False), (1.1, True)):
         scene = scene_of(f'[torque: {{times: [0, 1], values: [[0, 0, 0], [0, 0, {torque}]]}}, '
                          'dry_friction: {torque: 1}]', '{}', HINGE)
         rate, _, _, _ = followed(scene, 3.0)
-        assert rate == pytest.approx(0.1 * 2.0 / I if moves else 0.0, rel=1e-14)
+        assert rate == near(0.1 * 2.0 / I if moves else 0.0, rel=1e-14)
 
 
 @pytest.mark.without_numba

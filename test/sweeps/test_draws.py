@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
@@ -26,7 +27,7 @@ def made(kind, a, b, u):
 @pytest.mark.parametrize('u', QUARTERS)
 def test_a_sample_is_what_its_formula_says(u):
     u1, u2, u3 = u
-    assert made(UNIFORM, 2.0, 6.0, u) == pytest.approx([2.0 + 4.0 * u1], rel=1e-15)
+    assert made(UNIFORM, 2.0, 6.0, u) == near([2.0 + 4.0 * u1], rel=1e-15)
     normal = math.sqrt(-2.0 * math.log(1.0 - u1)) * math.cos(2.0 * math.pi * u2)
     assert made(NORMAL, 2.0, 3.0, u) == pytest.approx([2.0 + 3.0 * normal], abs=1e-14)
     z = 2.0 * u1 - 1.0
@@ -34,9 +35,9 @@ def test_a_sample_is_what_its_formula_says(u):
     assert made(DIRECTION, 5.0, 0.0, u) == pytest.approx(
         [5.0 * around * math.cos(longitude), 5.0 * around * math.sin(longitude), 5.0 * z],
         abs=1e-14)
-    near, far, third = math.sqrt(1.0 - u1), math.sqrt(u1), 2.0 * math.pi * u3
+    lesser, far, third = math.sqrt(1.0 - u1), math.sqrt(u1), 2.0 * math.pi * u3
     assert made(ROTATION, 0.0, 0.0, u) == pytest.approx(
-        [near * math.sin(longitude), near * math.cos(longitude), far * math.sin(third),
+        [lesser * math.sin(longitude), lesser * math.cos(longitude), far * math.sin(third),
          far * math.cos(third)], abs=1e-15)
 
 

@@ -9,6 +9,7 @@ import json
 
 import numpy as np
 import pytest
+from near import near
 
 from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_names
 
@@ -131,7 +132,7 @@ def test_a_spring_is_drawn_from_its_anchor_to_the_body(server):
     stage.show(snapshot)
     [[begin, end]] = stage._coils.points * stage.unit
     assert begin == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
-    assert np.linalg.norm(end - snapshot.vector[8:11]) == pytest.approx(0.1, rel=1e-5)
+    assert np.linalg.norm(end - snapshot.vector[8:11]) == near(0.1, rel=1e-5)
     assert stage._coils.visible
 
 

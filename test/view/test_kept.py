@@ -7,6 +7,7 @@ import types
 import kept
 import numpy as np
 import pytest
+from near import near
 
 pytest.importorskip('viser')
 
@@ -87,12 +88,11 @@ def test_an_arrow_grows_with_its_vector_until_its_kind_is_rescaled():
     stage = Stage(server, load_scene('tennis_racket'))
     handle = server.added['/world/reference/omega']
     whole, lengths = stage._length('omega'), []
-    assert whole == pytest.approx(ARROW, rel=0.02)    # the plate hides next to nothing
+    assert whole == near(ARROW, rel=0.02)    # the plate hides next to nothing
     for size in (2.0, 1.0, 2.9, 3.2, 1.6, 0.0):
         stage._draw_arrow('omega', np.zeros(3), np.array([0.0, size, 0.0]))
         lengths.append(float(np.linalg.norm(handle.points[0, 1] - handle.points[0, 0])))
-    assert lengths[:5] == pytest.approx(
-        [whole, whole / 2, 1.45 * whole, whole, whole / 2], rel=1e-6)
+    assert lengths[:5] == near([whole, whole / 2, 1.45 * whole, whole, whole / 2], rel=1e-6)
     assert not handle.visible
 
 
@@ -157,7 +157,7 @@ def test_traces_hold_their_last_points_and_begin_anew():
     assert line.points.shape == (10, 2, 3)
     assert (line.points[1:, 0] == line.points[:-1, 1]).all()
     radii = np.linalg.norm(line.points, axis=2)
-    assert radii == pytest.approx(np.full((10, 2), radii[0, 0]), rel=1e-6)
+    assert radii == near(np.full((10, 2), radii[0, 0]), rel=1e-6)
     assert not server.added['/world/body/trace_polhode'].visible
     stage.trace(snapshot(simulation, [2.0], restarted=True))
     stage.draw_traces()

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.compilation.lanes import LANES, Plain
@@ -50,7 +51,7 @@ def test_a_step_is_what_the_larger_of_the_last_two_terms_allows(final, before, l
     larger = max(square(final) * last * last, square(before))
     step = min(allowed(larger), GROWTH * last)
     # the power is good to 6 %, and what is allowed is one too
-    assert longest(final, before, last, scale) == pytest.approx(step, rel=0.08)
+    assert longest(final, before, last, scale) == near(step, rel=0.08)
 
 
 def test_a_step_grows_by_a_bounded_factor_also_where_all_terms_vanish():
