@@ -12,7 +12,7 @@ from soak import IN_SOAK
 
 from rigid_body_sim.scene.scene import load_scene, scene_names
 from rigid_body_sim.study import check_scenes
-from rigid_body_sim.study.scenes import driven_body
+from rigid_body_sim.study.scenes import convex_body, driven_body
 from rigid_body_sim.study.scenes.experiment import Experiment
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
@@ -60,6 +60,19 @@ def test_a_changed_scene_without_a_closed_form_is_integrated():
     axial = Experiment(load_scene('driven_body'), 'exact')
     assert axial.variant(driven_body.ASYMMETRIC).method == 'dop8'
     assert axial.variant({'torque.value': [0.0, 0.0, 0.1]}).method == 'exact'
+
+
+@IN_SOAK
+@pytest.mark.parametrize('name', [name for name in SYSTEMS if name not in QUICK])
+def test_the_other_scenes_are_confirmed(name, capsys):
+    assert len(table('--scene', name, capsys=capsys)) >= 4
+
+
+def test_a_disk_precesses_with_its_centre_at_rest():
+    run = Experiment(load_scene('rolling_disk'), 'dop8')
+    A, _, m, R, g = convex_body._numbers(run)
+    [way] = convex_body._steady(run, A, m, R, g)
+    assert way.passed and way.error < 1e-13    # m; measured 5e-15
 
 
 def test_inertia_by_quadrature_and_by_a_blow(capsys):
