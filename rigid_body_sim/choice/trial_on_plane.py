@@ -13,9 +13,8 @@ from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
 from rigid_body_sim.integrators.marching.contact_course import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
-from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.contact.numbers import weight
-from rigid_body_sim.numerics.functions import hypot3, power
+from rigid_body_sim.numerics.functions import hypot3
 
 DEAR = 12288        # steps of the finer run of a trial: where it has more, none is made
 COARSE = 2.0 ** -10, 2.0 ** -14     # tolerances of the two runs that are made instead
@@ -35,11 +34,14 @@ class TrialOnPlane(Trial):
         return COARSER * tolerance
 
     def _dear(self, tolerance):
-        """Return whether a trial at a tolerance on a plane would take more than DEAR steps."""
+        """Return whether a trial at a tolerance on a plane would take more than DEAR steps.
+
+        The finer run itself tells: a coarse one does not, since events count as many steps at any
+        tolerance. Where it is no longer than that, the trial goes on from it.
+        """
         finer = self._grid(FINER * self._likely(tolerance))
-        share = power(finer / COARSE[0], 1.0 / dop8.ORDER)    # steps of a coarse run in its steps
         try:
-            self._run(COARSE[0], int(DEAR * min(1.0, share)))
+            self._runs[finer] = self._run(finer, DEAR)
         except TooMuchWork:
             return True
         return False
