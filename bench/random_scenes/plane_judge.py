@@ -153,23 +153,11 @@ def tried(number, seed, slim=False):
         for method in ('auto', *NAMED):
             if method == used or not (method == 'auto' or method in methods_for(scene)):
                 continue    # `auto` has shown it
-            made = _simulation(scene, known, method, accuracy)
-            if made is None:
-                continue
+            horizon = float(known.times[-1])
+            made = Simulation(scene, method, accuracy, horizon=horizon, rate=1.0 / horizon)
             used = used or made.choice.method
             line, verdicts = _compared(made, known, method, accuracy)
             yield f'{head}{line}{until}', 'auto' if method == 'auto' else 'named', verdicts
-
-
-def _simulation(scene, known, method, accuracy):
-    """Return a Simulation, None of a method that a paradox the scene may meet rules out."""
-    horizon = float(known.times[-1])
-    try:
-        return Simulation(scene, method, accuracy, horizon=horizon, rate=1.0 / horizon)
-    except BadInput as error:
-        if method == 'auto' or 'may meet' not in str(error):
-            raise
-        return None
 
 
 def _compared(simulation, known, method, accuracy):

@@ -28,7 +28,9 @@ from rigid_body_sim.motions.nearly import differ, nearly_absorbing, takes_any_mo
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.painleve import may_meet_paradox
 from rigid_body_sim.scene.scene import Scene
 
 STIFF = 10.0    # multiple of the body's rate above which internal dissipation is stiff
@@ -48,8 +50,16 @@ def _say_what_is_slow():
 
 
 def methods_for(scene):
-    """Return the names of the methods that can run a scene, the exact one first."""
-    return (['exact'] if absorbing_motion(scene) else []) + runnable(scene)
+    """Return the names of the methods that can run a scene, the exact one first.
+
+    Series do not run a body that may meet Painleve's paradox; they refuse it with the bound on mu.
+    """
+    able = runnable(scene)
+    if (scene.constraint.mechanism is Mechanism.PLANE
+            and any(METHODS[name].NEEDS == 'series' for name in able)
+            and may_meet_paradox(scene.body, scene.contact.mu)):
+        able = [name for name in able if METHODS[name].NEEDS != 'series']
+    return (['exact'] if absorbing_motion(scene) else []) + able
 
 
 @dataclass(frozen=True)

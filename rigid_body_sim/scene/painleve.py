@@ -22,6 +22,22 @@ def inverse_of(matrix):
     return scaled(share, first), scaled(share, second), scaled(share, third)
 
 
+def may_meet_paradox(body, mu):
+    """Return whether a coefficient of friction reaches mu_P; infinite ones roll and meet none.
+
+    The quotients of the eigenvalues of G are at most k = 1 + m |r|^2/I_1, with the least moment
+    I_1, so that mu_P is at least 2 sqrt(k)/(k - 1), as for the end of a rod. No attitude is looked
+    at where mu is below that.
+    """
+    surface, least = body.surface, min(body.about_center.moments)
+    off = minus(surface.center, body.center_of_mass)
+    reach = sum(surface.size) + math.sqrt(dot(off, off))
+    spread = body.mass * reach * reach / least if least > 0.0 else math.inf
+    if mu == math.inf or mu * spread < 2.0 * math.sqrt(1.0 + spread) < math.inf:
+        return False
+    return mu >= painleve_bound(body)
+
+
 def painleve_bound(body):
     """Return mu_P: below this coefficient of friction the force of every slip has one solution.
 

@@ -5,8 +5,6 @@ A slip that has just begun, whose direction is a finite difference, a ring that 
 rest are those of dop8.
 """
 
-import math
-
 import numpy as np
 
 from rigid_body_sim.compilation.templates import module_of, specialise
@@ -18,7 +16,7 @@ from rigid_body_sim.integrators.marching.contact import OnPlane, march_of
 from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.numerics.vectors import scaled
-from rigid_body_sim.scene.painleve import painleve_bound
+from rigid_body_sim.scene.painleve import may_meet_paradox, painleve_bound
 from rigid_body_sim.scene.surfaces import KINDS
 
 SERIES_OF = {FLIGHT: FLIGHT, ROLLING: ROLLING, SLIDING: SLIDING, GLIDING: SLIDING}
@@ -38,10 +36,10 @@ class OnPlaneBySeries(OnPlane):
     def __init__(self, scene, method, step):
         super().__init__(scene, method, None, step)
         mu = scene.contact.mu
-        if mu < math.inf and mu >= (bound := painleve_bound(scene.body)):
+        if may_meet_paradox(scene.body, mu):
             raise BadInput('integrator', f'taylor cannot run the scene {scene.name}: with '
                            f"mu = {mu!r} it may meet Painleve's paradox",
-                           f'mu below {bound:.4g}, or dop8')
+                           f'mu below {painleve_bound(scene.body):.4g}, or dop8')
         laws, surface = scene.contact, scene.body.surface
         self._kind, self._marches = KINDS[surface.kind], {}
         self._friction = contact_series.Friction(

@@ -17,6 +17,7 @@ from numba_only import LONG_IN_PYTHON
 from scipy.optimize import brentq
 from soak import IN_SOAK
 
+from rigid_body_sim.choice.choose import methods_for
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.marching.contact_bounce import CHATTER
 from rigid_body_sim.integrators.methods import dop8
@@ -563,6 +564,16 @@ def test_painleve_bound_is_told_and_the_paradox_ends_the_run_in_one_line():
     dragged = Simulation(scene(ROD, 'sliding_friction: {mu: 2.5}',
                                '{euler_zyz: [0, 0.5, 0], velocity: [4.0, 0, 0]}'), 'dop8', 1e-9)
     dragged.advance(100)
+
+
+def test_methods_of_a_body_that_may_meet_the_paradox_are_those_that_run_it():
+    """Named are the methods that a Simulation takes: no series arrives at the paradox."""
+    both, above = ['dop8', 'taylor'], scene(ROD, 'sliding_friction: {mu: 1.34}', '{}')
+    for mu in '0.3', '1.3', '.inf':
+        assert methods_for(scene(ROD, f'sliding_friction: {{mu: {mu}}}', '{}')) == both
+    assert methods_for(above) == ['dop8']
+    with pytest.raises(BadInput, match=r'paradox.*mu below 1\.333, or dop8'):
+        Simulation(above, 'taylor', 1e-9)
 
 
 # -- shipped scenes ----------------------------------------------------------------------------
