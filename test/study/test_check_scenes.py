@@ -75,6 +75,13 @@ def test_a_disk_precesses_with_its_centre_at_rest():
     assert way.passed and way.error < 1e-13    # m; measured 5e-15
 
 
+@LONG_IN_PYTHON
+def test_a_disk_stays_upright_above_a_speed_only():
+    run = Experiment(load_scene('rolling_disk'), 'dop8')
+    above, below = convex_body._upright(run, '')
+    assert (above.measured, below.measured) == (0.0, 1.0) == (above.predicted, below.predicted)
+
+
 def test_inertia_by_quadrature_and_by_a_blow(capsys):
     rows = table('--scene', 'inertia_tensors', capsys=capsys)
     assert len(rows) == 11
