@@ -71,6 +71,39 @@ def test_so_it_is_on_a_plane(judge, number):
 
 
 @pytest.mark.without_numba
+@IN_SOAK
+@pytest.mark.parametrize(('number', 'law'), [(5, 'gyration'), (5, 'friction'),
+                                             (8, 'restitution')])
+def test_a_wrong_law_of_a_plane_is_seen(judge, monkeypatch, number, law):
+    """A couple of 1e-3 omega x L, friction turned by 1e-3 rad, restitution larger by 1e-3."""
+    from random_scenes import plane_judge, plane_laws
+    body, cross = plane_laws.Body, plane_laws.cross
+    free, touching, init = body.free, body.touching, body.__init__
+
+    def gyration(self, at, y, t):
+        force, couple = free(self, at, y, t)
+        return force, couple + 1e-3 * cross(at.omega, at.L)
+
+    def friction(self, y, t, mode, d=None, way=None):
+        if mode[0] == plane_laws.SLIDE:
+            x, z = d = self.slip(self.motion_of(y)) if d is None else d
+            d = np.stack([x - 1e-3 * z, z + 1e-3 * x]) / np.sqrt(x * x + z * z)
+        return touching(self, y, t, mode, d, way)
+
+    def restitution(self, *given):
+        init(self, *given)
+        self.restitution *= 1.001
+
+    name, wrong = {'gyration': ('free', gyration), 'friction': ('touching', friction),
+                   'restitution': ('__init__', restitution)}[law]
+    monkeypatch.setattr(body, name, wrong)
+    monkeypatch.setattr(plane_judge, 'ACCURACIES', (1e-6,))
+    monkeypatch.setattr(plane_judge, 'NAMED', ())
+    for line, kind, verdicts in plane_judge.judged(number, 11):
+        assert kind == 'auto' and not all(verdicts), line    # error; events of the impacts
+
+
+@pytest.mark.without_numba
 def test_a_wrong_law_is_seen(judge, monkeypatch):
     from random_scenes import laws
     right = laws._dragged
