@@ -8,6 +8,7 @@ from near import near
 
 from rigid_body_sim.choice import comparison, forecast, measured, runs, settling
 from rigid_body_sim.choice.trial import Trial
+from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.recording import about
@@ -149,6 +150,20 @@ def test_a_damped_nutation_counts_though_the_attitude_does_not_show_it(method, a
     assert (off > accuracy) == missed == bool(simulation.missed)
     if missed:    # measured: 0.95 to 1.04 of the error
         assert off / 3.0 < simulation.expected_error < 3.0 * off
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-6, FINEST])
+def test_a_nutation_is_compared_with_a_run_as_fine_as_it_takes(accuracy, monkeypatch):
+    made = []
+
+    def stepped(scene, name, accuracy, horizon):
+        made.append(accuracy)
+        return Stepped(scene, name, accuracy, horizon=horizon)
+    monkeypatch.setattr(settling, 'Stepped', stepped)
+    scene = parse_scene(FALLING.replace('EFFECTS', ROTOR))
+    settling.of_named(scene, Stepped(scene, 'dop8', accuracy, horizon=2e-4), accuracy, 2e-4)
+    assert made == [max(FINEST, 2.0 ** -7 * accuracy)]
 
 
 def test_only_a_nutation_that_is_faster_than_the_body_counts_beside_the_attitude():
