@@ -31,7 +31,8 @@ def may_meet_paradox(body, mu):
     """
     surface, least = body.surface, min(body.about_center.moments)
     off = minus(surface.center, body.center_of_mass)
-    reach = sum(surface.size) + math.sqrt(dot(off, off))
+    a, b, c = surface.size
+    reach = a + b + c + math.sqrt(dot(off, off))
     spread = body.mass * reach * reach / least if least > 0.0 else math.inf
     if mu == math.inf or mu * spread < 2.0 * math.sqrt(1.0 + spread) < math.inf:
         return False
