@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from choice.known_bodies import SLOW, TORQUE
 from near import near
+from soak import IN_SOAK
 
 from rigid_body_sim.choice import comparison, forecast, measured, runs, settling
 from rigid_body_sim.choice.trial import Trial
@@ -74,6 +75,7 @@ def test_a_method_that_is_doubted_is_tried_where_the_others_miss(case, monkeypat
 
 
 @pytest.mark.without_numba
+@IN_SOAK    # a minute, of which the kernels take most
 def test_where_one_method_rounds_by_more_than_is_asked_another_one_does_not():
     """The weights of dop8 have both signs; those of collocation are positive, and round less."""
     scene = parse_scene(SLOW.replace('EFFECTS', SMOOTH_ROOT).replace(
