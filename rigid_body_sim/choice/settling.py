@@ -25,7 +25,7 @@ from rigid_body_sim.scene.scene import kept
 FASTER = 4.0        # times the pace of the body: a nutation that its attitude hardly shows
 RADIANS = 64.0      # of a nutation that are followed, rad
 AGREES = 4.0        # times the expected error of a run: what an accurate one differs from it by
-ALIKE = 1.25        # times the least error of another method: no more accurate than that, about
+ALIKE = 1.25        # a method whose least error is up to so many times another's is as accurate
 PATIENCE = 1, 16    # factors on the steps of trials; the second if no method passes with the first
 
 
@@ -102,7 +102,7 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     table has no method that meets the accuracy, its most accurate one is taken. If a trial shows
     that a method errs by more than the accuracy and by more than rounding, the next one is tried
     too, and the most accurate one is taken. If the best one errs by more than the accuracy, be it
-    by rounding, another one that the table has as hardly less accurate is tried as well.
+    by rounding, another one that is as accurate in the table is tried as well.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
         return best
     method, tolerance, promised = measured.pick(scene, others, 0.0, horizon)
     trial = kind(scene, accuracy, horizon, method, promised, PATIENCE[0], True)
-    return _more_accurate(settled_by, best, trial, tolerance)
+    return _more_accurate(settled_by, best, trial, tolerance, coarsest)
 
 
 def _settled(trial, tolerance):
@@ -154,13 +154,13 @@ def _settled(trial, tolerance):
                    find=functools.partial(trial.forecast, tolerance))
 
 
-def _more_accurate(known, best, trial, tolerance):
+def _more_accurate(known, best, trial, tolerance, coarsest):
     """Return the choice of a trial if it helps; else `best`, which is that of the trial `known`.
 
     A method may err without a sign of it, so the two trials must agree.
     """
     with contextlib.suppress(TooMuchWork):
-        found = trial.take(tolerance)
+        found = min(trial.take(tolerance), coarsest)
         other, error = _settled(trial, found), best.expected_error
         if (trial.beside(found, known, best.tolerance) <= AGREES * error
                 and other.expected_error < HELPS * error):

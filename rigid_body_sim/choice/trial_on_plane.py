@@ -36,8 +36,8 @@ class TrialOnPlane(Trial):
     def _dear(self, tolerance):
         """Return whether a trial at a tolerance on a plane would take more than DEAR steps.
 
-        The finer run itself tells: a coarse one does not, since events count as many steps at any
-        tolerance. Where it is no longer than that, the trial goes on from it.
+        The finer run itself tells, and the trial goes on from it. A coarse one does not tell: an
+        event counts as many steps at any tolerance.
         """
         finer = self._grid(FINER * self._likely(tolerance))
         try:

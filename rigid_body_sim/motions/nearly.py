@@ -17,9 +17,11 @@ What is left out is summed up along the closed form, stretch by stretch, and giv
 kick at the start of each stretch. The closed form itself says what a kick does until the horizon,
 so it includes how the motion magnifies kicks or averages them out. The changes of attitude by all
 kicks are added as vectors, because they are small; TWICE their largest sum counts as the error.
+The sum follows the motion as it starts, so nothing is known of it where a strike changes it.
 """
 
 import dataclasses
+import math
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -52,7 +54,7 @@ class Nearly(NamedTuple):
     scene : Scene
         The one that it solves.
     error : float
-        Of the attitude, from the start to the horizon, rad.
+        Of the attitude, from the start to the horizon, rad; infinite where a strike comes before.
     """
 
     motion: Any
@@ -98,6 +100,8 @@ def nearly_absorbing(scene, horizon):
     if not looks <= MOST_LOOKS:
         return None
     each = int(looks / STRETCHES) + 2
+    if any(effect.as_impulse is not None and effect.time < horizon for effect in scene.effects):
+        return Nearly(motion, symmetric, math.inf)
     error = _error(Exact(symmetric, motion), scene, equal, off, horizon, each)
     return Nearly(motion, symmetric, error)
 

@@ -307,7 +307,7 @@ def test_a_couple_tips_a_flat_disk_about_its_rim_where_pressure_cannot_bear_it(
     end = sim.states([0.03])[0]
     lift = end.position[2] / radius    # sin alpha
     assert lift == near(0.5 * (couple - G * radius) / (1.25 * radius ** 2) * 0.02 ** 2,
-                                 rel=1e-4)
+                        rel=1e-4)
     spin = np.linalg.norm(end.angular_velocity)
     work = couple * np.arcsin(lift) - G * radius * lift
     assert 0.5 * 1.25 * radius ** 2 * spin ** 2 == near(work, rel=1e-7)

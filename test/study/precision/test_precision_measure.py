@@ -197,4 +197,4 @@ def test_steps_are_shares_of_a_radian_at_the_fastest_rate(racket):
     quick = dataclasses.replace(truth, omega=omega)
     counts = [problem.duration / step for step in runner.steps_for(problem, quick)]
     assert counts == near([32 * round(problem.duration * 5e3 * share / 32)
-                                    for share in runner.STEPS_OF_A_RADIAN], rel=1e-12)
+                           for share in runner.STEPS_OF_A_RADIAN], rel=1e-12)
