@@ -71,8 +71,8 @@ def test_a_method_that_is_doubted_is_tried_where_the_others_miss(case, monkeypat
     monkeypatch.setattr(Trial, 'beside', lambda *_: apart)
     monkeypatch.setattr(Trial, 'forecast', lambda self, _: forecast.Forecast(
         told[self.prototype.method.NAME], 6.0))
-    found = settling.settle(scene, list(told), 1e-11, 6.0, coarsest=2.0 ** -45)
-    assert (found.method, found.tolerance) == (taken, 2.0 ** -45)
+    found = settling.settle(scene, list(told), 1e-11, 6.0, coarsest=2.0 ** -47)
+    assert (found.method, found.tolerance) == (taken, 2.0 ** -47)
 
 
 @pytest.mark.without_numba
