@@ -17,6 +17,7 @@ import numpy as np
 from rigid_body_sim.choice import measured, settling
 from rigid_body_sim.choice.exact_forecast import of_exact
 from rigid_body_sim.choice.forecast import Forecast, missed
+from rigid_body_sim.choice.runs import strikes
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
@@ -164,6 +165,11 @@ class Choice:
     def _asks(self):
         return self.method == 'exact' and self._prototype.motion.takes is not None
 
+    @property
+    def ends(self):
+        """Whether it is a closed form that a strike of the scene may end."""
+        return self._asks and bool(strikes(self.scene))
+
     @functools.cached_property
     def rests_on_start(self):
         """Whether it is a closed form that another start of the scene may not have."""
@@ -266,17 +272,13 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     A Choice never changes: whoever runs the same scene again gets the same one.
     """
     scene = same.scene
-    by_motion = not settled or settled.method == 'exact'
-    if integrator in ('auto', 'exact') and step is None and by_motion:
-        found = _closed_form(scene, horizon)
-        if found and (integrator == 'exact' or settled
-                      or found.error <= max(accuracy, found.floor)):
-            prototype = Exact(scene, found.motion, found.scene)
-            # the forecast of a closed form decides nothing, so it is made on demand
-            find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon,
-                                     functools.partial(_general, scene, horizon=horizon))
-            return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
-                          settled or settling.Settled('exact', accuracy, find=find))
+    closed = None
+    if (integrator in ('auto', 'exact') and step is None
+            and (not settled or settled.method == 'exact')):
+        closed = _by_motion(scene, integrator == 'exact' or settled is not None, accuracy, horizon,
+                            settled)
+    if closed and (integrator == 'exact' or settled or not closed.ends or closed.missed is None):
+        return closed
     if integrator == 'exact' and step is not None and 'exact' in methods_for(scene):
         raise BadInput('step', f'got {step!r}, but a closed form takes no steps',
                        'leave it out, or name a method that does')
@@ -288,6 +290,8 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
         coarsest = ENDING if wobbles else math.inf
         settled = settled or settling.settle(scene, fit, min(accuracy, coarsest), horizon,
                                              coarsest=coarsest)
+        if closed and closed.expected_error <= (settled.expected_error or 0.0):
+            return closed
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:
         settled = None
@@ -302,6 +306,23 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     else:
         prototype = Stepped(scene, method, tolerance, step, horizon=horizon, wanted=accuracy)
     return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, settled)
+
+
+def _by_motion(scene, named, accuracy, horizon, settled):
+    """Return the Choice of the closed form of a scene, or None.
+
+    One that errs by more than the accuracy, since it is that of a scene nearly this one, is taken
+    only if it is `named`.
+    """
+    found = _closed_form(scene, horizon)
+    if not found or not (named or found.error <= max(accuracy, found.floor)):
+        return None
+    prototype = Exact(scene, found.motion, found.scene)
+    # the forecast of a closed form decides nothing unless a strike may end it: made on demand
+    find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon,
+                             functools.partial(_general, scene, horizon=horizon))
+    return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
+                  settled or settling.Settled('exact', accuracy, find=find))
 
 
 class _Closed(NamedTuple):

@@ -29,6 +29,27 @@ def test_after_a_strike_that_ends_a_closed_form_the_error_is_that_of_what_goes_o
     assert error / 3.0 <= simulation.choice.expected_error <= 3.0 * error
 
 
+@pytest.mark.without_numba
+def test_a_closed_form_gives_way_where_what_goes_on_after_a_strike_misses():
+    """The general method that goes on runs untried; the one that is chosen instead was tried."""
+    scene = parse_scene(
+        'scene: thrown\nbody: {mass: 0.354, inertia: [0.72, 0.734, 0.043], '
+        'center_of_mass: [-0.44, 1.05, 0.036]}\nconstraint: free\n'
+        'effects: [gravity: {g: 3.7}, drag: {linear: 0.03, angular: 0.00068}, '
+        'strike: {impulse: [-0.6, -0.03, -0.35], point: [-0.55, 0.64, 0.0056], time: 0.6, '
+        'frame: body}]\ninitial: {euler_zyz: [1.2, 0.96, 1.4], spin: 27.0}')
+    settings, times = {'accuracy': 1e-6, 'horizon': 2.2}, [1.0, 1.6, 2.2]
+    fine = Simulation(scene, 'gauss16', accuracy=1e-13, horizon=2.2).states(times)
+    errors = {}
+    for method in ('exact', 'auto'):
+        simulation = Simulation(scene, method, **settings)
+        errors[method] = max(angle_between(*one, *best) for one, best in zip(
+            simulation.states(times).orientation, fine.orientation, strict=True))
+        assert (simulation.choice.missed is None) == (errors[method] <= 1e-6)
+    print(errors, simulation.choice.method, simulation.choice.expected_error)
+    assert errors['auto'] <= 1e-6 < errors['exact']
+
+
 def test_the_expected_error_knows_how_far_the_motion_magnifies_rounding():
     """A racket that stands still for long on its unstable axis: half an ulp grows by e^(l t)."""
     scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 2, 3]}\nconstraint: free\n'
