@@ -455,7 +455,8 @@ class PlaneCourse:
 
         The phase that follows names it: a slip that has died may turn round. That is where a new
         one begins, except for a patch: its slip goes through 0 with its spin, and may do so in a
-        phase that pivots, where nothing tells.
+        phase that pivots, where nothing tells. Where friction bears nothing, the grip mu N ends
+        with N, and the body lifts off.
 
         Parameters
         ----------

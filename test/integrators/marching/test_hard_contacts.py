@@ -19,6 +19,8 @@ from scipy.integrate import solve_ivp
 from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT
+from rigid_body_sim.integrators.marching import contact_course, contact_march
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -165,6 +167,72 @@ def test_slip_and_lift_off_within_one_tick_are_both_told_and_located():
         assert later.at_event('impact').time + time == pytest.approx(
             fine.events[2].time, abs=1e-11)
         assert set(names) >= {event.name for event in later.events}
+
+
+PULLED = '{mass: 1.0, inertia: [0.4, 0.4, 0.4], surface: {sphere: {radius: 1.0}}}'
+PULL = 10240.0    # N/s
+
+
+def pull(frame):
+    """Return an upward force that grows evenly, as an effect."""
+    return f"force: {{value: [0, 0, '{PULL}*t'], frame: {frame}}}"
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('initial', ['{angular_velocity: [0, 1, 0], rolling: true}',
+                                     '{velocity: [1, 0, 0]}'], ids=['rolling', 'sliding'])
+def test_a_ball_that_is_pulled_up_lifts_off_where_n_is_0(initial):
+    """A rolling one loses its grip, mu N, at that very time, and only its lift-off is told."""
+    sim = simulation(PULLED, f'sliding_friction: {{mu: 0.25}}, {pull("world")}', initial,
+                     accuracy=1e-9)
+    sim.advance()
+    assert [event.name for event in sim.events] == ['lift-off']
+    assert sim.events[0].time == pytest.approx(G / PULL, abs=1e-18)    # measured: 1e-19
+
+
+@pytest.mark.without_numba
+def test_a_ball_that_is_pulled_along_an_axis_of_its_own_lets_go_before():
+    """The force tilts with the body, by theta, and friction takes 2/7 of its part along the plane.
+
+    Rolling, theta'' = 5/7 F sin(theta), and N = m g - F cos(theta). The axes of a force are those
+    of the body by default: the time from letting go to lift-off, 9e-7 s, is no error.
+    """
+    mu, pulls = 0.25, mp.mpf(PULL)
+    sim = simulation(PULLED, f'sliding_friction: {{mu: {mu}}}, {pull("body")}',
+                     '{angular_velocity: [0, 1, 0], rolling: true}', accuracy=1e-9)
+    sim.advance()
+    theta = mp.odefun(lambda t, y: [y[1], mp.mpf(5) / 7 * pulls * t * mp.sin(y[0])], 0,
+                      [mp.mpf(0), mp.mpf(1)])
+
+    def normal(t):
+        return mp.mpf(G) - pulls * t * mp.cos(theta(t)[0])
+
+    def grip(t):
+        return mu * normal(t) - mp.mpf(2) / 7 * pulls * t * mp.sin(theta(t)[0])
+
+    # between the two the ball slips: theta differs from that of rolling by 1e-15
+    off = G / PULL
+    true = [mp.findroot(grip, (off - 1e-6, off)), mp.findroot(normal, (off, off + 1e-9))]
+    assert [event.name for event in sim.events] == ['sliding began', 'lift-off']
+    assert true[1] - true[0] > 8e-7
+    for event, time in zip(sim.events, true, strict=True):
+        assert event.time == pytest.approx(float(time), abs=2e-18)    # measured: 1e-19
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('why', [contact_march.STUCK, contact_march.LOST_CONTACT])
+def test_a_slip_that_ends_where_n_is_0_is_told_as_lift_off(why):
+    """The march hands over both as 0: in 307 scenes aimed at that, the ball rolled first."""
+    sim = simulation(PULLED, f'sliding_friction: {{mu: 0.25}}, {pull("world")}',
+                     '{velocity: [1, 0, 0]}', accuracy=1e-9)
+    course = sim._spans[-1].solver._course
+    phase, = course._phases
+    phase.front[contact_course.SLIP] = 0.0
+    phase.front[contact_course.TIME] = G / PULL
+    phase._meta[contact_march.STATUS] = why
+    course._follow(phase)
+    assert course._phases[-1].p[contact_march.MODE] == FLIGHT
+    assert course._events == [(G / PULL, 'lift-off', {})]
 
 
 # -- no friction ------------------------------------------------------------------------------
