@@ -14,6 +14,7 @@ import tempfile
 
 import pytest
 import ros
+from soak import SOAK
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
@@ -105,6 +106,7 @@ IN_ONE_PROCESS = 8
 
 Starting one takes a second.
 """
+LONGEST = 7000 if SOAK else 280    # s of such a process; 287 s of processor time in the soak
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 
@@ -113,7 +115,7 @@ def pytest_collection_modifyitems(items):
     """Let a test wait for the process without numba, in which its own time limit holds."""
     for item in items:
         if HAVE_NUMBA and item.get_closest_marker('without_numba') is not None:
-            item.add_marker(pytest.mark.timeout(300), append=False)
+            item.add_marker(pytest.mark.timeout(LONGEST + 20), append=False)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -159,7 +161,7 @@ def _run_without_numba(names, config):
         done = subprocess.run(
             [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '-p',
              'pytest_timeout', *names], cwd=config.rootpath, capture_output=True,
-            text=True, timeout=280, env=environment | {
+            text=True, timeout=LONGEST, env=environment | {
                 'NUMBA_DISABLE_JIT': '1', 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1',
                 OUTCOMES: str(outcomes)})
         found = [json.loads(line) for line in outcomes.read_text().splitlines()]
