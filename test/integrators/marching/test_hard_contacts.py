@@ -707,7 +707,6 @@ def test_a_slip_that_turns_round_does_not_roll(method, mu, name):
     assert slip == pytest.approx(grown, abs=1e-12)    # measured: 2e-15
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize('accuracy', [1e-6, pytest.param(1e-10, marks=IN_SOAK)])
 def test_a_spin_that_the_body_turns_round_has_no_event_at_any_accuracy(accuracy):
     """Its patch slips on through 0: "rolling began" was told where steps followed the slip."""

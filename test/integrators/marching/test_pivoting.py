@@ -74,7 +74,7 @@ def on_a_slope(patch, spin, accuracy, horizon):
 
 
 @pytest.mark.parametrize(('patch', 'spin', 'accuracy', 'bound'), [
-    pytest.param(1e-6, 0.01, 1e-9, 3e-12, marks=pytest.mark.without_numba),    # measured: 4e-13
+    (1e-6, 0.01, 1e-9, 3e-12),    # measured: 4e-13
     pytest.param(1e-6, 0.01, 1e-12, 3e-14, marks=IN_SOAK),     # 3e-15
     pytest.param(1e-7, 1e-3, 1e-12, 6e-14, marks=IN_SOAK)])    # 9e-15
 def test_a_ball_goes_down_a_slope_while_its_spin_dies_as_its_closed_form_says(
