@@ -182,6 +182,15 @@ def test_a_method_is_not_tried_finer_than_it_goes():
 
 
 @pytest.mark.without_numba
+def test_a_run_that_has_blown_up_does_not_tell_how_errors_grow():
+    tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
+    here, error = 2.0 ** -40, 1e-13
+    expected = tried._next(here, error, (here, error), None)
+    assert tried._next(here, error, (here, error), (2.0 ** -20, math.inf)) == expected
+    assert tried._next(here, error, (here, error), (2.0 ** -36, 1e-9)) < expected
+
+
+@pytest.mark.without_numba
 def test_where_nothing_is_finer_a_coarser_run_tells_the_error(monkeypatch):
     tried = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-11, 6.0, 'dop8', 1e-12, 1, True)
     tried._finest = 2.0 ** -30
