@@ -29,6 +29,8 @@ import itertools
 import linecache
 import typing
 
+import numpy as np
+
 from rigid_body_sim.compilation.jit import inlined
 
 Pair = tuple[float, float]                          # a double-double number, or a plane vector
@@ -63,6 +65,8 @@ class Layout:
         Read the value. `at` moves all places on, for arrays that hold several such values.
     store : function (array, value, at=0)
         Write the value.
+    numbers : function (value) -> list of float
+        Return the floats in their order; not for kernels.
     first, size, places : int, int, slice
         The place of the first float, the number of floats, and all their places.
     """
@@ -102,6 +106,18 @@ class Layout:
                  for path in _leaves(self._kind, self._name)]
         return self._function('store', '(array, value, at=0)', lines, {})
 
+    @functools.cached_property
+    def numbers(self):
+        """Return the floats of a value in their order (see the class)."""
+        names = [f'x{k}' for k in range(self.size)]
+        lines = [f'{_unpacked(self._kind, self._name, iter(names))} = value',
+                 f'return [{", ".join(names)}]']
+        return self._function('numbers', '(value)', lines, {})
+
+    def array(self, value):
+        """Return a new array that holds a value, without a stride."""
+        return np.array(self.numbers(value), dtype=float)
+
     def _function(self, does, signature, lines, names):
         """Return an inlined function with these lines."""
         name = f'{does}_{self._name}'.replace('.', '_')
@@ -135,6 +151,13 @@ def _leaves(kind, name):
         reach = f'[{part}]' if isinstance(part, int) else f'.{part}'
         for path in _leaves(its_kind, f'{name}.{part}'):
             yield reach + path
+
+
+def _unpacked(kind, name, names):
+    """Return the target of an assignment that gives each float of a value a name."""
+    if kind is float:
+        return next(names)
+    return f'({"".join(f"{_unpacked(part, name, names)}, " for _, part in _parts(kind, name))})'
 
 
 def _written(kind, name, places, views):

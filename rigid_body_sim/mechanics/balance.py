@@ -16,7 +16,6 @@ all couples about P (body axes), n unit vector along a hinge.
     plane     that of a free body under the force of the contact (contact/standing.py)
 """
 
-import dataclasses
 from typing import NamedTuple
 
 import numpy as np
@@ -138,7 +137,7 @@ class Dynamics:
         self._scene = scene_parameters(scene)
         # effects are asked as for a free body: only then do they state their forces
         hinge = constraint.frame(body).hinge
-        self._frame = dataclasses.replace(Free().frame(body), hinge=hinge)
+        self._frame = Free().frame(body)._replace(hinge=hinge)
         self._path = constraint.path
         self._own, self._inner = constraint.frame(body), scene.inner_dissipation
         balances = {Mechanism.FREE: self._free, Mechanism.POINT: self._pivot,

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
-from rigid_body_sim.numerics.pairs import in_integers, pair_of
-from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus
+from rigid_body_sim.numerics.pairs import in_integers, pair_of, sum_in_integers
+from rigid_body_sim.numerics.vectors import apply, cross, dot, product
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
@@ -100,14 +100,13 @@ def parameters(scene):
 
     SceneParameters, the values of potentials and parts, and the SkewAxes if there are any.
     """
-    values = [value for one in (*potentials(scene), *momenta(scene)) for value in one.values]
-    known, end = scene_parameters(scene), SCENE.size + len(values)
-    p = np.zeros(end + (SKEW.size if known.skew else 0))
-    SCENE.store(p, known)
-    p[SCENE.size:end] = values
+    known = scene_parameters(scene)
+    numbers = SCENE.numbers(known)
+    for one in (*potentials(scene), *momenta(scene)):
+        numbers += one.values
     if known.skew:
-        SKEW.store(p, _skew_axes(scene.constraint.inertia(scene.body).rows), end)
-    return p
+        numbers += SKEW.numbers(_skew_axes(scene.constraint.inertia(scene.body).rows))
+    return np.array(numbers, dtype=float)
 
 
 def _skew_axes(rows):
@@ -136,15 +135,14 @@ def moment_about_hinge(body, constraint):
 
     n . I n + M |n x (c - through)|^2, with I about the centre of mass c, rounded once.
     """
-    inertia, (n, one) = body.about_center, in_integers(constraint.axis)
+    inertia = body.about_center
+    center = body.exact_center if any(body.center_lost) else body.center_of_mass
+    (x, y, z, *n, a, b, c, mass), one = in_integers(
+        (*center, *constraint.axis, *constraint.point(body), body.mass))
+    lever = cross(n, (x - a, y - b, z - c))
     if inertia.axes == IDENTITY and not inertia.entries:    # integers cost a tenth of fractions
-        (*moments, x, y, z), over = in_integers((*inertia.moments, *inertia.lost))
-        turned = dot((n[0] * n[0], n[1] * n[1], n[2] * n[2]), plus(moments, (x, y, z)))
+        moments, over = sum_in_integers(inertia.moments, inertia.lost)
+        turned = dot(product(n, n), moments)
     else:
         turned, over = dot(n, apply(inertia.exact, n)).as_integer_ratio()
-    (*center, a, b, c, x, y, z), unit = in_integers(
-        (*body.center_of_mass, *body.center_lost, *constraint.point(body)))
-    lever = cross(n, minus(plus(center, (a, b, c)), (x, y, z)))
-    (mass, of_mass), square = body.mass.as_integer_ratio(), unit * unit
-    return (turned * square * of_mass + mass * dot(lever, lever) * over) / (
-        one * one * over * square * of_mass)
+    return (turned * one ** 3 + mass * dot(lever, lever) * over) / (one ** 5 * over)

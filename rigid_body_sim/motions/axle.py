@@ -14,6 +14,7 @@ from rigid_body_sim.numerics.pairs import in_integers
 from rigid_body_sim.numerics.vectors import cross, dot, minus, scaled
 from rigid_body_sim.scene import principal_axes
 from rigid_body_sim.scene.bodies import IDENTITY
+from rigid_body_sim.scene.scene import kept
 
 KEPT = 64    # hinges whose exact numbers are kept for bodies that differ in other things
 
@@ -42,23 +43,18 @@ class Axle(NamedTuple):
     moment: tuple[int, int]    # about n, kg m^2: the quotient of two integers
 
 
+@kept
 def axle(scene):
     """Return the Axle of a scene whose constraint holds an axis."""
-    return axle_of(*held_of(scene))
-
-
-def held_of(scene):
-    """Return what an Axle depends on: axis, centre of mass, point, mass and inertia."""
     body, constraint = scene.body, scene.constraint
-    return (tuple(constraint.axis), tuple(body.center_of_mass), tuple(constraint.point(body)),
-            body.mass, body.about_center)
+    return axle_of(constraint.axis, body.center_of_mass, constraint.point(body), body.mass,
+                   body.about_center)
 
 
-@functools.lru_cache(maxsize=KEPT)
 def axle_of(axis, center, point, mass, inertia):
-    """Return the Axle of what :func:`held_of` returns; it is kept."""
+    """Return the Axle of a body about an axis through a point."""
     n, r, d, across = swung(axis, center, point)
-    spun = _tensor_times(tuple(inertia.moments), tuple(inertia.axes), axis)
+    spun = _tensor_times(inertia.moments, inertia.axes, axis)
     mass, unit = mass.as_integer_ratio()
     momentum = Exact(minus(scaled(across.over * unit, spun.integers),
                            scaled(spun.over * mass, across.integers)),

@@ -21,8 +21,6 @@ import math
 from fractions import Fraction
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, layout
 from rigid_body_sim.mechanics.pulls import total_pull
@@ -112,7 +110,8 @@ def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
     inertia = rotation_parameters(scene.constraint.inertia(scene.body))
-    return np.concatenate([inertia, pair_of(damping(scene)), field_of(scene, total)])
+    return PARAMETERS.array(Parameters(
+        inertia, pair_of(damping(scene)), field_of(scene, total)))
 
 
 @compiled

@@ -21,8 +21,6 @@ angle. Under a torque fixed in the world omega of a sphere changes linearly in w
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull
@@ -148,11 +146,7 @@ def drive(scene):
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    total = total_pull(scene)
-    numbers = np.zeros(PARAMETER_SIZE)
-    PARAMETERS.part('drive').store(numbers, drive(scene))
-    numbers[PARAMETERS.part('field').places] = field_of(scene, total)
-    return numbers
+    return PARAMETERS.array(Parameters(drive(scene), field_of(scene, total_pull(scene))))
 
 
 @compiled

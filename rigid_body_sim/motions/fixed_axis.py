@@ -137,14 +137,11 @@ def parameters(scene):
         n, moment = Exact(*in_integers(unit)), inertia.moments[place]
         moment, of_moment = moment.as_integer_ratio()
         growth, of_growth, k, of_k = torque[place], of_torque, -drag[place][place], of_drag
-    numbers = np.zeros(PARAMETER_SIZE)
-    PARAMETERS.store(numbers, Parameters(
+    return PARAMETERS.array(Parameters(
         [quotient(component, n.over) for component in n.integers], unit,
         quotient(growth * of_moment, of_growth * moment),
         [component * of_moment / (of_couple * moment) for component in couple],
-        quotient(k * of_moment, of_k * moment), PARAMETERS.part('field').load(numbers)))
-    numbers[PARAMETERS.part('field').places] = field_of(scene, total)
-    return numbers
+        quotient(k * of_moment, of_k * moment), field_of(scene, total)))
 
 
 @compiled_inline

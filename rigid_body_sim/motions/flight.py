@@ -12,10 +12,8 @@ elsewhere.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled_inline
-from rigid_body_sim.compilation.layout import Vector, layout
+from rigid_body_sim.compilation.layout import Vector
 from rigid_body_sim.numerics.relaxation import relaxation
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
@@ -39,17 +37,15 @@ class Flight(NamedTuple):
     field: Field
 
 
-FIELD = layout(Field)
-
 
 def field_of(scene, total):
-    """Return the Field of a scene and its Total (mechanics/pulls.py), as an array."""
+    """Return the Field of a scene and its Total (mechanics/pulls.py)."""
     frame = scene.frame
-    field = np.zeros(FIELD.size)
-    force = [component / frame.mass for component in total.force]
-    FIELD.store(field, Field(frame.point, 1.0, force, total.slowing / frame.mass) if frame.moves
-                else Field(frame.point, 0.0, (0.0, 0.0, 0.0), 0.0))
-    return field
+    if not frame.moves:
+        return Field(frame.point, 0.0, (0.0, 0.0, 0.0), 0.0)
+    x, y, z = total.force
+    force = x / frame.mass, y / frame.mass, z / frame.mass
+    return Field(frame.point, 1.0, force, total.slowing / frame.mass)
 
 
 @compiled_inline

@@ -28,8 +28,6 @@ Kernels besides those of every motion: `rolling_onset`, `slip`, `reaction`, `ent
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES, ENTRIES_SIZE
@@ -130,7 +128,7 @@ def parameters(scene):
     """Return the numbers of the scene, :class:`Parameters` as an array."""
     body, touch = scene.body, scene.contact
     ratio = body.about_center.moments[0] / (body.mass * body.radius * body.radius)
-    return np.array([body.radius, ratio, body.mass, touch.mu, touch.g])
+    return PARAMETERS.array(Parameters(body.radius, ratio, body.mass, touch.mu, touch.g))
 
 
 @compiled

@@ -35,6 +35,14 @@ def in_integers(numbers):
     return [over * (one // under) for over, under in ratios], one
 
 
+def sum_in_integers(a, b):
+    """Return a + b of two vectors of doubles as `in_integers` does, where b is mostly 0."""
+    if not any(b):
+        return in_integers(a)
+    (*a, x, y, z), one = in_integers((*a, *b))
+    return [a[0] + x, a[1] + y, a[2] + z], one
+
+
 @compiled
 def plus(p, q):
     """Return the sum of two pairs."""

@@ -3,7 +3,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -33,8 +32,7 @@ class Hinging(NamedTuple):
     winds: bool = False
 
 
-@dataclass(frozen=True)
-class Frame:
+class Frame(NamedTuple):
     """A reference point fixed in the body, and axes fixed in the body.
 
     A constraint makes the frame of a body: ``constraint.frame(body)``.

@@ -5,7 +5,6 @@ Torques constant in the body or in the world, the weight on an arm, and drag;
 marching/taylor_series.py has the recurrences.
 """
 
-import dataclasses
 from typing import NamedTuple
 
 import numpy as np
@@ -149,8 +148,7 @@ def _frame(scene, body):
     refuse_no_moment(scene, body)
     nx, ny, nz = scene.constraint.axis
     axes = normalised(-ny, nx, 0.0, 1.0 + nz) if nz >= 0.0 else normalised(ny, -nx, 0.0, 1.0 - nz)
-    return dataclasses.replace(
-        frame,
+    return frame._replace(
         moments=(0.0, 0.0, body.hinge_moment),
         axes=axes,
         arm=turned_back(axes, frame.arm),

@@ -3,8 +3,6 @@
 
 import math
 
-import numpy as np
-
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.contact.parameters import CONTACT, ContactParameters
 from rigid_body_sim.numerics.functions import hypot3
@@ -22,8 +20,7 @@ def contact_parameters(scene):
     if laws.patch > 0.0 and not 0.0 < laws.mu < math.inf:
         raise BadInput(f'{scene.name}: effects.spinning_friction', f'with mu = {laws.mu!r}',
                        'sliding_friction with a finite mu above 0: its force is that of the patch')
-    p = np.zeros(CONTACT.size)
-    CONTACT.store(p, ContactParameters(
+    return CONTACT.array(ContactParameters(
         mode=0.0, mass=body.mass, center=body.center_of_mass,
         middle=minus(surface.center, body.center_of_mass), kind=KINDS[surface.kind],
         size=surface.size, inertia=inertia, inverse=inverse_of(inertia), uneven=_uneven(inertia),
@@ -32,7 +29,6 @@ def contact_parameters(scene):
         rolling_viscous=laws.rolling_viscous, film=laws.film, patch=laws.patch,
         way=(1.0, 0.0), swift=0.0, creep=0.0, side=0.0, lag=0.0, wide=0.0, onset=0.0, turn=0.0,
         since=0.0, slack=0.0, rim=0.0, level=0.0, until=math.inf, began=0.0, origin=(0.0, 0.0)))
-    return p
 
 
 def _uneven(inertia):

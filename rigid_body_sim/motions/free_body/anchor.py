@@ -21,8 +21,6 @@ import math
 import struct
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Matrix, Pair, Vector, layout
 from rigid_body_sim.errors import BadInput
@@ -43,18 +41,19 @@ from rigid_body_sim.numerics.double_double import add, multiply_double, two_prod
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete_k
 from rigid_body_sim.numerics.pairs import (
     TURN,
-    in_integers,
     over,
     plus,
     quotient,
     root_of,
     scaled,
+    sum_in_integers,
     times,
 )
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
 from rigid_body_sim.numerics.vectors import apply, minus, product, transposed
 from rigid_body_sim.numerics.vectors import plus as plus_vectors
 from rigid_body_sim.numerics.vectors import scaled as stretched
+from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.state import STATE
 
 LEAST_RATIO = 1e-130            # smallest ratio of a needle's moments
@@ -121,54 +120,51 @@ KEPT = 64    # inertias whose numbers are kept for scenes that differ in other t
 
 
 def rotation_parameters(inertia):
-    """Return the numbers of an inertia that the kernels take: an :class:`Inertia` as an array.
+    """Return the numbers of an inertia that the kernels take, an :class:`Inertia`.
 
     Raises
     ------
     BadInput
         A moment that is not zero but so small beside the others that its square would underflow.
     """
-    bits = struct.pack('10d', *inertia.moments, *inertia.axes, *inertia.lost)
-    return _numbers(inertia, bits).copy()
+    return _numbers(struct.pack('10d', *inertia.moments, *inertia.lost, *inertia.axes))
 
 
 @functools.lru_cache(maxsize=KEPT)
-def _numbers(inertia, bits):
-    """Return the array of `rotation_parameters`, which is cached; `bits` tell -0 from 0.
+def _numbers(bits):
+    """Return the Inertia of the bits of moments, what they lost, and axes; it is cached.
 
     Integers keep the moments exact, as fractions would at ten times the cost.
     """
-    small, middle, large = order = sorted(
-        range(3), key=lambda k: (inertia.moments[k], inertia.lost[k]))
-    if 0.0 < inertia.moments[small] < LEAST_RATIO * inertia.moments[large]:
-        raise BadInput(
-            'body.inertia',
-            f'moment {inertia.moments[small]!r} beside {inertia.moments[large]!r}',
-            f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
-    unit = math.frexp(inertia.moments[large])[1]
-    (a, b, c, more_a, more_b, more_c), one = in_integers([
-        math.ldexp(part[k], -unit) for part in (inertia.moments, inertia.lost) for k in order])
-    a, b, c = moments = a + more_a, b + more_b, c + more_c
-    square = one * one
+    numbers = struct.unpack('10d', bits)
+    sizes, lost, order = zip(*sorted(zip(numbers[:3], numbers[3:6], range(3), strict=True)),
+                             strict=True)
+    small, middle, large = order
+    if 0.0 < sizes[0] < LEAST_RATIO * sizes[2]:
+        raise BadInput('body.inertia', f'moment {sizes[0]!r} beside {sizes[2]!r}',
+                       f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
+    unit = math.ldexp(1.0, -math.frexp(sizes[2])[1])
+    moments, one = sum_in_integers(stretched(unit, sizes), stretched(unit, lost))
+    (a, b, c), square = moments, one * one
     to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
     ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),
                   _quotient(to_c * to_a, c * a))
     a_by_b, c_by_b = _quotient(to_a * b, a * to_b), _quotient(to_c * b, c * to_b)
-    sizes, squares = [moment / one for moment in moments], [
-        quotient(moment * moment, square) for moment in moments]
+    sizes = a / one, b / one, c / one
+    squares = quotient(a * a, square), quotient(b * b, square), quotient(c * c, square)
     toward_a, toward_c = a * to_a / square, c * to_c / square
-    axes = [rotate(*inertia.axes, *UNIT_VECTORS[k]) for k in order]
+    turn = numbers[6:]
+    axes = tuple([UNIT_VECTORS[k] if turn == IDENTITY else rotate(*turn, *UNIT_VECTORS[k])
+                  for k in order])
     upward = 1.0 if (middle - small) % 3 == 1 else -1.0
     downward = 1.0 if (middle - large) % 3 == 1 else -1.0
-    parameters = np.zeros(INERTIA.size)
-    INERTIA.store(parameters, Inertia(
+    return Inertia(
         quotient(c * to_a, square), quotient(a * to_c, square),
         _quotient(to_b * square, a * b * c),
         Axes(sizes, axes, -1.0, upward, ab, ca, bc[0], c_by_b, math.sqrt(a_by_b[0]), squares,
              toward_a, toward_c),
         Axes(sizes[::-1], axes[::-1], 1.0, downward, bc, ca, ab[0], a_by_b,
-             math.sqrt(c_by_b[0]), squares[::-1], toward_c, toward_a)))
-    return parameters
+             math.sqrt(c_by_b[0]), squares[::-1], toward_c, toward_a))
 
 
 def _quotient(a, b):

@@ -15,8 +15,6 @@ flip (mechanics/events.py).
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Vector, layout
 from rigid_body_sim.motions.free_body.anchor import (
@@ -91,8 +89,9 @@ def absorbs(scene):
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    inertia = rotation_parameters(scene.body.about_center)
-    return np.concatenate([inertia, scene.body.center_of_mass, [scene.weight]])
+    body = scene.body
+    return PARAMETERS.array(Parameters(
+        rotation_parameters(body.about_center), body.center_of_mass, scene.weight))
 
 
 @compiled

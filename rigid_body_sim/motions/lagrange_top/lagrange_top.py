@@ -32,8 +32,6 @@ nutation too slight to be seen in doubles (NOTICED in anchor.py) is no event.
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import total_pull, weight_of
@@ -58,6 +56,7 @@ from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back, turn_to
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.frame import turned_back
 from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.scene import kept
 from rigid_body_sim.scene.state import STATE, StateView
@@ -108,6 +107,10 @@ load_steady, store_steady = ANCHOR.part('steady').load, ANCHOR.part('steady').st
 load_start = ANCHOR.part('steady').part('start').load
 store_row, store_reaction = COLUMNS.store, layout(Reaction).store
 NOWHERE = (0.0, 0.0, 0.0)
+ORDERS = (((0.5, 0.5, 0.5, 0.5), (0.5, 0.5, -0.5, -0.5)),
+          ((-0.5, -0.5, -0.5, 0.5), (0.5, -0.5, 0.5, 0.5)),
+          (bodies.IDENTITY, (1.0, 0.0, 0.0, 0.0)))
+"""Quaternions that turn the third axis into the first, second or third one, and against it."""
 
 
 def absorbs(scene):
@@ -161,24 +164,22 @@ def symmetry_axis(scene):
         if distance > 0.0:
             return 2, turn_to(*(component / distance for component in center))
         return 2, bodies.IDENTITY
-    local = rotate_back(*axes, *center)
+    local = turned_back(axes, center)
     slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else ULPS * distance
-    orders = (0.5, 0.5, 0.5, 0.5), (-0.5, -0.5, -0.5, 0.5), bodies.IDENTITY
-    for k, order in enumerate(orders):
+    for k, (upright, upside_down) in enumerate(ORDERS):
         i, j = (k + 1) % 3, (k + 2) % 3
         if moments[i] == moments[j] and max(abs(local[i]), abs(local[j])) <= slack:
-            upside_down = (1.0, 0.0, 0.0, 0.0) if local[k] < 0.0 else bodies.IDENTITY
-            return k, multiply(*axes, *multiply(*order, *upside_down))
+            return k, multiply(*axes, *(upside_down if local[k] < 0.0 else upright))
     return None
 
 
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
-    return numbers_of(scene, weight_of(scene))
+    return PARAMETERS.array(numbers_of(scene, weight_of(scene)))
 
 
 def numbers_of(scene, g):
-    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2)."""
+    """Return the :class:`Parameters` of a scene for g (m/s^2)."""
     body, arm = scene.body, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(scene)
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
@@ -186,12 +187,10 @@ def numbers_of(scene, g):
                                 for k in ((axis + 1) % 3, axis))
     factors = [number.as_integer_ratio() for number in (body.mass, g, arm)]
     weight, of_weight = (math.prod(part) for part in zip(*factors, strict=True))
-    numbers = np.zeros(PARAMETER_SIZE)
-    PARAMETERS.store(numbers, Parameters(
+    return Parameters(
         body.mass, float(g), arm, quotient(weight * of_I1, of_weight * I1),
         quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1),
-        quotient_of(rotor_along(scene), body.about_origin.moments[(axis + 1) % 3]), frame))
-    return numbers
+        quotient_of(rotor_along(scene), body.about_origin.moments[(axis + 1) % 3]), frame)
 
 
 @compiled

@@ -8,8 +8,6 @@ for on the states.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Quaternion, layout
 from rigid_body_sim.motions.lagrange_top import lagrange_top
@@ -58,7 +56,7 @@ def absorbs(scene):
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     turn, g = upright(scene)
-    return np.concatenate([numbers_of(scene, g), turn])
+    return PARAMETERS.array(Parameters(numbers_of(scene, g), turn))
 
 
 @compiled

@@ -9,15 +9,12 @@ import functools
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Pair, Quaternion, Vector, layout
 from rigid_body_sim.mechanics.pulls import weight_of
 from rigid_body_sim.motions.axle import (
     KEPT,
-    axle_of,
-    held_of,
+    axle,
     swung,
 )
 from rigid_body_sim.motions.free_body.rotation import (
@@ -131,28 +128,20 @@ def parameters(scene):
 
     They come from the exact rationals that the doubles of the scene are.
     """
-    return numbers_of(scene, weight_of(scene))
+    return PARAMETERS.array(numbers_of(scene, weight_of(scene)))
 
 
 def numbers_of(scene, g):
-    """Return the :class:`Parameters` of a scene as an array, for g (m/s^2)."""
-    held = held_of(scene)
-    return _numbers(np.array(held[2]).tobytes(), g, *held).copy()
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _numbers(bits, weight, axis, center, point, mass, inertia):
-    """Return the array of `numbers_of`, which is cached; `bits` tell -0 from 0 in `point`."""
-    held = axle_of(axis, center, point, mass, inertia)
-    (M, of_M), (g, of_g) = mass.as_integer_ratio(), weight.as_integer_ratio()
-    weighs, over = M * g * held.moment[1], of_M * of_g * held.moment[0]    # M g/I
+    """Return the :class:`Parameters` of a scene for g (m/s^2)."""
+    body, constraint, held = scene.body, scene.constraint, axle(scene)
+    point = constraint.point(body)
+    (M, of_M), (pull, of_pull) = body.mass.as_integer_ratio(), g.as_integer_ratio()
+    weighs, over = M * pull * held.moment[1], of_M * of_pull * held.moment[0]    # M g/I
     d, of_d = held.distance
-    numbers = np.zeros(PARAMETER_SIZE)
-    PARAMETERS.store(numbers, Parameters(
-        *_directions(axis, center, point), quotient(weighs * d, over * of_d),
-        held.axis.rounded(), point, mass, float(weight), held.arm.rounded(),
-        held.momentum.rounded(), weighs / over))
-    return numbers
+    return Parameters(
+        *_directions(constraint.axis, body.center_of_mass, point),
+        quotient(weighs * d, over * of_d), held.axis.rounded(), point, body.mass, float(g),
+        held.arm.rounded(), held.momentum.rounded(), weighs / over)
 
 
 @compiled

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pivot: a point of the body stays where it is, and the body turns about it in all directions."""
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -173,4 +172,4 @@ class MovingPivot(Constraint):
 
     def frame(self, body: Body) -> Frame:
         """Return the frame about the point, with its path."""
-        return dataclasses.replace(super().frame(body), path=self.path)
+        return super().frame(body)._replace(path=self.path)

@@ -2,7 +2,7 @@
 """Torques and potentials that a scene writes as expressions of time and state."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
@@ -33,7 +33,7 @@ def refuse_beside_hinge(trees: tuple[tree.Term, ...], constraint: Constraint,
 
 def as_written(acting: Iterable[Acting]) -> tuple[Acting, ...]:
     """Return what acts by an expression; nobody knows the sign of the heat that it books."""
-    return tuple(replace(one, both_ways=True) if one.books == 'heat' else one for one in acting)
+    return tuple(one._replace(both_ways=True) if one.books == 'heat' else one for one in acting)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ docs/extending.md adds an effect step by step.
 
 import inspect
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from types import FunctionType
 from typing import Any, ClassVar, NamedTuple, Protocol
 
@@ -22,8 +21,7 @@ from rigid_body_sim.scene.frame import Frame
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
-class Acting:
+class Acting(NamedTuple):
     """A force, a torque or a turning rate that acts as long as its values hold.
 
     In a frame with a `path` an effect gives both the torque about the moving point and the force;
@@ -96,8 +94,7 @@ class Acting:
     polynomial: bool = False
 
 
-@dataclass(frozen=True)
-class Formulas:
+class Formulas(NamedTuple):
     """Torque and force of an effect as trees (scene/expressions/tree.py), for power series.
 
     Their names are those of expressions, and parameters.
@@ -121,8 +118,7 @@ class Formulas:
     of_frame: bool = False
 
 
-@dataclass(frozen=True)
-class Pull:
+class Pull(NamedTuple):
     """Torque and force of an effect, for power series: numbers, or formulas where these fail.
 
     Attributes
@@ -150,8 +146,7 @@ class Pull:
     formulas: tuple[Formulas, ...] = ()
 
 
-@dataclass(frozen=True)
-class Potential:
+class Potential(NamedTuple):
     """A potential energy as a function of the attitude and the place of the body.
 
     Attributes
@@ -167,8 +162,7 @@ class Potential:
     values: tuple[float, ...]
 
 
-@dataclass(frozen=True)
-class Momentum:
+class Momentum(NamedTuple):
     """Angular momentum that a part carries inside the body, beside that of the body itself.
 
     Attributes

@@ -210,6 +210,6 @@ def test_a_body_about_a_principal_axis_is_steady_and_one_beside_it_is_not(omega)
 def test_moments_of_one_double_are_sorted_by_what_was_lost(lost):
     small, middle = sorted(lost[:2])
     sizes = anchors.rotation_parameters(Inertia((1.0, 1.0, 2.0), lost=lost))
-    assert np.isfinite(sizes).all()
+    assert np.isfinite(anchors.INERTIA.numbers(sizes)).all()
     in_order = anchors.rotation_parameters(Inertia((1.0, 1.0, 2.0), lost=(small, middle, 0.0)))
-    assert sizes[:3] == pytest.approx(in_order[:3], rel=0.0, abs=0.0)
+    assert sizes[:3] == in_order[:3]
