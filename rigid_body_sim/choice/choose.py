@@ -161,7 +161,7 @@ class Choice:
             solver.many(starts[chosen], times, part)
             out[chosen] = part
 
-    @functools.cached_property
+    @property
     def _asks(self):
         return self.method == 'exact' and self._prototype.motion.takes is not None
 
@@ -318,9 +318,11 @@ def _by_motion(scene, named, accuracy, horizon, settled):
     if not found or not (named or found.error <= max(accuracy, found.floor)):
         return None
     prototype = Exact(scene, found.motion, found.scene)
-    # the forecast of a closed form decides nothing unless a strike may end it: made on demand
-    find = functools.partial(of_exact, scene, prototype, found.error, accuracy, horizon,
-                             functools.partial(_general, scene, horizon=horizon))
+
+    def find():
+        # the forecast of a closed form decides nothing unless a strike may end it: made on demand
+        return of_exact(scene, prototype, found.error, accuracy, horizon,
+                        functools.partial(_general, scene, horizon=horizon))
     return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
                   settled or settling.Settled('exact', accuracy, find=find))
 
@@ -359,7 +361,7 @@ def _check(integrator, accuracy, step, horizon):
                        f'from {FINEST} (doubles carry no more) to 1')
     if step is not None and not 0.0 < step < float('inf'):
         raise BadInput('step', f'got {step!r}', 'a positive number of seconds')
-    if integrator not in ['auto', 'exact', *METHODS]:
+    if integrator not in ('auto', 'exact') and integrator not in [*METHODS]:
         near = nearest(integrator, ['auto', 'exact', *METHODS])
         advice = f'did you mean {near!r}?' if near else (
             f'one of auto, exact, {", ".join(METHODS)}')

@@ -116,7 +116,7 @@ class Layout:
 
     def array(self, value):
         """Return a new array that holds a value, without a stride."""
-        return np.array(self.numbers(value), dtype=float)
+        return np.fromiter(self.numbers(value), float, self.size)
 
     def _function(self, does, signature, lines, names):
         """Return an inlined function with these lines."""

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
-from rigid_body_sim.numerics.pairs import in_integers, pair_of, sum_in_integers
-from rigid_body_sim.numerics.vectors import apply, cross, dot, product
+from rigid_body_sim.numerics.pairs import in_integers, pair_of
+from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, product
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
@@ -91,7 +91,7 @@ def scene_parameters(scene):
         hinge_axis=NO_AXIS if axis is None else axis,
         through=constraint.point(body) if constraint.holds_a_point else NOT_HELD,
         hinge_moment=0.0 if axis is None else moment_about_hinge(body, constraint),
-        grip=functools.reduce(operator.add, (effect.grip for effect in scene.effects), 0.0),
+        grip=functools.reduce(operator.add, [effect.grip for effect in scene.effects], 0.0),
         skew=1.0 if inertia.rows else 0.0)
 
 
@@ -106,7 +106,7 @@ def parameters(scene):
         numbers += one.values
     if known.skew:
         numbers += SKEW.numbers(_skew_axes(scene.constraint.inertia(scene.body).rows))
-    return np.array(numbers, dtype=float)
+    return np.fromiter(numbers, float, len(numbers))
 
 
 def _skew_axes(rows):
@@ -137,12 +137,12 @@ def moment_about_hinge(body, constraint):
     """
     inertia = body.about_center
     center = body.exact_center if any(body.center_lost) else body.center_of_mass
-    (x, y, z, *n, a, b, c, mass), one = in_integers(
-        (*center, *constraint.axis, *constraint.point(body), body.mass))
-    lever = cross(n, (x - a, y - b, z - c))
+    given, one = in_integers((*constraint.axis, *center, *constraint.point(body),
+                              *inertia.moments, *inertia.lost, body.mass))
+    n, mass = given[:3], given[15]
     if inertia.axes == IDENTITY and not inertia.entries:    # integers cost a tenth of fractions
-        moments, over = sum_in_integers(inertia.moments, inertia.lost)
-        turned = dot(product(n, n), moments)
+        turned = dot(product(n, n), plus(given[9:12], given[12:15]))
     else:
-        turned, over = dot(n, apply(inertia.exact, n)).as_integer_ratio()
-    return (turned * one ** 3 + mass * dot(lever, lever) * over) / (one ** 5 * over)
+        turned = dot(n, apply(inertia.exact, n)) * one
+    lever = cross(n, minus(given[3:6], given[6:9]))
+    return float((turned * one * one + mass * dot(lever, lever)) / one ** 5)

@@ -64,9 +64,10 @@ class Nearly(NamedTuple):
 
 def differ(scene, equal):
     """Return whether moments that turn the body differ where `equal` has one double for them."""
-    return scene.constraint.axis is None and any(
-        difference != 0.0 and equal[(k + 1) % 3] == equal[(k + 2) % 3]
-        for k, difference in enumerate(scene.constraint.inertia(scene.body).differences))
+    if scene.constraint.axis is not None:
+        return False
+    (a, b, c), (bc, ca, ab) = equal, scene.constraint.inertia(scene.body).differences
+    return (b == c and bc != 0.0) or (c == a and ca != 0.0) or (a == b and ab != 0.0)
 
 
 def takes_any_moments(motion, scene):

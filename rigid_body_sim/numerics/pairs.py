@@ -30,17 +30,10 @@ def quotient_of(a, b):
 
 def in_integers(numbers):
     """Return doubles as integers over a common one: a list of integers, and the one."""
-    ratios = [number.as_integer_ratio() for number in numbers]
-    one = max(under for _, under in ratios)    # powers of two
-    return [over * (one // under) for over, under in ratios], one
-
-
-def sum_in_integers(a, b):
-    """Return a + b of two vectors of doubles as `in_integers` does, where b is mostly 0."""
-    if not any(b):
-        return in_integers(a)
-    (*a, x, y, z), one = in_integers((*a, *b))
-    return [a[0] + x, a[1] + y, a[2] + z], one
+    # most numbers of a scene are 0
+    ratios = [number.as_integer_ratio() if number else (0, 1) for number in numbers]
+    one = max([under for _, under in ratios])    # powers of two
+    return [over and over * (one // under) for over, under in ratios], one
 
 
 @compiled

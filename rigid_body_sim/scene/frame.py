@@ -91,21 +91,20 @@ def along(axes: tuple[float, float, float, float], rows: tuple[tuple[Fraction, .
 
     `axes` and `rows` are those of a Frame.
     """
-    x, y, z = map(float, vector)
-    if not rows or not hypot3(x, y, z) < math.inf:
-        return turned_back(axes, (x, y, z))
+    if not rows or not hypot3(*map(float, vector)) < math.inf:
+        return turned_back(axes, vector)
     x, y, z = map(float, apply(rows, [Fraction(part) for part in vector]))
     return x, y, z
 
 
 def turned_back(axes: tuple[float, float, float, float],
-                vector: Sequence[float]) -> tuple[float, float, float]:
+                vector: Sequence[float | Fraction]) -> tuple[float, float, float]:
     """Return the components of a body vector along axes that the quaternion turns into the body's.
 
     The vector stays the same to the last bit where the axes are the body's own.
     """
     x, y, z = map(float, vector)
-    if tuple(axes) == IDENTITY:
+    if axes == IDENTITY:
         return x, y, z
     x, y, z = map(float, rotations.rotate_back(*axes, x, y, z))
     return x, y, z

@@ -139,9 +139,11 @@ class Scene:
     @functools.cached_property
     def field(self) -> Vector:
         """The acceleration of a free fall, world components, m/s^2: the sum of uniform fields."""
-        x, y, z = _summed((0.0, 0.0, 0.0), [
-            effect.uniform_field for effect in self.effects
-            if effect.uniform_field is not None])
+        x = y = z = 0.0
+        for effect in self.effects:
+            one = effect.uniform_field
+            if one is not None:
+                x, y, z = x + one[0], y + one[1], z + one[2]
         return x, y, z
 
     @functools.cached_property

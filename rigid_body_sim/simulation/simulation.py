@@ -125,9 +125,10 @@ class Simulation:
         elif overrides:
             scene = changed_scene(scene, overrides)
         self.scene = scene
-        given = {'accuracy': accuracy, 'rate': rate, 'horizon': horizon}
-        for name, value in (given if step is None else {**given, 'step': step}).items():
+        for name, value in ('accuracy', accuracy), ('rate', rate), ('horizon', horizon):
             refuse_no_number(name, value)
+        if step is not None:
+            refuse_no_number('step', step)
         if not (math.isfinite(rate) and rate > 0.0):
             raise BadInput('rate', f'got {rate!r}', 'ticks per second, a positive number')
         self.rate = float(rate)
@@ -143,7 +144,6 @@ class Simulation:
         self._entries_size = entries_size(self.scene)
         self._strikes = Strikes(self.scene, self._mechanics)
         self._begin(self.choice, self.scene.initial.vector, 0)
-        self._arrive()
 
     @functools.cached_property
     def _dynamics(self):
@@ -269,7 +269,8 @@ class Simulation:
         self._arrived, self._diagnosed_tick = False, None
         self.choice, self.tick, self._beginning = choice, tick, start
         own = self.scene.initial.vector    # the choice of the scene holds for its own start only
-        elsewhere = choice is self._chosen and start.tobytes() != own.tobytes()
+        elsewhere = (choice is self._chosen and start is not own
+                     and start.tobytes() != own.tobytes())
         self.departed = 0.0 if elsewhere else None
         self._origin, self._origin_time = tick, 0.0
         self._initial = diagnosis

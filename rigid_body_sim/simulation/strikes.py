@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Strikes of a scene: what acts at one instant ends a span and begins another."""
 
+import operator
+
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
@@ -22,8 +24,8 @@ class Strikes:
 
     def __init__(self, scene, mechanics):
         self._scene, self._mechanics = scene, mechanics
-        self._all = sorted((effect for effect in scene.effects if effect.as_impulse is not None),
-                           key=lambda effect: effect.time)
+        self._all = [effect for effect in scene.effects if effect.as_impulse is not None]
+        self._all.sort(key=operator.attrgetter('time'))
 
     def __len__(self):
         return len(self._all)

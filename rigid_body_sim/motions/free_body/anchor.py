@@ -41,12 +41,12 @@ from rigid_body_sim.numerics.double_double import add, multiply_double, two_prod
 from rigid_body_sim.numerics.elliptic import agm_pair, carlson_rf_pair, complete_k
 from rigid_body_sim.numerics.pairs import (
     TURN,
+    in_integers,
     over,
     plus,
     quotient,
     root_of,
     scaled,
-    sum_in_integers,
     times,
 )
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate
@@ -137,15 +137,16 @@ def _numbers(bits):
     Integers keep the moments exact, as fractions would at ten times the cost.
     """
     numbers = struct.unpack('10d', bits)
-    sizes, lost, order = zip(*sorted(zip(numbers[:3], numbers[3:6], range(3), strict=True)),
-                             strict=True)
-    small, middle, large = order
-    if 0.0 < sizes[0] < LEAST_RATIO * sizes[2]:
-        raise BadInput('body.inertia', f'moment {sizes[0]!r} beside {sizes[2]!r}',
+    moments, lost, turn = numbers[:3], numbers[3:6], numbers[6:]
+    (a, more_a, small), (b, more_b, middle), (c, more_c, large) = sorted(
+        zip(moments, lost, range(3), strict=True))
+    if 0.0 < a < LEAST_RATIO * c:
+        raise BadInput('body.inertia', f'moment {a!r} beside {c!r}',
                        f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
-    unit = math.ldexp(1.0, -math.frexp(sizes[2])[1])
-    moments, one = sum_in_integers(stretched(unit, sizes), stretched(unit, lost))
-    (a, b, c), square = moments, one * one
+    unit = math.ldexp(1.0, -math.frexp(c)[1])
+    (a, b, c, *more), one = in_integers(
+        (*stretched(unit, (a, b, c)), *stretched(unit, (more_a, more_b, more_c))))
+    (a, b, c), square = plus_vectors((a, b, c), more), one * one
     to_a, to_b, to_c = c - b, c - a, b - a    # Euler's coefficients are to_a/a, to_b/b, to_c/c
     ab, bc, ca = (_quotient(to_a * to_b, a * b), _quotient(to_b * to_c, b * c),
                   _quotient(to_c * to_a, c * a))
@@ -153,9 +154,8 @@ def _numbers(bits):
     sizes = a / one, b / one, c / one
     squares = quotient(a * a, square), quotient(b * b, square), quotient(c * c, square)
     toward_a, toward_c = a * to_a / square, c * to_c / square
-    turn = numbers[6:]
     axes = tuple([UNIT_VECTORS[k] if turn == IDENTITY else rotate(*turn, *UNIT_VECTORS[k])
-                  for k in order])
+                  for k in (small, middle, large)])
     upward = 1.0 if (middle - small) % 3 == 1 else -1.0
     downward = 1.0 if (middle - large) % 3 == 1 else -1.0
     return Inertia(

@@ -183,14 +183,15 @@ def numbers_of(scene, g):
     body, arm = scene.body, hypot3(*scene.body.center_of_mass)
     axis, frame = symmetry_axis(scene)
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
-    (I1, of_I1), (I3, of_I3) = (body.about_origin.moments[k].as_integer_ratio()
-                                for k in ((axis + 1) % 3, axis))
-    factors = [number.as_integer_ratio() for number in (body.mass, g, arm)]
-    weight, of_weight = (math.prod(part) for part in zip(*factors, strict=True))
+    across, along = body.about_origin.moments[(axis + 1) % 3], body.about_origin.moments[axis]
+    (I1, of_I1), (I3, of_I3) = across.as_integer_ratio(), along.as_integer_ratio()
+    (M, of_M), (pull, of_pull) = body.mass.as_integer_ratio(), g.as_integer_ratio()
+    h, of_h = arm.as_integer_ratio()
+    weight, of_weight = M * pull * h, of_M * of_pull * of_h
     return Parameters(
         body.mass, float(g), arm, quotient(weight * of_I1, of_weight * I1),
         quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1),
-        quotient_of(rotor_along(scene), body.about_origin.moments[(axis + 1) % 3]), frame)
+        quotient_of(rotor_along(scene), across), frame)
 
 
 @compiled

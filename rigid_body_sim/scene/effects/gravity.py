@@ -67,9 +67,9 @@ class Gravity(Effect):
             found.append(Acting('rigid_body_sim.scene.effects.elementary:constant',
                                 (0.0, 0.0, -weight), 'force', 'potential', polynomial=True))
         if any(frame.arm):
-            values = tuple(weight * r for r in frame.arm)
             found.append(Acting('rigid_body_sim.scene.effects.elementary:moment_of_weight',
-                                values, 'torque', 'potential', polynomial=True))
+                                scaled(weight, frame.arm), 'torque', 'potential',
+                                polynomial=True))
         return tuple(found)
 
     def series(self, frame: Frame, time: float) -> Pull:
