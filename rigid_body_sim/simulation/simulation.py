@@ -144,6 +144,8 @@ class Simulation:
         self._entries_size = entries_size(self.scene)
         self._strikes = Strikes(self.scene, self._mechanics)
         self._begin(self.choice, self.scene.initial.vector, 0)
+        if self.method != 'exact':    # a method that steps may find that it cannot begin
+            self._arrive()
 
     @functools.cached_property
     def _dynamics(self):
