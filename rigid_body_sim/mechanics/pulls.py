@@ -79,7 +79,7 @@ def total_pull(scene):
         if pull.formulas or any(effect.series(frame, time) != pull for time in effect.breakpoints):
             return None
         pulls.append(pull)
-    return total_of(pulls)._replace(force=_sums([pull.force or NOTHING for pull in pulls]))
+    return total_of(pulls)._replace(force=_sums([pull.force for pull in pulls if pull.force]))
 
 
 def _turns_about_origin(scene):
@@ -94,8 +94,10 @@ def _turns_about_origin(scene):
 
 def _sums(vectors):
     """Return the sum of vectors; components that cancel to the rounding of the scene are 0."""
+    if not vectors:
+        return NOTHING
     totals = []
-    for column in zip(*(vectors or [NOTHING]), strict=True):
+    for column in zip(*vectors, strict=True):
         total = functools.reduce(operator.add, column, 0)
         is_left = abs(total) > ULPS * functools.reduce(operator.add, map(abs, column))
         totals.append(total if is_left else total - total)
@@ -138,8 +140,12 @@ def total_of(pulls):
     torque = couple = force = NOTHING
     drag, slowing = (NOTHING, NOTHING, NOTHING), 0.0
     for pull in pulls:
-        torque, couple = plus(torque, pull.constant), plus(couple, pull.couple or NOTHING)
-        force = plus(force, pull.force or NOTHING)
-        drag = tuple(map(plus, drag, pull.drag or (NOTHING, NOTHING, NOTHING)))
+        torque = plus(torque, pull.constant)
+        if pull.couple:
+            couple = plus(couple, pull.couple)
+        if pull.force:
+            force = plus(force, pull.force)
+        if pull.drag:
+            drag = tuple(map(plus, drag, pull.drag))
         slowing += pull.slowing
     return Total(torque, couple, force, drag, slowing)

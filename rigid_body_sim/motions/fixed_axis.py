@@ -122,25 +122,24 @@ def _stays(scene, total, k, start):
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
-    (torque, of_torque), (couple, of_couple) = in_integers(total.torque), in_integers(total.couple)
-    entries, of_drag = in_integers([entry for row in total.drag for entry in row])
-    three = iter(entries)
-    drag = list(zip(three, three, three, strict=True))
+    (a, b, c), (d, e, f), (g, h, i) = total.drag
+    given, one = in_integers((*total.torque, *total.couple, a, b, c, d, e, f, g, h, i))
+    torque, couple, drag = given[:3], given[3:6], (given[6:9], given[9:12], given[12:])
     if scene.constraint.mechanism is Mechanism.AXIS:
         held = axle(scene)
         n, (moment, of_moment), unit = held.axis, held.moment, scene.constraint.axis
-        growth, of_growth = dot(n.integers, torque), n.over * of_torque
-        k, of_k = -dot(n.integers, apply(drag, n.integers)), n.over * n.over * of_drag
+        growth, of_growth = dot(n.integers, torque), n.over * one
+        k, of_k = -dot(n.integers, apply(drag, n.integers)), n.over * n.over * one
     else:
         place, inertia = _axis_of(scene, total), scene.body.about_center
         unit = rotate(*inertia.axes, *np.eye(3)[place])
         n, moment = Exact(*in_integers(unit)), inertia.moments[place]
         moment, of_moment = moment.as_integer_ratio()
-        growth, of_growth, k, of_k = torque[place], of_torque, -drag[place][place], of_drag
+        growth, of_growth, k, of_k = torque[place], one, -drag[place][place], one
     return PARAMETERS.array(Parameters(
         [quotient(component, n.over) for component in n.integers], unit,
         quotient(growth * of_moment, of_growth * moment),
-        [component * of_moment / (of_couple * moment) for component in couple],
+        [component * of_moment / (one * moment) for component in couple],
         quotient(k * of_moment, of_k * moment), field_of(scene, total)))
 
 

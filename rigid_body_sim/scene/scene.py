@@ -129,7 +129,7 @@ class Scene:
             if effect.contact is None and (effect.acting is None or not any(
                     effect.acting(frame, time) for time in (0.0, *effect.breakpoints))):
                 continue
-            opposite = effect.opposite
+            opposite = effect.opposite if acting else None
             if opposite is not None and opposite in acting:
                 acting.remove(opposite)
             else:
@@ -161,14 +161,18 @@ class Scene:
     @property
     def inner_dissipation(self) -> float:
         """The sum of the effects' coefficients of inner dissipation, 1/(kg m^2/s)."""
-        total, = _summed((0.0,), [(effect.inner_dissipation,) for effect in self.effects])
-        return total
+        # sum() of floats rounds otherwise from Python 3.12 on
+        return functools.reduce(
+            operator.add, [effect.inner_dissipation for effect in self.effects], 0.0)
 
     @functools.cached_property
     def contact(self) -> Contact:
         """How body and table touch: the sums of what the effects declare."""
-        return Contact(*_summed(Contact(), [
-            effect.contact for effect in self.effects if effect.contact is not None]))
+        total = Contact()
+        for effect in self.effects:
+            if effect.contact is not None:
+                total = Contact(*map(operator.add, total, effect.contact))
+        return total
 
     def acts_only(self, *classes: type[Effect]) -> bool:
         """Return whether all effects that act are of these classes."""
@@ -191,11 +195,6 @@ def kept(function):
             found[of] = function(scene)
         return found[of]
     return of
-
-
-def _summed(zero: tuple[float, ...], rows: Sequence[tuple[float, ...]]) -> list[float]:
-    """Return the sums of the columns; sum() of floats rounds otherwise from Python 3.12 on."""
-    return [functools.reduce(operator.add, column) for column in zip(zero, *rows)]
 
 
 def scene_folder() -> pathlib.Path:
