@@ -113,7 +113,7 @@ def test_the_check_finds_a_potential_of_the_wrong_sign(package):
     class Wrong(compass.Compass):
         def potential(self, frame):
             right = super().potential(frame)
-            return dataclasses.replace(right, values=tuple(-x for x in right.values[:3])
+            return right._replace(values=tuple(-x for x in right.values[:3])
                                        + right.values[3:])
 
     class Unbooked(compass.Compass):
@@ -139,7 +139,7 @@ def test_a_force_on_a_held_body_is_refused_and_not_lost(package):
     class Wind(of('paddle').Paddle):
         def acting(self, frame, time):
             one, = super().acting(frame, time)
-            return dataclasses.replace(one, gives='force'),
+            return one._replace(gives='force'),
 
     with pytest.raises(BadInput, match='paddle: gives a force, and a bearing holds the body; the '
                                        'torque'):

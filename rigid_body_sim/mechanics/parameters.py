@@ -13,7 +13,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 from rigid_body_sim.numerics.pairs import in_integers, pair_of
-from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, product
+from rigid_body_sim.numerics.vectors import apply, cross, dot
 from rigid_body_sim.scene.bodies import IDENTITY
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
@@ -137,12 +137,13 @@ def moment_about_hinge(body, constraint):
     """
     inertia = body.about_center
     center = body.exact_center if any(body.center_lost) else body.center_of_mass
-    given, one = in_integers((*constraint.axis, *center, *constraint.point(body),
-                              *inertia.moments, *inertia.lost, body.mass))
-    n, mass = given[:3], given[15]
+    (nx, ny, nz, x, y, z, a, b, c, I1, I2, I3, d1, d2, d3, mass), one = in_integers(
+        (*constraint.axis, *center, *constraint.point(body), *inertia.moments, *inertia.lost,
+         body.mass))
+    n, arm = (nx, ny, nz), (x - a, y - b, z - c)
     if inertia.axes == IDENTITY and not inertia.entries:    # integers cost a tenth of fractions
-        turned = dot(product(n, n), plus(given[9:12], given[12:15]))
+        turned = nx * nx * (I1 + d1) + ny * ny * (I2 + d2) + nz * nz * (I3 + d3)
     else:
         turned = dot(n, apply(inertia.exact, n)) * one
-    lever = cross(n, minus(given[3:6], given[6:9]))
+    lever = cross(n, arm)
     return float((turned * one * one + mass * dot(lever, lever)) / one ** 5)

@@ -122,9 +122,10 @@ def _stays(scene, total, k, start):
 def parameters(scene):
     """Return the numbers of the scene that the kernels take: :class:`Parameters` as an array."""
     total = total_pull(scene)
-    (a, b, c), (d, e, f), (g, h, i) = total.drag
-    given, one = in_integers((*total.torque, *total.couple, a, b, c, d, e, f, g, h, i))
-    torque, couple, drag = given[:3], given[3:6], (given[6:9], given[9:12], given[12:])
+    given, one = in_integers([
+        number for vector in (total.torque, total.couple, *total.drag) for number in vector])
+    three = iter(given)
+    torque, couple, *drag = zip(three, three, three, strict=True)
     if scene.constraint.mechanism is Mechanism.AXIS:
         held = axle(scene)
         n, (moment, of_moment), unit = held.axis, held.moment, scene.constraint.axis

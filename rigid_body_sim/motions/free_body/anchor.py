@@ -136,10 +136,9 @@ def _numbers(bits):
 
     Integers keep the moments exact, as fractions would at ten times the cost.
     """
-    numbers = struct.unpack('10d', bits)
-    moments, lost, turn = numbers[:3], numbers[3:6], numbers[6:]
+    I1, I2, I3, d1, d2, d3, *turn = struct.unpack('10d', bits)
     (a, more_a, small), (b, more_b, middle), (c, more_c, large) = sorted(
-        zip(moments, lost, range(3), strict=True))
+        ((I1, d1, 0), (I2, d2, 1), (I3, d3, 2)))
     if 0.0 < a < LEAST_RATIO * c:
         raise BadInput('body.inertia', f'moment {a!r} beside {c!r}',
                        f'at least {LEAST_RATIO} of the largest, or 0 for a rod')
@@ -154,7 +153,8 @@ def _numbers(bits):
     sizes = a / one, b / one, c / one
     squares = quotient(a * a, square), quotient(b * b, square), quotient(c * c, square)
     toward_a, toward_c = a * to_a / square, c * to_c / square
-    axes = tuple([UNIT_VECTORS[k] if turn == IDENTITY else rotate(*turn, *UNIT_VECTORS[k])
+    own = turn == [*IDENTITY]
+    axes = tuple([UNIT_VECTORS[k] if own else rotate(*turn, *UNIT_VECTORS[k])
                   for k in (small, middle, large)])
     upward = 1.0 if (middle - small) % 3 == 1 else -1.0
     downward = 1.0 if (middle - large) % 3 == 1 else -1.0
