@@ -136,7 +136,7 @@ class Scene:
                 acting.append(effect)
         return tuple(acting)
 
-    @functools.cached_property
+    @property
     def field(self) -> Vector:
         """The acceleration of a free fall, world components, m/s^2: the sum of uniform fields."""
         x = y = z = 0.0
