@@ -37,7 +37,6 @@ class Flight(NamedTuple):
     field: Field
 
 
-
 def field_of(scene, total):
     """Return the Field of a scene and its Total (mechanics/pulls.py)."""
     frame = scene.frame
