@@ -21,7 +21,7 @@ def looks(time):
     return time * (np.arange(1, LOOKS + 1) / LOOKS)
 
 
-def run(scene, prototype, vector, times, allowances=None):
+def run(scene, prototype, vector, times, allowances=None, over=-math.inf):
     """Return the states at rising times (s), shape (n, 14), with the strikes of the scene.
 
     They are NaN where the run did not converge.
@@ -33,6 +33,8 @@ def run(scene, prototype, vector, times, allowances=None):
         The start.
     allowances : list, optional
         What solvers have allowed themselves (Solver.allowance) is appended to it.
+    over : float, optional
+        Time up to which strikes are over, s.
 
     Raises
     ------
@@ -47,6 +49,8 @@ def run(scene, prototype, vector, times, allowances=None):
     try:
         solver, first = prototype.start(vector), 0
         for strike in strikes(scene):
+            if strike.time <= over:
+                continue
             if strike.time > times[-1]:
                 break
             last = int(np.searchsorted(times, strike.time))

@@ -50,6 +50,7 @@ ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mos
 MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 ROUNDED = 10.0  # times what rounding does: an error below it may be magnified rounding
+ALIKE = 4.0    # times what finer runs tell: beyond, they have the rounding of the run itself
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
 
@@ -208,9 +209,12 @@ class Trial:
             # what moving the start does grows with time, whatever drives the body
             last = max(float(lost.max()) * self._longer,
                        self._later(best, rounding.of_angle_turned(self._scene, best, times)))
-            if below and float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
-                around = self._around(below, tolerance)
+            if float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
+                around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
+                begun = self._beside_one_begun_later(tolerance, below or tolerance)
+                if float(begun.max()) > ALIKE * max(float(errors.max()), float(lost.max())):
+                    errors = begun
         else:
             lost = np.zeros(len(times))
         for one, error, since in self._allowed:
@@ -325,6 +329,19 @@ class Trial:
                 break
             finer *= 2.0
         return found
+
+    def _beside_one_begun_later(self, tolerance, finer):
+        """Return how far a run is from a finer one that begins anew at the first look, rad.
+
+        Where the tolerance hardly changes the steps, finer runs round as this one does. One that
+        begins later takes other steps.
+        """
+        here = self._states(tolerance)
+        with contextlib.suppress(TooMuchWork):
+            begun = runs.run(self._scene, self.prototype.at(finer, self._most),
+                             self._states(finer)[0], self._times, over=float(self._times[0]))
+            return comparison.apart(here, begun)
+        return np.zeros(len(here))
 
     def _error(self, tolerance):
         """Return the error at a tolerance at the horizon, rad, or None if nothing tells it.

@@ -36,6 +36,14 @@ def test_a_run_begins_anew_at_each_strike():
     assert runs.struck_rate(one) == pytest.approx(2.0 + 1.0 + 0.25)
 
 
+def test_a_run_that_begins_after_a_strike_leaves_it_out():
+    one, prototype = coasting_scene((2.5, -4.0), (1.0, 8.0)), Coasting()
+    states = runs.run(one, prototype, one.initial.vector, TIMES)
+    begun = runs.run(one, prototype, states[0], TIMES, over=1.0)
+    assert [start[0] for start in prototype.starts[3:]] == [1.0, 2.5]
+    assert begun == pytest.approx(states, abs=1e-15)
+
+
 def test_what_does_not_converge_is_not_a_number_and_too_much_work_is_said():
     still = coasting_scene()
     found = runs.run(still, Coasting(2.5), still.initial.vector, TIMES)
