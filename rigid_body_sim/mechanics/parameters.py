@@ -145,5 +145,5 @@ def moment_about_hinge(body, constraint):
         turned = nx * nx * (I1 + d1) + ny * ny * (I2 + d2) + nz * nz * (I3 + d3)
     else:
         turned = dot(n, apply(inertia.exact, n)) * one
-    lever = cross(n, arm)
-    return float((turned * one * one + mass * dot(lever, lever)) / one ** 5)
+    lever, square = cross(n, arm), one * one
+    return float((turned * square + mass * dot(lever, lever)) / (square * square * one))

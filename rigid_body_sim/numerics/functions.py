@@ -326,18 +326,18 @@ def exp(x):
 
 @compiled_inline
 def _reduced_logarithm(m, e):
-    """Return (h, h_low, r, r_low): h + h_low + log(1 + r + r_low) = log(m 2^e), |r| < 0.00403.
+    """Return (h, h_low, r): h + h_low + log(1 + r) = log(m 2^e), |r| < 0.00403.
 
-    m c^-1 - 1 is made of two parts of m, with 27 and 26 bits, whose products with c^-1 are exact.
+    r = m c^-1 - 1 is made of two parts of m, with 27 and 26 bits, whose products with c^-1 are
+    exact. So is their sum, for c^-1 has few bits: r is a multiple of 2^-61, and of 2^-60 where it
+    is above 2^-8.
     """
     # the mask changes nothing: it shows the compiler that no index is negative
     place = 4 * (int(256.0 * m + 0.5) & 511)
     inverse = LOGARITHMS[place]
     upper = (m + SPLIT_27) - SPLIT_27
-    # if the first is the smaller one, their sum is exact
-    r, r_low = quick_two_sum(upper * inverse - 1.0, (m - upper) * inverse)
     return (e * DOUBLING + LOGARITHMS[place + 1], e * DOUBLING_LOW + LOGARITHMS[place + 2],
-            r, r_low)
+            (upper * inverse - 1.0) + (m - upper) * inverse)
 
 
 @compiled_inline
@@ -349,22 +349,21 @@ def _cubic(r, square):
 @compiled_inline
 def _logarithm(m, e, more):
     """Return log(m 2^e) + more, for 181/256 <= m < 181/128 and a small correction `more`."""
-    h, h_low, r, r_low = _reduced_logarithm(m, e)
+    h, h_low, r = _reduced_logarithm(m, e)
     square = r * r
     s, low = quick_two_sum(h, r)
-    return s + (low + ((h_low + (r_low + more)) + square * (_cubic(r, square) - 0.5)))
+    return s + (low + ((h_low + more) + square * (_cubic(r, square) - 0.5)))
 
 
 @compiled_inline
 def _logarithm_pair(m, e):
     """Return log(m 2^e) as a pair, to 2^-68 of itself."""
-    h, h_low, r, r_low = _reduced_logarithm(m, e)
+    h, h_low, r = _reduced_logarithm(m, e)
     square, square_low = two_product(r, r)
     s, low = quick_two_sum(h, r)
     s, lower = quick_two_sum(s, -0.5 * square)
     rest = square * _cubic(r, square)
-    return quick_two_sum(s, (low + lower) + (h_low + ((r_low * (1.0 - r) - 0.5 * square_low)
-                                                      + rest)))
+    return quick_two_sum(s, (low + lower) + (h_low + (rest - 0.5 * square_low)))
 
 
 @compiled

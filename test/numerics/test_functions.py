@@ -7,6 +7,7 @@ import os
 import pathlib
 import subprocess
 import sys
+from fractions import Fraction
 
 import mpmath as mp
 import numpy as np
@@ -64,6 +65,28 @@ def test_accuracy(name):
                 error *= bound / SUBNORMAL
             worst = max(worst, (error, numbers))
     assert worst[0] < bound, worst
+
+
+@pytest.mark.without_numba
+def test_the_logarithm_in_a_power_has_15_bits_more_than_a_double():
+    worst, some = 0.0, np.linspace(181.0 / 256.0, 181.0 / 128.0, 500)[1:-1]
+    with mp.workdps(40):
+        for m in some.tolist():
+            high, low = functions._logarithm_pair(m, 0)
+            exact = mp.log(mp.mpf(m))
+            worst = max(worst, abs(float((mp.mpf(high) + mp.mpf(low) - exact) / exact)))
+    assert worst < 2.0 ** -68    # measured: 2^-72.7
+
+
+@pytest.mark.without_numba
+def test_the_reduced_argument_of_a_logarithm_is_a_double():
+    """Each interval of the table, at its ends: there the reduced argument is largest."""
+    for k in range(182, 362):
+        inverse = Fraction(functions.LOGARITHMS[4 * k])
+        for m, inward in (((k - 0.5) / 256.0, 4.0), ((k + 0.5) / 256.0, 0.0)):
+            for _ in range(3):
+                m = math.nextafter(m, inward)
+                assert functions._reduced_logarithm(m, 0)[2] == Fraction(m) * inverse - 1
 
 
 def test_arguments_that_are_hardest_to_reduce():
