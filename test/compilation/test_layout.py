@@ -64,6 +64,13 @@ def axis(array):
     return load_axis(array)
 
 
+def test_a_value_becomes_an_array_with_each_number_at_its_place():
+    assert BALL.numbers(NUMBERS) == [float(k) for k in range(19)]
+    array = BALL.array(NUMBERS)
+    assert array.tolist() == list(range(19)) and array.strides == (8,)
+    assert BALL.array(Ball(*NUMBERS[:2], np.array(NUMBERS.tensor), *NUMBERS[3:])).dtype == float
+
+
 def test_every_number_has_a_place_in_the_order_of_the_fields():
     assert BALL.size == 19
     array = np.arange(19.0)
