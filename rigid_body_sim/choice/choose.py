@@ -290,7 +290,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
         coarsest = ENDING if wobbles else math.inf
         settled = settled or settling.settle(scene, fit, min(accuracy, coarsest), horizon,
                                              coarsest=coarsest)
-        if closed and closed.expected_error <= (settled.expected_error or 0.0):
+        if closed and closed.expected_error <= (settled.expected_error or 0.0):    # None: untried
             return closed
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
     else:

@@ -50,7 +50,7 @@ ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mos
 MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 ROUNDED = 10.0  # times what rounding does: an error below it may be magnified rounding
-ALIKE = 4.0    # times what finer runs tell: beyond, they have the rounding of the run itself
+SHARED = 4.0    # times what finer runs tell: beyond, they share the rounding of the run itself
 MAGNIFIED = 1e-5    # rad: rounding that is magnified to more shows in the errors themselves
 
 
@@ -213,7 +213,7 @@ class Trial:
                 around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
                 begun = self._beside_one_begun_later(tolerance, below or tolerance)
-                if float(begun.max()) > ALIKE * max(float(errors.max()), float(lost.max())):
+                if float(begun.max()) > SHARED * max(float(errors.max()), float(lost.max())):
                     errors = begun
         else:
             lost = np.zeros(len(times))
