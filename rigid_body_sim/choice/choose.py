@@ -361,7 +361,7 @@ def _check(integrator, accuracy, step, horizon):
                        f'from {FINEST} (doubles carry no more) to 1')
     if step is not None and not 0.0 < step < float('inf'):
         raise BadInput('step', f'got {step!r}', 'a positive number of seconds')
-    if integrator not in ('auto', 'exact') and integrator not in [*METHODS]:
+    if integrator not in ['auto', 'exact', *METHODS]:
         near = nearest(integrator, ['auto', 'exact', *METHODS])
         advice = f'did you mean {near!r}?' if near else (
             f'one of auto, exact, {", ".join(METHODS)}')

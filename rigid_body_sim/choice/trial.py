@@ -213,7 +213,8 @@ class Trial:
                 around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
                 begun = self._beside_one_begun_later(tolerance, below or tolerance)
-                if float(begun.max()) > SHARED * max(float(errors.max()), float(lost.max())):
+                told = max(float(errors.max()), float(lost.max()))
+                if SHARED * told < float(begun.max()) < math.inf:    # one that fails tells nothing
                     errors = begun
         else:
             lost = np.zeros(len(times))

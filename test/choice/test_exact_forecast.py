@@ -46,7 +46,7 @@ def test_a_closed_form_gives_way_where_what_goes_on_after_a_strike_misses():
         errors[method] = max(angle_between(*one, *best) for one, best in zip(
             simulation.states(times).orientation, fine.orientation, strict=True))
         assert (simulation.choice.missed is None) == (errors[method] <= 1e-6)
-    print(errors, simulation.choice.method, simulation.choice.expected_error)
+    # measured: 2.6e-7 by taylor, and 1.2e-6
     assert errors['auto'] <= 1e-6 < errors['exact']
 
 
