@@ -159,10 +159,8 @@ def _with_strikes(segments, entries, end):
         begin = segment.stamp if fresh else begin
         until = min(end, following.stamp - 1) if following else end
         cut.append(segment)
-        strikes = [(begin + round(effect.time * NANOSECONDS), effect)
-                   for effect in (segment.scene.effects if segment.scene else ())
-                   if effect.as_impulse is not None]
-        for stamp, effect in sorted(strikes, key=lambda strike: strike[0]):
+        for effect in segment.scene.strikes if segment.scene else ():
+            stamp = begin + round(effect.time * NANOSECONDS)
             if not segment.stamp + (not fresh) <= stamp <= until:
                 continue
             marks.append(Mark(stamp, 'strike', effect.name, {'time': effect.time}))

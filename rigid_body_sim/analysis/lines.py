@@ -29,8 +29,7 @@ class SpectralLine:
 
 def predicted_lines(scene):
     """Return the SpectralLines of a scene; () where theory has none in closed form."""
-    if scene is None or scene.weight is None or any(
-            effect.as_impulse is not None for effect in scene.effects):
+    if scene is None or scene.weight is None or scene.strikes:
         return ()
     mechanism, g = scene.constraint.mechanism, scene.weight
     omega = scene.initial.angular_velocity

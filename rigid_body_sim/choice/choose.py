@@ -17,7 +17,6 @@ import numpy as np
 from rigid_body_sim.choice import measured, settling
 from rigid_body_sim.choice.exact_forecast import of_exact
 from rigid_body_sim.choice.forecast import Forecast, missed
-from rigid_body_sim.choice.runs import strikes
 from rigid_body_sim.compilation import jit
 from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
@@ -168,7 +167,7 @@ class Choice:
     @property
     def ends(self):
         """Whether it is a closed form that a strike of the scene may end."""
-        return self._asks and bool(strikes(self.scene))
+        return self._asks and bool(self.scene.strikes)
 
     @functools.cached_property
     def rests_on_start(self):

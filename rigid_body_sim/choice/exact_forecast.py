@@ -4,7 +4,7 @@
 from rigid_body_sim.choice.comparison import FINER, apart
 from rigid_body_sim.choice.forecast import forecast
 from rigid_body_sim.choice.rounding import lost
-from rigid_body_sim.choice.runs import looks, run, strikes
+from rigid_body_sim.choice.runs import looks, run
 from rigid_body_sim.integrators.protocols import FINEST
 
 
@@ -37,7 +37,7 @@ def of_exact(scene, prototype, own, accuracy, horizon, general):
         ``general(accuracy)`` returns the Stepped that goes on where the closed form does not hold.
     """
     times, start, errors = looks(horizon), scene.initial.vector, 0.0
-    if prototype.motion.takes is not None and strikes(scene):
+    if prototype.motion.takes is not None and scene.strikes:
         finer = run(scene, _Continued(prototype, general(max(FINEST, FINER * accuracy))), start,
                     times)
         prototype = _Continued(prototype, general(accuracy))

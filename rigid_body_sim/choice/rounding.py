@@ -15,7 +15,7 @@ import numpy as np
 
 from rigid_body_sim.choice.comparison import apart
 from rigid_body_sim.choice.measured import HALF_ULP
-from rigid_body_sim.choice.runs import run, strikes
+from rigid_body_sim.choice.runs import run
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import matrix, normalised
@@ -101,7 +101,7 @@ def lost(scene, prototype, times, states, enough=math.inf):
     if not float(found.max()) >= enough:
         found = np.maximum(found, conditioning(scene, prototype, times, states, enough))
     squares = np.square(found)
-    for strike in strikes(scene):
+    for strike in scene.strikes:
         since = 1.0 - max(strike.time, 0.0) / times
         squares += np.where(since >= 0.0, np.square(found * since) + AGAIN * AGAIN, 0.0)
     return np.sqrt(squares)

@@ -48,7 +48,7 @@ def run(scene, prototype, vector, times, allowances=None, over=-math.inf):
     out = np.full((len(times), STATE_SIZE), math.nan)
     try:
         solver, first = prototype.start(vector), 0
-        for strike in strikes(scene):
+        for strike in scene.strikes:
             if strike.time <= over:
                 continue
             if strike.time > times[-1]:
@@ -67,12 +67,6 @@ def run(scene, prototype, vector, times, allowances=None, over=-math.inf):
     return out
 
 
-def strikes(scene):
-    """Return the strikes of a scene in the order of their times."""
-    struck = (effect for effect in scene.effects if effect.as_impulse is not None)
-    return sorted(struck, key=lambda effect: effect.time)
-
-
 def _struck(scene, strike, solver):
     """Return the state just after a strike."""
     vector = np.empty(STATE_SIZE)
@@ -89,7 +83,7 @@ def _pushed(scene, strike, vector):
 def struck_rate(scene):
     """Return approximately what the strikes of a scene add to the rate of its body (rad/s)."""
     total, start = 0.0, scene.initial.vector
-    for strike in strikes(scene):
+    for strike in scene.strikes:
         after = _pushed(scene, strike, start.copy())[ANGULAR_VELOCITY]
         total += hypot3(*(after - start[ANGULAR_VELOCITY]).tolist())
     return total

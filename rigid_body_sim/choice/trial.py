@@ -400,7 +400,7 @@ def _span(scene, rate, acceleration, horizon):
 
     It goes on to a strike that comes later, within the horizon, and then for that angle again.
     """
-    times = [strike.time for strike in runs.strikes(scene) if strike.time < horizon]
+    times = [strike.time for strike in scene.strikes if strike.time < horizon]
     own = RADIANS / rate if rate else math.inf
     if acceleration:
         own = 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))

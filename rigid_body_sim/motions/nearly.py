@@ -101,7 +101,7 @@ def nearly_absorbing(scene, horizon):
     if not looks <= MOST_LOOKS:
         return None
     each = int(looks / STRETCHES) + 2
-    if any(effect.as_impulse is not None and effect.time < horizon for effect in scene.effects):
+    if any(strike.time < horizon for strike in scene.strikes):
         return Nearly(motion, symmetric, math.inf)
     error = _error(Exact(symmetric, motion), scene, equal, off, horizon, each)
     return Nearly(motion, symmetric, error)

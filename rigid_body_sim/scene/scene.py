@@ -136,6 +136,12 @@ class Scene:
                 acting.append(effect)
         return tuple(acting)
 
+    @functools.cached_property
+    def strikes(self) -> tuple[Effect, ...]:
+        """The effects that act at one instant, in the order of their times."""
+        struck = (effect for effect in self.effects if effect.as_impulse is not None)
+        return tuple(sorted(struck, key=operator.attrgetter('time')))
+
     @property
     def field(self) -> Vector:
         """The acceleration of a free fall, world components, m/s^2: the sum of uniform fields."""

@@ -31,7 +31,7 @@ def energy_at_ends(scene):
               for one in effect.acting(scene.frame, -math.inf)]
     if not any(one.winding for one in acting):
         return math.inf
-    if any(effect.as_impulse is not None or effect.breakpoints for effect in scene.effects) or any(
+    if scene.strikes or any(effect.breakpoints for effect in scene.effects) or any(
             one.timed or one.both_ways or one.books == 'work' for one in acting):
         return -math.inf
     hinge = scene.frame.hinge

@@ -266,7 +266,7 @@ class Simulation:
             refuse_start(self.scene.name, fault, start, diagnosis)
         solver, given = choice.solver(start, NOTHING_HELD), np.zeros(self._entries_size)
         spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
-        if self._strikes:
+        if self.scene.strikes:
             spans = self._strikes.follow(spans, 0.0, choice)
         self._arrived, self._diagnosed_tick = False, None
         self.choice, self.tick, self._beginning = choice, tick, start

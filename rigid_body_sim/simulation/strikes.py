@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Strikes of a scene: what acts at one instant ends a span and begins another."""
 
-import operator
-
 import numpy as np
 
 from rigid_body_sim.errors import BadInput
@@ -24,11 +22,6 @@ class Strikes:
 
     def __init__(self, scene, mechanics):
         self._scene, self._mechanics = scene, mechanics
-        self._all = [effect for effect in scene.effects if effect.as_impulse is not None]
-        self._all.sort(key=operator.attrgetter('time'))
-
-    def __len__(self):
-        return len(self._all)
 
     def follow(self, spans, time, choice):
         """Return spans and those that the strikes up to a time (s) begin.
@@ -44,9 +37,9 @@ class Strikes:
         BadInput
             A strike that the body cannot take.
         """
-        last = spans[-1]
-        while last.strikes < len(self._all) and self._all[last.strikes].time <= time:
-            strike = self._all[last.strikes]
+        last, strikes = spans[-1], self._scene.strikes
+        while last.strikes < len(strikes) and strikes[last.strikes].time <= time:
+            strike = strikes[last.strikes]
             at = max(strike.time, last.time)
             struck, given = np.empty(STATE_SIZE), last.given + last.solver.entries(at)
             last.solver.state(at, struck)

@@ -152,7 +152,7 @@ class _Work:
     def many(self, scene, starts, where):
         """Compute runs of one scene from some starts."""
         spec = self.plan.spec
-        if any(effect.as_impulse is not None for effect in scene.effects):
+        if scene.strikes:
             self.struck(where)
             return
         in_place = self.states is not None and isinstance(where, slice)

@@ -43,8 +43,7 @@ def expectation(scene, state):
 
     The object has ``note``, ``look`` and ``compared`` (expectations.py).
     """
-    blows = [effect for effect in scene.effects if effect.as_impulse is not None]
-    if any(blow.time > state.time for blow in blows):
+    if any(strike.time > state.time for strike in scene.strikes):
         return None
     mechanism, acting = scene.constraint.mechanism, scene.acting
     if mechanism is Mechanism.FREE and scene.weight is not None:
@@ -53,8 +52,8 @@ def expectation(scene, state):
         return Relaxing(scene, state)
     if mechanism is Mechanism.FREE:
         return _round_the_axis(scene, state)
-    if mechanism is Mechanism.AXIS and not acting and blows:
-        return _after_a_blow(scene, state, blows)
+    if mechanism is Mechanism.AXIS and not acting and scene.strikes:
+        return _after_a_blow(scene, state)
     if mechanism is Mechanism.AXIS and scene.weight:
         return _swing(scene, state)
     if mechanism is Mechanism.POINT and scene.weight:
@@ -115,16 +114,16 @@ def _axial_torque(scene, inertia, axis):
     return along
 
 
-def _after_a_blow(scene, state, blows):
+def _after_a_blow(scene, state):
     """Return the expected rate of a hinged body that was hit once, at rest at time 0."""
     n, body = np.array(scene.constraint.axis), scene.body
     arm = np.array(scene.constraint.arm(body))
     length = np.linalg.norm(arm - n * (n @ arm))
-    if (len(blows) != 1 or blows[0].time or state.time
+    if (len(scene.strikes) != 1 or scene.strikes[0].time or state.time
             or scene.initial.angular_velocity.any() or not length):
         return None
     impulse, turn = (np.array(rotate_back(*scene.initial.orientation, *vector[:3]))
-                     for vector in blows[0].as_impulse(body, scene.initial.vector))
+                     for vector in scene.strikes[0].as_impulse(body, scene.initial.vector))
     a = math.sqrt(n @ body.about_center.matrix @ n / body.mass)
     # F d, the moment of the blow about the hinge
     return Steady(float(baseball_bat.angular_acceleration(
