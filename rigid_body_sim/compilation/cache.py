@@ -2,11 +2,14 @@
 """The place where numba keeps compiled kernels: one for all copies of the same sources."""
 
 import contextlib
+import fcntl
 import pathlib
+import time
 import warnings
 
 import numba
 from numba.core.caching import FunctionCache, NullCache
+from numba.core.compiler_lock import global_compiler_lock
 
 from rigid_body_sim.compilation.environment import PACKAGE, cache_folder
 
@@ -15,6 +18,10 @@ try:
 except ImportError:
     # numba before 0.61, as in Ubuntu 24.04
     from numba.core.caching import _UserProvidedCacheLocator as UserProvidedCacheLocator
+
+
+PATIENCE = 120.0    # s: beside a process that is stopped while it compiles, others go on then
+AGAIN = 0.02        # s, from one look at a lock to the next
 
 
 class Place(UserProvidedCacheLocator):
@@ -59,6 +66,25 @@ class DeferredCache:
             self._made = _cache_of(self._function)
         return self._made
 
+    @contextlib.contextmanager
+    def alone(self):
+        """Keep other processes from compiling the kernel meanwhile: they wait, and then load it.
+
+        Where the folder cannot be written, each process compiles for itself.
+        """
+        with contextlib.ExitStack() as held:
+            # first the lock between threads: each has it while it waits for another process
+            held.enter_context(global_compiler_lock)
+            with contextlib.suppress(OSError, RuntimeError):
+                if self.cache_path:    # numba's cache that keeps nothing has none
+                    _wait_for(held.enter_context(self._lock_file()))
+            yield
+
+    def _lock_file(self):
+        code = self._function.__code__
+        return pathlib.Path(
+            self.cache_path, f'{code.co_name}-{code.co_firstlineno}.lock').open('wb')
+
     def load_overload(self, signature, target_context):
         """Return the compiled code for the types of a call, or None."""
         with _going_on():
@@ -78,6 +104,17 @@ class DeferredCache:
     def cache_path(self):
         """Folder of the compiled code."""
         return self._cache.cache_path
+
+
+def _wait_for(file):
+    """Wait for the lock of a file, which goes with the file; no longer than PATIENCE."""
+    began = time.monotonic()
+    while time.monotonic() - began < PATIENCE:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        except BlockingIOError:
+            time.sleep(AGAIN)
 
 
 def _cache_of(function):

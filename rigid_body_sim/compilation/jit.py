@@ -24,6 +24,14 @@ def _jit(function, **options):
     kernel = numba.njit(
         error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
     kernel._cache = DeferredCache(function)
+    compile_here = kernel.compile
+
+    def compile_once(signature):
+        if isinstance(signature, tuple) and signature in kernel.overloads:
+            return compile_here(signature)
+        with kernel._cache.alone():
+            return compile_here(signature)
+    kernel.compile = compile_once
     return kernel
 
 

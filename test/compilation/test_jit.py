@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -73,6 +74,43 @@ def test_two_processes_on_a_cold_cache_agree(copy_of_package):
                XDG_CACHE_HOME=str(copy_of_package / 'cache')) == answers[0]
     if hasattr(jit.numba.config, 'CACHE_LOCATOR_CLASSES'):
         assert set((copy_of_package / 'cache').rglob('*.nbc')) == found
+
+
+@needs_numba
+def test_of_two_processes_one_compiles_and_the_other_waits_and_loads(copy_of_package):
+    code = ('from rigid_body_sim.numerics.rotations import rotate\n'
+            'print("ready", flush=True), input()\n'
+            'rotate(0.0, 0.0, 0.6, 0.8, 1.0, 0.0, 0.0)\n'
+            'found = rotate.stats\n'
+            'print(sum(found.cache_misses.values()), sum(found.cache_hits.values()))')
+    settings = {**os.environ, 'PYTHONPATH': str(copy_of_package),
+                'XDG_CACHE_HOME': str(copy_of_package / 'cache')}
+    both = [subprocess.Popen([sys.executable, '-c', code], env=settings, cwd=copy_of_package,
+                             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            for _ in range(2)]
+    assert [process.stdout.readline() for process in both] == ['ready\n'] * 2
+    for process in both:
+        process.stdin.write('\n')
+        process.stdin.flush()
+    told = [process.communicate(timeout=100)[0].strip() for process in both]
+    assert sorted(told) == ['0 1', '1 0']
+
+
+@needs_numba
+def test_a_process_that_is_stopped_while_it_compiles_holds_another_up_for_a_while_only(
+        monkeypatch):
+    from rigid_body_sim.compilation import cache
+    from rigid_body_sim.numerics.rotations import rotate
+    monkeypatch.setattr(cache, 'PATIENCE', 0.05)
+    with rotate._cache.alone():    # as another process would
+        began = time.monotonic()
+        with rotate._cache.alone():
+            assert time.monotonic() - began >= cache.PATIENCE
+        monkeypatch.setattr(cache, 'PATIENCE', 100.0)
+    began = time.monotonic()
+    with rotate._cache.alone():    # the lock is gone with its holder
+        pass
+    assert time.monotonic() - began < 50.0
 
 
 @needs_numba
