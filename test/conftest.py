@@ -106,7 +106,11 @@ IN_ONE_PROCESS = 8
 
 Starting one takes a second.
 """
-LONGEST = 7000 if SOAK else 280    # s of such a process; 287 s of processor time in the soak
+LONGEST = 7000 if SOAK else 560
+"""Limit of such a process, s.
+
+One took 274 s beside others on a slow machine, and 287 s of the processor in the soak.
+"""
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 

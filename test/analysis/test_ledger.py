@@ -9,6 +9,7 @@ from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.recording.reader import Recording
 
 
+@pytest.mark.without_numba
 def test_the_last_row_is_the_simulation_s_own_ledger(tmp_path):
     acts = {100: [('cmd_wrench', (0.0, 0.0, 0.0), (0.0, 2.0, 0.5), 'body')],
             300: [('cmd_impulse', (0.0, 0.0, 1.0), (0.0, 0.0, 0.1), 'world')]}

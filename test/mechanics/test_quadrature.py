@@ -101,6 +101,7 @@ def turning(scene, rate):
     return Quadrature(Actors(scene), states, start[0], 0.0)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('damping', [1e-3, 1.0, 1e4, 1e10])
 def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
     """A body of moment 2 that drag stops: omega = 3 exp(-k t/2), heat = 2 9/2."""
@@ -120,6 +121,7 @@ def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
         assert entries[ANGULAR_IMPULSE][2] == pytest.approx(impulse, rel=1e-13, abs=1e-15)
 
 
+@pytest.mark.without_numba
 def test_a_torque_in_pieces_is_integrated_up_to_each_jump():
     scene = parse_scene(
         'scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: [torque: '

@@ -18,6 +18,8 @@ from rigid_body_sim.simulation.simulation import Simulation
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'data'))
 from heavy_body import Flow
 
+pytestmark = pytest.mark.without_numba
+
 TOP = {'mass': 2.0, 'inertia': [0.03, 0.03, 0.01], 'center_of_mass': [0.0, 0.0, 0.1]}
 STANDING = {'mass': 2.0, 'inertia': [0.01, 0.03, 0.03], 'center_of_mass': [-0.1, 0.0, 0.0]}
 OTHER = {'mass': 2.0, 'inertia': [0.03, 0.05, 0.07], 'center_of_mass': [0.1, 0.02, 0.05]}
@@ -52,7 +54,6 @@ def apart(one, other, times=TIMES):
                for p, q in zip(first.orientation, second.orientation, strict=True))
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize(('motion', 'body', 'constraint', 'effects'), [
     ('lagrange_top', TOP, 'pivot', [GRAVITY, rotor(0, 0, 1)]),
     ('lagrange_top', STANDING, 'pivot', [GRAVITY, rotor(1, 0, 0), rotor(-2, 0, 0)]),
@@ -89,7 +90,6 @@ def test_what_acts_decides(motion, body, constraint, effects):
     assert (found and found.__name__.rpartition('.')[-1]) == motion
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize('momentum', [0.4, -0.31, 1e-7])
 @pytest.mark.parametrize(('body', 'axis'), [(TOP, (0, 0, 1)), (STANDING, (1, 0, 0))])
 def test_a_top_with_a_rotor_meets_the_equations_of_motion(body, axis, momentum):

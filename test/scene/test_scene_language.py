@@ -451,8 +451,8 @@ def test_a_parameter_is_one_override_and_needs_no_other_kernel():
     assert (one.values[0], other.values[0]) == (0.1, 0.2)
 
 
+@pytest.mark.without_numba
 def test_commands_the_past_and_an_ensemble():
-    """Compiled, the same kind as `test_compiled_it_has_the_same_bits`."""
     scene = parse_scene(language_cases.text('four at once'))
     simulation = Simulation(scene, 'dop8', accuracy=1e-12, rate=10.0)
     simulation.advance(3)

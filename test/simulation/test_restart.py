@@ -98,6 +98,7 @@ def test_a_closed_form_that_rests_on_its_start_is_looked_for_again(moved):
     assert simulation.choice.method == 'exact'
 
 
+@pytest.mark.without_numba
 def test_a_method_and_its_tolerance_stay_without_a_trial(monkeypatch):
     simulation = Simulation(parse_scene(ASYMMETRIC), accuracy=1e-6, horizon=5.0)
     settled = simulation.choice.settled

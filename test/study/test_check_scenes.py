@@ -24,7 +24,7 @@ from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric
 QUICK = [name for name in SYSTEMS if not name.startswith((
     'billiard', 'driven', 'major', 'baseball', 'falling', 'rolling_', 'euler_disk', 'rattleback',
     'tippe', 'rising', 'routh', 'chaplygin', 'tossed', 'kapitza', 'librating'))]
-
+MARKS = {'sleeping_top': LONG_IN_PYTHON, 'kater_pendulum': pytest.mark.without_numba}
 KEPT = 'predicted', 'tolerance', 'unit', 'bound', 'absolute', 'as_written', 'detail'
 
 
@@ -42,7 +42,7 @@ def test_every_scene_that_ships_is_checked():
 
 
 @pytest.mark.parametrize('name', [
-    pytest.param(name, marks=[LONG_IN_PYTHON] * (name == 'sleeping_top')) for name in QUICK])
+    pytest.param(name, marks=MARKS.get(name, ())) for name in QUICK])
 def test_scene_is_confirmed_by_both_ways(name, capsys):
     rows = table('--scene', name, capsys=capsys)
     assert len(rows) >= 4
@@ -56,6 +56,7 @@ def test_scene_is_confirmed_by_both_ways(name, capsys):
                                   for quantity, row in rows.items()})
 
 
+@pytest.mark.without_numba
 def test_a_changed_scene_without_a_closed_form_is_integrated():
     axial = Experiment(load_scene('driven_body'), 'exact')
     assert axial.variant(driven_body.ASYMMETRIC).method == 'dop8'

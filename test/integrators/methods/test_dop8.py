@@ -72,6 +72,7 @@ def test_states_do_not_depend_on_what_else_was_asked(top):
     assert np.array_equal(reversed_, together[::-1])
 
 
+@pytest.mark.without_numba
 def test_checkpoints_are_thinned_and_still_right(top):
     solver = Stepped(top, 'dop8', step=0.005).start(top.initial.vector)
     early, late, again = np.empty(14), np.empty(14), np.empty(14)
