@@ -34,6 +34,7 @@ LOW, DAMPED = 2e-3, 3e-2        # rad: a ring so low is left alone; where its ro
 NOTHING = 1e-15                 # share of the speeds below which a slip has ended
 SAME = 1e-10                    # and of a start, which copies have moved a little
 CHATTERS = 1e-13                # and below which no impact rebounds
+HALVINGS = 70                   # of an interval, until its ends are neighbours
 SHORTEST = 1e-20                # s
 GRAZES = 1e-9                   # share of the lengths by which a minimum may miss its zero
 
@@ -439,8 +440,9 @@ class PlaneTruth:
             self._tell('impact')
         e = body.restitution if -before[2] * body.restitution > CHATTERS * speed else WIDE(0)
         given, sticks = self._impulse(G, before, e)
-        if e > 0 and given @ (before + G @ given / 2) > 0:    # it would create energy
-            e = WIDE(0)
+        if given @ (before + G @ given / 2) > 0:    # it would create energy
+            e = self._bearable(G, before, e)
+            e = e if -before[2] * e > CHATTERS * speed else WIDE(0)
             given, sticks = self._impulse(G, before, e)
         self.y[7:10] += sum(g * f[:, 0] for g, f in zip(given, axes, strict=True)) / body.mass
         self.y[4:7] += sum(g * turn[:, 0] for g, turn in zip(given, turns, strict=True))
@@ -448,6 +450,16 @@ class PlaneTruth:
             self._fly()
         else:
             self._land(slips=not sticks)
+
+    def _bearable(self, G, before, e):
+        """Return the largest restitution below e with which an impact creates no energy."""
+        low, high = WIDE(0), e
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            given, _ = self._impulse(G, before, middle)
+            creates = given @ (before + G @ given / 2) > 0
+            low, high = (low, middle) if creates else (middle, high)
+        return low
 
     def _impulse(self, G, before, e):
         """Return the impulse of an impact (e1, e2, n), and whether P sticks."""

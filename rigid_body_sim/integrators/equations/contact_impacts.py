@@ -17,6 +17,8 @@ from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
 
+HALVINGS = 60    # of an interval, until its ends are neighbours
+
 
 class Impact(NamedTuple):
     """The results of an impact.
@@ -53,10 +55,38 @@ def velocity_of_lowest(p, y):
 
 
 @compiled
+def loss_of(G, before, restitution, mu):
+    """Return the energy that an impact takes, J; Newton's law with friction may create some."""
+    given = impulse(G, before, restitution, mu)
+    return -0.5 * dot(given, plus(before, plus(before, apply(G, given))))
+
+
+@compiled
+def bearable(G, before, restitution, mu):
+    """Return the largest restitution, up to the one given, with which an impact creates no energy.
+
+    Parameters
+    ----------
+    G, before
+        As in :func:`mechanics.contact.laws.impulse`.
+    """
+    if loss_of(G, before, restitution, mu) >= 0.0:
+        return restitution
+    low, high = 0.0, restitution
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if loss_of(G, before, middle, mu) >= 0.0:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@compiled
 def collide(p, y, restitution, out):
     """Change the unknowns of a flight by an impact.
 
-    An impact that would create energy, as Newton's law with friction can, has no restitution.
+    Where Newton's law would create energy, as it can with friction, the restitution is smaller.
 
     Parameters
     ----------
@@ -69,14 +99,10 @@ def collide(p, y, restitution, out):
     at = posture(c, now.q, now.omega)
     before = plus(now.u, apply(at.axes, at.carried))
     G = response(c.mass, c.inverse, at.axes, at.r, (0.0, 0.0, 0.0))
-    given = impulse(G, before, restitution, c.mu)
+    e = bearable(G, before, restitution, c.mu)
+    given = impulse(G, before, e, c.mu)
     after = plus(before, apply(G, given))
-    loss = -0.5 * dot(given, plus(before, after))
-    normal = -restitution * before[2]
-    if loss < 0.0 and restitution > 0.0:
-        given = impulse(G, before, 0.0, c.mu)
-        after = plus(before, apply(G, given))
-        loss, normal = -0.5 * dot(given, plus(before, after)), 0.0
+    loss, normal = -0.5 * dot(given, plus(before, after)), -e * before[2]
     turn = cross(at.r, rotate_back(*now.q, *given))
     store_omega(y, plus(now.omega, apply(c.inverse, turn)))
     store_u(y, plus(now.u, scaled(1.0 / c.mass, given)))

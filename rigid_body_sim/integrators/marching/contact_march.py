@@ -44,6 +44,7 @@ first_zero = UNBOUND     # contact_zero.py
 STAGES = contact_step.STAGES
 END, FRESH, TRIED = contact_step.END, contact_step.FRESH, contact_step.TRIED
 SIZE, ROW_SIZE, TIME = UNKNOWNS.size, ROW.size, UNKNOWNS.part('time').first
+GAP = UNKNOWNS.part('gap').first
 PACE, WATCHED = ROW.part('pace').first, ROW.part('watched').first
 WATCHES = ROW.part('watched').size
 # which of the watched numbers falls below zero
@@ -139,7 +140,7 @@ def march(p, w, phase, sizes, front, meta, target):
         rate(p, w[FRESH], w[END])
         ends, part = NOTHING, h
         for k in range(watches):
-            if _falls(w, k):
+            if _dips(w) if mode == FLIGHT and k == NORMAL else _falls(w, k):
                 at = first_zero(p, w, y, lost, h, k, w[0, WATCHED + k])
                 # the rows are those of the last look: put them back
                 step_from(p, w, y, lost, h)
@@ -251,6 +252,23 @@ def _falls(w, k):
     if begin <= 0.0:
         return least < 0.0 and k != STOPS and end < 0.0
     return least < 0.0 or (least < begin and least < CLOSE * max(begin, end))
+
+
+@compiled_inline
+def _dips(w):
+    """Return whether the gap of a flight may fall below zero within the step in the rows.
+
+    It may where it falls at some stage and comes close, as in `_falls`. A flight begins at the
+    plane, so that its gap is small at first: being small is no sign while it grows.
+    """
+    begin, end = w[0, WATCHED + NORMAL], w[END, WATCHED + NORMAL]
+    least, most = end, max(begin, end)
+    falls = w[0, GAP] < 0.0 or w[END, GAP] < 0.0
+    for i in range(1, STAGES):
+        gap = w[i, WATCHED + NORMAL]
+        least, most = min(least, gap), max(most, gap)
+        falls = falls or w[i, GAP] < 0.0
+    return least < 0.0 or ((falls or least < begin) and least < CLOSE * most)
 
 
 @compiled

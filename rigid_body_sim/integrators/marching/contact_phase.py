@@ -1,15 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """One phase of a body on a plane: the march from one event to the next, and its states."""
 
+import math
+
 import numpy as np
 
 from rigid_body_sim.integrators.equations.contact_rest import lies_low
-from rigid_body_sim.integrators.equations.contact_views import UNKNOWNS
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, UNKNOWNS
 from rigid_body_sim.integrators.marching import contact_march
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 
 MODE, SWIFT = (CONTACT.part(name).first for name in ('mode', 'swift'))
-SIZE, TIME = UNKNOWNS.size, UNKNOWNS.part('time').first
+SIZE = UNKNOWNS.size
+TIME, GAP = (UNKNOWNS.part(name).first for name in ('time', 'gap'))
+
+SHORT = 2.0 ** -12    # rad: the time of a difference, over the pace of the motion
+PAST = 1.5            # times the length of a hop that the first step of a flight may have
+
+
+def _hop(rates, p, y, work, pace):
+    """Return how long the first step of a flight may be (s), so that no hop hides within it.
+
+    Steps that grow fourfold from there resolve the gap on each scale of time. It begins as
+
+        v t + a t^2/2 + j t^3/6
+
+    and falls again where a falling term outweighs a rising one. `work` is the rows of rates, of
+    which row 0 holds those at y.
+    """
+    short = SHORT / pace
+    for n in (1, 2):
+        later = y + n * short * work[0, :SIZE]
+        rates.rate(p, later, work[n])
+    v, soon, later = work[:3, GAP].tolist()
+    a = (4.0 * soon - 3.0 * v - later) / (2.0 * short)
+    j = (later - 2.0 * soon + v) / (short * short)
+    rises = v if v > rates.ROUNDING * p[SWIFT] else 0.0
+    if a < 0.0:
+        return PAST * 2.0 * rises / -a if rises else math.inf
+    if j < 0.0:
+        return PAST * max(3.0 * a / -j, math.sqrt(6.0 * rises / -j))
+    return math.inf
 
 
 class Phase:
@@ -39,6 +70,9 @@ class Phase:
         self._cursor, self._y = np.empty((2, contact_march.POINT)), np.empty(SIZE)
         bound.rates.rate(p, y, work[0])
         self.kernels.begin(p, work[0], self.front, self._meta, y)
+        if p[MODE] == FLIGHT:
+            hop = _hop(bound.rates, p, y, work, self._meta[contact_march.RATE])
+            self._meta[contact_march.PLANNED] = min(self._meta[contact_march.PLANNED], hop)
 
     @property
     def status(self):

@@ -88,6 +88,8 @@ def step_from(p, w, y, lost, h):
 def _sample(p, w, y, S, h):
     """Fill the rows of stages with the watched numbers at equal parts of a step.
 
+    In flight the rate of the gap is there, too.
+
     Returns
     -------
     float
@@ -101,11 +103,12 @@ def _sample(p, w, y, S, h):
     for i in range(1, STAGES):
         t = h * i / STAGES
         first = FRICTION if mode == ROLLING and mu < 1e300 else NORMAL
-        normal = second = inclined = gap = 0.0
+        normal = second = inclined = gap = rising = 0.0
         if mode == FLIGHT:
             for k in range(ORDER):
                 gap = t * (gap + S[ORDER - k, GAP])
-            normal = y[GAP] + gap
+                rising = t * rising + (ORDER - k) * S[ORDER - k, GAP]
+            normal, w[i, GAP] = y[GAP] + gap, rising
         else:
             for k in range(ORDER + 1):
                 normal = t * normal + S[ORDER - k, NORMAL]

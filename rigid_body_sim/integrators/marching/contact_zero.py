@@ -7,14 +7,17 @@ It is bound to the rates of equations/contact_rates.py and to a step (contact_st
 import math
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.equations.contact_views import ROW
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, ROW, Watched
 from rigid_body_sim.integrators.marching import contact_step
+from rigid_body_sim.mechanics.contact.parameters import CONTACT
 
 rate = UNBOUND
 step_from = UNBOUND
 
 END, FRESH, WATCHED = contact_step.END, contact_step.FRESH, ROW.part('watched').first
+NORMAL, MODE = layout(Watched).part('normal').first, CONTACT.part('mode').first
 PARTS = 16                   # parts of a step that is looked through
 SEARCHES = 24                # golden sections for a dip
 GOLDEN = 0.6180339887498949
@@ -47,19 +50,38 @@ def first_zero(p, w, y, lost, h, k, begin):
         above.
     """
     low, value_low = 0.0, begin
-    least, at = math.inf, 0.0
+    least, at, falls = math.inf, 0.0, False
     high, value_high = -1.0, 0.0
+    flies = p[MODE] == FLIGHT and k == NORMAL
     for n in range(1, PARTS + 1):
         part = h * n / PARTS
         value = look(p, w, y, lost, part, k)
         if value < 0.0:
             high, value_high = part, value
             break
-        if value < least:
+        if flies and value == 0.0 and value_low > 0.0:
+            # a gap below zero that grows again is watched as 0: it went below before
+            under = part
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (low + under)
+                if high > 0.0 or not low < middle < under:
+                    break
+                value = look(p, w, y, lost, middle, k)
+                if value < 0.0:
+                    high, value_high = middle, value
+                elif value > 0.0:
+                    low, value_low = middle, value
+                else:
+                    under = middle
+            if high > 0.0:
+                break
+            value = 0.0
+        falls = falls or value < value_low
+        if falls and value < least:
             least, at = value, part
         low, value_low = part, value
-    if high < 0.0:
-        # the least of the values may hide a dip: golden section around it
+    if high < 0.0 and falls:
+        # the least of the values since it fell may hide a dip: golden section around it
         left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
         for _ in range(SEARCHES):
             first = right - GOLDEN * (right - left)
@@ -70,14 +92,14 @@ def first_zero(p, w, y, lost, h, k, begin):
                 low, value_low = max(0.0, at - h / PARTS), least
                 break
             if one == 0.0 or other == 0.0:
-                # what is below zero and rises is watched as 0: the zero is before it
+                # as above: the zero is before it
                 right = first if one == 0.0 else second
             elif one < other:
                 right = second
             else:
                 left = first
-        if high < 0.0:
-            return -1.0
+    if high < 0.0:
+        return -1.0
     # Illinois, kept within the bracket, until no double lies between
     side = 0
     for n in range(BISECTIONS):

@@ -18,7 +18,7 @@ from numba_only import LONG_IN_PYTHON
 from scipy.integrate import solve_ivp
 from soak import IN_SOAK, SOAK
 
-from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT
 from rigid_body_sim.integrators.marching import contact_course, contact_march
 from rigid_body_sim.numerics.rotations import rotate_back
@@ -91,6 +91,50 @@ def test_an_ellipsoid_that_turns_in_flight_hits_the_plane_or_just_misses_it(clea
     # the gap errs by some ulps of the height, and falls at its rate there
     rounding = 16.0 * HALF_ULP * height / abs(float(mp.diff(sunk, true))) + 2e-16
     assert sim.at_event('impact').time == pytest.approx(float(true), abs=rounding)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [FINEST, 1e-6])
+@pytest.mark.parametrize(('short', 'share'), [
+    ('1e-2', '0.01'), ('1e-2', '0.7'), ('1e-2', '0.999'), ('1e-3', '0.7'), ('1e-3', '1.01')])
+def test_a_flight_that_begins_on_the_plane_dips_below_it_within_a_step_or_just_does_not(
+        short, share, accuracy):
+    """The lowest point of an ellipsoid that turns leaves the plane slowly, sinks, and goes up.
+
+    From the inclination x on the gap is
+
+        up t - g t^2/2 - h(x + w t) + h(x),    h^2 = (a sin)^2 + (c cos)^2.
+
+    Where x is shortly before that with w^2 h'' = -g, it is off t - A t^2/2 + J t^3/6 with a small
+    A, and goes below zero if off < 3 A^2/(8 J).
+    """
+    a, c, w, g = map(mp.mpf, (0.1, 0.5, 20.0, G))
+
+    def h(x):
+        return mp.sqrt((a * mp.sin(x)) ** 2 + (c * mp.cos(x)) ** 2)
+
+    even = mp.findroot(lambda x: w * w * mp.diff(h, x, 2) + g, (1.8, 2.2), solver='ridder')
+    x = float(even - mp.mpf(short))
+    A, J = g + w * w * mp.diff(h, mp.mpf(x), 2), -w ** 3 * mp.diff(h, mp.mpf(x), 3)
+    up = float(w * mp.diff(h, mp.mpf(x)) + mp.mpf(share) * 3 * A * A / (8 * J))
+
+    def gap(t):
+        return up * t - g * t * t / 2 - h(x + w * t) + h(mp.mpf(x))
+
+    dip = mp.findroot(lambda t: mp.diff(gap, t), (A / J, 2.2 * A / J), solver='secant')
+    sim = simulation('{mass: 1.0, inertia: [0.02, 0.04, 0.03], '
+                     'surface: {ellipsoid: {semi_axes: [0.1, 0.2, 0.5]}}}',
+                     'sliding_friction: {mu: 0.3}', f'{{tilt: {x!r}, velocity: [0, 0, {up!r}], '
+                     'angular_velocity: [0, 20, 0]}', accuracy=accuracy, horizon=1.0)
+    if gap(dip) > 0:
+        with pytest.raises(BadInput, match='no event comes in that time'):
+            sim.at_event('impact', within=0.1)
+        return
+    true = mp.findroot(gap, (1e-3 * dip, dip), solver='bisect', tol=1e-60)
+    # distances of up t cancel in the gap
+    rounding = 4.0 * HALF_ULP * up * float(true) / abs(float(mp.diff(gap, true)))
+    found = sim.at_event('impact', within=0.1).time
+    assert abs(found - float(true)) < 6.0 * rounding    # 1.7
 
 
 @pytest.mark.parametrize('share', ['1e-3', '1e-9', '1e-12', '-1e-12', '-1e-9', '-1e-3'])
@@ -233,6 +277,41 @@ def test_a_slip_that_ends_where_n_is_0_is_told_as_lift_off(why):
     course._follow(phase)
     assert course._phases[-1].p[contact_march.MODE] == FLIGHT
     assert course._events == [(G / PULL, 'lift-off', {})]
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-6, 1e-9, 1e-12])
+def test_a_disk_that_lifts_off_meets_the_plane_when_it_comes_back_only(accuracy):
+    """As N ends, gap, velocity and acceleration are 0 but for rounding, which makes no impact."""
+    sim = simulation('{mass: 0.1, shape: {disk: {radius: 0.1}}}', 'sliding_friction: {mu: 0.0}',
+                     '{euler_zyz: [0.448, 2.695, 5.538], '
+                     'angular_velocity: [9.137, -6.983, -0.46], '
+                     'velocity: [0, 0, 1.039]}',
+                     accuracy=accuracy, rate=20.0, horizon=0.3)
+    sim.advance(6)
+    assert [one.name for one in sim.events] == ['impact', 'lift-off', 'impact']
+
+
+# -- no loss ------------------------------------------------------------------------------------
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-6, 1e-9, 1e-12, FINEST])
+def test_a_ball_without_loss_bounces_for_ever_and_loses_only_its_first_slip(accuracy):
+    """It falls for t1 = (2 H/g)^(1/2), and its impacts are 2 t1 apart.
+
+    The first one takes the slip R (wx^2 + wy^2)^(1/2) of the mass 1/(1/m + R^2/I).
+    """
+    sim = simulation('{mass: 1.0, inertia: [0.001, 0.001, 0.001], '
+                     'surface: {sphere: {radius: 0.05}}}', 'sliding_friction: {mu: 0.25}',
+                     '{position: [0, 0, 0.3], angular_velocity: [3, 1, 2]}',
+                     table='{table: {restitution: 1.0}}', accuracy=accuracy, rate=10.0)
+    sim.advance(30)
+    falls, impacts = math.sqrt(2.0 * 0.25 / G), [one.time for one in sim.events]
+    assert [one.name for one in sim.events] == ['impact'] * 7
+    assert impacts == [near((1 + 2 * n) * falls, rel=2e-14) for n in range(7)]    # 4e-15
+    slip = 0.05 * math.sqrt(10.0)
+    assert sim.ledger()['dissipated'] == pytest.approx(0.5 * slip ** 2 / 3.5, abs=2e-14)    # 6e-15
 
 
 # -- no friction ------------------------------------------------------------------------------
