@@ -43,6 +43,16 @@ def speed_of_upright_stability(A, C, m, R, g):
     return R * math.sqrt(A * m * g * R / (C * (C + m * R * R)))
 
 
+def rate_of_upright_stability(A, m, R, g):
+    """Return the rate (rad/s) above which a disk spins upright stably about the vertical.
+
+    W^2 = 4 g/(5 R), hoop 2 g/(3 R). Linear in the tilt x = pi/2 - theta, rolling gives w3 =
+    -kappa W x, and Appell's equation about the horizontal diameter becomes (A + m R^2) (x'' +
+    W^2 x) = m g R x.
+    """
+    return math.sqrt(m * g * R / (A + m * R * R))
+
+
 def precession_with_centre_at_rest(theta, A, m, R, g):
     """Return the precession (rad/s) at which the centre rests and w3 = 0.
 

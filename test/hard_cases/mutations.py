@@ -64,8 +64,58 @@ MUTANTS = {
     'dissipation: the end state goes on': (
         'scene/effects/internal_dissipation.py', 'ENDED = 2.0 ** -54', 'ENDED = 0.0',
         'test/hard_cases/test_08_dissipation.py::test_case[stiff: c dt = 1e+06]'),
+    'contact: friction along the slip': (
+        'mechanics/contact/forces.py', 'return ((-mu * N * dx, -mu * N * dy, N),',
+        'return ((mu * N * dx, mu * N * dy, N),',
+        'test/integrators/marching/test_held_by_rolling_friction.py::'
+        'test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off'),
+    'contact: normal force without the centripetal term': (
+        'mechanics/contact/forces.py', 'drawn = plus(cross(omega, carried), cross(omega, moved))',
+        'drawn = cross(omega, moved)',
+        'test/mechanics/contact/test_standing.py::'
+        'test_a_body_that_slips_is_held_on_the_plane_by_a_force_on_the_cone[0]'),
+    'contact: force of rolling without the centripetal term': (
+        'mechanics/contact/forces.py', 'cross(at.omega, plus(at.carried, at.moved))',
+        'cross(at.omega, at.moved)',
+        'test/integrators/marching/test_taylor_on_a_plane.py::'
+        'test_the_series_of_a_phase_meet_its_equations_under_friction'
+        '[disk-air_film: {viscosity: 0.03}-2]'),
+    'contact: moment of its force about the centre of mass turned': (
+        'integrators/equations/contact_rates.py', 'cross(at.r, along_body(at.axes, contact.f))',
+        'cross(along_body(at.axes, contact.f), at.r)',
+        'test/integrators/marching/test_convex_body.py::'
+        'test_dry_rolling_friction_stops_a_ball_where_it_says'),
+    'contact: restitution goes on into the plane': (
+        'mechanics/contact/laws.py', '(1.0 + restitution) * vz', '(1.0 - restitution) * vz',
+        'test/mechanics/contact/test_laws.py::test_an_impact_obeys_newton_and_coulomb[0-0.5-0.7]'),
+    'contact: loss of an impact by the velocity before it': (
+        'integrators/equations/contact_impacts.py',
+        'loss = -0.5 * dot(given, plus(before, after))', 'loss = -0.5 * dot(given, before)',
+        'test/integrators/marching/test_convex_body.py::'
+        'test_impulse_into_the_plane_is_taken_by_the_plane'),
+    'contact: film of air heats by the speed alone': (
+        'integrators/equations/contact_rates.py',
+        'contact.film * contact.speed * contact.speed', 'contact.film * contact.speed',
+        'test/integrators/marching/test_taylor_on_a_plane.py::'
+        'test_the_series_of_a_phase_meet_its_equations_under_friction'
+        '[disk-air_film: {viscosity: 0.03}-2]'),
+    'contact: friction of a spin drives it': (
+        'mechanics/contact/patch.py', 'third = -side * size', 'third = side * size',
+        'test/mechanics/contact/test_patch.py::'
+        'test_a_patch_that_pivots_slips_as_it_is_said_and_goes_on_the_cone[1-1.0]'),
+    'contact: slip begins where friction holds': (
+        'integrators/marching/contact_course.py',
+        'if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]',
+        'if mode == ROLLING and row[GRIP] > HOLDS * mu * row[NORMAL]',
+        'test/integrators/marching/test_hard_contacts.py::'
+        'test_a_slip_that_turns_round_does_not_roll[0.1-sliding began-dop8]'),
+    'contact: weight along a slope turned': (
+        'integrators/equations/contact_acting.py',
+        'Applied(rotate_back(*c.plane, fx, fy, fz)', 'Applied(rotate(*c.plane, fx, fy, fz)',
+        'test/integrators/marching/test_hard_contacts.py::'
+        'test_a_slip_that_turns_round_does_not_roll[0.4-rolling began-dop8]'),
 }
-QUICK = ('dop8: a digit of a weight',)
+QUICK = ('dop8: a digit of a weight', 'contact: restitution goes on into the plane')
 
 
 def killed(name, folder):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each mutant of test/hard_cases/mutations.py fails its test; one here, all with `make soak`.
+"""Each mutant of test/hard_cases/mutations.py fails its test; two here, all with `make soak`.
 
 That the tests pass on the original is shown by themselves here, and in the same way with
 `make soak`.

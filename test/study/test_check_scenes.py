@@ -17,7 +17,13 @@ from rigid_body_sim.study.scenes.experiment import Experiment
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
 from rigid_body_sim.study.scenes.systems import SYSTEMS
-from rigid_body_sim.theory import billiard, heavy_top, kater_pendulum, symmetric_top
+from rigid_body_sim.theory import (
+    billiard,
+    heavy_top,
+    kater_pendulum,
+    rolling_disk,
+    symmetric_top,
+)
 
 # all that ship except those whose kernels no other test compiles (ball by dop8, torque, heat, bat)
 # and the second of two alike
@@ -76,11 +82,32 @@ def test_a_disk_precesses_with_its_centre_at_rest():
     assert way.passed and way.error < 1e-13    # m; measured 5e-15
 
 
+def _upright(shape):
+    """Return what is found about a disk or hoop that stands upright, [(above, below), ...]."""
+    run = Experiment(load_scene('rolling_disk', [f'body.shape={{{shape}: {{radius: 0.5}}}}']),
+                     'dop8')
+    found = list(convex_body._upright(run, ''))
+    return list(zip(found[::2], found[1::2], strict=True))
+
+
 @LONG_IN_PYTHON
-def test_a_disk_stays_upright_above_a_speed_only():
-    run = Experiment(load_scene('rolling_disk'), 'dop8')
-    above, below = convex_body._upright(run, '')
-    assert (above.measured, below.measured) == (0.0, 1.0) == (above.predicted, below.predicted)
+@pytest.mark.parametrize('shape', ['disk', 'hoop'])
+def test_a_disk_stays_upright_above_a_speed_or_a_rate_of_spinning_only(shape):
+    pairs = _upright(shape)
+    assert len(pairs) == 2
+    for above, below in pairs:
+        assert (above.measured, below.measured) == (0.0, 1.0) == (above.predicted, below.predicted)
+
+
+@LONG_IN_PYTHON
+@pytest.mark.parametrize(('wrong', 'passed'), [
+    (lambda A, m, R, g: np.sqrt(m * g * R / A), (True, False)),
+    (lambda A, m, R, g: np.sqrt(2.0 * g / (3.0 * R)), (False, True))],
+    ids=['about the centre', 'of the hoop'])
+def test_a_wrong_rate_of_spinning_is_not_confirmed(monkeypatch, wrong, passed):
+    monkeypatch.setattr(rolling_disk, 'rate_of_upright_stability', wrong)
+    _, (above, below) = _upright('disk')
+    assert (above.passed, below.passed) == passed
 
 
 def test_inertia_by_quadrature_and_by_a_blow(capsys):

@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A disk that rolls without slip, in Legendre functions."""
+"""A disk that rolls without slip: its Legendre functions, and the thresholds of upright motion."""
+
+import math
 
 import mpmath
+import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.theory.rolling_disk import legendre_constants
+from rigid_body_sim.theory.rolling_disk import (
+    legendre_constants,
+    rate_of_upright_stability,
+    speed_of_upright_stability,
+)
 
 
 @pytest.mark.parametrize(('theta', 's', 'w3'), [(1.2, 0.7, 3.0), (0.4, -2.0, 0.5)])
@@ -22,3 +29,45 @@ def test_the_constants_give_the_spin_and_how_it_goes_with_the_inclination(theta,
     # measured: 1.2e-16 and 6.7e-16
     assert float(spin(theta)) == near(w3, rel=1e-14)
     assert float(mpmath.diff(spin, theta)) == near(kappa * s, rel=1e-13)
+
+
+def growth(W, w3, A, C, m, R, g):
+    """Return the largest square of a rate at which a small tilt of an upright disk goes, 1/s^2.
+
+    Appell's equations of theta, theta', s, w3, and their Jacobian at (pi/2, 0, W, w3).
+    """
+    def rates(theta, turns, s, w3):
+        cot = np.cos(theta) / np.sin(theta)
+        return np.array([
+            turns,
+            (A * s * s * cot - (C + m * R * R) * w3 * s - m * g * R * np.cos(theta))
+            / (A + m * R * R),
+            -s * turns * cot + C / A * w3 * turns,
+            m * R * R / (C + m * R * R) * s * turns])
+    step = 1e-30    # of the complex step: exact to rounding
+    columns = [rates(*np.array([0.5 * np.pi, 0.0, W, w3]) + 1j * step * unit).imag / step
+               for unit in np.eye(4)]
+    squares = np.linalg.eigvals(np.transpose(columns)) ** 2
+    return float(squares[np.abs(squares).argmax()].real)
+
+
+@pytest.mark.parametrize('C', [0.49, 0.98, 0.7])    # disk, hoop, between them
+@pytest.mark.parametrize('share', [1.1, 0.9])
+def test_an_upright_disk_is_unstable_below_its_thresholds_and_stable_above(C, share):
+    m, R, g = 2.0, 0.7, 9.81
+    A = 0.5 * C
+    w3 = share * speed_of_upright_stability(A, C, m, R, g) / R
+    W = share * rate_of_upright_stability(A, m, R, g)
+    expected = (1.0 - share * share) * m * g * R / (A + m * R * R)
+    # measured: 5e-16
+    assert growth(0.0, w3, A, C, m, R, g) == near(expected, rel=1e-13)
+    assert growth(W, 0.0, A, C, m, R, g) == near(expected, rel=1e-13)
+
+
+def test_the_thresholds_of_disk_and_hoop_are_those_that_are_known():
+    m, R, g = 2.0, 0.7, 9.81
+    for C, rolls, spins in ((0.5 * m * R * R, 1.0 / 3.0, 0.8), (m * R * R, 0.25, 2.0 / 3.0)):
+        v = speed_of_upright_stability(0.5 * C, C, m, R, g)
+        W = rate_of_upright_stability(0.5 * C, m, R, g)
+        assert math.sqrt(rolls * g * R) == near(v, rel=1e-15)
+        assert math.sqrt(spins * g / R) == near(W, rel=1e-15)

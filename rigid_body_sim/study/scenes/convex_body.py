@@ -59,17 +59,19 @@ def _legendre_constants(run):
 
 
 def _upright(run, name):
-    """Yield that an upright disk is stable above its threshold only."""
+    """Yield that an upright disk rolls, and spins, stably above a threshold only."""
     A, C, m, R, g = _numbers(run)
-    threshold = theory.speed_of_upright_stability(A, C, m, R, g)
-    for share, stable in ((1.01, True), (0.99, False)):
-        upright = run.variant({
-            'initial.euler_zyz': [0.0, 0.5 * np.pi, 0.0],
-            'initial.angular_velocity': [0.0, 1e-6, share * threshold / R]})
-        tilt = np.abs(normals(upright.states(np.linspace(0.0, 40.0, 401)))[:, 2]).max()
-        yield Quantity(
-            f'tilt grows beyond 1e-4 rad at {share:g} of the speed of upright stability{name}',
-            0.0 if stable else 1.0, float(tilt > 1e-4), 0.0, absolute=True)
+    rolls = theory.speed_of_upright_stability(A, C, m, R, g) / R
+    spins = theory.rate_of_upright_stability(A, m, R, g)
+    for omega, threshold in (([0.0, 1e-6, rolls], 'speed of upright stability'),
+                             ([-spins, 1e-6, 0.0], 'rate of upright stability, spinning')):
+        for share, stable in ((1.01, True), (0.99, False)):
+            upright = run.variant({
+                'initial.euler_zyz': [0.0, 0.5 * np.pi, 0.0],
+                'initial.angular_velocity': [share * omega[0], omega[1], share * omega[2]]})
+            tilt = np.abs(normals(upright.states(np.linspace(0.0, 40.0, 401)))[:, 2]).max()
+            yield Quantity(f'tilt grows beyond 1e-4 rad at {share:g} of the {threshold}{name}',
+                           0.0 if stable else 1.0, float(tilt > 1e-4), 0.0, absolute=True)
 
 
 def _steady(run, A, m, R, g):
