@@ -50,7 +50,7 @@ def first_zero(p, w, y, lost, h, k, begin):
         above.
     """
     low, value_low = 0.0, begin
-    least, at, falls = math.inf, 0.0, False
+    least, at, falls = math.inf, 0.0, begin > 0.0    # what begins at zero has to rise first
     high, value_high = -1.0, 0.0
     flies = p[MODE] == FLIGHT and k == NORMAL
     for n in range(1, PARTS + 1):
@@ -81,7 +81,7 @@ def first_zero(p, w, y, lost, h, k, begin):
             least, at = value, part
         low, value_low = part, value
     if high < 0.0 and falls:
-        # the least of the values since it fell may hide a dip: golden section around it
+        # the least of the values may hide a dip: golden section around it
         left, right = max(0.0, at - h / PARTS), min(h, at + h / PARTS)
         for _ in range(SEARCHES):
             first = right - GOLDEN * (right - left)
