@@ -10,6 +10,7 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
+import contextlib
 import copy
 import dataclasses
 import functools
@@ -441,16 +442,15 @@ class Simulation:
 
     def _go_to_last_tick(self, error):
         """Go to the last tick before a NotConverged, and note the events up to the end."""
-        tick, before, spans, commands = self.tick, self.time, self._spans, self._commands
-        for last in self._last_ticks(error.time):
-            self.tick, self._commands = last, None
-            try:
-                self._arrive()
-                break
-            except NotConverged:
-                self.tick, self._spans, self._commands = tick, spans, commands
-        else:
-            self._arrive()
+        before, reached, beyond = self.time, self.tick, self._tick_after(error.time)
+        tick = beyond - 1    # it is the one, unless rounding or a state that is not finite is before
+        while reached + 1 < beyond:
+            if self._reaches(tick):
+                reached = tick
+            else:
+                beyond = tick
+            tick = (reached + beyond) // 2
+        self._arrive()
         if not self.watching or self._told_end:
             return
         self._note_events(self._spans, before, self.time)
@@ -458,16 +458,25 @@ class Simulation:
             self._note_events(self._spans_until(error.time), self.time, math.inf)
             self._told_end = True
 
-    def _last_ticks(self, time):
-        """Return ticks after the present one of which the first is the last at a time (s).
+    def _reaches(self, tick):
+        """Go to a later tick that has a finite state, or stay and return False."""
+        kept = self.tick, self._spans, self._commands
+        self.tick, self._commands = tick, None
+        with contextlib.suppress(NotConverged):
+            self._arrive()
+            if np.isfinite(self._vector).all():
+                return True
+        self.tick, self._spans, self._commands = kept
+        return False
 
-        Where the march has come just to that time it may be that only the tick before is reached.
-        """
+    def _tick_after(self, time):
+        """Return the first tick after the present one that is after a time (s) or None."""
         if time is None or not self.time < time < math.inf:
-            return []
-        near = self._origin + math.floor((time - self._origin_time) * self.rate)
-        return [tick for tick in (near + 1, near, near - 1)
-                if tick > self.tick and self.time_at(tick) <= time]
+            return self.tick + 1
+        tick = self._origin + math.floor((time - self._origin_time) * self.rate)
+        while self.time_at(tick) <= time:
+            tick += 1
+        return max(tick, self.tick + 1)
 
     def foresee(self, ticks: int) -> States:
         """Return the States at the next ticks without going there.

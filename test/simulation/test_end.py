@@ -102,7 +102,7 @@ def test_at_event_finds_the_end_before_and_after_it_is_told(text, last, end):
     found = [one.at_event('end')]
     one.advance_through(100)
     found.append(one.at_event('end'))
-    assert found[0].vector.tobytes() == found[1].vector.tobytes()
+    assert np.abs(found[0].vector - found[1].vector).max() < 1e-13    # measured: 2e-15
     assert found[0].time == one.events[0].time
     with pytest.raises(BadInput, match=r"no 'rest' within 100 s; in that time come: end"):
         one.at_event('rest')
@@ -152,7 +152,7 @@ def test_without_watching_the_run_ends_at_the_same_tick_without_an_event():
     ('sqrt(0.0305 - t)', 3.0, 'rk4', 7e-4, 30),     # the last step ends at 0.0308 s
     ('wz^2', 300.0, 'dop8', None, 8),               # infinite at 1/120 s
     ('wz^2', 300.0, 'lsoda', None, 8),              # by too many steps
-    ('-100*sign(wz)', 1.0, 'dop8', None, 24)])      # slides along a kink from 0.025 s on
+    ('-100*sign(wz)', 1.02, 'dop8', None, 25)])     # slides along a kink from 0.0255 s on
 def test_a_method_that_gives_up_leaves_the_last_tick_before(law, spin, method, step, last):
     scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
                         f"effects: [torque: {{value: [0, 0, '{law}']}}]\n"
