@@ -443,7 +443,7 @@ class Simulation:
     def _go_to_last_tick(self, error):
         """Go to the last tick before a NotConverged, and note the events up to the end."""
         before, reached, beyond = self.time, self.tick, self._tick_after(error.time)
-        tick = beyond - 1    # it is the one, unless rounding or a state that is not finite is before
+        tick = beyond - 1    # the first guess: rounding, or a march that overshot, may miss it
         while reached + 1 < beyond:
             if self._reaches(tick):
                 reached = tick

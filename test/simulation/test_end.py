@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs that end early: the simulation stands at the last tick before, and `end` is told."""
 
+import contextlib
 import pickle
 import types
 
@@ -47,7 +48,7 @@ def simulation(text, **settings):
 def one_by_one(text):
     """Return a simulation that stands where advancing by single ticks ends, and its states."""
     one, vectors = simulation(text), []
-    with pytest.raises(Ended):
+    with contextlib.suppress(Ended):
         while True:
             one.advance()
             vectors.append(one.vector.copy())
@@ -190,8 +191,9 @@ def test_the_node_publishes_every_tick_before_the_end_and_the_event(text, last, 
     settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0, display_rate=30.0)
     session = Session(one, _Queue(), publishing, NoJournal(), settings, lambda: 0)
     session.begin()
+    for _ in range(last + 1):
+        session.run_tick(True)
     with pytest.raises(Ended):
-        for _ in range(100):
-            session.run_tick(True)
+        session.run_tick(True)
     assert (session.next_tick, publishing.ticks) == (last + 1, last + 1)
     assert publishing.events == [('end', last, last + 1)]
