@@ -32,7 +32,25 @@ class BadInput(ValueError):
 
 
 class NotConverged(ArithmeticError):
-    """A method gave up; the text says at which time and why."""
+    """A method gave up; the text says at which time and why.
+
+    Parameters
+    ----------
+    text : str
+    time : float, optional
+        The time up to which there are states, s; None where nobody knows.
+    """
+
+    def __init__(self, text, time=None):
+        super().__init__(text)
+        self.time = time
+
+    def __reduce__(self):
+        return type(self), (str(self), self.time)
+
+
+class Ended(NotConverged):
+    """No law says how the motion goes on after a time: there it has the event `end`."""
 
 
 def optional(package):

@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 from rigid_body_sim import command_line
 from rigid_body_sim.choice.choose import HORIZON
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.messages import state_topics
 from rigid_body_sim.messages.timeline import Timeline
 from rigid_body_sim.recording import about, compression
@@ -86,6 +86,11 @@ def simulate(simulation, ticks, recording=None, stop=None, progress=None):
         The run ends early when it is not empty any more; a tick that takes long is given up.
     progress : callable, optional
         Called with the number of ticks done.
+
+    Raises
+    ------
+    NotConverged
+        Where the run ends early; all before is in the recording.
     """
     counts = collections.Counter()
     if recording:
@@ -102,6 +107,10 @@ def simulate(simulation, ticks, recording=None, stop=None, progress=None):
             if not stop:
                 raise
             break
+        except NotConverged:
+            if recording:
+                recording.note(simulation.events)
+            raise
         if recording:
             recording.note(simulation.events)
             recording.ticks(first, states)
@@ -109,7 +118,7 @@ def simulate(simulation, ticks, recording=None, stop=None, progress=None):
         simulation.events.clear()
         simulation.forget_past()
         if progress:
-            progress(count)
+            progress(simulation.tick + 1 - first)
     return counts
 
 

@@ -258,7 +258,7 @@ class Stepped:
         raise NotConverged(
             f'{self.method.NAME} on {self.scene.name}: at t = {self.begin!r} s the '
             f'body turns with {rate!r} rad/s; until {last!r} s that is more radians '
-            'than doubles can count'
+            'than doubles can count', self._latest
         )
 
     def events(self, after, until, tick=0.0):
@@ -327,4 +327,4 @@ def _naming(body):
     try:
         yield
     except NotConverged as error:
-        raise NotConverged(f'body {body}: {error}') from None
+        raise NotConverged(f'body {body}: {error}', error.time) from None

@@ -9,7 +9,7 @@ from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.node import overrides
 from rigid_body_sim.realtime.shutdown import say
 
@@ -55,6 +55,9 @@ def run(make_node, arguments, stop):
     except BadInput as refusal:
         say(refusal)
         return BAD_INPUT
+    except NotConverged as failure:    # a motion that cannot begin
+        say(failure)
+        return CHECK_FAILED
     except RCLError as error:
         say(f'ROS: {_one_line(error)}')
         return BAD_INPUT

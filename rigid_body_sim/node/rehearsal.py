@@ -7,11 +7,13 @@ simulation of its own and without publishing: single and prefetched ticks, comma
 balance.
 """
 
+import contextlib
 import types
 
 import numpy as np
 
 from rigid_body_sim.command_line import patience
+from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.node.journal import NoJournal
 from rigid_body_sim.realtime.session import QUIET, Session
 from rigid_body_sim.recording import about
@@ -29,6 +31,8 @@ COMMANDS = np.array(
 def rehearse(simulation, messages):
     """Run ticks as a node will run them, on a separate simulation, before any clock starts.
 
+    A motion that ends on the way ends the warm-up: the run itself tells that at its tick.
+
     Parameters
     ----------
     simulation : Simulation
@@ -36,7 +40,7 @@ def rehearse(simulation, messages):
     messages : state_topics.SceneMessages
         Makes the messages of its scene.
     """
-    with patience():
+    with patience(), contextlib.suppress(NotConverged):
         _rehearse(simulation, messages)
 
 

@@ -158,7 +158,11 @@ class Session:
         """Bring the simulation to the tick that is being run; drop prefetched messages."""
         self._ahead.clear()
         if self._tick > self.simulation.tick:
-            self.simulation.advance(self._tick - self.simulation.tick)
+            try:
+                self.simulation.advance(self._tick - self.simulation.tick)
+            except NotConverged:
+                self._report_events()    # of the last tick, which is published
+                raise
 
     def _look_ahead(self, tick):
         """Prefetch the messages of the ticks after this one, up to the next event."""
@@ -266,7 +270,7 @@ class Session:
         return self.timeline.instant(self.next_tick)
 
     def event(self, level, name, message, values=None):
-        """Publish and record an event of the tick that is being run."""
+        """Publish and record an event of the tick that is being run, or of that in `values`."""
         self.event_counts[name] += 1
         values = {
             'tick': self.next_tick,
@@ -274,7 +278,7 @@ class Session:
             **(values or {}),
         }
         topic, data = self._publishing.event(level, name, message, values)
-        self._journal.message(topic, self.stamp, data)
+        self._journal.message(topic, self.timeline.instant(values['tick']), data)
 
     def _report_events(self):
         events, self.simulation.events[:] = list(self.simulation.events), []

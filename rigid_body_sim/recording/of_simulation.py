@@ -76,7 +76,7 @@ class SimulationRecording:
                               self._journal, about.about(made_by, simulation, parameters),
                               **writing)
         self._timeline = Timeline(time.time_ns(), simulation.rate)
-        self._waiting = []
+        self._waiting, self._recorded = [], -1
         self._announce()
 
     def _take(self, simulation):
@@ -93,11 +93,14 @@ class SimulationRecording:
         return self._timeline.instant(self._simulation.tick)
 
     def note(self, events):
-        """Take events of ticks that are not recorded yet; each is recorded with its tick."""
-        self._waiting += [
-            (event.tick, EVENTS, about.event_message(self._made_by, about.OK, event.name,
-                                                     *about.event_text(event)))
-            for event in events]
+        """Take events; each is recorded with its tick, at once where that tick is recorded."""
+        for event in events:
+            data = about.event_message(self._made_by, about.OK, event.name,
+                                       *about.event_text(event))
+            if event.tick <= self._recorded:
+                self._message(EVENTS, self._timeline.instant(event.tick), data)
+            else:
+                self._waiting.append((event.tick, EVENTS, data))
 
     def ticks(self, first, states):
         """Record the States of consecutive ticks, of which `first` is the first."""
@@ -116,6 +119,7 @@ class SimulationRecording:
             begin = end
             self._message(topic, stamps[begin], data)
         self._record_ticks(first, begin, len(states), stamps, rows)
+        self._recorded = last
         if self._writer.state_wanted and last == self._simulation.tick:
             self._writer.state_wanted = False
             self._entry('state', **about.state_entry(last, self._stamp, self._simulation))

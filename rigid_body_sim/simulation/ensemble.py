@@ -286,7 +286,7 @@ def _fill(choice, starts, times, names, out, report):
 def _of_body(error, bodies):
     """Return an error about a body of a block, with the body's number in the ensemble."""
     return NotConverged(re.sub(r'^body (\d+)', lambda found: f'body {bodies[int(found[1])]}',
-                               str(error)))
+                               str(error)), error.time)
 
 
 def _events(choice, start, times):

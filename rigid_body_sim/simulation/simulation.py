@@ -10,6 +10,7 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
+import contextlib
 import copy
 import dataclasses
 import functools
@@ -21,7 +22,7 @@ import numpy as np
 
 from rigid_body_sim.choice.choose import HORIZON, choose, methods_for
 from rigid_body_sim.choice.forecast import missed
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, Ended, NotConverged
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.bounds import swing_momentum
@@ -60,7 +61,7 @@ from rigid_body_sim.simulation.strikes import Strikes
 LOOKS = 1024  # parts of the time ahead in which at_event looks first
 KEPT = (
     'tick', 'events', 'departed', '_vector', '_arrived', '_origin', '_origin_time', '_beginning',
-    '_initial', '_commands',
+    '_initial', '_commands', '_told_end',
 )
 """Attributes that a copy or a pickle takes over unchanged."""
 NOTHING_HELD = Wrench()
@@ -277,6 +278,7 @@ class Simulation:
         self._origin, self._origin_time = tick, 0.0
         self._initial = diagnosis
         self._spans, self._commands, self._foreseen = spans, None, NOTHING_FORESEEN
+        self._told_end = False
 
     def _span(self, time, start, wrench, strikes, given):
         """Return a Span from a state (14 doubles) on."""
@@ -387,7 +389,10 @@ class Simulation:
         Raises
         ------
         BadInput
-            Any other value. The simulation stays where it was, as after any other error.
+            Any other value. The simulation stays where it was, as after any other error but this:
+        NotConverged
+            The motion cannot be followed that far. The simulation stands at the last tick that
+            it can reach; `events` has those up to there, and `end` where the run ends so.
         """
         before, tick = self.time, self.tick
         self.tick = tick + number_of_ticks('advance', ticks, self.tick)
@@ -402,21 +407,76 @@ class Simulation:
         try:
             self._arrive()
             if self.watching:
-                self.events += list(self._events_between(self._spans, before, self.time))
-        except BaseException:
+                self._note_events(self._spans, before, self.time)
+        except BaseException as error:
             self.tick, self._spans, self._commands = tick, spans, commands
             self._arrive()
+            if isinstance(error, NotConverged):
+                self._go_to_last_tick(error)
             raise
 
     def advance_through(self, ticks: int) -> States:
         """Go on by a number of ticks and return the States at all of them.
 
-        They have the bits of the states that :meth:`advance` meets one by one.
+        They have the bits of the states that :meth:`advance` meets one by one. There are `ticks`
+        of them, or as many as come before the run ends.
+
+        Raises
+        ------
+        BadInput
+            As :meth:`advance`.
+        NotConverged
+            As :meth:`advance`, where not even the next tick can be reached.
         """
         ticks = number_of_ticks('advance_through', ticks, self.tick)
-        states = self.states(self.time_at(np.arange(self.tick + 1, self.tick + ticks + 1)))
+        first = self.tick + 1
+        try:
+            states = self.states(self.time_at(np.arange(first, first + ticks)))
+        except NotConverged as error:
+            self._go_to_last_tick(error)
+            if self.tick < first:
+                raise
+            return self.states(self.time_at(np.arange(first, self.tick + 1)))
         self.advance(ticks)
         return states
+
+    def _go_to_last_tick(self, error):
+        """Go to the last tick before a NotConverged, and note the events up to the end."""
+        before, reached, beyond = self.time, self.tick, self._tick_after(error.time)
+        tick = beyond - 1    # the first guess: rounding, or a march that overshot, may miss it
+        while reached + 1 < beyond:
+            if self._reaches(tick):
+                reached = tick
+            else:
+                beyond = tick
+            tick = (reached + beyond) // 2
+        self._arrive()
+        if not self.watching or self._told_end:
+            return
+        self._note_events(self._spans, before, self.time)
+        if isinstance(error, Ended):
+            self._note_events(self._spans_until(error.time), self.time, math.inf)
+            self._told_end = True
+
+    def _reaches(self, tick):
+        """Go to a later tick that has a finite state, or stay and return False."""
+        kept = self.tick, self._spans, self._commands
+        self.tick, self._commands = tick, None
+        with contextlib.suppress(NotConverged):
+            self._arrive()
+            if np.isfinite(self._vector).all():
+                return True
+        self.tick, self._spans, self._commands = kept
+        return False
+
+    def _tick_after(self, time):
+        """Return the first tick after the present one that is after a time (s) or None."""
+        if time is None or not self.time < time < math.inf:
+            return self.tick + 1
+        tick = self._origin + math.floor((time - self._origin_time) * self.rate)
+        while self.time_at(tick) <= time:
+            tick += 1
+        return max(tick, self.tick + 1)
 
     def foresee(self, ticks: int) -> States:
         """Return the States at the next ticks without going there.
@@ -431,7 +491,7 @@ class Simulation:
         if not ticks:
             return self.states(times)
         spans = self._spans_until(times[-1])
-        event = next(self._events_between(spans, self.time, times[-1]), None)
+        event = next(self._events_between(spans, self.time, times[-1], self.tick + ticks), None)
         states = self.states(
             times if event is None else times[: max(event.tick - self.tick - 1, 0)]
         )
@@ -478,7 +538,8 @@ class Simulation:
         Parameters
         ----------
         name : str
-            ``flip``, ``rolling began``, ...: the names that :attr:`events` shows.
+            ``flip``, ``rolling began``, ...: the names that :attr:`events` shows. At ``end`` it is
+            the last state there is.
         within : float
             How far to look ahead, s.
 
@@ -492,11 +553,14 @@ class Simulation:
             raise BadInput('within', f'got {within!r}', 'a positive number of seconds')
         now, reach = self.time, within / LOOKS
         while True:
-            spans = self._spans_until(now + reach)
-            found = list(self._events_between(spans, now, now + reach))
+            try:
+                spans = self._spans_until(now + reach)
+            except Ended as error:    # on the way to a later strike
+                spans = self._spans_until(error.time)
+            found = list(self._events_between(spans, now, now + reach, math.inf))
             for event in found:
                 if event.name == name:
-                    return self.states([event.time])[0]
+                    return self._state_at(event, spans[-1])
             if reach >= within:
                 names = ', '.join(sorted({event.name for event in found}))
                 raise BadInput(
@@ -507,6 +571,15 @@ class Simulation:
                     else 'no event comes in that time: a later one needs a larger `within`',
                 )
             reach = min(2.0 * reach, within)
+
+    def _state_at(self, event, last):
+        """Return the State at an event; `last` is the span of an `end`."""
+        try:
+            return self.states([event.time])[0]
+        except Ended as error:
+            if error.time == last.time:    # what the strike leaves is the last state
+                return State(last.start.copy())
+            return self.states([error.time])[0]
 
     def impulse(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='world'):
         """Strike the body at the present tick: an impulse of force and one of torque.
@@ -664,9 +737,12 @@ class Simulation:
         self._spans[-1].solver.state(time, self._vector)
         self._arrived, self._diagnosed_tick = True, None
 
-    def _events_between(self, spans, before, now):
-        """Yield the events after `before` up to the tick at `now` (s), in their order."""
-        last_tick = self._origin + round((now - self._origin_time) * self.rate)
+    def _note_events(self, spans, before, now):
+        """Append the events after `before` up to `now` (s), at most of the present tick."""
+        self.events += list(self._events_between(spans, before, now, self.tick))
+
+    def _events_between(self, spans, before, now, last_tick):
+        """Yield the events after `before` up to `now` (s), in their order, up to a last tick."""
         for time, name, values in events_between(spans, before, now, 1.0 / self.rate):
             tick = self._origin + math.ceil((time - self._origin_time) * self.rate)
             yield Event(min(tick, last_tick), time, name, values)
@@ -680,6 +756,9 @@ class Simulation:
         commands, time = self._commands, self.time
         kept, given = self._spans[: commands.base], commands.given
         last = kept[-1]
+        if self._told_end:    # an end that was told may not come any more
+            self._told_end = False
+            self.events[:] = [event for event in self.events if event.time <= time]
         if self.departed == time:
             self.departed = None    # the commands of the tick may cancel
         if given.any_impulse or commands.wrench != last.wrench:

@@ -16,7 +16,10 @@ from rigid_body_sim.scene.state import STATE_SIZE
 
 @dataclass(frozen=True)
 class Event:
-    """An event: its tick (the first at or after it), time (s), name and values."""
+    """An event: its tick, time (s), name and values.
+
+    The tick is the first one at or after it, or the last one of the run where none follows.
+    """
 
     tick: int
     time: float

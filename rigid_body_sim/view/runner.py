@@ -229,6 +229,8 @@ class Runner:
         try:
             self._move(min(self._time + forward, LAST_TIME * 1000.0 / self._simulation.rate))
         except (BadInput, NotConverged) as error:
+            if self._simulation.time > self._time:
+                self._show(self._simulation.time)
             self._pipe.send(('failed', f'{error}. The motion halts there: {WAYS_ON}'))
             self._halted = True
             return
@@ -240,6 +242,11 @@ class Runner:
         simulation = self._simulation
         origin = simulation.time_at(0)
         self._go(max(int((until - origin) * simulation.rate) - simulation.tick, 0))
+        self._show(until)
+
+    def _show(self, until):
+        """Send the snapshot of a time (s) that the motion has reached, with the trail to it."""
+        simulation = self._simulation
         rate = float(np.linalg.norm(simulation.vector[ANGULAR_VELOCITY]))
         between = 1 + min(int(rate * (until - self._time) / TURN_BETWEEN), MOST_BETWEEN)
         times = np.linspace(self._time, until, between + 1)[1:]

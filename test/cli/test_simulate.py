@@ -311,3 +311,52 @@ def test_a_run_in_fixed_steps_runs_again_to_the_same_bits(tmp_path, capsys):
     assert main([*given, '--output', str(tmp_path / 'run')]) == 0
     capsys.readouterr()
     assert resimulate([str(tmp_path / 'run')]) == 0
+
+
+FAST = """
+scene: fast
+about: A body that rolls off the plane where no slip lets it down
+body: {mass: 1.0, inertia: [0.01, 0.012, 0.02], center_of_mass: [0, 0, -0.03],
+       surface: {ellipsoid: {semi_axes: [0.2, 0.1, 0.15]}}}
+constraint: table
+effects: [gravity: {g: 9.81}, sliding_friction: {mu: .inf}]
+initial: {euler_zyz: [0, 0.6, 0.4], angular_velocity: [0, 14, 0], rolling: true}
+"""
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('block', [4096, 30, 17])
+def test_a_run_that_ends_keeps_every_tick_before_and_the_event(
+        tmp_path, monkeypatch, capsys, block):
+    """The block in which it ended was lost. A block may also stop just at the last tick."""
+    monkeypatch.setattr('rigid_body_sim.cli.simulate.BLOCK', block)
+    (tmp_path / 'fast.yaml').write_text(FAST)
+    run = str(tmp_path / 'run')
+    assert main(['--scene', str(tmp_path / 'fast.yaml'), '--duration', '1', '--accuracy', '1e-9',
+                 '--integrator', 'dop8', '--output', run]) == 1
+    printed = capsys.readouterr()
+    assert 'at t = 0.0606' in printed.err and 'plane that pulls' in printed.err
+    assert (printed.err.count('\n'), printed.out) == (1, '')
+    found = read(tmp_path / 'run')
+    stamps = [stamp for stamp, _ in found['/pose']]
+    assert np.diff(stamps).tolist() == [1_000_000] * 60    # ticks 0 to 60
+    [(stamp, event)] = found['/events']
+    values = {pair.key: pair.value for pair in event.values}
+    assert (event.name, values['tick'], stamp) == ('end', '60', stamps[-1])
+    assert 0.0606 < float(values['time']) < 0.0607
+    assert resimulate([run]) == 0
+    assert 'identical, 61 states' in capsys.readouterr().out
+
+
+@pytest.mark.without_numba
+def test_a_run_whose_state_ceases_to_be_finite_keeps_every_tick_before(tmp_path, capsys):
+    (tmp_path / 'root.yaml').write_text(
+        'scene: root\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+        "effects: [torque: {value: ['sqrt(0.0305 - t)', 0, 0]}]\n"
+        'initial: {angular_velocity: [1, 2, 3]}\n')
+    run = str(tmp_path / 'run')
+    assert main(['--scene', str(tmp_path / 'root.yaml'), '--duration', '1', '--accuracy', '1e-6',
+                 '--integrator', 'dop8', '--output', run]) == 1
+    assert capsys.readouterr().err.startswith('dop8 on root: at t = 0.0304')
+    assert Recording(run).topics['/pose'].count == 31
+    assert resimulate([run]) == 0

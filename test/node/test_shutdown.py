@@ -155,6 +155,22 @@ def test_what_cannot_begin_says_why_in_one_line(ros_domain, arguments, line):
     assert node.stdout == ''
 
 
+def test_a_motion_that_cannot_begin_says_so_in_one_line(ros_domain, tmp_path, monkeypatch):
+    """It ended with a traceback: a rod that slips into Painleve's paradox."""
+    monkeypatch.setenv('NUMBA_DISABLE_JIT', '1')
+    (tmp_path / 'rod.yaml').write_text(
+        'scene: rod\nbody: {mass: 1.0, inertia: [0.0833333333333, 0.0833333333333, 1.0e-4], '
+        'surface: {ellipsoid: {semi_axes: [0.005, 0.005, 0.5]}}}\nconstraint: table\n'
+        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: 2.5}]\n'
+        'initial: {euler_zyz: [0, 0.5, 0], velocity: [-4.0, 0, 0]}\n')
+    node = ros_domain.run(
+        '-m', 'rigid_body_sim', 'sim_node', '--ros-args', '-p', f'scene:={tmp_path}/rod.yaml',
+        '-p', 'integrator:=dop8', '-p', 'accuracy:=1e-9', '-p', 'record:=false', timeout=90)
+    assert node.returncode == 1
+    said = without_notices(node.stderr)
+    assert said.count('\n') == 1 and "Painleve's paradox at t = 0.0 s" in said
+
+
 def test_help_does_not_start_ros(ros_domain):
     shown = subprocess.run(
         [sys.executable, '-S', '-m', 'rigid_body_sim', 'sim_node', '--help'], capture_output=True,

@@ -212,7 +212,10 @@ def test_a_body_pulled_where_it_cannot_go_halts_and_each_way_on_leads_on(disk, w
     seen = advance_until(one, pipe, has('failed'))
     [text] = [value for name, value in seen if name == 'failed']
     assert 'ideal rolling needs a plane that pulls' in text and text.endswith(runner.WAYS_ON)
-    last = [value for name, value in seen if name == 'snapshot'][-1].time
+    snapshots = [value for name, value in seen if name == 'snapshot']
+    last = snapshots[-1].time
+    [(end, name)] = [event for snapshot in snapshots for event in snapshot.events]
+    assert name == 'end' and last <= end < last + 1.001 / SETTINGS['rate']
     one._advance(0.5)
     assert pipe.sent == []
     one.told('pause', False)    # still pulled: it says so again

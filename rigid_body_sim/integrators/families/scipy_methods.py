@@ -107,16 +107,17 @@ class _Course:
         )
 
     def _advance(self):
+        reached = float(self._solver.t)
         try:
             message = self._solver.step()
         except ValueError:    # SciPy takes no Jacobian apart that is not finite
             raise NotConverged(
                 f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s '
-                'the rates are not finite') from None
+                'the rates are not finite', reached) from None
         if self._solver.status == 'failed' or not np.isfinite(self._solver.y).all():
             raise NotConverged(
                 f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
-                f'{message or "the state is no longer finite"}'
+                f'{message or "the state is no longer finite"}', reached
             )
         self._reached.append(self._solver.t)
         self._steps.append(self._solver.dense_output())
@@ -137,7 +138,8 @@ class _Course:
                     return True
                 self._advance()
                 if self._most is not None and DEAR * (len(self._steps) - before) > self._most:
-                    raise TooMuchWork(f'{name}: more than {self._most} steps to t = {target!r} s')
+                    raise TooMuchWork(f'{name}: more than {self._most} steps to t = {target!r} s',
+                                      float(reached()))
             return False
 
         Work(name, None, COST).go(arrived, lambda: max(self._begin, reached()), target)

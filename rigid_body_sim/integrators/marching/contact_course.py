@@ -5,12 +5,13 @@ The phases are in equations/contact_rates.py, the march through one is contact_p
 """
 
 import bisect
+import contextlib
 import math
 
 import numpy as np
 
 from rigid_body_sim.compilation.threads import look
-from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.errors import Ended, NotConverged
 from rigid_body_sim.integrators.equations.contact_impacts import velocity_of_lowest
 from rigid_body_sim.integrators.equations.contact_rest import (
     IDEAL,
@@ -102,7 +103,7 @@ class PlaneCourse:
         self._tolerance = stepped.accuracy / stepped.horizon
         self._work = np.zeros(bound.work_shape)
         self._steps = Work(f'{stepped.method.NAME} on {bound.scene.name}', stepped.most,
-                           comes_to_rest=True)
+                           comes_to_rest=True, origin=self._begin)
         self._phases, self._begins, self._wide = [], [], WIDEST
         self._events, self._over, self._why = [], None, ''
         y = np.empty(SIZE)
@@ -156,7 +157,7 @@ class PlaneCourse:
         if len(self._phases) >= MOST_PHASES and (
                 float(y[TIME]) - self._phases[-MOST_PHASES].begin <= short):
             raise NotConverged(f'{self._bound.scene.name}: at t = {time!r} s phases of contact '
-                               'follow each other without end')
+                               'follow each other without end', time)
         # no step is asked to resolve the rounding of forces that cancel
         tolerance = max(self._tolerance, CANCELS * self._scales.heaviness / p[SWIFT])
         p[LAG] = tolerance * self._scales.length
@@ -412,7 +413,7 @@ class PlaneCourse:
             why = contact_march.PARADOX
         if why == contact_march.FAILED:
             raise NotConverged(f'{self._bound.scene.name}: no step is small enough at '
-                               f't = {time!r} s')
+                               f't = {time!r} s', time)
         if why == contact_march.PARADOX:
             self._end(y, ahead=phase.ahead)
             return
@@ -489,7 +490,18 @@ class PlaneCourse:
             self._steps.count(EVENT, float(self._phases[-1].front[TIME]), elapsed)
             self._follow(self._phases[-1])
         if self._over is not None and (elapsed > self._over or not self._phases):
-            raise NotConverged(f'{self._bound.scene.name}: {self._why}')
+            raise Ended(f'{self._bound.scene.name}: {self._why}', self._last)
+
+    @property
+    def _last(self):
+        """The last time of which a course that has ended knows the state, s.
+
+        A course that ends where it begins knows none: then it is that time.
+        """
+        time = self._begin + self._over
+        while time - self._begin > self._over:
+            time = math.nextafter(time, -math.inf)
+        return time
 
     def state(self, time, out):
         """Fill `out` with the state at a time not before the start.
@@ -530,12 +542,14 @@ class PlaneCourse:
         return (error, since) if since <= until else None
 
     def events(self, after, until):
-        """Return the (time, name, values) after one time (s) and up to another."""
-        try:
+        """Return the (time, name, values) after one time (s) and up to another.
+
+        The `end` of a course that ends where it begins is after its start.
+        """
+        with contextlib.suppress(Ended):
             self.reach(until - self._begin)
-        except NotConverged:
-            if self._over is None:
-                raise
+        if not self._phases and after == self._begin:
+            return self._events[-1:]
         return [event for event in self._events if after < event[0] <= until]
 
 

@@ -20,8 +20,9 @@ AT_ONCE = 4096    # states of one call of a kernel
 
 def lost(method, scene, time):
     """Return the NotConverged of a march that ends at a time (s)."""
-    return NotConverged(f'{method.NAME} on {scene.name}: at t = {float(time)!r} s the state is no '
-                        'longer finite, or the step fell below what the clock resolves')
+    time = float(time)
+    return NotConverged(f'{method.NAME} on {scene.name}: at t = {time!r} s the state is no longer '
+                        'finite, or the step fell below what the clock resolves', time)
 
 
 class Course:

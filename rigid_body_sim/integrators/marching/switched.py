@@ -344,4 +344,4 @@ class Switched:
         return NotConverged(
             f'{self._method.NAME} on {self._scene.name}: at t = {time!r} s the body slides along '
             'a kink, where what acts drives it back from both sides; at a hinge that is '
-            'dry_friction, elsewhere a smooth function like tanh would do')
+            'dry_friction, elsewhere a smooth function like tanh would do', time)

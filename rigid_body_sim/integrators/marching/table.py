@@ -131,7 +131,7 @@ class TableCourse:
             p[table_rates.MODE] = ROLLING
         else:
             p[table_rates.MODE] = CREEPING
-        return _Phase(self._bound, p, y, self._tolerance)
+        return _Phase(self._bound, p, y, self._tolerance, self._begin)
 
     def states(self, times, out):
         """Fill the rows of `out` as `state` does, for times not before the start."""
@@ -228,7 +228,8 @@ class _Phase:
         Unknowns at the end, once it is reached.
     """
 
-    def __init__(self, bound, p, y, tolerance):
+    def __init__(self, bound, p, y, tolerance, origin):
+        self._origin = origin    # the time at which the course starts, s
         self._bound, self._p, self._tolerance, self.mode = (
             bound,
             p,
@@ -326,10 +327,8 @@ class _Phase:
                 return Point((*q, *after[U:]), (*lost_q, *lost_after[U:]), scales_after,
                              h * factor, h)
             h *= factor
-        raise NotConverged(
-            f'a ball on the table: no step is small enough {y[CLOCK]!r} s after the start '
-            'of the hold'
-        )
+        time = self._origin + y[CLOCK]
+        raise NotConverged(f'a ball on the table: no step is small enough at t = {time!r} s', time)
 
     def _end(self, point, following):
         """Return the unknowns where the phase ends if it does so within a step, else None."""

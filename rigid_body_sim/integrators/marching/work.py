@@ -95,10 +95,13 @@ class Work:
         Steps that the march made before.
     doublings : Doublings, optional
         Of the march.
+    origin : float
+        The time from which the march counts its times, s.
     """
 
-    def __init__(self, name, most, dear=1, comes_to_rest=False, made=0, doublings=None):
-        self._name, self._most, self.done = name, most, 0
+    def __init__(self, name, most, dear=1, comes_to_rest=False, made=0, doublings=None,
+                 origin=0.0):
+        self._name, self._most, self.done, self._origin = name, most, 0, origin
         self._dear = max(dear, SLOWER) if most is None and not comes_to_rest else dear
         self._sure, first = FIRST_LOOK // dear, max(1, FIRST_LOOK // self._dear)
         self._early = most is not None and not comes_to_rest
@@ -184,8 +187,9 @@ class Work:
 
     def _given_up(self, time, target):
         done, before = self._begin
+        before, time, target = (self._origin + one for one in (before, time, target))
         return TooMuchWork(
             f'{self._name}: {self.done - done} steps from t = {before!r} s '
             f'led to t = {time!r} s; '
             f'to reach {target!r} s asks for too many. A slower body, weaker effects, a coarser '
-            'accuracy, a shorter time, or another integrator would do')
+            'accuracy, a shorter time, or another integrator would do', time)
