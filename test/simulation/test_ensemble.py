@@ -169,6 +169,23 @@ def test_events_of_each_body_are_those_that_it_has_alone():
     assert ensemble('tennis_racket', times=[1.0]).events is None
 
 
+@pytest.mark.without_numba
+def test_coins_that_are_tossed_land_with_the_bits_and_events_that_they_have_alone():
+    speeds, settings = [-0.5, -0.4], {'integrator': 'dop8', 'accuracy': 1e-4}
+    scene = load_scene('tossed_coin', {
+        'initial.position.2': 0.02, 'initial.angular_velocity': [5, 0, 8],
+        'constraint.table.restitution': 0.0})
+    coins = ensemble(scene, times=[0.05, 0.02], events=True,
+                     overrides={'initial.velocity.2': speeds}, **settings)
+    for k, (speed, found) in enumerate(zip(speeds, coins.events, strict=True)):
+        alone = Simulation(scene, overrides={'initial.velocity.2': speed}, rate=20.0, **settings)
+        assert coins[k].vector.tobytes() == alone.states([0.05, 0.02]).vector.tobytes()
+        alone.advance(1)
+        assert [(event.time, event.name) for event in found] == \
+            [(event.time, event.name) for event in alone.events]
+        assert 'impact' in [event.name for event in found]
+
+
 def test_a_body_that_fails_is_named_by_its_place_among_all(monkeypatch):
     starts = np.tile(State.of(angular_velocity=(0.01, 5.0, 0.01)).vector, (200, 1))
     starts[150, 6] = 1e12
